@@ -1,0 +1,99 @@
+"""What every row of a world weighs and feels: Newton's second law."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Held, Mass, Shape, Transform, Velocity
+from physicslab.kernels import compile_kernels, motion
+from physicslab.schedule import Stage, System, at
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["Bodies", "Diverged"]
+
+
+class Diverged(ArithmeticError):
+    """A value is no longer finite: the run cannot go on."""
+
+
+class Bodies(System):
+    """Adds up forces and turns them into velocities. Every world has one; force systems write into it.
+
+    Attributes
+    ----------
+    force, torque : float64 arrays (rows, 2), (rows,)
+        Forces [N] and torques [N m] added up in this substep.
+    inverse_mass, inverse_inertia : float64 arrays (rows,)
+        Zero for what cannot be moved or turned: static, kinematic and held bodies.
+    """
+
+    kernels = (motion.clear, motion.kick, motion.find_not_finite)
+
+    def __init__(self) -> None:
+        self._resize(1)
+
+    def _resize(self, rows: int) -> None:
+        self.force: NDArray[np.float64] = np.zeros((rows, 2))
+        self.torque: NDArray[np.float64] = np.zeros(rows)
+        self.inverse_mass: NDArray[np.float64] = np.zeros(rows)
+        self.inverse_inertia: NDArray[np.float64] = np.zeros(rows)
+
+    def derive(self, world: World) -> None:
+        """Work out moments of inertia and inverse masses from the components as they are now."""
+        if len(self.torque) != len(world.roster):
+            self._resize(len(world.roster))
+        mass, shape, velocity = world.table(Mass), world.table(Shape), world.table(Velocity)
+        compile_kernels((motion.derive_masses,))
+        motion.derive_masses(
+            velocity.present, mass.present, world.table(Held).present,
+            mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
+            shape["kind"], shape["radius"], shape["width"], shape["height"], velocity["angular"],
+            self.inverse_mass, self.inverse_inertia,
+        )  # fmt: skip
+
+    def why_left_out(self, world: World) -> str | None:
+        """Needed wherever something can change a velocity."""
+        if not len(world.batch(Velocity)):
+            return "nothing moves"
+        return None
+
+    @at(Stage.FORCE)
+    def clear(self, world: World, h: float) -> None:
+        """Start adding up from zero."""
+        if world.has_forces:
+            motion.clear(self.force, self.torque)
+            world.force_evaluations += 1
+
+    @at(Stage.KICK)
+    def kick(self, world: World, h: float) -> None:
+        """Change velocities by the forces, and by damping."""
+        physics = world.physics
+        if not world.has_forces and physics.linear_damping == physics.angular_damping == 0.0:
+            return
+        velocity = world.table(Velocity)
+        motion.kick(
+            velocity["linear"], velocity["angular"], self.force, self.torque,
+            self.inverse_mass, self.inverse_inertia, physics.linear_damping, physics.angular_damping, h,
+        )  # fmt: skip
+
+    @at(Stage.FINISH)
+    def check_finite(self, world: World, h: float) -> None:
+        """Stop a run that has diverged, naming what and when."""
+        transform, velocity = world.table(Transform), world.table(Velocity)
+        row = motion.find_not_finite(
+            transform["position"], transform["angle"], velocity["linear"], velocity["angular"]
+        )
+        if row >= 0:
+            entity = int(world.roster.entities[row])
+            part = transform if not np.isfinite(transform["position"][row]).all() else velocity
+            raise Diverged(
+                f"{world.label(entity)}: {part.component.__name__} is no longer finite at t = {world.time + h:.9g} s; "
+                f"a smaller dt or more substeps may help"
+            )
+
+

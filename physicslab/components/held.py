@@ -1,0 +1,10 @@
+"""What a hand does to a body."""
+
+from physicslab.columns import Vector, component, field
+
+
+@component
+class Held:
+    """Marks a body that is held: infinitely heavy for contacts and forces until it is let go."""
+
+    grip: Vector = field((0.0, 0.0), unit="m", meaning="where it is held, in the body's own frame")

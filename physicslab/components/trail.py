@@ -1,0 +1,10 @@
+"""How much of a body's path is shown."""
+
+from physicslab.columns import component, field
+
+
+@component
+class Trail:
+    """Asks for a record of where the body has been."""
+
+    length: float = field(2.0, unit="s", above=0.0, meaning="how far back the record goes")

@@ -1,0 +1,11 @@
+"""How a body moves."""
+
+from physicslab.columns import Vector, component, field
+
+
+@component
+class Velocity:
+    """How a body moves. An entity without it is static."""
+
+    linear: Vector = field((0.0, 0.0), unit="m/s", meaning="velocity of the centre of mass")
+    angular: float = field(0.0, unit="rad/s", meaning="angular velocity, counter-clockwise")

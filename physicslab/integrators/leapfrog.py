@@ -1,0 +1,31 @@
+"""Leapfrog in its drift-kick-drift form."""
+
+from physicslab.integrators.integrator import Integrator
+from physicslab.schedule import Stage
+
+__all__ = ["LEAPFROG"]
+
+# Positions and velocities are both at the middle of the substep between the two half kicks. Impacts are resolved
+# there, because turning a velocity round at the place it belongs to leaves the energy as it was. The contact solver
+# needs the whole kick, or a body at rest would sag by half of one in every substep.
+LEAPFROG = Integrator(
+    name="leapfrog",
+    title="Leapfrog (drift-kick-drift)",
+    order=2,
+    evaluations=1,
+    stability_limit=2.0,
+    symplectic=True,
+    source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, I.1.4",
+    substep=(
+        (Stage.DRIFT, 0.5),
+        (Stage.FORCE, 1.0),
+        (Stage.KICK, 0.5),
+        (Stage.BROAD_PHASE, 1.0),
+        (Stage.CONTACT, 1.0),
+        (Stage.IMPACT, 1.0),
+        (Stage.KICK, 0.5),
+        (Stage.SOLVE, 1.0),
+        (Stage.DRIFT, 0.5),
+        (Stage.RELAX, 0.5),
+    ),
+)

@@ -1,0 +1,94 @@
+"""Uniform and pairwise gravity."""
+
+import math
+
+from numba import boolean, float64, int64, void
+
+from physicslab.kernels import inlined, kernel
+
+__all__ = ["planet_gravity", "planet_potential", "uniform_gravity", "uniform_potential"]
+
+_NUMBERS = float64[::1]
+_VECTORS = float64[:, ::1]
+_ROWS = int64[::1]
+
+
+@kernel(void(_VECTORS, _NUMBERS, _NUMBERS, float64, float64))
+def uniform_gravity(force, mass, inverse_mass, gx, gy):
+    """Add m g to the force on every row that forces can move."""
+    for i in range(len(mass)):
+        if inverse_mass[i] > 0.0:
+            force[i, 0] += mass[i] * gx
+            force[i, 1] += mass[i] * gy
+
+
+@kernel(float64(_VECTORS, _NUMBERS, _NUMBERS, float64, float64))
+def uniform_potential(position, mass, inverse_mass, gx, gy):
+    """Return the sum of -m g . x [J], zero at the origin."""
+    total = 0.0
+    for i in range(len(mass)):
+        if inverse_mass[i] > 0.0:
+            total -= mass[i] * (gx * position[i, 0] + gy * position[i, 1])
+    return total
+
+
+@inlined
+def _inverse_cube(r2, softening2, plummer):
+    """Return the factor that turns G m_a m_b (x_b - x_a) into the force on a.
+
+    Plummer: 1 / (r^2 + s^2)^(3/2). Clamp: the magnitude is 1 / max(r, s)^2, so the factor is 1 / (max(r, s)^2 r).
+    Coincident bodies have no direction to pull in, and so no force.
+    """
+    if plummer:
+        d2 = r2 + softening2
+        return 1.0 / (d2 * math.sqrt(d2)) if d2 > 0.0 else 0.0
+    if r2 > 0.0:
+        return 1.0 / (max(r2, softening2) * math.sqrt(r2))
+    return 0.0
+
+
+@kernel(void(_VECTORS, _VECTORS, _NUMBERS, _ROWS, float64, float64, boolean))
+def planet_gravity(force, position, mass, rows, G, softening, plummer):
+    """Add the pairwise attraction of ``rows`` to their forces, each pair equal and opposite to the last bit."""
+    softening2 = softening * softening
+    n = len(rows)
+    for p in range(n):
+        i = rows[p]
+        fx, fy = 0.0, 0.0
+        for q in range(p + 1, n):
+            j = rows[q]
+            dx = position[j, 0] - position[i, 0]
+            dy = position[j, 1] - position[i, 1]
+            f = G * mass[i] * mass[j] * _inverse_cube(dx * dx + dy * dy, softening2, plummer)
+            fx += f * dx
+            fy += f * dy
+            force[j, 0] -= f * dx
+            force[j, 1] -= f * dy
+        force[i, 0] += fx
+        force[i, 1] += fy
+
+
+@kernel(float64(_VECTORS, _NUMBERS, _ROWS, float64, float64, boolean))
+def planet_potential(position, mass, rows, G, softening, plummer):
+    """Return the energy [J] that belongs to the same force law, zero at infinite distance.
+
+    Plummer: -G m_a m_b / sqrt(r^2 + s^2). Clamp: -G m_a m_b / r beyond s; within, where the force is constant,
+    the straight line that continues it: -G m_a m_b (2 s - r) / s^2.
+    """
+    total = 0.0
+    n = len(rows)
+    for p in range(n):
+        i = rows[p]
+        for q in range(p + 1, n):
+            j = rows[q]
+            dx = position[j, 0] - position[i, 0]
+            dy = position[j, 1] - position[i, 1]
+            r = math.sqrt(dx * dx + dy * dy)
+            if plummer:
+                depth = 1.0 / math.sqrt(r * r + softening * softening) if r + softening > 0.0 else 0.0
+            elif r >= softening:
+                depth = 1.0 / r if r > 0.0 else 0.0
+            else:
+                depth = (2.0 * softening - r) / (softening * softening)
+            total -= G * mass[i] * mass[j] * depth
+    return total

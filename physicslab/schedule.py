@@ -1,0 +1,203 @@
+"""Who runs when, at what cost, and what was left out."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from physicslab.kernels import compile_kernels
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["ForceSystem", "LeftOut", "Schedule", "Stage", "System", "Timing", "at"]
+
+
+class Stage(Enum):
+    """The moments at which systems run. An integrator's ``substep`` puts those of a substep in order."""
+
+    INPUT = "once a frame: what the user did"
+    PREPARE = "once a step: what holds for all of it"
+    FORCE = "forces and torques are added up"
+    KICK = "forces change velocities"
+    DRIFT = "velocities change positions"
+    BROAD_PHASE = "which bodies are near each other"
+    CONTACT = "where they touch"
+    IMPACT = "approaching bodies bounce"
+    SOLVE = "contact impulses keep bodies apart, correcting overlap"
+    RELAX = "contact impulses again, so that the correction leaves no velocity behind"
+    FINISH = "once a step: what is recorded of it"
+    RENDER = "once a frame: the world is drawn"
+    HUD = "once a frame: the figures are drawn over it"
+
+
+M = TypeVar("M", bound=Callable[..., None])
+
+
+def at(stage: Stage) -> Callable[[M], M]:
+    """Mark a system's method to be called as ``method(world, h)`` at ``stage``.
+
+    ``h`` is the time [s] that the call stands for: the substep, a part of it, or the step.
+    """
+
+    def mark(method: M) -> M:
+        method.stage = stage  # type: ignore[attr-defined]
+        return method
+
+    return mark
+
+
+class System:
+    """One thing that happens to a world, and when.
+
+    To write one:
+
+    1. Subclass ``System`` (or :class:`ForceSystem`) in a file of ``physicslab/systems``.
+    2. Name the components it works on in ``needs``. While no entity has all of them, the system is left out.
+    3. Mark a method ``@at(Stage. ...)``. It gets the world and the time that the call stands for, and reads and writes
+       columns: ``world.batch(Velocity, Mass).rows`` are row numbers, ``world.table(Velocity)["linear"]`` a column.
+    4. Say in :meth:`why_left_out` what else makes it needless. What was left out is shown with that reason.
+    5. Add it to the list in ``physicslab/systems/standard.py``, in the order in which it runs within its stage.
+
+    Attributes
+    ----------
+    needs : tuple of component types
+        An entity must have all of them for the system to have work.
+    kernels : tuple of kernels
+        What the system calls; compiled before the system first runs.
+    """
+
+    needs: ClassVar[tuple[type[Any], ...]] = ()
+    kernels: ClassVar[tuple[Any, ...]] = ()
+
+    @property
+    def name(self) -> str:
+        """The name under which cost and reasons are reported."""
+        return type(self).__name__
+
+    def attach(self, world: World) -> None:
+        """Look at the world's new content; called whenever it changed, before :meth:`why_left_out`."""
+
+    def why_left_out(self, world: World) -> str | None:
+        """Return why this scene does not need the system, or ``None`` if it does."""
+        if self.needs and not len(world.batch(*self.needs)):
+            names = " and ".join(needed.__name__ for needed in self.needs)
+            return f"no {names} in the scene"
+        return None
+
+    @classmethod
+    def marked(cls) -> dict[Stage, str]:
+        """Return the stages of the system, each with the name of its method."""
+        found: dict[Stage, str] = {}
+        for name in dir(cls):
+            stage = getattr(getattr(cls, name, None), "stage", None)
+            if isinstance(stage, Stage):
+                found[stage] = name
+        return found
+
+
+class ForceSystem(System):
+    """A system that adds to ``world.bodies.force`` [N] and ``.torque`` [N m] at ``Stage.FORCE``.
+
+    It must also say what energy its force stores, so that the energy shown stays true when someone adds a force.
+    """
+
+    potential: ClassVar[str | None] = None
+    """Under which name the energy is reported (``potential_<name>``); ``None`` for a force that stores none."""
+
+    def potential_energy(self, world: World) -> float:
+        """Return the energy stored [J]; zero for a force that stores none."""
+        return 0.0
+
+    def strongest_rate(self, world: World) -> float:
+        """Return the fastest angular frequency [rad/s] that this force gives any body; 0 where it gives none."""
+        return 0.0
+
+
+@dataclass(slots=True)
+class Timing:
+    """What a system has cost so far."""
+
+    calls: int = 0
+    nanoseconds: int = 0
+
+    @property
+    def ms(self) -> float:
+        """The cost in milliseconds."""
+        return self.nanoseconds / 1e6
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A system that the scene does not need, and why."""
+
+    name: str
+    reason: str
+
+
+class Schedule:
+    """The systems of one world, made from what the world holds and remade when that changes.
+
+    Attributes
+    ----------
+    systems : tuple of System
+        All of them, in order.
+    running : tuple of System
+        Those that the world needs at present.
+    left_out : tuple of LeftOut
+        The others, each with the reason.
+    timings : dict of str to Timing
+        Calls and cost of every system that ever ran.
+    compile_s : float
+        Seconds spent compiling kernels, or loading them.
+    """
+
+    def __init__(self, systems: Iterable[System]) -> None:
+        self.systems: tuple[System, ...] = tuple(systems)
+        names = [system.name for system in self.systems]
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"{name} is in the schedule twice")
+        self.running: tuple[System, ...] = ()
+        self.left_out: tuple[LeftOut, ...] = ()
+        self.timings: dict[str, Timing] = {}
+        self.compile_s = 0.0
+        self._calls: dict[Stage, list[tuple[Callable[[World, float], None], Timing]]] = {}
+
+    def remake(self, world: World) -> None:
+        """Choose the systems that ``world`` needs now."""
+        running: list[System] = []
+        left_out: list[LeftOut] = []
+        for system in self.systems:
+            system.attach(world)
+            reason = system.why_left_out(world)
+            if reason is None:
+                running.append(system)
+            else:
+                left_out.append(LeftOut(system.name, reason))
+        self.running, self.left_out = tuple(running), tuple(left_out)
+        self._calls = {stage: [] for stage in Stage}
+        for system in running:
+            self.compile_s += compile_kernels(system.kernels)
+            timing = self.timings.setdefault(system.name, Timing())
+            for stage, method in system.marked().items():
+                self._calls[stage].append((getattr(system, method), timing))
+
+    def runs(self, stage: Stage) -> bool:
+        """Whether any system has work at ``stage``."""
+        return bool(self._calls.get(stage))
+
+    def run(self, stage: Stage, world: World, h: float) -> None:
+        """Call every running system of ``stage``, in order, and note what each cost."""
+        for call, timing in self._calls.get(stage, ()):
+            start = time.perf_counter_ns()
+            call(world, h)
+            timing.nanoseconds += time.perf_counter_ns() - start
+            timing.calls += 1
+
+    def find(self, kind: type[System]) -> System | None:
+        """Return the running system of a type, if there is one."""
+        return next((system for system in self.running if isinstance(system, kind)), None)

@@ -1,0 +1,81 @@
+"""Gravity: uniform, or pairwise between planets."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Held, Mass, Transform, Velocity
+from physicslab.kernels import gravity
+from physicslab.schedule import ForceSystem, Stage, at
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["GravitySystem"]
+
+
+class GravitySystem(ForceSystem):
+    """Pulls every body with Mass: by m g, or towards every other by G m_a m_b / d^2.
+
+    In planet mode a static body with Mass pulls and is not moved; a held one neither pulls nor is pulled.
+    """
+
+    kernels = (
+        gravity.uniform_gravity,
+        gravity.uniform_potential,
+        gravity.planet_gravity,
+        gravity.planet_potential,
+    )
+    potential = "gravity"
+
+    def __init__(self) -> None:
+        self._attracting: NDArray[np.int64] = np.zeros(0, np.int64)
+
+    def attach(self, world: World) -> None:
+        """Note which rows attract each other."""
+        rows = world.batch(Transform, Mass).rows
+        self._attracting = rows[~world.table(Held).present[rows]]
+
+    def why_left_out(self, world: World) -> str | None:
+        """Needed where the mode pulls and something can be pulled."""
+        mode = world.physics.gravity_mode
+        if mode == "none":
+            return 'gravity_mode is "none"'
+        if not len(world.batch(Velocity, Mass)):
+            return "nothing that moves has Mass"
+        if mode == "linear" and not world.physics.gravity:
+            return "gravity is [0, 0]"
+        if mode == "planet" and len(self._attracting) < 2:
+            return "fewer than two bodies attract each other"
+        if mode == "planet" and world.physics.G == 0.0:
+            return "G is 0"
+        return None
+
+    @at(Stage.FORCE)
+    def pull(self, world: World, h: float) -> None:
+        """Add the pull to the forces."""
+        bodies, physics, mass = world.bodies, world.physics, world.table(Mass)["mass"]
+        if physics.gravity_mode == "linear":
+            gravity.uniform_gravity(bodies.force, mass, bodies.inverse_mass, physics.gravity.x, physics.gravity.y)
+        else:
+            gravity.planet_gravity(
+                bodies.force, world.table(Transform)["position"], mass, self._attracting,
+                physics.G, physics.softening, physics.softening_law == "plummer",
+            )  # fmt: skip
+
+    def potential_energy(self, world: World) -> float:
+        """Return -m g . x over all bodies [J], zero at the origin; or the energy of the pairs, zero at infinity."""
+        physics, mass = world.physics, world.table(Mass)["mass"]
+        position = world.table(Transform)["position"]
+        if physics.gravity_mode == "linear":
+            inverse_mass = world.bodies.inverse_mass
+            return float(gravity.uniform_potential(position, mass, inverse_mass, physics.gravity.x, physics.gravity.y))
+        return float(
+            gravity.planet_potential(
+                position, mass, self._attracting,
+                physics.G, physics.softening, physics.softening_law == "plummer",
+            )  # fmt: skip
+        )

@@ -1,0 +1,21 @@
+"""The physics systems, in the order in which they run within a stage. A new system is added here."""
+
+from __future__ import annotations
+
+from physicslab.schedule import System
+from physicslab.systems.gravity import GravitySystem
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.spring import SpringSystem
+
+__all__ = ["PHYSICS_SYSTEMS", "standard_systems"]
+
+PHYSICS_SYSTEMS: tuple[type[System], ...] = (
+    GravitySystem,
+    SpringSystem,
+    IntegrateSystem,
+)
+
+
+def standard_systems() -> tuple[System, ...]:
+    """Return one of each physics system, for a world that may hold anything."""
+    return tuple(system() for system in PHYSICS_SYSTEMS)

@@ -1,0 +1,176 @@
+"""An immutable vector in the plane."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from numbers import Real
+
+__all__ = ["Vector2"]
+
+
+@dataclass(frozen=True, slots=True)
+class Vector2:
+    """A vector (x, y) of two floats; every operation returns a new one.
+
+    Vectors add to vectors and scale by numbers. Nothing is broadcast: ``v + 5`` is a ``TypeError``, because a
+    vector and a number have no sum.
+
+    Parameters
+    ----------
+    x, y : float
+        Components, in whatever unit the quantity has; y points up.
+
+    Examples
+    --------
+    >>> Vector2(1, 2) + Vector2(3, 4)
+    Vector2(x=4.0, y=6.0)
+    >>> 2 * Vector2(3, 4)
+    Vector2(x=6.0, y=8.0)
+    >>> Vector2(1, 2) + 5
+    Traceback (most recent call last):
+    ...
+    TypeError: unsupported operand type(s) for +: 'Vector2' and 'int'
+    """
+
+    x: float = 0.0
+    y: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("x", "y"):
+            value = getattr(self, name)
+            if type(value) is not float:
+                if isinstance(value, bool) or not isinstance(value, Real):
+                    raise TypeError(f"Vector2.{name} takes a number, got {value!r}")
+                object.__setattr__(self, name, float(value))
+
+    @classmethod
+    def from_angle(cls, angle: float, magnitude: float = 1.0) -> Vector2:
+        """Return the vector of the given length at ``angle`` radians, counter-clockwise from the x axis.
+
+        >>> Vector2.from_angle(0.0, 2.0)
+        Vector2(x=2.0, y=0.0)
+        """
+        return cls(magnitude * math.cos(angle), magnitude * math.sin(angle))
+
+    def __add__(self, other: Vector2) -> Vector2:
+        if not isinstance(other, Vector2):
+            return NotImplemented
+        return Vector2(self.x + other.x, self.y + other.y)
+
+    def __sub__(self, other: Vector2) -> Vector2:
+        if not isinstance(other, Vector2):
+            return NotImplemented
+        return Vector2(self.x - other.x, self.y - other.y)
+
+    def __mul__(self, factor: float) -> Vector2:
+        if isinstance(factor, bool) or not isinstance(factor, Real):
+            return NotImplemented
+        return Vector2(self.x * factor, self.y * factor)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, divisor: float) -> Vector2:
+        if isinstance(divisor, bool) or not isinstance(divisor, Real):
+            return NotImplemented
+        return Vector2(self.x / divisor, self.y / divisor)
+
+    def __neg__(self) -> Vector2:
+        return Vector2(-self.x, -self.y)
+
+    def __pos__(self) -> Vector2:
+        return self
+
+    def __abs__(self) -> float:
+        return self.magnitude
+
+    def __bool__(self) -> bool:
+        return self.x != 0.0 or self.y != 0.0
+
+    def __iter__(self) -> Iterator[float]:
+        """Yield x, then y, so that ``x, y = v`` works."""
+        yield self.x
+        yield self.y
+
+    @property
+    def magnitude(self) -> float:
+        """The length, without overflow for large components.
+
+        >>> Vector2(3, 4).magnitude
+        5.0
+        """
+        return math.hypot(self.x, self.y)
+
+    @property
+    def magnitude_squared(self) -> float:
+        """The squared length.
+
+        >>> Vector2(3, 4).magnitude_squared
+        25.0
+        """
+        return self.x * self.x + self.y * self.y
+
+    @property
+    def angle(self) -> float:
+        """The direction in radians, counter-clockwise from the x axis, in (-pi, pi].
+
+        >>> Vector2(0, 1).angle == math.pi / 2
+        True
+        """
+        return math.atan2(self.y, self.x)
+
+    @property
+    def normalized(self) -> Vector2:
+        """The unit vector of the same direction; the zero vector has none and raises ``ValueError``.
+
+        >>> Vector2(3, 4).normalized
+        Vector2(x=0.6, y=0.8)
+        """
+        length = self.magnitude
+        if length == 0.0:
+            raise ValueError("the zero vector has no direction to normalize")
+        return Vector2(self.x / length, self.y / length)
+
+    @property
+    def perpendicular(self) -> Vector2:
+        """The vector turned a quarter turn counter-clockwise.
+
+        >>> Vector2(1, 0).perpendicular
+        Vector2(x=-0.0, y=1.0)
+        """
+        return Vector2(-self.y, self.x)
+
+    def dot(self, other: Vector2) -> float:
+        """Return the scalar product.
+
+        >>> Vector2(1, 2).dot(Vector2(3, 4))
+        11.0
+        """
+        return self.x * other.x + self.y * other.y
+
+    def cross(self, other: Vector2) -> float:
+        """Return the signed area x1 y2 - y1 x2: positive where ``other`` lies counter-clockwise of this vector.
+
+        >>> Vector2(1, 0).cross(Vector2(0, 1))
+        1.0
+        """
+        return self.x * other.y - self.y * other.x
+
+    def reflected(self, normal: Vector2) -> Vector2:
+        """Return v - 2 (v . n) n, the mirror image in a surface with this normal (of any length but zero).
+
+        >>> Vector2(1, -1).reflected(Vector2(0, 1))
+        Vector2(x=1.0, y=1.0)
+        """
+        n = normal.normalized
+        return self - n * (2.0 * self.dot(n))
+
+    def rotated(self, angle: float) -> Vector2:
+        """Return the vector turned by ``angle`` radians counter-clockwise.
+
+        >>> Vector2(1, 0).rotated(math.pi).x
+        -1.0
+        """
+        c, s = math.cos(angle), math.sin(angle)
+        return Vector2(c * self.x - s * self.y, s * self.x + c * self.y)

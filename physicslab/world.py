@@ -1,0 +1,326 @@
+"""A world: entities, clock and systems, in an esper context of its own."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import weakref
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+import esper
+
+from physicslab.bodies import Bodies
+from physicslab.columns import Batch, Component, Table
+from physicslab.components import Name, Shape, Velocity
+from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.contacts import Contacts
+from physicslab.integrators import Integrator, choose
+from physicslab.roster import Roster
+from physicslab.schedule import ForceSystem, Schedule, Stage, System
+
+__all__ = ["World"]
+
+C = TypeVar("C")
+
+_numbers = itertools.count(1)
+
+
+class World:
+    """Entities, a clock, and the systems that act on them.
+
+    Parameters
+    ----------
+    *systems : System
+        Just these systems run, in this order within a stage. Forces turn into velocities without being asked.
+    physics, simulation : PhysicsConfig, SimulationConfig, optional
+        The laws, and how they are stepped. Assign new ones at any time.
+
+    Notes
+    -----
+    Each world lives in an esper context of its own, so worlds never mix. A new world is esper's active one until
+    another is made or activated; every method enters its own context and leaves the one before.
+
+    Examples
+    --------
+    >>> from physicslab.components import Mass, Transform, Velocity
+    >>> from physicslab.systems.gravity import GravitySystem
+    >>> world = World(GravitySystem())
+    >>> ball = world.spawn(Transform((0, 5)), Velocity(), Mass(2.0))
+    >>> world.step(0.01)
+    >>> round(world.component(ball, Velocity).linear.y, 12)
+    -0.0981
+    """
+
+    def __init__(
+        self,
+        *systems: System,
+        physics: PhysicsConfig | None = None,
+        simulation: SimulationConfig | None = None,
+    ) -> None:
+        self._physics = physics or PhysicsConfig()
+        self._simulation = simulation or SimulationConfig()
+        self.title, self.description = "", ""
+        self.time = 0.0
+        self.steps = 0
+        self.force_evaluations = 0
+        self.collisions = 0
+        self.bodies = Bodies()
+        self.contacts = Contacts()
+        self.roster = Roster()
+        self.schedule = Schedule((self.bodies, *systems))
+        self.has_forces = False
+        self.integrator: Integrator
+        self.integrator_reason = ""
+        self._stale = True
+        self._stepping = False
+        self.context = f"physicslab-{next(_numbers)}"
+        self._choose_integrator()
+        esper.switch_world(self.context)
+        weakref.finalize(self, _forget, self.context)
+
+    # ---- contexts -------------------------------------------------------------------------------------------------
+
+    def activate(self) -> None:
+        """Make this the world that plain esper calls speak of, until another is activated."""
+        esper.switch_world(self.context)
+
+    @contextmanager
+    def active(self) -> Iterator[World]:
+        """Make this the world that plain esper calls speak of, within a ``with`` block."""
+        before = esper.current_world
+        if before != self.context:
+            esper.switch_world(self.context)
+        try:
+            yield self
+        finally:
+            if esper.current_world != before:
+                esper.switch_world(before)
+
+    # ---- entities and components ----------------------------------------------------------------------------------
+
+    def spawn(self, *components: Any, name: str | None = None) -> int:
+        """Make an entity of these components and return its number.
+
+        Systems see it from the next step on. ``name`` is its id in scene files and reports.
+        """
+        kinds = [type(component) for component in components]
+        for component, kind in zip(components, kinds, strict=True):
+            if isinstance(component, type):
+                raise TypeError(f"spawn takes components, not their types: write {component.__name__}(...)")
+            if kinds.count(kind) > 1:
+                raise ValueError(f"an entity has one {kind.__name__}, not {kinds.count(kind)}")
+        if name is not None:
+            components = (*components, Name(name))
+        with self.active():
+            return esper.create_entity(*components)
+
+    def remove(self, entity: int) -> None:
+        """Remove an entity with all its components; handles on them keep their last values."""
+        with self.active():
+            self._require(entity)
+            esper.delete_entity(entity, immediate=True)
+
+    def clear(self) -> None:
+        """Remove every entity."""
+        with self.active():
+            for entity in list(esper.get_entities()):
+                esper.delete_entity(entity, immediate=True)
+
+    def add(self, entity: int, component: Any) -> None:
+        """Give an entity a component, in place of the one of that type if it has one."""
+        with self.active():
+            self._require(entity)
+            esper.add_component(entity, component)
+
+    def discard(self, entity: int, component: type[C]) -> C | None:
+        """Take a component from an entity and return it, or ``None`` if it had none."""
+        with self.active():
+            self._require(entity)
+            return esper.try_remove_component(entity, component)
+
+    def component(self, entity: int, component: type[C]) -> C:
+        """Return an entity's component.
+
+        Raises
+        ------
+        KeyError
+            If there is no such entity, or it has no such component.
+        """
+        with self.active():
+            self._require(entity)
+            self.synchronise()
+            found = esper.try_component(entity, component)
+            if found is None:
+                raise KeyError(f"{self.label(entity)} has no {component.__name__}")
+            return found
+
+    def has(self, entity: int, component: type[Any]) -> bool:
+        """Whether an entity exists and has a component."""
+        with self.active():
+            return esper.entity_exists(entity) and esper.has_component(entity, component)
+
+    def components(self, entity: int) -> tuple[Any, ...]:
+        """Return all components of an entity."""
+        with self.active():
+            self._require(entity)
+            self.synchronise()
+            return esper.components_for_entity(entity)
+
+    def entities(self) -> list[int]:
+        """Return all entities, in the order of their numbers."""
+        with self.active():
+            return sorted(esper.get_entities())
+
+    def entity(self, name: str) -> int:
+        """Return the entity with this id, or raise ``KeyError``."""
+        with self.active():
+            for entity, named in esper.get_component(Name):
+                if named.id == name:
+                    return entity
+        raise KeyError(f"no entity has the id {name!r}")
+
+    def label(self, entity: int) -> str:
+        """Return the entity's id if it has one, else ``entity <number>``."""
+        with self.active():
+            named = esper.try_component(entity, Name)
+        return named.id if named is not None else f"entity {entity}"
+
+    def _require(self, entity: int) -> None:
+        if not esper.entity_exists(entity):
+            raise KeyError(f"there is no entity {entity} in this world")
+
+    # ---- columns --------------------------------------------------------------------------------------------------
+
+    def table(self, component: type[Any]) -> Table:
+        """Return the columns of a component; rows are numbered alike in every table."""
+        return self.roster.table(component)
+
+    def batch(self, *components: type[Any]) -> Batch:
+        """Return the rows of the entities that have all of ``components``."""
+        return self.roster.batch(*components)
+
+    # ---- configuration --------------------------------------------------------------------------------------------
+
+    @property
+    def physics(self) -> PhysicsConfig:
+        """The laws of this world."""
+        return self._physics
+
+    @physics.setter
+    def physics(self, physics: PhysicsConfig) -> None:
+        self._physics = physics
+        self._stale = True
+
+    @property
+    def simulation(self) -> SimulationConfig:
+        """How this world is stepped."""
+        return self._simulation
+
+    @simulation.setter
+    def simulation(self, simulation: SimulationConfig) -> None:
+        before, self._simulation = self._simulation, simulation
+        try:
+            self._choose_integrator()
+        except LookupError:
+            self._simulation = before
+            raise
+        self._stale = True
+
+    def _choose_integrator(self) -> None:
+        can_touch = self.schedule.runs(Stage.CONTACT)
+        self.integrator, self.integrator_reason = choose(self._simulation.integrator, can_touch=can_touch)
+
+    # ---- time -----------------------------------------------------------------------------------------------------
+
+    def synchronise(self) -> None:
+        """Follow what entities and components there are now; the engine does so at the start of every step."""
+        if self._stepping:
+            return
+        with self.active():
+            while self.roster.synchronise() or self._stale:
+                self._stale = False
+                self.bodies.derive(self)
+                self.schedule.remake(self)
+                self.has_forces = any(isinstance(system, ForceSystem) for system in self.schedule.running)
+                self._choose_integrator()
+            self.bodies.derive(self)
+
+    def step(self, dt: float | None = None) -> None:
+        """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps."""
+        dt = self._simulation.dt if dt is None else dt
+        if not (math.isfinite(dt) and dt > 0.0):
+            raise ValueError(f"dt = {dt!r}: must be a finite number > 0 s")
+        with self.active():
+            self.synchronise()
+            self._stepping = True
+            try:
+                run, h = self.schedule.run, dt / self._simulation.substeps
+                run(Stage.PREPARE, self, dt)
+                for _ in range(self._simulation.substeps):
+                    for stage, share in self.integrator.substep:
+                        run(stage, self, share * h)
+                run(Stage.FINISH, self, dt)
+            finally:
+                self._stepping = False
+        self.time += dt
+        self.steps += 1
+
+    def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
+        """Advance by a time or by a number of steps.
+
+        ``world.time`` grows by exactly ``seconds``: the last step is shortened where they are no multiple of dt.
+        """
+        for _ in self.stepping(seconds=seconds, steps=steps):
+            pass
+
+    def stepping(self, *, seconds: float | None = None, steps: int | None = None) -> Iterator[int]:
+        """Advance like :meth:`run`, yielding the number of steps done after each."""
+        if (seconds is None) == (steps is None):
+            raise TypeError("give either seconds or steps")
+        dt = self._simulation.dt
+        if seconds is None:
+            assert steps is not None
+            if steps < 0:
+                raise ValueError(f"steps = {steps!r}: must be a whole number >= 0")
+            whole, rest = steps, 0.0
+        else:
+            if not (math.isfinite(seconds) and seconds >= 0.0):
+                raise ValueError(f"seconds = {seconds!r}: must be a finite number >= 0 s")
+            # A multiple of dt up to rounding takes no extra step of 1e-17 s.
+            whole = math.floor(seconds / dt * (1.0 + 1e-12) + 1e-9)
+            rest = max(seconds - whole * dt, 0.0)
+            rest = rest if rest > 1e-9 * dt else 0.0
+        start = self.time
+        for done in range(1, whole + 1):
+            self.step(dt)
+            self.time = start + done * dt
+            yield done
+        if rest:
+            self.step(rest)
+            yield whole + 1
+        if seconds is not None:
+            self.time = start + seconds
+
+    def frame(self, stage: Stage, dt: float) -> None:
+        """Run the systems of a stage that belongs to frames: ``INPUT``, ``RENDER`` or ``HUD``."""
+        with self.active():
+            self.synchronise()
+            self.schedule.run(stage, self, dt)
+
+    # ---- what there is --------------------------------------------------------------------------------------------
+
+    @property
+    def can_touch(self) -> bool:
+        """Whether any two things in this world could ever meet."""
+        moving = len(self.batch(Shape, Velocity))
+        return moving > 0 and (len(self.batch(Shape)) > 1 or self._physics.bounds is not None)
+
+
+def _forget(context: str) -> None:
+    if esper.current_world == context:
+        esper.switch_world("default")
+    esper.delete_world(context)
+
+
