@@ -29,6 +29,8 @@ class Integrator:
         Where the method is described.
     substep : tuple of (Stage, float)
         The stages of one substep in order, each with the share of the substep's time that it stands for.
+    window : tuple of two floats
+        When the substep begins and ends, seen from the moment at which impacts are resolved, in substeps.
     """
 
     name: str
@@ -39,3 +41,4 @@ class Integrator:
     symplectic: bool
     source: str
     substep: tuple[tuple[Stage, float], ...]
+    window: tuple[float, float]

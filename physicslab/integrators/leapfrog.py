@@ -28,4 +28,5 @@ LEAPFROG = Integrator(
         (Stage.DRIFT, 0.5),
         (Stage.RELAX, 0.5),
     ),
+    window=(-0.5, 0.5),
 )

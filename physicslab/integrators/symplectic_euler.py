@@ -23,4 +23,5 @@ SYMPLECTIC_EULER = Integrator(
         (Stage.DRIFT, 1.0),
         (Stage.RELAX, 1.0),
     ),
+    window=(0.0, 1.0),
 )

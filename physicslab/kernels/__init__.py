@@ -1,7 +1,9 @@
 """Compiled loops over arrays. Nothing here knows a world, an entity or a screen.
 
-A function that Python calls is a ``@kernel`` with an explicit signature, so that a stray int, float32 or strided
-column is an error and never a silent recompilation of seconds. A function that only kernels call is ``@inlined``.
+A function that Python calls is a ``@kernel``. Its annotations are its one signature: :data:`Numbers`,
+:data:`Vectors`, :data:`Rows`, :data:`Flags`, ``float``, ``int`` and ``bool``. A stray int, float32 or strided
+column is an error and never a silent recompilation of seconds. A function that only kernels call is
+``@inlined``.
 """
 
 from __future__ import annotations
@@ -13,14 +15,28 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Annotated, Any, cast, get_args, get_origin, get_type_hints
 
 import numba
+import numpy as np
+from numba import boolean, float64, int64, void
 from numba.core import config as numba_config
+from numba.core.typing.templates import Signature
+from numpy.typing import NDArray
 
-__all__ = ["KERNELS", "cache_directory", "compile_kernels", "inlined", "kernel"]
+__all__ = [
+    "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
+    "cache_directory", "compile_kernels", "inlined", "kernel",
+]  # fmt: skip
 
-F = TypeVar("F", bound=Callable[..., Any])
+Numbers = Annotated[NDArray[np.float64], float64[::1]]
+"""A float64 array (n,)."""
+Vectors = Annotated[NDArray[np.float64], float64[:, ::1]]
+"""A float64 array (n, k), contiguous: a vector a row."""
+Rows = Annotated[NDArray[np.int64], int64[::1]]
+"""An int64 array (n,): row numbers, or codes."""
+Flags = Annotated[NDArray[np.bool_], boolean[::1]]
+"""A bool array (n,)."""
 
 KERNELS: list[Any] = []
 """Every kernel of the modules imported so far, in the order of definition."""
@@ -32,65 +48,86 @@ _FASTMATH = {"contract", "nsz", "arcp", "reassoc"}
 def cache_directory() -> Path:
     """Return where compiled kernels are kept between runs.
 
-    numba's cache does not see an edit in another module's callee and would return the old code, so the directory is
-    named after a hash of every kernel's source and of numba's version.
+    numba's cache does not see an edit in another module's callee and would return the old code, so the
+    directory is named after a hash of every kernel's source and of numba's version.
     """
     digest = hashlib.sha256(numba.__version__.encode())
     for source in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(source.read_bytes())
-    if sys.platform == "win32":
-        base = os.environ.get("LOCALAPPDATA") or tempfile.gettempdir()
-    elif sys.platform == "darwin":
-        base = str(Path.home() / "Library" / "Caches")
-    else:
-        base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    directory = Path(base) / "physicslab" / f"kernels-{digest.hexdigest()[:16]}"
+    name = f"kernels-{digest.hexdigest()[:16]}"
     try:
+        directory = _user_cache() / "physicslab" / name
         directory.mkdir(parents=True, exist_ok=True)
         if not os.access(directory, os.W_OK):
             raise PermissionError(directory)
-    except OSError:
-        directory = Path(tempfile.gettempdir()) / f"physicslab-{os.getuid() if hasattr(os, 'getuid') else 0}"
-        directory = directory / f"kernels-{digest.hexdigest()[:16]}"
+    except (OSError, RuntimeError):  # no home, or one that cannot be written to
+        user = os.getuid() if hasattr(os, "getuid") else 0
+        directory = Path(tempfile.gettempdir()) / f"physicslab-{user}" / name
         directory.mkdir(parents=True, exist_ok=True)
     return directory
+
+
+def _user_cache() -> Path:
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or tempfile.gettempdir())
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
 
 
 _CACHE = str(cache_directory())
 
 
-def _jit(function: F, **options: Any) -> F:
+def _jit[F: Callable[..., Any]](function: F) -> F:
     before = numba_config.CACHE_DIR
     numba_config.CACHE_DIR = _CACHE  # read by numba when the function is decorated
     try:
-        jitted = numba.njit(cache=True, error_model="numpy", fastmath=_FASTMATH, **options)(function)
+        jitted = numba.njit(cache=True, error_model="numpy", fastmath=_FASTMATH)(function)
     finally:
         numba_config.CACHE_DIR = before
     return cast(F, jitted)
 
 
-def inlined(function: F) -> F:
+def inlined[F: Callable[..., Any]](function: F) -> F:
     """Make a function that kernels call and LLVM inlines."""
     return _jit(function)
 
 
-def kernel(signature: Any) -> Callable[[F], F]:
-    """Make a function that Python calls, for exactly one signature, compiled by :func:`compile_kernels`."""
+def kernel(function: Any) -> Any:
+    """Make a function that Python calls, for the one signature that its annotations give."""
+    if isinstance(function, Signature):  # TODO(lead): for kernels that are not annotated yet
+        return lambda really: _declared(really, function)
+    return _declared(function, _signature(function))
 
-    def decorate(function: F) -> F:
-        jitted: Any = _jit(function)
-        jitted.declared_signature = signature
-        KERNELS.append(jitted)
-        return cast(F, jitted)
 
-    return decorate
+def _declared[F: Callable[..., Any]](function: F, signature: Signature) -> F:
+    jitted: Any = _jit(function)
+    jitted.declared_signature = signature
+    KERNELS.append(jitted)
+    return cast(F, jitted)
+
+
+def _signature(function: Callable[..., Any]) -> Any:
+    hints = get_type_hints(function, include_extras=True)
+    returned = _numba_type(hints.pop("return"))
+    return returned(*(_numba_type(hint) for hint in hints.values()))
+
+
+def _numba_type(hint: Any) -> Any:
+    """Return what numba calls a type: that which an ``Annotated`` alias carries, or that of a plain Python type."""
+    if get_origin(hint) is Annotated:
+        return hint.__metadata__[0]
+    if get_origin(hint) is tuple:
+        make_tuple: Any = numba.types.Tuple
+        return make_tuple([_numba_type(part) for part in get_args(hint)])
+    return {float: float64, int: int64, bool: boolean, type(None): void}[hint]
 
 
 def compile_kernels(kernels: Iterable[Any]) -> float:
     """Compile the given kernels, or load them from the cache; return the seconds it took."""
     start = time.perf_counter()
     for jitted in kernels:
-        if not jitted.signatures:
+        if jitted.declared_signature.args not in jitted.overloads:
             jitted.compile(jitted.declared_signature)
             jitted.disable_compile()
     return time.perf_counter() - start

@@ -1,20 +1,18 @@
 """Kinetic energy and momenta."""
 
-from numba import float64, types
-
-from physicslab.kernels import kernel
+from physicslab.kernels import Numbers, Vectors, kernel
 
 __all__ = ["motion_totals"]
 
-_NUMBERS = float64[::1]
-_VECTORS = float64[:, ::1]
 
+@kernel
+def motion_totals(
+    position: Vectors, linear: Vectors, angular: Numbers, mass: Numbers, inertia: Numbers,
+    inverse_mass: Numbers, inverse_inertia: Numbers,
+) -> tuple[float, float, float, float, float]:  # fmt: skip
+    """Return kinetic energy (of translation, of rotation) [J], momentum (x, y) [kg m/s], angular momentum.
 
-@kernel(types.UniTuple(float64, 5)(_VECTORS, _VECTORS, _NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS))
-def motion_totals(position, linear, angular, mass, inertia, inverse_mass, inverse_inertia):
-    """Return kinetic energy (of translation, of rotation) [J], momentum (x, y) [kg m/s], angular momentum [kg m^2/s].
-
-    Angular momentum is taken about the origin. Rows of infinite weight do not count.
+    The last is taken about the origin [kg m^2/s]. Rows of infinite weight do not count.
     """
     translation, rotation, px, py, spin = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(mass)):

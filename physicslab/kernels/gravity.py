@@ -2,19 +2,13 @@
 
 import math
 
-from numba import boolean, float64, int64, void
-
-from physicslab.kernels import inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 
 __all__ = ["planet_gravity", "planet_potential", "uniform_gravity", "uniform_potential"]
 
-_NUMBERS = float64[::1]
-_VECTORS = float64[:, ::1]
-_ROWS = int64[::1]
 
-
-@kernel(void(_VECTORS, _NUMBERS, _NUMBERS, float64, float64))
-def uniform_gravity(force, mass, inverse_mass, gx, gy):
+@kernel
+def uniform_gravity(force: Vectors, mass: Numbers, inverse_mass: Numbers, gx: float, gy: float) -> None:
     """Add m g to the force on every row that forces can move."""
     for i in range(len(mass)):
         if inverse_mass[i] > 0.0:
@@ -22,8 +16,10 @@ def uniform_gravity(force, mass, inverse_mass, gx, gy):
             force[i, 1] += mass[i] * gy
 
 
-@kernel(float64(_VECTORS, _NUMBERS, _NUMBERS, float64, float64))
-def uniform_potential(position, mass, inverse_mass, gx, gy):
+@kernel
+def uniform_potential(
+    position: Vectors, mass: Numbers, inverse_mass: Numbers, gx: float, gy: float
+) -> float:
     """Return the sum of -m g . x [J], zero at the origin."""
     total = 0.0
     for i in range(len(mass)):
@@ -33,11 +29,11 @@ def uniform_potential(position, mass, inverse_mass, gx, gy):
 
 
 @inlined
-def _inverse_cube(r2, softening2, plummer):
+def _inverse_cube(r2: float, softening2: float, plummer: bool) -> float:
     """Return the factor that turns G m_a m_b (x_b - x_a) into the force on a.
 
-    Plummer: 1 / (r^2 + s^2)^(3/2). Clamp: the magnitude is 1 / max(r, s)^2, so the factor is 1 / (max(r, s)^2 r).
-    Coincident bodies have no direction to pull in, and so no force.
+    Plummer: 1 / (r^2 + s^2)^(3/2). Clamp: the magnitude is 1 / max(r, s)^2, so the factor is 1 / (max(r, s)^2
+    r). Coincident bodies have no direction to pull in, and so no force.
     """
     if plummer:
         d2 = r2 + softening2
@@ -47,8 +43,10 @@ def _inverse_cube(r2, softening2, plummer):
     return 0.0
 
 
-@kernel(void(_VECTORS, _VECTORS, _NUMBERS, _ROWS, float64, float64, boolean))
-def planet_gravity(force, position, mass, rows, G, softening, plummer):
+@kernel
+def planet_gravity(
+    force: Vectors, position: Vectors, mass: Numbers, rows: Rows, G: float, softening: float, plummer: bool
+) -> None:
     """Add the pairwise attraction of ``rows`` to their forces, each pair equal and opposite to the last bit."""
     softening2 = softening * softening
     n = len(rows)
@@ -68,12 +66,14 @@ def planet_gravity(force, position, mass, rows, G, softening, plummer):
         force[i, 1] += fy
 
 
-@kernel(float64(_VECTORS, _NUMBERS, _ROWS, float64, float64, boolean))
-def planet_potential(position, mass, rows, G, softening, plummer):
+@kernel
+def planet_potential(
+    position: Vectors, mass: Numbers, rows: Rows, G: float, softening: float, plummer: bool
+) -> float:
     """Return the energy [J] that belongs to the same force law, zero at infinite distance.
 
-    Plummer: -G m_a m_b / sqrt(r^2 + s^2). Clamp: -G m_a m_b / r beyond s; within, where the force is constant,
-    the straight line that continues it: -G m_a m_b (2 s - r) / s^2.
+    Plummer: -G m_a m_b / sqrt(r^2 + s^2). Clamp: -G m_a m_b / r beyond s; within, where the force is
+    constant, the straight line that continues it: -G m_a m_b (2 s - r) / s^2.
     """
     total = 0.0
     n = len(rows)

@@ -2,31 +2,22 @@
 
 import math
 
-from numba import boolean, float64, int64, void
-
-from physicslab.kernels import kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, kernel
 
 __all__ = ["clear", "derive_masses", "drift", "find_not_finite", "kick"]
 
-_FLAGS = boolean[::1]
-_CODES = int64[::1]
-_NUMBERS = float64[::1]
-_VECTORS = float64[:, ::1]
 
-
-@kernel(
-    void(
-        _FLAGS, _FLAGS, _FLAGS, _NUMBERS, _NUMBERS, _FLAGS, _FLAGS, _CODES,
-        _NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS,
-    )
-)  # fmt: skip
+@kernel
 def derive_masses(
-    has_velocity, has_mass, held, mass, inertia, inertia_given, fixed_rotation, kind,
-    radius, width, height, angular, inverse_mass, inverse_inertia,
-):  # fmt: skip
+    has_velocity: Flags, has_mass: Flags, held: Flags,
+    mass: Numbers, inertia: Numbers, inertia_given: Flags, fixed_rotation: Flags,
+    kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
+    angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
+) -> None:  # fmt: skip
     """Work out each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
 
-    A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. What has no velocity, no mass or is held weighs infinitely much.
+    A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. What has no velocity, no mass or is held weighs
+    infinitely much.
     """
     for i in range(len(mass)):
         if not inertia_given[i]:
@@ -44,8 +35,8 @@ def derive_masses(
             angular[i] = 0.0
 
 
-@kernel(void(_VECTORS, _NUMBERS))
-def clear(force, torque):
+@kernel
+def clear(force: Vectors, torque: Numbers) -> None:
     """Set every force and torque to zero."""
     for i in range(len(torque)):
         force[i, 0] = 0.0
@@ -53,8 +44,11 @@ def clear(force, torque):
         torque[i] = 0.0
 
 
-@kernel(void(_VECTORS, _NUMBERS, _VECTORS, _NUMBERS, _NUMBERS, _NUMBERS, float64, float64, float64))
-def kick(linear, angular, force, torque, inverse_mass, inverse_inertia, linear_damping, angular_damping, h):
+@kernel
+def kick(
+    linear: Vectors, angular: Numbers, force: Vectors, torque: Numbers,
+    inverse_mass: Numbers, inverse_inertia: Numbers, linear_damping: float, angular_damping: float, h: float,
+) -> None:  # fmt: skip
     """Change velocities by constant forces over a time h, with damping dv/dt = -c v solved exactly.
 
     v(h) = v e^(-c h) + a (1 - e^(-c h)) / c, so that half kicks compose to whole ones.
@@ -74,8 +68,8 @@ def kick(linear, angular, force, torque, inverse_mass, inverse_inertia, linear_d
             angular[i] = angular[i] * angular_decay + torque[i] * inverse_inertia[i] * angular_gain
 
 
-@kernel(void(_VECTORS, _NUMBERS, _VECTORS, _NUMBERS, float64))
-def drift(position, angle, linear, angular, h):
+@kernel
+def drift(position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers, h: float) -> None:
     """Move and turn every row at its present velocity for a time h."""
     for i in range(len(angle)):
         position[i, 0] += h * linear[i, 0]
@@ -83,11 +77,10 @@ def drift(position, angle, linear, angular, h):
         angle[i] += h * angular[i]
 
 
-@kernel(int64(_VECTORS, _NUMBERS, _VECTORS, _NUMBERS))
-def find_not_finite(position, angle, linear, angular):
-    """Return the first row with a value that is not finite, or -1."""
-    for i in range(len(angle)):
-        total = position[i, 0] + position[i, 1] + angle[i] + linear[i, 0] + linear[i, 1] + angular[i]
-        if not math.isfinite(total):
+@kernel
+def find_not_finite(vectors: Vectors, numbers: Numbers) -> int:
+    """Return the first row in which a vector or a number is not finite, or -1."""
+    for i in range(len(numbers)):
+        if not (math.isfinite(vectors[i, 0]) and math.isfinite(vectors[i, 1]) and math.isfinite(numbers[i])):
             return i
     return -1

@@ -2,38 +2,28 @@
 
 import math
 
-from numba import float64, int64, void
-
-from physicslab.kernels import inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 
 __all__ = ["spring_forces", "spring_potential"]
 
-_NUMBERS = float64[::1]
-_VECTORS = float64[:, ::1]
-_ROWS = int64[::1]
-
 
 @inlined
-def _arm(angle, anchor_x, anchor_y):
+def _arm(angle: float, anchor_x: float, anchor_y: float) -> tuple[float, float]:
     """Return a local anchor [m] turned into the directions of the world."""
     c, s = math.cos(angle), math.sin(angle)
     return c * anchor_x - s * anchor_y, s * anchor_x + c * anchor_y
 
 
-@kernel(
-    void(
-        _VECTORS, _NUMBERS, _VECTORS, _NUMBERS, _VECTORS, _NUMBERS,
-        _ROWS, _ROWS, _ROWS, _VECTORS, _VECTORS, _NUMBERS, _NUMBERS, _NUMBERS,
-    )
-)  # fmt: skip
+@kernel
 def spring_forces(
-    force, torque, position, angle, linear, angular,
-    springs, row_a, row_b, anchor_a, anchor_b, rest_length, stiffness, damping,
-):  # fmt: skip
+    force: Vectors, torque: Numbers, position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers,
+    springs: Rows, row_a: Rows, row_b: Rows, anchor_a: Vectors, anchor_b: Vectors,
+    rest_length: Numbers, stiffness: Numbers, damping: Numbers,
+) -> None:  # fmt: skip
     """Add F = k (length - rest_length) + c (rate of lengthening), along A to B, to both ends.
 
-    ``springs`` are the rows of the springs, ``row_a`` and ``row_b`` those of the bodies at their ends (0: the world).
-    Ends that coincide have no line between them; only then there is no force.
+    ``springs`` are the rows of the springs, ``row_a`` and ``row_b`` those of the bodies at their ends (0: the
+    world). Ends that coincide have no line between them; only then there is no force.
     """
     for s in range(len(springs)):
         k = springs[s]
@@ -58,10 +48,11 @@ def spring_forces(
         torque[b] -= bx * fy - by * fx
 
 
-@kernel(
-    float64(_VECTORS, _NUMBERS, _ROWS, _ROWS, _ROWS, _VECTORS, _VECTORS, _NUMBERS, _NUMBERS)
-)
-def spring_potential(position, angle, springs, row_a, row_b, anchor_a, anchor_b, rest_length, stiffness):
+@kernel
+def spring_potential(
+    position: Vectors, angle: Numbers, springs: Rows, row_a: Rows, row_b: Rows,
+    anchor_a: Vectors, anchor_b: Vectors, rest_length: Numbers, stiffness: Numbers,
+) -> float:  # fmt: skip
     """Return the sum of k (length - rest_length)^2 / 2 [J]."""
     total = 0.0
     for s in range(len(springs)):

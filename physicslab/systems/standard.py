@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from physicslab.schedule import System
+from physicslab.systems.broad_phase import BroadPhaseSystem
+from physicslab.systems.contact import ContactSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.spring import SpringSystem
 
 __all__ = ["PHYSICS_SYSTEMS", "standard_systems"]
@@ -13,6 +16,9 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     GravitySystem,
     SpringSystem,
     IntegrateSystem,
+    BroadPhaseSystem,
+    ContactSystem,
+    ResolveSystem,
 )
 
 

@@ -1,0 +1,56 @@
+"""The layout of contact data: one record a pair, two a pair's points. SI units; directions are the world's."""
+
+import numpy as np
+from numba import from_dtype
+
+__all__ = ["MANIFOLD", "POINT", "Manifolds", "Points"]
+
+MANIFOLD = np.dtype(
+    [
+        ("entity_a", np.int64),  # 0 is the world's bounds
+        ("entity_b", np.int64),
+        ("wall", np.int64),  # which of the bounds (0 left, 1 bottom, 2 right, 3 top), -1 for a pair of bodies
+        ("a", np.int64),  # rows
+        ("b", np.int64),
+        ("count", np.int64),  # points in use
+        ("normal_x", np.float64),  # unit, from A to B
+        ("normal_y", np.float64),
+        ("friction", np.float64),
+        ("restitution", np.float64),
+        ("offset_x", np.float64),  # from A's centre to B's when the separations were measured
+        ("offset_y", np.float64),
+        # The relative pose for which the points were found: while it hardly changes, they are kept.
+        ("found", np.int64),  # 2: good to keep
+        ("base_x", np.float64),
+        ("base_y", np.float64),
+        ("base_angle_a", np.float64),
+        ("base_angle_b", np.float64),
+        ("base_sizes", np.float64),  # of both boxes, mixed into one number
+        ("struck", np.int64),  # impacts of this step
+    ]
+)
+"""A pair that the broad phase found near each other, and where it touches."""
+
+POINT = np.dtype(
+    [
+        ("feature", np.int64),  # which corner or face the point belongs to: matches points from step to step
+        ("arm_ax", np.float64),  # from A's centre to the point
+        ("arm_ay", np.float64),
+        ("arm_bx", np.float64),
+        ("arm_by", np.float64),
+        ("found_separation", np.float64),  # in the base pose
+        ("separation", np.float64),  # now; negative where they overlap
+        ("ahead", np.int64),  # 1 where it approaches fast and meets after this substep: an impact of the next one
+        ("normal_mass", np.float64),  # effective masses
+        ("tangent_mass", np.float64),
+        ("normal_impulse", np.float64),  # in one substep, kept for warm starting
+        ("tangent_impulse", np.float64),
+        ("approach_speed", np.float64),  # before the impact of this step, 0 if there was none
+        ("impact_normal", np.float64),  # impulses of the impacts of this step
+        ("impact_tangent", np.float64),
+    ]
+)
+"""A contact point; the points of pair p are numbers 2 p and 2 p + 1."""
+
+Manifolds = from_dtype(MANIFOLD)[::1]
+Points = from_dtype(POINT)[::1]

@@ -1,0 +1,95 @@
+"""Which bodies are near each other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Shape, Transform, Velocity
+from physicslab.contacts import Contacts
+from physicslab.kernels import grid
+from physicslab.kernels.records import MANIFOLD, POINT
+from physicslab.schedule import Stage, System, at
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["BroadPhaseSystem"]
+
+
+def nothing_to_touch(world: World) -> str | None:
+    """Return why no two things in this world can ever meet, or ``None`` if they can."""
+    shapes, moving = len(world.batch(Shape, Transform)), len(world.batch(Shape, Transform, Velocity))
+    if not shapes:
+        return "no Shape in the scene"
+    if not moving:
+        return "nothing that has a Shape moves"
+    if shapes == 1 and world.physics.bounds is None:
+        return "only one Shape in the scene, and no bounds"
+    return None
+
+
+class BroadPhaseSystem(System):
+    """Keeps the list of near pairs: those whose fat boxes overlap, found with a uniform grid.
+
+    The list holds, and nothing is done, until a body leaves the fat box that was made for it.
+    """
+
+    kernels = (grid.still_holds, grid.fat_boxes, grid.find_pairs, grid.carry_over)
+
+    def __init__(self) -> None:
+        self._fat: NDArray[np.float64] = np.zeros((0, 5))
+        self._boxes: NDArray[np.float64] = np.zeros((0, 4))
+        self._pairs: NDArray[np.int64] = np.zeros((256, 3), np.int64)
+        self._bounds: NDArray[np.float64] = np.zeros(4)
+
+    def attach(self, world: World) -> None:
+        """Find the pairs anew: bodies came, went or changed."""
+        world.contacts.stale = True
+        if world.physics.bounds is not None:
+            self._bounds[:] = world.physics.bounds
+
+    def why_left_out(self, world: World) -> str | None:
+        """Needed where two things could ever meet."""
+        reason = nothing_to_touch(world)
+        if reason is not None:
+            world.contacts.clear()
+        return reason
+
+    @at(Stage.BROAD_PHASE)
+    def search(self, world: World, h: float) -> None:
+        """Bring the list of near pairs up to date, where it no longer holds."""
+        transform, shape = world.table(Transform), world.table(Shape)
+        position, angle, linear = transform["position"], transform["angle"], world.table(Velocity)["linear"]
+        sizes = shape["kind"], shape["radius"], shape["width"], shape["height"]
+        if len(self._fat) != len(angle):
+            self._fat, self._boxes = np.zeros((len(angle), 5)), np.zeros((len(angle), 4))
+            world.contacts.stale = True
+        if not world.contacts.stale and grid.still_holds(position, angle, linear, *sizes, self._fat, h):
+            return
+        cell = grid.fat_boxes(position, angle, linear, *sizes, self._fat, self._boxes, h)
+        bounded = world.physics.bounds is not None
+        count = self._count_pairs(shape["kind"], world.bodies.inverse_mass, cell, bounded)
+        contacts: Contacts = world.contacts
+        room = max(64, 1 << (count - 1).bit_length() if count else 0)
+        manifolds, points = np.empty(room, MANIFOLD), np.empty(2 * room, POINT)
+        grid.carry_over(
+            self._pairs, count, world.roster.entities,
+            contacts.manifolds, contacts.points, contacts.candidate_pairs, manifolds, points,
+        )  # fmt: skip
+        contacts.replace(manifolds, points, count)
+        contacts.stale = False
+
+    def _count_pairs(
+        self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], cell: float, bounded: bool
+    ) -> int:
+        """Fill the list of pairs, made larger where it is too small, and return their number."""
+        while True:
+            count = int(
+                grid.find_pairs(self._boxes, kind, inverse_mass, cell, bounded, self._bounds, self._pairs)
+            )
+            if count <= len(self._pairs):
+                return count
+            self._pairs = np.zeros((2 * count, 3), np.int64)

@@ -1,0 +1,76 @@
+"""Impulses at contacts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from physicslab.components import Transform, Velocity
+from physicslab.kernels import impulse
+from physicslab.schedule import Stage, System, at
+from physicslab.systems.broad_phase import nothing_to_touch
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["ResolveSystem"]
+
+
+class ResolveSystem(System):
+    """Bounces what approaches, keeps apart what rests, rubs what slides.
+
+    Parameters
+    ----------
+    hertz, damping_ratio : float
+        The contact spring that takes overlap away: frequency [Hz] (a quarter of the substep rate at the most) and
+        damping ratio.
+    max_push : float
+        Fastest [m/s] that overlap is taken away.
+    slop : float
+        Overlap [m] that is left alone.
+    """
+
+    kernels = (impulse.strike, impulse.solve, impulse.relax)
+
+    def __init__(
+        self, hertz: float = 45.0, damping_ratio: float = 2.0, max_push: float = 3.0, slop: float = 0.0005
+    ) -> None:
+        self.hertz, self.damping_ratio, self.max_push, self.slop = hertz, damping_ratio, max_push, slop
+
+    def why_left_out(self, world: World) -> str | None:
+        """Needed where two things could ever meet."""
+        return nothing_to_touch(world)
+
+    @at(Stage.IMPACT)
+    def strike(self, world: World, h: float) -> None:
+        """Bounce the pairs that meet within the substep."""
+        contacts, bodies = world.contacts, world.bodies
+        transform, velocity = world.table(Transform), world.table(Velocity)
+        start, end = world.integrator.window
+        if contacts.count:
+            world.collisions += impulse.strike(
+                contacts.manifolds, contacts.points, contacts.touching, contacts.count,
+                transform["position"], transform["angle"], velocity["linear"], velocity["angular"], bodies.force,
+                bodies.inverse_mass, bodies.inverse_inertia, world.has_forces, h, start * h, end * h,
+            )  # fmt: skip
+
+    @at(Stage.SOLVE)
+    def solve(self, world: World, h: float) -> None:
+        """Find the impulses that keep bodies apart, taking some of the overlap away."""
+        contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
+        if contacts.count:
+            impulse.solve(
+                contacts.manifolds, contacts.points, contacts.touching, contacts.count,
+                velocity["linear"], velocity["angular"], bodies.inverse_mass, bodies.inverse_inertia,
+                h, world.simulation.iterations or 1, self.hertz, self.damping_ratio, self.max_push, self.slop,
+            )  # fmt: skip
+
+    @at(Stage.RELAX)
+    def relax(self, world: World, h: float) -> None:
+        """Take back the velocity that came from taking overlap away."""
+        contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
+        if contacts.count:
+            impulse.relax(
+                contacts.manifolds, contacts.points, contacts.touching, contacts.count,
+                velocity["linear"], velocity["angular"], bodies.inverse_mass, bodies.inverse_inertia,
+                h, world.simulation.iterations or 1,
+            )  # fmt: skip
