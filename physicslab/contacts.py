@@ -3,22 +3,82 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels import compile_kernels, impulse
+from physicslab.components import Transform
+from physicslab.kernels import compile_kernels, grid, impulse
 from physicslab.kernels.records import MANIFOLD, POINT
+from physicslab.vector import Vector2
 
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["Contacts"]
+__all__ = ["Contact", "ContactPoint", "Contacts"]
 
 _NO_ROWS = ("entity_a", "entity_b", "a", "b")
 _KEPT = tuple(name for name in MANIFOLD.names or () if name not in _NO_ROWS)
 _WARM = ("feature", "normal_impulse", "tangent_impulse")
+
+
+@dataclass(frozen=True, slots=True)
+class ContactPoint:
+    """One point of a contact.
+
+    Attributes
+    ----------
+    position : Vector2
+        Where it is [m].
+    separation : float
+        Distance of the surfaces along the normal [m]; negative where they overlap.
+    normal_impulse, tangent_impulse : float
+        Impulses that held the bodies apart and against sliding in the last substep [N s], on B; the tangent is the
+        normal turned counter-clockwise.
+    approach_speed : float
+        Speed at which the surfaces met in an impact of the last step [m/s]; 0 if there was none.
+    impact_normal, impact_tangent : float
+        Impulses of the impacts of the last step [N s], on B.
+    """
+
+    position: Vector2
+    separation: float
+    normal_impulse: float
+    tangent_impulse: float
+    approach_speed: float
+    impact_normal: float
+    impact_tangent: float
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A pair that touches, would within a substep, or met in the last step.
+
+    Attributes
+    ----------
+    a, b : int
+        The entities; 0 for the world's bounds.
+    normal : Vector2
+        Unit vector from A to B.
+    restitution, friction : float
+        Of the pair.
+    points : tuple of ContactPoint
+        One or two; where an impact of the last step has ended, where it was.
+    """
+
+    a: int
+    b: int
+    normal: Vector2
+    restitution: float
+    friction: float
+    points: tuple[ContactPoint, ...]
+
+    @property
+    def depth(self) -> float:
+        """The deepest overlap [m], positive; negative where they are still apart."""
+        return max(-point.separation for point in self.points)
 
 
 class Contacts:
@@ -49,12 +109,26 @@ class Contacts:
         self.manifolds: NDArray[Any] = np.zeros(capacity, MANIFOLD)
         self.points: NDArray[Any] = np.zeros(2 * capacity, POINT)
         self.touching: NDArray[np.int64] = np.zeros(capacity, np.int64)
+        # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.
+        self._spare_manifolds, self._spare_points = self.manifolds.copy(), self.points.copy()
 
-    def replace(self, manifolds: NDArray[Any], points: NDArray[Any], pairs: int) -> None:
-        """Take over manifolds made for a new list of pairs; what touches is to be found out."""
-        self.manifolds, self.points, self.candidate_pairs, self.count = manifolds, points, pairs, 0
-        if len(self.touching) < len(manifolds):
-            self.touching = np.zeros(len(manifolds), np.int64)
+    def relist(self, pairs: NDArray[np.int64], count: int, entities: NDArray[np.int64]) -> None:
+        """Take a new sorted list of ``count`` near pairs (a, b, wall); those that were near before stay as they were.
+
+        ``entities`` holds the entity of each row. What touches is still to be found out.
+        """
+        if len(self._spare_manifolds) < count:
+            room = 2 * count
+            self._spare_manifolds, self._spare_points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
+        grid.carry_over(
+            pairs, count, entities,
+            self.manifolds, self.points, self.candidate_pairs, self._spare_manifolds, self._spare_points,
+        )  # fmt: skip
+        self.manifolds, self._spare_manifolds = self._spare_manifolds, self.manifolds
+        self.points, self._spare_points = self._spare_points, self.points
+        self.candidate_pairs, self.count, self.stale = count, 0, False
+        if len(self.touching) < count:
+            self.touching = np.zeros(2 * count, np.int64)
 
     def clear(self) -> None:
         """Forget every pair."""
@@ -62,15 +136,55 @@ class Contacts:
         self.stale = True
 
     @property
-    def active(self) -> NDArray[np.int64]:
-        """The numbers of the pairs that have contact points."""
-        return self.touching[: self.count]
-
-    @property
     def max_penetration(self) -> float:
         """The deepest overlap now [m]."""
         compile_kernels((impulse.deepest,))
         return float(impulse.deepest(self.manifolds, self.points, self.touching, self.count))
+
+    def listed(self, world: World) -> tuple[Contact, ...]:
+        """Return every contact, in the order of its entities; impacts of the last step that are over included."""
+        return tuple(self._describe(world, p) for p in self._told())
+
+    def _told(self) -> list[int]:
+        near = self.manifolds[: self.candidate_pairs]
+        pairs: list[int] = np.flatnonzero((near["count"] > 0) | (near["struck"] > 0)).tolist()
+        return pairs
+
+    def between(self, world: World, a: int, b: int) -> Contact | None:
+        """Return the contact of two entities, seen as A and B in the order given, or ``None``."""
+        for p in self._told():
+            manifold = self.manifolds[p]
+            pair = int(manifold["entity_a"]), int(manifold["entity_b"])
+            if pair == (a, b):
+                return self._describe(world, p)
+            if pair == (b, a):
+                seen = self._describe(world, p)
+                # Seen from the other side, normal and tangent turn round, and so do the impulses on B: the numbers stay.
+                return replace(seen, a=a, b=b, normal=-seen.normal)
+        return None
+
+    def _describe(self, world: World, p: int) -> Contact:
+        manifold = self.manifolds[p]
+        centre = Vector2(*world.table(Transform)["position"][manifold["b"]].tolist())
+        points = tuple(
+            ContactPoint(
+                centre + Vector2(float(point["arm_bx"]), float(point["arm_by"])),
+                *(
+                    float(point[name])
+                    for name in (
+                        "separation", "normal_impulse", "tangent_impulse",
+                        "approach_speed", "impact_normal", "impact_tangent",
+                    )
+                ),
+            )
+            for k, point in enumerate(self.points[2 * p : 2 * p + 2])
+            if k < manifold["count"] or point["impact_normal"] > 0.0
+        )  # fmt: skip
+        return Contact(
+            int(manifold["entity_a"]), int(manifold["entity_b"]),
+            Vector2(float(manifold["normal_x"]), float(manifold["normal_y"])),
+            float(manifold["restitution"]), float(manifold["friction"]), points,
+        )  # fmt: skip
 
     def export(self, world: World) -> list[list[float]]:
         """Return what the next step takes from the last one, as rows of numbers that JSON can hold.
@@ -87,7 +201,9 @@ class Contacts:
                 both = [value for j in (2 * p, 2 * p + 1) for value in self.points[j].item()]
                 rows.append([*pair, *kept, *both])
             elif manifold["count"] > 0:
-                rows.append([*pair, *(self.points[j][name].item() for j in (2 * p, 2 * p + 1) for name in _WARM)])
+                warm = [self.points[j][name].item() for j in (2 * p, 2 * p + 1) for name in _WARM]
+                if any(warm[1:3] + warm[4:]):
+                    rows.append([*pair, *warm])
         return rows
 
     def restore(self, world: World, rows: Sequence[Sequence[float]]) -> None:
@@ -112,6 +228,7 @@ class Contacts:
                 values = iter(row[2 + len(_KEPT) :])
                 names: Sequence[str] = POINT.names or ()
             else:
+                manifold["count"] = 1  # it had points: if it has none now, their impulses are forgotten
                 values, names = iter(row[3:]), _WARM
             for j in (2 * p, 2 * p + 1):
                 for name in names:

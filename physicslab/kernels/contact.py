@@ -21,6 +21,8 @@ _KEEP = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found anew."""
 _KEEP_TURN = 0.002
 """How far [rad] either may turn."""
+_ROUNDING = 1e-6
+"""Share of the size within which two surfaces count as just meeting."""
 _STILL = 0.002
 """Share of the smaller body's size below which a substep's motion is not swept at all."""
 _FAST = 0.25
@@ -69,7 +71,7 @@ def _with_circle(
         dx, dy, a_box, ca, sa, ax, ay, radius_a, b_box, cb, sb, bx, by, radius_b, tie
     )
     reach = math.sqrt(ux * ux + uy * uy)
-    manifold.count = 0
+    manifold.count, manifold.swept, manifold.size = 0, 0, 2.0 * size
     if separation > max(reach, _NEAR * size):
         return
     if reach > _STILL * size:
@@ -81,13 +83,20 @@ def _with_circle(
             t = sweep_circle_box(-x, -y, -ux, -uy, cb, sb, bx, by, radius_a)
         else:
             t = sweep_circle_circle(x, y, ux, uy, radius_a + radius_b)
-        if 0.0 < t <= 1.0:
-            nx, ny, arm_ax, arm_ay, arm_bx, arm_by, separation = _circle_pose(
+        met = False
+        if t <= 1.0:
+            mx, my, met_ax, met_ay, met_bx, met_by, gap = _circle_pose(
                 x + t * ux, y + t * uy, a_box, ca, sa, ax, ay, radius_a, b_box, cb, sb, bx, by, radius_b, tie
             )
-            separation -= (start + t) * (ux * nx + uy * ny)
+            met = gap > -_ROUNDING * size  # else they overlapped before the substep began
+        if met:
+            nx, ny, arm_ax, arm_ay, arm_bx, arm_by = mx, my, met_ax, met_ay, met_bx, met_by
+            separation = gap - (start + t) * (ux * nx + uy * ny)
+            manifold.swept = 1
         elif separation > _NEAR * size:
             return
+        elif t == MISS:
+            manifold.swept = 2
     elif separation > _NEAR * size:
         return
     manifold.normal_x, manifold.normal_y, manifold.count = nx, ny, 1
@@ -103,6 +112,7 @@ def _with_boxes(manifold, one, two, dx, dy, ux, uy, start, ca, sa, ax, ay, cb, s
     size = 2.0 * min(min(ax, ay), min(bx, by))
     travel = math.sqrt(ux * ux + uy * uy)
     x, y, lead_x, lead_y, margin = dx, dy, 0.0, 0.0, _NEAR * size + travel
+    manifold.swept, manifold.size = 0, size
     if travel > _FAST * size:
         margin = _NEAR * size
         x, y = dx + start * ux, dy + start * uy
@@ -114,6 +124,7 @@ def _with_boxes(manifold, one, two, dx, dy, ux, uy, start, ca, sa, ax, ay, cb, s
             return
         lead_x, lead_y = (start + t) * ux, (start + t) * uy
         x, y = dx + lead_x, dy + lead_y
+        manifold.swept = 1
     f1, n1, t1 = one.feature, one.normal_impulse, one.tangent_impulse
     f2, n2, t2 = two.feature, two.normal_impulse, two.tangent_impulse
     _, nx, ny, count, x1, y1, s1, g1, x2, y2, s2, g2 = box_box(x, y, ca, sa, cb, sb, ax, ay, bx, by, margin)
@@ -137,7 +148,8 @@ def _with_wall(manifold, one, two, x, y, ux, uy, spin, box, c, s, half_x, half_y
     manifold.normal_x, manifold.normal_y = nx, ny
     f1, n1, t1 = one.feature, one.normal_impulse, one.tangent_impulse
     f2, n2, t2 = two.feature, two.normal_impulse, two.tangent_impulse
-    manifold.count = 0
+    manifold.count, manifold.swept = 0, 0
+    manifold.size = 2.0 * (min(half_x, half_y) if box else radius)
     if not box:
         separation = height - radius
         if separation <= _NEAR * radius + travel:
@@ -218,12 +230,20 @@ def find_contacts(
         manifold = manifolds[p]
         a, b = manifold.a, manifold.b
         one, two = points[2 * p], points[2 * p + 1]
-        if first:
+        if first and manifold.struck > 0:
             manifold.struck = 0
+            one.approach_speed = one.impact_normal = one.impact_tangent = 0.0
+            two.approach_speed = two.impact_normal = two.impact_tangent = 0.0
         dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
         ux, uy = (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h
         manifold.offset_x, manifold.offset_y = dx, dy
         a_box, b_box = kind[a] == 2, kind[b] == 2
+        had_points = manifold.count > 0
+        if not (a_box or b_box or had_points or manifold.wall >= 0):
+            # Most near circles are too far apart for this substep: settle those without a call.
+            reach = 1.02 * (radius[a] + radius[b]) + abs(ux) + abs(uy)
+            if dx * dx + dy * dy > reach * reach:
+                continue
         if (a_box and b_box) or (manifold.wall >= 0 and b_box):
             size = min(width[b], height[b])
             sizes = width[b] + 2.0 * height[b]
@@ -246,7 +266,6 @@ def find_contacts(
                     touching[found] = p
                     found += 1
                     if first:
-                        _reset(manifold, points, p)
                         _effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
                         _mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
                 continue
@@ -277,11 +296,9 @@ def find_contacts(
         if manifold.count > 0:
             _effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
             _mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
-            if first:
-                _reset(manifold, points, p)
             touching[found] = p
             found += 1
-        else:
+        elif had_points:
             one.feature = two.feature = 0
             one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
     return found
@@ -293,11 +310,3 @@ def _mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_frict
     walled = manifold.wall >= 0
     manifold.restitution = min(bounds_restitution if walled else restitution[a], restitution[b])
     manifold.friction = math.sqrt((bounds_friction if walled else friction[a]) * friction[b])
-
-
-@inlined
-def _reset(manifold, points, p):
-    """Begin the record of this step's impacts."""
-    for j in range(2 * p, 2 * p + manifold.count):
-        point = points[j]
-        point.approach_speed = point.impact_normal = point.impact_tangent = 0.0

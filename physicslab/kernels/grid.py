@@ -15,10 +15,6 @@ _NUMBERS = float64[::1]
 _VECTORS = float64[:, ::1]
 _ROWS = int64[::1]
 
-_LARGE = 16
-"""Bodies that would span more cells than this along one axis are kept out of the grid."""
-
-
 @inlined
 def _bounding_radius(kind, radius, width, height):
     if kind == 1:
@@ -47,11 +43,19 @@ def still_holds(position, angle, linear, kind, radius, width, height, fat, h):
 
 
 @kernel(
-    float64(_VECTORS, _NUMBERS, _VECTORS, _ROWS, _NUMBERS, _NUMBERS, _NUMBERS, _VECTORS, _VECTORS, float64)
+    void(
+        _VECTORS, _NUMBERS, _VECTORS, _ROWS, _NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS, _VECTORS, _VECTORS, float64
+    )
 )
-def fat_boxes(position, angle, linear, kind, radius, width, height, fat, boxes, h):
-    """Make each body's fat box (xmin, ymin, xmax, ymax), good for about two steps; return a fitting cell size."""
-    count, inverse_sizes = 0, 0.0
+def fat_boxes(position, angle, linear, kind, radius, width, height, inverse_mass, fat, boxes, h):
+    """Make each body's fat box (xmin, ymin, xmax, ymax), good for about two steps."""
+    moving, speeds = 0, 0.0
+    for i in range(len(angle)):
+        speed = abs(linear[i, 0]) + abs(linear[i, 1])
+        if speed > 0.0 and kind[i] != 0:
+            moving += 1
+            speeds += min(speed, 1e9)
+    usual = speeds / moving if moving else 0.0
     for i in range(len(angle)):
         fat[i, 3] = 0.0
         if kind[i] == 0:
@@ -62,116 +66,168 @@ def fat_boxes(position, angle, linear, kind, radius, width, height, fat, boxes, 
             c, s = abs(math.cos(angle[i])), abs(math.sin(angle[i]))
             half_x = 0.5 * (c * width[i] + s * height[i])
             half_y = 0.5 * (s * width[i] + c * height[i])
-        margin = 0.1 * min(half_x, half_y) + 8.0 * h * max(abs(linear[i, 0]), abs(linear[i, 1]))
+        # A slow body among fast ones is about to be struck.
+        speed = max(abs(linear[i, 0]), abs(linear[i, 1]), usual if inverse_mass[i] > 0.0 else 0.0)
+        margin = 0.1 * min(half_x, half_y) + 8.0 * h * speed
         fat[i, 0], fat[i, 1], fat[i, 2] = position[i, 0], position[i, 1], angle[i]
         fat[i, 3], fat[i, 4] = reach, margin
         boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
         boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
-        count += 1
-        inverse_sizes += 1.0 / (max(half_x, half_y) + margin)
-    return 4.0 * count / inverse_sizes if count else 1.0  # twice the harmonic mean, which a few walls do not spoil
 
 
 @inlined
-def _overlap(boxes, i, j):
+def _overlap(these, i, those, j):
+    # "&", not "and": one branch that is nearly always the same, not four that cannot be foretold.
     return (
-        boxes[i, 0] <= boxes[j, 2] and boxes[j, 0] <= boxes[i, 2]
-        and boxes[i, 1] <= boxes[j, 3] and boxes[j, 1] <= boxes[i, 3]
+        (these[i, 0] <= those[j, 2]) & (those[j, 0] <= these[i, 2])
+        & (these[i, 1] <= those[j, 3]) & (those[j, 1] <= these[i, 3])
     )  # fmt: skip
 
 
 @inlined
-def _bucket(ix, iy, mask):
-    return ((ix * 73856093) ^ (iy * 19349663)) & mask
+def _take(pairs, found, inverse_mass, i, j):
+    """Write the pair (i, j) in order, if it can be moved and there is room; return how many there are now."""
+    if inverse_mass[i] + inverse_mass[j] == 0.0:
+        return found
+    if found < len(pairs):
+        pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, j), max(i, j), -1
+    return found + 1
 
 
-@kernel(int64(_VECTORS, _ROWS, _NUMBERS, float64, boolean, _NUMBERS, int64[:, ::1]))
-def find_pairs(boxes, kind, inverse_mass, cell, bounded, bounds, pairs):
+@inlined
+def _bucket(ix, iy, low_x, low_y, up, buckets, dense):
+    """Return the bucket of a cell: one of its own, or a shared one by a hash."""
+    if dense:
+        return (ix - low_x) * up + iy - low_y
+    return ((ix * 73856093) ^ (iy * 19349663)) & (buckets - 1)
+
+
+@inlined
+def _level(boxes, members, count, cell, inverse_mass, pairs, found, larges):
+    """Find all pairs in which at least one body is no larger than a cell; return how many there are, and the rest.
+
+    Each small body is in the one cell that holds its centre, so that its partners are in that cell and its eight
+    neighbours, of which four are looked at, to take each pair once. Each large body looks through all cells it spans.
+    """
+    small = np.empty(count, np.int64)
+    cells = np.empty((count, 2), np.int64)
+    smalls, large_count = 0, 0
+    low_x, low_y, high_x, high_y = 0, 0, -1, -1
+    for k in range(count):
+        i = members[k]
+        if max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1]) > cell:
+            larges[large_count] = i
+            large_count += 1
+            continue
+        ix = math.floor(0.5 * (boxes[i, 0] + boxes[i, 2]) / cell)
+        iy = math.floor(0.5 * (boxes[i, 1] + boxes[i, 3]) / cell)
+        if smalls == 0:
+            low_x, high_x, low_y, high_y = ix, ix, iy, iy
+        low_x, high_x, low_y, high_y = min(low_x, ix), max(high_x, ix), min(low_y, iy), max(high_y, iy)
+        small[smalls], cells[smalls, 0], cells[smalls, 1] = i, ix, iy
+        smalls += 1
+    # A rim of empty cells, so that every cell has all its neighbours.
+    low_x, low_y, high_x, high_y = low_x - 1, low_y - 1, high_x + 1, high_y + 1
+    across, up = high_x - low_x + 1, high_y - low_y + 1
+    dense = float(across) * float(up) <= 8.0 * smalls + 64.0
+    buckets = across * up if dense else 1
+    while not dense and buckets < 2 * smalls:
+        buckets *= 2
+
+    # Count the bodies of each bucket, then put them there: a counting sort.
+    first = np.zeros(buckets + 1, np.int64)
+    where = np.empty(smalls, np.int64)
+    for k in range(smalls):
+        where[k] = _bucket(cells[k, 0], cells[k, 1], low_x, low_y, up, buckets, dense)
+        first[where[k] + 1] += 1
+    for bucket in range(buckets):
+        first[bucket + 1] += first[bucket]
+    fill = first[:-1].copy()
+    body = np.empty(smalls, np.int64)
+    home = np.empty((smalls, 2), np.int64)
+    near = np.empty((smalls, 4))
+    for k in range(smalls):
+        entry = fill[where[k]]
+        fill[where[k]] = entry + 1
+        body[entry], home[entry, 0], home[entry, 1] = small[k], cells[k, 0], cells[k, 1]
+        for side in range(4):
+            near[entry, side] = boxes[small[k], side]
+
+    for p in range(smalls):
+        ix, iy = home[p, 0], home[p, 1]
+        if dense:  # buckets one above the other are next to each other: two stretches hold all five cells
+            at = (ix - low_x) * up + iy - low_y
+            for q in range(p + 1, first[at + 2]):
+                if _overlap(near, p, near, q):
+                    found = _take(pairs, found, inverse_mass, body[p], body[q])
+            for q in range(first[at + up - 1], first[at + up + 2]):
+                if _overlap(near, p, near, q):
+                    found = _take(pairs, found, inverse_mass, body[p], body[q])
+            continue
+        for neighbour in range(5):
+            jx = ix if neighbour < 2 else ix + 1
+            jy = iy + neighbour if neighbour < 2 else iy + neighbour - 3
+            at = _bucket(jx, jy, low_x, low_y, up, buckets, dense)
+            for q in range(p + 1 if neighbour == 0 else first[at], first[at + 1]):
+                if home[q, 0] == jx and home[q, 1] == jy and _overlap(near, p, near, q):
+                    found = _take(pairs, found, inverse_mass, body[p], body[q])
+
+    for k in range(large_count):
+        i = larges[k]
+        from_x, to_x = math.floor(boxes[i, 0] / cell - 0.5), math.floor(boxes[i, 2] / cell + 0.5)
+        from_y, to_y = math.floor(boxes[i, 1] / cell - 0.5), math.floor(boxes[i, 3] / cell + 0.5)
+        from_x, to_x = max(from_x, low_x), min(to_x, high_x)
+        from_y, to_y = max(from_y, low_y), min(to_y, high_y)
+        if from_x > to_x or from_y > to_y:
+            continue
+        if not dense or float(to_x - from_x + 1) * float(to_y - from_y + 1) > smalls:
+            for q in range(smalls):
+                if _overlap(boxes, i, near, q):
+                    found = _take(pairs, found, inverse_mass, i, body[q])
+            continue
+        for ix in range(from_x, to_x + 1):
+            column = (ix - low_x) * up - low_y
+            for q in range(first[column + from_y], first[column + to_y + 1]):
+                if _overlap(boxes, i, near, q):
+                    found = _take(pairs, found, inverse_mass, i, body[q])
+    return found, large_count
+
+
+@kernel(int64(_VECTORS, _ROWS, _NUMBERS, boolean, _NUMBERS, int64[:, ::1]))
+def find_pairs(boxes, kind, inverse_mass, bounded, bounds, pairs):
     """Write the pairs (a, b, wall) whose fat boxes overlap, each once, sorted; return how many there are.
 
-    A body may span many cells; a pair is taken only in the cell that holds the lower left corner of the boxes'
-    overlap. Large bodies are compared with all others. Pairs of which neither can be moved do not count. More pairs
-    than ``pairs`` has rows are counted and not written.
+    A grid whose cells fit the usual body finds the pairs of small ones, and of small with large ones; the large ones
+    go on to a coarser grid. Bodies past the bounds make pairs with row 0 and the wall. Pairs of which neither can be
+    moved do not count. More pairs than ``pairs`` has rows are counted and not written.
     """
     n = len(kind)
-    small = np.empty(n, np.int64)
-    large = np.empty(n, np.int64)
-    smalls, larges, entries = 0, 0, 0
+    members = np.empty(n, np.int64)
+    larges = np.empty(n, np.int64)
+    count, found = 0, 0
     for i in range(n):
         if kind[i] == 0:
             continue
-        across = math.floor(boxes[i, 2] / cell) - math.floor(boxes[i, 0] / cell)
-        up = math.floor(boxes[i, 3] / cell) - math.floor(boxes[i, 1] / cell)
-        if across < _LARGE and up < _LARGE:
-            small[smalls] = i
-            smalls += 1
-            entries += (int(across) + 1) * (int(up) + 1)
-        else:
-            large[larges] = i
-            larges += 1
-
-    # Count the entries of each bucket, then put them there: a counting sort.
-    mask = 1
-    while mask < 2 * entries:
-        mask *= 2
-    mask -= 1
-    first = np.zeros(mask + 2, np.int64)
-    cell_x = np.empty(entries, np.int64)
-    cell_y = np.empty(entries, np.int64)
-    body = np.empty(entries, np.int64)
-    for k in range(smalls):
-        i = small[k]
-        for ix in range(int(math.floor(boxes[i, 0] / cell)), int(math.floor(boxes[i, 2] / cell)) + 1):
-            for iy in range(int(math.floor(boxes[i, 1] / cell)), int(math.floor(boxes[i, 3] / cell)) + 1):
-                first[_bucket(ix, iy, mask) + 1] += 1
-    for bucket in range(mask + 1):
-        first[bucket + 1] += first[bucket]
-    fill = first[:-1].copy()
-    for k in range(smalls):
-        i = small[k]
-        for ix in range(int(math.floor(boxes[i, 0] / cell)), int(math.floor(boxes[i, 2] / cell)) + 1):
-            for iy in range(int(math.floor(boxes[i, 1] / cell)), int(math.floor(boxes[i, 3] / cell)) + 1):
-                bucket = _bucket(ix, iy, mask)
-                cell_x[fill[bucket]], cell_y[fill[bucket]], body[fill[bucket]] = ix, iy, i
-                fill[bucket] += 1
-
-    found = 0
-    room = len(pairs)
-    if bounded:
-        for i in range(n):
-            if kind[i] != 0 and inverse_mass[i] > 0.0:
-                for wall in range(4):
-                    outside = boxes[i, wall] < bounds[wall] if wall < 2 else boxes[i, wall] > bounds[wall]
-                    if outside:
-                        if found < room:
-                            pairs[found, 0], pairs[found, 1], pairs[found, 2] = 0, i, wall
-                        found += 1
+        members[count] = i
+        count += 1
+        if bounded and inverse_mass[i] > 0.0:
+            for wall in range(4):
+                if boxes[i, wall] < bounds[wall] if wall < 2 else boxes[i, wall] > bounds[wall]:
+                    if found < len(pairs):
+                        pairs[found, 0], pairs[found, 1], pairs[found, 2] = 0, i, wall
+                    found += 1
     walls = found
-    for bucket in range(mask + 1):
-        for p in range(first[bucket], first[bucket + 1]):
-            i = body[p]
-            for q in range(p + 1, first[bucket + 1]):
-                if cell_x[q] != cell_x[p] or cell_y[q] != cell_y[p]:
-                    continue
-                j = body[q]
-                if inverse_mass[i] + inverse_mass[j] == 0.0 or not _overlap(boxes, i, j):
-                    continue
-                if int(math.floor(max(boxes[i, 0], boxes[j, 0]) / cell)) != cell_x[p]:
-                    continue
-                if int(math.floor(max(boxes[i, 1], boxes[j, 1]) / cell)) != cell_y[p]:
-                    continue
-                if found < room:
-                    pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, j), max(i, j), -1
-                found += 1
-    for k in range(larges):
-        i = large[k]
-        for q in range(smalls + k):
-            j = small[q] if q < smalls else large[q - smalls]
-            if inverse_mass[i] + inverse_mass[j] > 0.0 and _overlap(boxes, i, j):
-                if found < room:
-                    pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, j), max(i, j), -1
-                found += 1
-    if found <= room:
+    while count > 1:
+        inverse_sizes = 0.0
+        for k in range(count):
+            i = members[k]
+            inverse_sizes += 1.0 / max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1])
+        # The harmonic mean goes by the small bodies, which are many, and not by the few walls.
+        found, count = _level(
+            boxes, members, count, 1.25 * count / inverse_sizes, inverse_mass, pairs, found, larges
+        )
+        members[:count] = larges[:count]
+    if found <= len(pairs):
         _sort_pairs(pairs, walls, found, n)
     return found
 
@@ -226,4 +282,7 @@ def carry_over(pairs, count, entities, old_manifolds, old_points, old_count, man
             points[2 * p].feature = points[2 * p + 1].feature = 0
             points[2 * p].normal_impulse = points[2 * p + 1].normal_impulse = 0.0
             points[2 * p].tangent_impulse = points[2 * p + 1].tangent_impulse = 0.0
+            points[2 * p].approach_speed = points[2 * p + 1].approach_speed = 0.0
+            points[2 * p].impact_normal = points[2 * p + 1].impact_normal = 0.0
+            points[2 * p].impact_tangent = points[2 * p + 1].impact_tangent = 0.0
         manifold.a, manifold.b = a, b

@@ -7,12 +7,16 @@ from numba import boolean, float64, int64, void
 from physicslab.kernels import inlined, kernel
 from physicslab.kernels.records import Manifolds, Points
 
-__all__ = ["deepest", "relax", "solve", "strike"]
+__all__ = ["deepest", "relax", "separate", "solve", "strike"]
 
 _NUMBERS = float64[::1]
 _VECTORS = float64[:, ::1]
 _ROWS = int64[::1]
 
+_SOFT = 0.01
+"""Share of the smaller body's size that the contact spring takes away at its full rate; the load on it comes on top."""
+_DEEP = 0.1
+"""Share beyond which overlap is taken away by moving."""
 _SWEEPS = 32
 """How often the impacts of a substep are gone through before what is left is treated as inelastic."""
 
@@ -62,7 +66,8 @@ def _meeting_time(separation, v, pull, start, end):
     t = 2.0 * separation / (-v + math.sqrt(root))  # the form without cancellation
     if t > end:
         return math.inf
-    return t if t >= start else 0.0
+    # A meeting at the very seam of two substeps belongs to the later one.
+    return t if t >= start - 1e-6 * (end - start) else 0.0
 
 
 @inlined
@@ -108,26 +113,25 @@ def _hit(manifold, point, j, v, linear, angular, inverse_mass, inverse_inertia):
 @inlined
 def _strike_pair(
     manifold, one, two, position, angle, linear, angular, inverse_mass, inverse_inertia,
-    pull, resting_speed, start, end,
+    v1, v2, pull, resting_speed, start, end,
 ):  # fmt: skip
     """Bounce one pair if it meets between ``start`` and ``end`` from now; return whether it did."""
     a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+    if manifold.swept == 2:
+        one.ahead = 1
+        return False
     moved_x = position[b, 0] - position[a, 0] - manifold.offset_x
     moved_y = position[b, 1] - position[a, 1] - manifold.offset_y
     moved = moved_x * nx + moved_y * ny
-    vx, vy = _relative_velocity(one, a, b, linear, angular)
-    v1, v2 = vx * nx + vy * ny, 0.0
+    # Half-way through leapfrog's substep, positions lack what the forces have done to them so far.
+    moved += 0.125 * pull * (end - start) * (end - start)
     t1 = t2 = math.inf
-    one.ahead = two.ahead = 0
     if v1 < -resting_speed:
         t1 = _meeting_time(one.separation + moved, v1, pull, start, end)
         one.ahead = 1 if t1 == math.inf else 0
-    if manifold.count == 2:
-        vx, vy = _relative_velocity(two, a, b, linear, angular)
-        v2 = vx * nx + vy * ny
-        if v2 < -resting_speed:
-            t2 = _meeting_time(two.separation + moved, v2, pull, start, end)
-            two.ahead = 1 if t2 == math.inf else 0
+    if v2 < -resting_speed:
+        t2 = _meeting_time(two.separation + moved, v2, pull, start, end)
+        two.ahead = 1 if t2 == math.inf else 0
     t = min(t1, t2)
     if t == math.inf:
         return False
@@ -146,7 +150,22 @@ def _strike_pair(
     if j2 > 0.0:
         _hit(manifold, two, j2, v2, linear, angular, inverse_mass, inverse_inertia)
     _shift(a, b, before, position, angle, linear, angular, t)
+    if manifold.swept == 1:  # its normal is not that of now: the solver must not push along it
+        one.ahead = two.ahead = 1
     return j1 > 0.0 or j2 > 0.0
+
+
+@inlined
+def _forced(a, b, nx, ny, linear, force, inverse_mass, has_forces, h):
+    """Return how B accelerates against A along the normal, and the speed below which an approach is no impact."""
+    # At the least, an approach must be more than rounding.
+    speed = abs(linear[a, 0]) + abs(linear[a, 1]) + abs(linear[b, 0]) + abs(linear[b, 1])
+    if not has_forces:
+        return 0.0, 1e-9 * speed
+    ax, ay = force[a, 0] * inverse_mass[a], force[a, 1] * inverse_mass[a]
+    bx, by = force[b, 0] * inverse_mass[b], force[b, 1] * inverse_mass[b]
+    strongest = math.sqrt(max(ax * ax + ay * ay, bx * bx + by * by))
+    return (bx - ax) * nx + (by - ay) * ny, 1e-9 * speed + 2.0 * h * strongest
 
 
 @kernel(
@@ -166,27 +185,36 @@ def strike(
     bounced then: that is exact for constant forces, and keeps energy (e = 1), momentum and angular momentum.
 
     A pair approaches if it is faster than what the forces can bring about in two substeps: less than that is resting
-    contact, which the solver handles. Pairs are taken one after the other, in order, until none is left that meets.
+    contact, which the solver handles. Pairs are taken one after the other, in order, until none is left that meets;
+    inelastic ones only once, for what is left of their approach the solver takes away.
     """
     impacts = 0
-    for _ in range(_SWEEPS):
+    for sweep in range(_SWEEPS):
         bounced = 0
         for k in range(count):
             p = touching[k]
             manifold = manifolds[p]
-            a, b = manifold.a, manifold.b
-            # Below this, an approach is rounding.
-            speed = abs(linear[a, 0]) + abs(linear[a, 1]) + abs(linear[b, 0]) + abs(linear[b, 1])
-            pull, resting_speed = 0.0, 1e-9 * speed
-            if has_forces:
-                ax, ay = force[a, 0] * inverse_mass[a], force[a, 1] * inverse_mass[a]
-                bx, by = force[b, 0] * inverse_mass[b], force[b, 1] * inverse_mass[b]
-                resting_speed += 2.0 * h * math.sqrt(max(ax * ax + ay * ay, bx * bx + by * by))
-                if start < 0.0:  # in leapfrog the forces still act on the way; in symplectic Euler they have acted
-                    pull = (bx - ax) * manifold.normal_x + (by - ay) * manifold.normal_y
+            if sweep > 0 and manifold.restitution == 0.0:
+                continue
+            # Most pairs rest: what follows settles those without a call.
+            a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+            one, two = points[2 * p], points[2 * p + 1]
+            one.ahead = two.ahead = 0
+            vx, vy = _relative_velocity(one, a, b, linear, angular)
+            v1, v2 = vx * nx + vy * ny, 0.0
+            if manifold.count == 2:
+                vx, vy = _relative_velocity(two, a, b, linear, angular)
+                v2 = vx * nx + vy * ny
+            if v1 >= 0.0 and v2 >= 0.0:
+                continue
+            pull, resting_speed = _forced(a, b, nx, ny, linear, force, inverse_mass, has_forces, h)
+            if v1 >= -resting_speed and v2 >= -resting_speed:
+                continue
+            if start >= 0.0:  # in symplectic Euler the forces have acted already
+                pull = 0.0
             if _strike_pair(
-                manifold, points[2 * p], points[2 * p + 1], position, angle, linear, angular,
-                inverse_mass, inverse_inertia, pull, resting_speed, start, end,
+                manifold, one, two, position, angle, linear, angular, inverse_mass, inverse_inertia,
+                v1, v2, pull, resting_speed, start, end,
             ):  # fmt: skip
                 bounced += 1
                 manifold.struck += 1
@@ -215,13 +243,12 @@ def _measure_again(manifolds, points, touching, count, position):
 @inlined
 def _sweep(
     manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
-    inverse_h, push_rate, mass_scale, impulse_scale, max_push, slop,
+    inverse_h, push_rate, mass_scale, impulse_scale, slop,
 ):  # fmt: skip
     """Go once through all contacts, each against the velocities that the others left; friction goes by the newest
     normal impulse.
 
-    Below the slop the contact is a stiff, overdamped spring: it takes push_rate of the overlap a second, at max_push at
-    the most. A positive separation may be closed within the time that the impulses stand for, and not more.
+    Below the slop the contact is a stiff, overdamped spring that takes push_rate of the overlap a second. A positive separation may be closed within the time that the impulses stand for, and not more.
     """
     for k in range(count):
         p = touching[k]
@@ -241,7 +268,10 @@ def _sweep(
             if separation > 0.0:
                 bias, hardness, softness = separation * inverse_h, 1.0, 0.0
             else:
-                bias = max(push_rate * min(separation + slop, 0.0), -max_push)
+                # No faster than what balances twice the load, or a pile of overlapping bodies would fly apart.
+                load = impulse_scale * point.normal_impulse / (mass_scale * point.normal_mass)
+                limit = push_rate * _SOFT * manifold.size + 2.0 * load
+                bias = max(push_rate * min(separation + slop, 0.0), -limit)
                 hardness, softness = mass_scale, impulse_scale
             change = -point.normal_mass * hardness * (vn + bias) - softness * point.normal_impulse
             total = max(point.normal_impulse + change, 0.0)
@@ -269,12 +299,12 @@ def _sweep(
 @kernel(
     void(
         Manifolds, Points, _ROWS, int64, _VECTORS, _NUMBERS, _NUMBERS, _NUMBERS,
-        float64, int64, float64, float64, float64, float64,
+        float64, int64, float64, float64, float64,
     )
 )  # fmt: skip
 def solve(
     manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
-    h, iterations, hertz, damping_ratio, max_push, slop,
+    h, iterations, hertz, damping_ratio, slop,
 ):  # fmt: skip
     """Start from the impulses of the last substep, then go through all contacts with the correction of overlap.
 
@@ -287,6 +317,9 @@ def solve(
         nx, ny = manifold.normal_x, manifold.normal_y
         for j in range(2 * p, 2 * p + manifold.count):
             point = points[j]
+            if point.ahead:
+                point.normal_impulse = point.tangent_impulse = 0.0
+                continue
             px = point.normal_impulse * nx - point.tangent_impulse * ny
             py = point.normal_impulse * ny + point.tangent_impulse * nx
             _apply(point, px, py, manifold.a, manifold.b, linear, angular, inverse_mass, inverse_inertia)
@@ -296,7 +329,7 @@ def solve(
     for _ in range(iterations):
         _sweep(
             manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
-            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), max_push, slop,
+            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop,
         )  # fmt: skip
 
 
@@ -320,8 +353,48 @@ def relax(manifolds, points, touching, count, linear, angular, inverse_mass, inv
     for _ in range(iterations):
         _sweep(
             manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
-            1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0,
+            1.0 / h, 0.0, 1.0, 0.0, 0.0,
         )  # fmt: skip
+
+
+@kernel(void(Manifolds, Points, _ROWS, int64, _VECTORS, _NUMBERS, float64))
+def separate(manifolds, points, touching, count, position, inverse_mass, farthest):
+    """Move bodies that overlap deeply apart, a fifth of the way, by no more than ``farthest`` [m] each.
+
+    Only positions change: however many bodies lie on one spot, coming apart gives them no speed.
+    """
+    deep = False
+    for k in range(count):
+        manifold = manifolds[touching[k]]
+        for j in range(2 * touching[k], 2 * touching[k] + manifold.count):
+            deep = deep or points[j].separation < -_DEEP * manifold.size
+    if not deep:
+        return
+    before = position.copy()
+    for k in range(count):
+        p = touching[k]
+        manifold = manifolds[p]
+        if manifold.swept == 1:
+            continue
+        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        lowest = points[2 * p].separation
+        if manifold.count == 2:
+            lowest = min(lowest, points[2 * p + 1].separation)
+        moved_x = position[b, 0] - before[b, 0] - position[a, 0] + before[a, 0]
+        moved_y = position[b, 1] - before[b, 1] - position[a, 1] + before[a, 1]
+        depth = -(lowest + moved_x * nx + moved_y * ny) - _DEEP * manifold.size
+        if depth > 0.0:
+            share = 0.2 * depth / (inverse_mass[a] + inverse_mass[b])
+            position[a, 0] -= share * inverse_mass[a] * nx
+            position[a, 1] -= share * inverse_mass[a] * ny
+            position[b, 0] += share * inverse_mass[b] * nx
+            position[b, 1] += share * inverse_mass[b] * ny
+    for i in range(len(inverse_mass)):
+        x, y = position[i, 0] - before[i, 0], position[i, 1] - before[i, 1]
+        way = math.sqrt(x * x + y * y)
+        if way > farthest:
+            position[i, 0] = before[i, 0] + x * farthest / way
+            position[i, 1] = before[i, 1] + y * farthest / way
 
 
 @kernel(float64(Manifolds, Points, _ROWS, int64))

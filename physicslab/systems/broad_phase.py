@@ -8,9 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.contacts import Contacts
 from physicslab.kernels import grid
-from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.schedule import Stage, System, at
 
 if TYPE_CHECKING:
@@ -69,26 +67,19 @@ class BroadPhaseSystem(System):
             world.contacts.stale = True
         if not world.contacts.stale and grid.still_holds(position, angle, linear, *sizes, self._fat, h):
             return
-        cell = grid.fat_boxes(position, angle, linear, *sizes, self._fat, self._boxes, h)
+        inverse_mass = world.bodies.inverse_mass
+        grid.fat_boxes(position, angle, linear, *sizes, inverse_mass, self._fat, self._boxes, h)
         bounded = world.physics.bounds is not None
-        count = self._count_pairs(shape["kind"], world.bodies.inverse_mass, cell, bounded)
-        contacts: Contacts = world.contacts
-        room = max(64, 1 << (count - 1).bit_length() if count else 0)
-        manifolds, points = np.empty(room, MANIFOLD), np.empty(2 * room, POINT)
-        grid.carry_over(
-            self._pairs, count, world.roster.entities,
-            contacts.manifolds, contacts.points, contacts.candidate_pairs, manifolds, points,
-        )  # fmt: skip
-        contacts.replace(manifolds, points, count)
-        contacts.stale = False
+        count = self._count_pairs(shape["kind"], inverse_mass, bounded)
+        world.contacts.relist(self._pairs, count, world.roster.entities)
 
     def _count_pairs(
-        self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], cell: float, bounded: bool
+        self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool
     ) -> int:
         """Fill the list of pairs, made larger where it is too small, and return their number."""
         while True:
             count = int(
-                grid.find_pairs(self._boxes, kind, inverse_mass, cell, bounded, self._bounds, self._pairs)
+                grid.find_pairs(self._boxes, kind, inverse_mass, bounded, self._bounds, self._pairs)
             )
             if count <= len(self._pairs):
                 return count

@@ -29,10 +29,10 @@ class ResolveSystem(System):
         Overlap [m] that is left alone.
     """
 
-    kernels = (impulse.strike, impulse.solve, impulse.relax)
+    kernels = (impulse.strike, impulse.solve, impulse.relax, impulse.separate)
 
     def __init__(
-        self, hertz: float = 45.0, damping_ratio: float = 2.0, max_push: float = 3.0, slop: float = 0.0005
+        self, hertz: float = 45.0, damping_ratio: float = 2.0, max_push: float = 1.0, slop: float = 0.0005
     ) -> None:
         self.hertz, self.damping_ratio, self.max_push, self.slop = hertz, damping_ratio, max_push, slop
 
@@ -61,7 +61,7 @@ class ResolveSystem(System):
             impulse.solve(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.count,
                 velocity["linear"], velocity["angular"], bodies.inverse_mass, bodies.inverse_inertia,
-                h, world.simulation.iterations or 1, self.hertz, self.damping_ratio, self.max_push, self.slop,
+                h, world.simulation.iterations or 1, self.hertz, self.damping_ratio, self.slop,
             )  # fmt: skip
 
     @at(Stage.RELAX)
@@ -73,4 +73,8 @@ class ResolveSystem(System):
                 contacts.manifolds, contacts.points, contacts.touching, contacts.count,
                 velocity["linear"], velocity["angular"], bodies.inverse_mass, bodies.inverse_inertia,
                 h, world.simulation.iterations or 1,
+            )  # fmt: skip
+            impulse.separate(
+                contacts.manifolds, contacts.points, contacts.touching, contacts.count,
+                world.table(Transform)["position"], bodies.inverse_mass, self.max_push * h,
             )  # fmt: skip

@@ -1,0 +1,118 @@
+"""Which bodies are near each other."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.config import PhysicsConfig
+from physicslab.systems.broad_phase import BroadPhaseSystem
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.world import World
+
+
+def near(world: World) -> list[tuple[int, int, int]]:
+    """Return the near pairs as (entity, entity, wall)."""
+    manifolds = world.contacts.manifolds[: world.contacts.candidate_pairs]
+    return [(int(m["entity_a"]), int(m["entity_b"]), int(m["wall"])) for m in manifolds]
+
+
+def body(world: World, x: float, y: float, shape: Shape, *, moves: bool = True, angle: float = 0.0) -> int:
+    parts = (Velocity(), Mass(1.0)) if moves else ()
+    return world.spawn(Transform((x, y), angle), shape, *parts)
+
+
+def test_overlapping_bodies_are_a_pair_once_however_many_cells_they_span() -> None:
+    world = World(BroadPhaseSystem())
+    floor = body(world, 0, 0, Shape.box(40, 1), moves=False)
+    balls = [body(world, x, 0.7, Shape.circle(0.25)) for x in range(-15, 16)]
+    world.step()
+    assert near(world) == [(floor, ball, -1) for ball in balls]
+
+
+def test_far_bodies_are_no_pair() -> None:
+    world = World(BroadPhaseSystem())
+    body(world, 0, 0, Shape.circle(0.5))
+    body(world, 3, 0, Shape.box(1, 1))
+    world.step()
+    assert near(world) == []
+
+
+def test_static_and_kinematic_bodies_make_no_pairs_with_each_other() -> None:
+    world = World(BroadPhaseSystem())
+    body(world, 0, 0, Shape.circle(0.5), moves=False)
+    world.spawn(Transform((0.1, 0)), Shape.circle(0.5), Velocity((1, 0)))
+    ball = body(world, 0.2, 0, Shape.circle(0.5))
+    world.step()
+    assert [pair[:2] for pair in near(world)] == [(1, ball), (2, ball)]
+
+
+def test_a_body_past_the_bounds_is_near_their_wall() -> None:
+    world = World(BroadPhaseSystem(), physics=PhysicsConfig(bounds=(0, 0, 10, 10)))
+    corner = body(world, 9.8, 0.2, Shape.circle(0.25))
+    body(world, 5, 5, Shape.circle(0.25))
+    world.step()
+    assert near(world) == [(0, corner, 1), (0, corner, 2)]
+
+
+def test_the_list_holds_until_a_body_leaves_its_fat_box() -> None:
+    world = World(IntegrateSystem(), BroadPhaseSystem())
+    ball = world.spawn(Transform((0, 0)), Velocity((2, 0)), Mass(1), Shape.circle(0.5))
+    other = body(world, 5, 0, Shape.circle(0.5))
+    world.step(0.01)
+    assert near(world) == []
+    world.run(seconds=1.9)
+    assert near(world) == [(ball, other, -1)]
+
+
+def test_a_changed_size_is_seen() -> None:
+    world = World(BroadPhaseSystem())
+    ball = body(world, 0, 0, Shape.circle(0.5))
+    other = body(world, 3, 0, Shape.circle(0.5))
+    world.step()
+    world.component(ball, Shape).radius = 2.6
+    world.step()
+    assert near(world) == [(ball, other, -1)]
+
+
+sizes = st.floats(-3.0, 2.0).map(lambda exponent: 10.0**exponent)
+bodies = st.tuples(
+    st.floats(-20, 20), st.floats(-20, 20), sizes, sizes, st.floats(-4, 4), st.booleans(), st.booleans()
+)
+
+
+@given(st.lists(bodies, min_size=2, max_size=40), st.sampled_from([1.0, 1e-2, 1e7]))
+def test_the_grid_finds_every_pair_that_touches_and_each_once(
+    made: list[tuple[float, float, float, float, float, bool, bool]], spread: float
+) -> None:
+    world = World(BroadPhaseSystem())
+    radii, moves, places = [], [], []
+    for x, y, width, height, angle, is_circle, moving in made:
+        shape = Shape.circle(width) if is_circle else Shape.box(width, height)
+        body(world, x * spread, y * spread, shape, moves=moving, angle=angle)
+        radii.append(width if is_circle else min(width, height) / 2)
+        moves.append(moving)
+        places.append((x * spread, y * spread))
+    world.step()
+    found = near(world)
+    assert len(set(found)) == len(found)
+    assert found == sorted(found)
+    pairs = {(a, b) for a, b, _ in found}
+    for i in range(len(made)):
+        for j in range(i + 1, len(made)):
+            if (moves[i] or moves[j]) and math.dist(places[i], places[j]) < radii[i] + radii[j]:
+                assert (i + 1, j + 1) in pairs
+
+
+@pytest.mark.parametrize("count", [300, 1200])
+def test_the_number_of_pairs_grows_with_the_bodies_and_not_their_square(count: int) -> None:
+    world = World(BroadPhaseSystem())
+    for x, y in np.random.default_rng(3).uniform(0, math.sqrt(count), (count, 2)).tolist():
+        body(world, x, y, Shape.circle(0.25))
+    world.step()
+    assert len(near(world)) < 2 * count
