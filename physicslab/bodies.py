@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
-from physicslab.kernels import compile_kernels, motion
+from physicslab.kernels import motion
 from physicslab.schedule import Stage, System, at
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Bodies(System):
     kernels = (motion.clear, motion.kick, motion.find_not_finite)
 
     def __init__(self) -> None:
-        self._resize(1)
+        self._resize(0)
 
     def _resize(self, rows: int) -> None:
         self.force: NDArray[np.float64] = np.zeros((rows, 2))
@@ -47,14 +47,19 @@ class Bodies(System):
         """Work out moments of inertia and inverse masses from the components as they are now."""
         if len(self.torque) != len(world.roster):
             self._resize(len(world.roster))
+            world.schedule.compile((motion.derive_masses,))
         mass, shape, velocity = world.table(Mass), world.table(Shape), world.table(Velocity)
-        compile_kernels((motion.derive_masses,))
         motion.derive_masses(
             velocity.present, mass.present, world.table(Held).present,
             mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
             shape["kind"], shape["radius"], shape["width"], shape["height"], velocity["angular"],
             self.inverse_mass, self.inverse_inertia,
         )  # fmt: skip
+
+    def attach(self, world: World) -> None:
+        """Forget the forces of systems that may run no more."""
+        self.force[:] = 0.0
+        self.torque[:] = 0.0
 
     def why_left_out(self, world: World) -> str | None:
         """Needed wherever something can change a velocity."""
@@ -85,15 +90,11 @@ class Bodies(System):
     def check_finite(self, world: World, h: float) -> None:
         """Stop a run that has diverged, naming what and when."""
         transform, velocity = world.table(Transform), world.table(Velocity)
-        row = motion.find_not_finite(
-            transform["position"], transform["angle"], velocity["linear"], velocity["angular"]
-        )
-        if row >= 0:
-            entity = int(world.roster.entities[row])
-            part = transform if not np.isfinite(transform["position"][row]).all() else velocity
-            raise Diverged(
-                f"{world.label(entity)}: {part.component.__name__} is no longer finite at t = {world.time + h:.9g} s; "
-                f"a smaller dt or more substeps may help"
-            )
-
-
+        for table, vectors, numbers in ((transform, "position", "angle"), (velocity, "linear", "angular")):
+            row = motion.find_not_finite(table[vectors], table[numbers])
+            if row >= 0:
+                label = world.label(int(world.roster.entities[row]))
+                raise Diverged(
+                    f"{label}: {table.component.__name__} is no longer finite at t = {world.time + h:.9g} s; "
+                    f"a smaller dt or more substeps may help"
+                )

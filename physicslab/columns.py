@@ -1,48 +1,29 @@
 """Components as rows of numpy columns.
 
-A component object is a handle on one row of its component's table. Reading ``transform.position`` and running a
-vectorised system over ``world.table(Transform)["position"]`` touch the same memory, so there is one truth and
-nothing to copy. A component that no world has adopted yet owns a row of its own.
+A component object is a handle on one row of its component's table. Reading ``transform.position`` and running
+a vectorised system over ``world.table(Transform)["position"]`` touch the same memory, so there is one truth
+and nothing to copy. A component that no world has adopted yet owns a row of its own.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from numbers import Integral, Real
-from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform, get_type_hints
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, cast, dataclass_transform, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.fields import REQUIRED, Field, InvalidValue, Kind, field
 from physicslab.vector import Vector2
 
-__all__ = ["COMPONENTS", "Batch", "Component", "Derived", "Field", "InvalidValue", "Table", "Vector", "component", "field"]
-
-Kind = Literal["number", "vector", "flag", "entity", "choice"]
-T = TypeVar("T")
+__all__ = [
+    "COMPONENTS", "Batch", "Component", "Derived", "Field", "InvalidValue", "Table", "Vector",
+    "component", "field",
+]  # fmt: skip
 
 COMPONENTS: dict[str, type[Component]] = {}
 """Every component class made by :func:`component`, by name, in the order of definition."""
-
-
-class InvalidValue(ValueError):
-    """A component was given a value that it cannot hold.
-
-    Attributes
-    ----------
-    component, field : str
-        Where the value was going.
-    value : object
-        What was given.
-    allowed : str
-        What may be given, in words.
-    """
-
-    def __init__(self, component: str, field: str, value: object, allowed: str) -> None:
-        self.component, self.field, self.value, self.allowed = component, field, value, allowed
-        super().__init__(f"{component}.{field} = {value!r}: must be {allowed}")
 
 
 class Vector:
@@ -52,13 +33,13 @@ class Vector:
         """Return the vector stored in the handle's row."""
         raise NotImplementedError  # the decorator puts a property in this place
 
-    def __set__(self, handle: object, value: Vector2 | Sequence[float]) -> None:
+    def __set__(self, handle: object, value: Vector2 | Sequence[float] | NDArray[Any]) -> None:
         """Store a pair of numbers in the handle's row."""
         raise NotImplementedError
 
 
 class Derived:
-    """The type of a number that the world works out where none is given: reads as ``float``, takes ``None`` too."""
+    """The type of a number that the world works out where it is ``None``: reads as ``float``, takes both."""
 
     def __get__(self, handle: object, owner: type | None = None) -> float:
         """Return the number in the handle's row; 0 while it is not given and no world has worked it out."""
@@ -69,134 +50,21 @@ class Derived:
         raise NotImplementedError
 
 
-@dataclass(frozen=True, slots=True)
-class Field:
-    """What is known of one field of a component: its type, unit, range and meaning.
-
-    The inspector, the scene file and every check are made from this record.
-    """
-
-    name: str
-    kind: Kind
-    default: Any
-    unit: str
-    meaning: str
-    minimum: float
-    maximum: float
-    above: float
-    choices: tuple[str, ...]
-    derived: str
-    fixed: bool
-    owner: str = ""
-
-    @property
-    def allowed(self) -> str:
-        """What the field may hold, in words."""
-        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
-        match self.kind:
-            case "choice":
-                return "one of " + ", ".join(f'"{choice}"' for choice in self.choices)
-            case "flag":
-                return "true or false"
-            case "entity":
-                return "an entity or null"
-            case "vector":
-                return f"two finite numbers [x, y]{unit}"
-        words = "a finite number"
-        if self.above > -math.inf:
-            words += f" > {self.above:g}"
-        if self.minimum > -math.inf and self.maximum < math.inf:
-            words += f" from {self.minimum:g} to {self.maximum:g}"
-        elif self.minimum > -math.inf:
-            words += f" >= {self.minimum:g}"
-        return words + unit
-
-    def check(self, value: object) -> Any:
-        """Return ``value`` as the column stores it, or raise :class:`InvalidValue`.
-
-        Vectors come back as a pair of floats, choices as their code (1, 2, ...), no entity as 0.
-        """
-        match self.kind:
-            case "number":
-                if isinstance(value, Real) and not isinstance(value, bool):
-                    number = _as_float(value)
-                    if math.isfinite(number) and self.minimum <= number <= self.maximum and number > self.above:
-                        return number
-            case "vector":
-                if isinstance(value, Vector2):
-                    if math.isfinite(value.x) and math.isfinite(value.y):
-                        return (value.x, value.y)
-                elif isinstance(value, Sequence | np.ndarray) and not isinstance(value, str) and len(value) == 2:
-                    pair = tuple(
-                        _as_float(part) if isinstance(part, Real) and not isinstance(part, bool) else math.nan
-                        for part in value
-                    )
-                    if math.isfinite(pair[0]) and math.isfinite(pair[1]):
-                        return pair
-            case "flag":
-                if isinstance(value, bool | np.bool_):
-                    return bool(value)
-            case "entity":
-                if value is None:
-                    return 0
-                if isinstance(value, Integral) and not isinstance(value, bool) and 0 < value < 2**63:
-                    return int(value)
-            case "choice":
-                if isinstance(value, str) and value in self.choices:
-                    return self.choices.index(value) + 1
-        raise InvalidValue(self.owner, self.name, value, self.allowed)
-
-
-def _as_float(value: Real) -> float:
-    """Return a number as a float; one too large for a float is infinite, which every check refuses."""
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf
-
-
-_REQUIRED: Any = object()
-
-
-def field(
-    default: Any = _REQUIRED,
-    *,
-    unit: str = "1",
-    meaning: str = "",
-    minimum: float = -math.inf,
-    maximum: float = math.inf,
-    above: float = -math.inf,
-    choices: tuple[str, ...] = (),
-    derived: str = "",
-    fixed: bool = False,
-) -> Any:
-    """Describe one field of a component.
-
-    Parameters
-    ----------
-    default : object, optional
-        The value where none is given; without it the field is required.
-    unit, meaning : str
-        SI unit ("1" for a pure number) and one line on what the number is.
-    minimum, maximum, above : float
-        Inclusive bounds, and an exclusive lower one.
-    choices : tuple of str
-        The words that a choice field takes.
-    derived : str
-        Where the value comes from when it is ``None`` ("from the Shape"): the world then keeps it up to date.
-    fixed : bool
-        Whether the field is settled when the component is made.
-    """
-    return Field("", "number", default, unit, meaning, minimum, maximum, above, choices, derived, fixed)
-
-
 class Component:
-    """A handle on one row of a table. Made by :func:`component`, never directly."""
+    """A handle on one row of a table. Made by :func:`component`, never directly.
+
+    A detached component has row 0 of lists of its own; an adopted one has a row of its world's table, never
+    row 0.
+    """
 
     __slots__ = ("_row", "_views")
     FIELDS: ClassVar[tuple[Field, ...]] = ()
     _views: list[Any]
     _row: int
+
+    def __init_subclass__(cls) -> None:
+        if cls.__bases__ != (Component,):
+            raise TypeError(f"{cls.__name__}: a component has no subclasses; esper goes by the exact type")
 
     def __init__(self, *args: object, **kwargs: object) -> None:
         cls = type(self)
@@ -211,7 +79,7 @@ class Component:
         self._views = []
         for spec in cls.FIELDS:
             value = given.pop(spec.name, spec.default)
-            if value is _REQUIRED:
+            if value is REQUIRED:
                 raise TypeError(f"{cls.__name__} needs {spec.name}: {spec.allowed}")
             if spec.derived:
                 self._views += ([0.0 if value is None else spec.check(value)], [value is not None])
@@ -220,15 +88,22 @@ class Component:
                 self._views.append(list(stored) if spec.kind == "vector" else [stored])
         if given:
             names = ", ".join(f.name for f in cls.FIELDS)
-            raise TypeError(f"{cls.__name__} has no field {next(iter(given))!r}; it has {names}")
+            raise TypeError(f"{cls.__name__} has no field {next(iter(given))!r}; it has {names or 'none'}")
         self.validate()
 
     def validate(self) -> None:
-        """Check what no single field can know; raise :class:`InvalidValue`. Overridden where there is such a rule."""
+        """Raise :class:`InvalidValue` where fields do not go together. Override where there is such a rule.
+
+        It is called on a new component, so it may read every field; a write is tried on a new one first.
+        """
 
     def values(self) -> dict[str, Any]:
         """Return every field's present value by name."""
         return {spec.name: getattr(self, spec.name) for spec in self.FIELDS}
+
+    def given(self) -> dict[str, Any]:
+        """Return what makes the same component again: its values, ``None`` for those the world works out."""
+        return {name: value if self.is_given(name) else None for name, value in self.values().items()}
 
     def is_given(self, name: str) -> bool:
         """Whether a derived field was given by hand (``True`` for every other field)."""
@@ -244,22 +119,21 @@ class Component:
         return f"{type(self).__name__}({values})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        given = tuple(
-            getattr(self, spec.name) if self.is_given(spec.name) else None for spec in type(self).FIELDS
-        )
-        return type(self), given
+        return type(self), tuple(self.given().values())
 
 
 @dataclass_transform(field_specifiers=(field,))
-def component(cls: type[T]) -> type[T]:
+def component[T](cls: type[T]) -> type[T]:
     """Turn an annotated class into a component whose fields live in columns.
 
-    Annotate each field with its type and describe it with :func:`field`:
+    Derive it from :class:`Component`, so that type checkers know its methods, and from nothing else. Annotate
+    each field with its type and describe it with :func:`field`:
 
     ======================  =========================================  ===============================
     annotation              holds                                      column
     ======================  =========================================  ===============================
     ``float``               a finite number, within its range          float64 (n,)
+    ``int``                 a whole number, within its range           int64 (n,)
     ``Vector``              two finite numbers, read as ``Vector2``    float64 (n, 2)
     ``Derived``             a number the world can work out            float64 (n,) and a bool (n,)
     ``bool``                a flag                                     bool (n,)
@@ -267,80 +141,97 @@ def component(cls: type[T]) -> type[T]:
     ``str`` with choices    one word of a fixed list                   int64 (n,), 1 + index in the list
     ======================  =========================================  ===============================
 
-    A row whose entity lacks the component is all zeros. Reading gives plain Python values; writing checks the value
-    and raises :class:`InvalidValue` with the component, the field, the value and what is allowed.
+    A row whose entity lacks the component is all zeros. Reading gives plain Python values; writing checks the
+    value and raises :class:`InvalidValue` with the component, the field, the value and what is allowed.
 
     Examples
     --------
     >>> @component
-    ... class Charge:
-    ...     charge: float = field(0.0, unit="C", meaning="electric charge")
+    ... class Charge(Component):
+    ...     charge: float = field(default=0.0, unit="C", meaning="electric charge")
     >>> charge = Charge(2)
     >>> charge.charge
     2.0
     >>> charge.charge = float("nan")
     Traceback (most recent call last):
     ...
-    physicslab.columns.InvalidValue: Charge.charge = nan: must be a finite number C
+    physicslab.fields.InvalidValue: Charge.charge = nan: must be a finite number C
     >>> _ = COMPONENTS.pop("Charge")
     """
-    hints = get_type_hints(cls)
-    specs: list[Field] = []
+    known = COMPONENTS.get(cls.__name__)
+    if known is not None and (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
+        raise TypeError(f"there is a component {cls.__name__} already, in {known.__module__}")
+    if cls.__bases__ not in ((Component,), (object,)):
+        raise TypeError(f"{cls.__name__}: a component has no base class but Component")
     namespace: dict[str, Any] = {
         name: value
         for name, value in vars(cls).items()
-        if name not in ("__dict__", "__weakref__", "__annotations__") and not isinstance(value, Field)
+        if name not in ("__dict__", "__weakref__", "__annotations__")
     }
+    specs = _described(cls)
     column = 0
+    for spec in specs:
+        namespace[spec.name] = _property(spec, column, validated="validate" in namespace)
+        column += 2 if spec.derived else 1
+    namespace |= {"__slots__": (), "FIELDS": specs, "__qualname__": cls.__qualname__}
+    made: Any = type(cls.__name__, (Component,), namespace)
+    COMPONENTS[cls.__name__] = made
+    return cast(type[T], made)
+
+
+def _described(cls: type) -> tuple[Field, ...]:
+    """Return the fields of a class as it was written, with what the annotations add to their descriptions."""
+    known = get_type_hints(cls)
+    hints = {name: known[name] for name in cls.__annotations__ if get_origin(known[name]) is not ClassVar}
+    specs: list[Field] = []
     for name, hint in hints.items():
         described = vars(cls).get(name)
-        if hint is ClassVar or not isinstance(described, Field):
-            continue
-        spec = Field(
-            name, _kind_of(hint, described), described.default, described.unit, described.meaning,
-            described.minimum, described.maximum, described.above, described.choices, described.derived,
-            described.fixed, cls.__name__,
-        )  # fmt: skip
+        if not isinstance(described, Field):
+            raise TypeError(f"{cls.__name__}.{name}: describe it with field(...)")
+        spec = replace(described, name=name, kind=_kind_of(hint, described), owner=cls.__name__)
+        if spec.default is not REQUIRED and not (spec.default is None and spec.derived):
+            spec.check(spec.default)
         specs.append(spec)
-        namespace[name] = _property(spec, column)
-        column += 2 if spec.derived else 1
-    namespace["__slots__"] = ()
-    namespace["FIELDS"] = tuple(specs)
-    made: Any = type(cls.__name__, (Component,), namespace)
-    made.__doc__ = cls.__doc__
-    COMPONENTS[cls.__name__] = made
-    return made  # type: ignore[no-any-return]
+    for name, value in vars(cls).items():
+        if isinstance(value, Field) and name not in hints:
+            raise TypeError(f"{cls.__name__}.{name}: annotate it with its type")
+    return tuple(specs)
 
 
 def _kind_of(hint: Any, described: Field) -> Kind:
-    if hint is Vector:
-        return "vector"
-    if hint is bool:
-        return "flag"
+    kinds: dict[Any, Kind] = {
+        float: "number", Derived: "number", int: "whole", Vector: "vector", bool: "flag",
+        int | None: "entity",
+    }  # fmt: skip
     if described.choices:
         return "choice"
-    if hint is float or hint is Derived:
-        return "number"
-    if hint == int | None:
-        return "entity"
-    raise TypeError(f"no column holds a field annotated {hint!r}; use float, Vector, bool, int | None or choices")
+    if hint not in kinds:
+        allowed = "float, int, bool, Vector, Derived, int | None, or str with choices"
+        raise TypeError(f"no column holds {hint!r}; use {allowed}")
+    return kinds[hint]
 
 
-def _property(spec: Field, column: int) -> property:
+def _property(spec: Field, column: int, *, validated: bool) -> property:
     """Make the property that reads and writes one field of a handle's row."""
-    check = spec.check
-    reads: dict[Kind, Any] = {
+    check, low, high = spec.check, spec.lowest, spec.highest
+    reads: dict[Kind, Callable[[Any], Any]] = {
         "number": lambda self: self._views[column][self._row],
+        "whole": lambda self: self._views[column][self._row],
         "flag": lambda self: self._views[column][self._row],
         "entity": lambda self: self._views[column][self._row] or None,
         "choice": lambda self: spec.choices[self._views[column][self._row] - 1],
-        "vector": lambda self: Vector2(
-            self._views[column][2 * self._row], self._views[column][2 * self._row + 1]
-        ),
     }
+
+    def read_vector(self: Component) -> Vector2:
+        view, i = self._views[column], 2 * self._row
+        return Vector2(view[i], view[i + 1])
 
     def write(self: Component, value: object) -> None:
         self._views[column][self._row] = check(value)
+
+    def write_number(self: Component, value: object) -> None:
+        in_range = type(value) is float and low <= value <= high
+        self._views[column][self._row] = value if in_range else check(value)
 
     def write_vector(self: Component, value: object) -> None:
         view, i = self._views[column], 2 * self._row
@@ -351,16 +242,27 @@ def _property(spec: Field, column: int) -> property:
             self._views[column][self._row] = check(value)
         self._views[column + 1][self._row] = value is not None
 
-    def refuse(self: Component, value: object) -> None:
-        raise AttributeError(f"{spec.owner}.{spec.name} is settled when the component is made; add a new one instead")
+    writes: dict[Kind, Callable[[Any, object], None]] = {"number": write_number, "vector": write_vector}
+    write_field = write_derived if spec.derived else writes.get(spec.kind, write)
 
-    writer = write_vector if spec.kind == "vector" else write_derived if spec.derived else write
+    def write_validated(self: Component, value: object) -> None:
+        type(self)(**{**self.given(), spec.name: value})  # raises where the values do not go together
+        write_field(self, value)
+
+    def refuse(self: Component, value: object) -> None:
+        raise AttributeError(f"{spec.owner}.{spec.name} is settled when the component is made; add a new one")
+
     unit = "" if spec.unit == "1" else f" [{spec.unit}]"
-    return property(reads[spec.kind], refuse if spec.fixed else writer, doc=f"{spec.meaning}{unit}")
+    return property(
+        reads.get(spec.kind, read_vector),
+        refuse if spec.fixed else write_validated if validated else write_field,
+        doc=f"{spec.meaning}{unit}",
+    )
 
 
 _DTYPES: Mapping[Kind, type] = {
     "number": np.float64,
+    "whole": np.int64,
     "vector": np.float64,
     "flag": np.bool_,
     "entity": np.int64,
@@ -371,9 +273,9 @@ _DTYPES: Mapping[Kind, type] = {
 class Table:
     """The columns of one component in one world, one row an entity.
 
-    All tables of a world number their rows alike, so that a kernel indexes every column with the same number. Row 0
-    is the world itself, fixed at the origin. A row whose entity lacks the component holds zeros, which every kernel
-    reads as "nothing here": no mass, no speed, no shape.
+    All tables of a world number their rows alike, so that a kernel indexes every column with the same number.
+    Row 0 is the world itself, fixed at the origin. A row whose entity lacks the component holds zeros, which
+    every kernel reads as "nothing here": no mass, no speed, no shape.
 
     ``table["position"]`` is the column of a field, in use rows only; a derived field has a second column
     ``"<field>_given"``. The arrays are views that stay valid until the next structural change.
@@ -408,13 +310,11 @@ class Table:
             # Handles share this list, so replacing its items moves every one of them to the new memory.
             self._views[:] = [memoryview(column.reshape(-1)) for column in self._storage]
         self.present = self._present[:rows]
-        self._columns = {
-            name: column[:rows] for name, column in zip(self._names, self._storage, strict=True)
-        }
+        self._columns = {name: column[:rows] for name, column in zip(self._names, self._storage, strict=True)}
 
     def adopt(self, entity: int, handle: Component, row: int) -> None:
         """Move a detached component's values into ``row``; from here on the handle is a view of it."""
-        if type(handle._views[0]) is memoryview:
+        if handle._row:
             raise ValueError(
                 f"entity {entity}: this {type(handle).__name__} object already belongs to an entity; "
                 f"make one for each"

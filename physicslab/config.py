@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
-from numbers import Real
+from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar
 
-from physicslab.columns import InvalidValue
+from physicslab.fields import Field, InvalidValue
 from physicslab.vector import Vector2
 
-__all__ = ["GRAVITY_MODES", "SOFTENING_LAWS", "PhysicsConfig", "SimulationConfig", "WindowConfig"]
+__all__ = [
+    "GRAVITY_MODES",
+    "SOFTENING_LAWS",
+    "PhysicsConfig",
+    "SimulationConfig",
+    "WindowConfig",
+    "field_names",
+]
 
 GRAVITY_MODES = ("linear", "planet", "none")
 SOFTENING_LAWS = ("clamp", "plummer")
@@ -28,51 +32,18 @@ INTEGRATORS = (
 COLLISIONS = ("auto", "step", "exact")
 
 
-def _number(
-    owner: str, name: str, value: object, *, minimum: float = -math.inf, above: float = -math.inf, maximum: float = math.inf
-) -> float:
-    words = "a finite number"
-    if above > -math.inf:
-        words += f" > {above:g}"
-    elif maximum < math.inf:
-        words += f" from {minimum:g} to {maximum:g}"
-    elif minimum > -math.inf:
-        words += f" >= {minimum:g}"
-    if isinstance(value, Real) and not isinstance(value, bool):
-        try:
-            number = float(value)
-        except OverflowError:
-            number = math.inf
-        if math.isfinite(number) and minimum <= number <= maximum and number > above:
-            return number
-    raise InvalidValue(owner, name, value, words)
-
-
-def _whole(owner: str, name: str, value: object, minimum: int, maximum: int) -> int:
-    if isinstance(value, int) and not isinstance(value, bool) and minimum <= value <= maximum:
-        return value
-    raise InvalidValue(owner, name, value, f"a whole number from {minimum} to {maximum}")
-
-
-def _choice(owner: str, name: str, value: object, choices: Sequence[str]) -> None:
-    if not isinstance(value, str) or value not in choices:
-        raise InvalidValue(owner, name, value, "one of " + ", ".join(f'"{choice}"' for choice in choices))
-
-
-def _flag(owner: str, name: str, value: object) -> None:
-    if not isinstance(value, bool):
-        raise InvalidValue(owner, name, value, "true or false")
-
-
-def _numbers(owner: str, name: str, value: object, count: int, words: str) -> tuple[float, ...]:
-    if isinstance(value, Vector2):
-        value = tuple(value)
-    if isinstance(value, Sequence) and not isinstance(value, str) and len(value) == count:
-        try:
-            return tuple(_number(owner, name, part) for part in value)
-        except InvalidValue:
-            pass
-    raise InvalidValue(owner, name, value, words)
+def _settle(config: PhysicsConfig | SimulationConfig) -> None:
+    """Check every field by its description and store it as the type it is read as."""
+    for spec in config.FIELDS:
+        value: Any = getattr(config, spec.name)
+        if value is None and spec.derived:
+            continue
+        stored = replace(spec, owner=config.section).check(value)
+        if spec.kind == "vector":
+            stored = Vector2(*stored)
+        elif spec.kind == "choice":
+            stored = spec.choices[stored - 1]
+        object.__setattr__(config, spec.name, stored)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,23 +80,35 @@ class PhysicsConfig:
     bounds_friction: float = 0.3
 
     section: ClassVar[str] = "physics"
+    FIELDS: ClassVar[tuple[Field, ...]] = (
+        Field("gravity_mode", "choice", choices=GRAVITY_MODES, meaning="which law of gravity"),
+        Field("gravity", "vector", unit="m/s^2", meaning="acceleration of the linear mode"),
+        Field("G", "number", unit="N m^2/kg^2", meaning="constant of the planet mode"),
+        Field("softening", "number", unit="m", minimum=0.0, meaning="where the inverse square is softened"),
+        Field("softening_law", "choice", choices=SOFTENING_LAWS, meaning="how it is softened"),
+        Field("linear_damping", "number", unit="1/s", minimum=0.0, meaning="rate at which velocities decay"),
+        Field("angular_damping", "number", unit="1/s", minimum=0.0, meaning="rate at which spins decay"),
+        Field("bounds_restitution", "number", minimum=0.0, maximum=1.0, meaning="restitution of the walls"),
+        Field("bounds_friction", "number", minimum=0.0, meaning="Coulomb friction coefficient of the walls"),
+    )
 
     def __post_init__(self) -> None:
-        put: Any = lambda name, value: object.__setattr__(self, name, value)  # noqa: E731
-        _choice(self.section, "gravity_mode", self.gravity_mode, GRAVITY_MODES)
-        words = "two finite numbers [gx, gy] m/s^2"
-        put("gravity", Vector2(*_numbers(self.section, "gravity", self.gravity, 2, words)))
-        put("G", _number(self.section, "G", self.G))
-        for name in ("softening", "linear_damping", "angular_damping", "bounds_friction"):
-            put(name, _number(self.section, name, getattr(self, name), minimum=0.0))
-        _choice(self.section, "softening_law", self.softening_law, SOFTENING_LAWS)
-        put("bounds_restitution", _number(self.section, "bounds_restitution", self.bounds_restitution, minimum=0.0, maximum=1.0))
+        _settle(self)
         if self.bounds is not None:
-            words = "null or four finite numbers [xmin, ymin, xmax, ymax] m with xmin < xmax and ymin < ymax"
-            bounds = _numbers(self.section, "bounds", self.bounds, 4, words)
-            if not (bounds[0] < bounds[2] and bounds[1] < bounds[3]):
-                raise InvalidValue(self.section, "bounds", list(bounds), words)
-            put("bounds", bounds)
+            object.__setattr__(self, "bounds", _box(self.section, "bounds", self.bounds))
+
+
+def _box(owner: str, name: str, value: Any) -> tuple[float, ...]:
+    corner = Field(name, "vector", owner=owner)
+    try:
+        xmin, ymin, xmax, ymax = value
+        box = (*corner.check((xmin, ymin)), *corner.check((xmax, ymax)))
+    except (TypeError, ValueError):
+        box = ()
+    if not box or not (box[0] < box[2] and box[1] < box[3]):
+        words = "null or four finite numbers [xmin, ymin, xmax, ymax] m with xmin < xmax and ymin < ymax"
+        raise InvalidValue(owner, name, value, words)
+    return box
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,15 +139,17 @@ class SimulationConfig:
     collisions: str = "auto"
 
     section: ClassVar[str] = "simulation"
+    FIELDS: ClassVar[tuple[Field, ...]] = (
+        Field("dt", "number", unit="s", above=0.0, meaning="length of a step"),
+        Field("substeps", "whole", minimum=1, maximum=10_000, meaning="parts that a step is divided into"),
+        Field("iterations", "whole", minimum=1, maximum=1_000, derived="from the solver", meaning="sweeps"),
+        Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),
+        Field("sleeping", "flag", meaning="whether settled bodies may stop being simulated"),
+        Field("collisions", "choice", choices=COLLISIONS, meaning="how contacts are found"),
+    )
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "dt", _number(self.section, "dt", self.dt, above=0.0))
-        _whole(self.section, "substeps", self.substeps, 1, 10_000)
-        if self.iterations is not None:
-            _whole(self.section, "iterations", self.iterations, 1, 1_000)
-        _choice(self.section, "integrator", self.integrator, INTEGRATORS)
-        _flag(self.section, "sleeping", self.sleeping)
-        _choice(self.section, "collisions", self.collisions, COLLISIONS)
+        _settle(self)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""What is near, what touches, and with what impulse: shared by the systems that find, resolve and show contacts."""
+"""What is near, what touches, and with what impulse: what the contact systems share."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class ContactPoint:
     separation : float
         Distance of the surfaces along the normal [m]; negative where they overlap.
     normal_impulse, tangent_impulse : float
-        Impulses that held the bodies apart and against sliding in the last substep [N s], on B; the tangent is the
-        normal turned counter-clockwise.
+        Impulses that held the bodies apart and against sliding in the last substep [N s], on B; the tangent
+        is the normal turned counter-clockwise.
     approach_speed : float
         Speed at which the surfaces met in an impact of the last step [m/s]; 0 if there was none.
     impact_normal, impact_tangent : float
@@ -113,7 +113,7 @@ class Contacts:
         self._spare_manifolds, self._spare_points = self.manifolds.copy(), self.points.copy()
 
     def relist(self, pairs: NDArray[np.int64], count: int, entities: NDArray[np.int64]) -> None:
-        """Take a new sorted list of ``count`` near pairs (a, b, wall); those that were near before stay as they were.
+        """Take a new sorted list of ``count`` near pairs (a, b, wall); pairs known before stay as they are.
 
         ``entities`` holds the entity of each row. What touches is still to be found out.
         """
@@ -142,7 +142,7 @@ class Contacts:
         return float(impulse.deepest(self.manifolds, self.points, self.touching, self.count))
 
     def listed(self, world: World) -> tuple[Contact, ...]:
-        """Return every contact, in the order of its entities; impacts of the last step that are over included."""
+        """Return every contact and every impact of the last step, in the order of entities."""
         return tuple(self._describe(world, p) for p in self._told())
 
     def _told(self) -> list[int]:
@@ -159,7 +159,8 @@ class Contacts:
                 return self._describe(world, p)
             if pair == (b, a):
                 seen = self._describe(world, p)
-                # Seen from the other side, normal and tangent turn round, and so do the impulses on B: the numbers stay.
+                # Seen from the other side, normal and tangent turn round, and so do the impulses on B: the
+                # numbers stay.
                 return replace(seen, a=a, b=b, normal=-seen.normal)
         return None
 
@@ -189,8 +190,8 @@ class Contacts:
     def export(self, world: World) -> list[list[float]]:
         """Return what the next step takes from the last one, as rows of numbers that JSON can hold.
 
-        A row starts with the two entities (0 for the world's bounds) and the wall. Points that will be found anew
-        leave their features and impulses; those that will be kept, everything.
+        A row starts with the two entities (0 for the world's bounds) and the wall. Points that will be found
+        anew leave their features and impulses; those that will be kept, everything.
         """
         rows: list[list[float]] = []
         for p in range(self.candidate_pairs):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from physicslab.components import Mass, Transform, Velocity
-from physicslab.kernels import compile_kernels, energy
+from physicslab.kernels import energy
 from physicslab.schedule import ForceSystem
 from physicslab.vector import Vector2
 from physicslab.world import World
@@ -38,7 +39,7 @@ class Energy:
     @property
     def total(self) -> float:
         """Kinetic and potential energy [J]."""
-        return self.kinetic + math.fsum(self.potential.values())
+        return self.kinetic + sum(self.potential.values())
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,22 +52,23 @@ class Momentum:
 
 def _motion(world: World) -> tuple[float, float, float, float, float]:
     world.synchronise()
-    compile_kernels((energy.motion_totals,))
+    world.schedule.compile((energy.motion_totals,))
     velocity, mass = world.table(Velocity), world.table(Mass)
-    totals: tuple[float, float, float, float, float] = energy.motion_totals(
+    return energy.motion_totals(
         world.table(Transform)["position"], velocity["linear"], velocity["angular"],
         mass["mass"], mass["inertia"], world.bodies.inverse_mass, world.bodies.inverse_inertia,
     )  # fmt: skip
-    return totals
 
 
 def measure_energy(world: World) -> Energy:
     """Return the energy of the world as it is now."""
     translation, rotation, *_ = _motion(world)
     potential: dict[str, float] = {}
-    for system in world.schedule.running:
-        if isinstance(system, ForceSystem) and system.potential is not None:
-            potential[system.potential] = potential.get(system.potential, 0.0) + system.potential_energy(world)
+    with world.active():
+        for system in world.schedule.running:
+            if isinstance(system, ForceSystem) and system.potential is not None:
+                stored = system.potential_energy(world)
+                potential[system.potential] = potential.get(system.potential, 0.0) + stored
     return Energy(translation, rotation, potential)
 
 
@@ -95,7 +97,8 @@ class Drift:
     def sample(self, world: World) -> None:
         """Measure the energy as it is now."""
         self.latest = measure_energy(world)
-        self.largest = max(self.largest, abs(self.latest.total - self.initial.total))
+        # numpy's maximum, unlike max, lets NaN through.
+        self.largest = float(np.maximum(self.largest, abs(self.latest.total - self.initial.total)))
         self._scale = max(self._scale, self.latest.kinetic)
 
     @property

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from physicslab.kernels import compile_kernels
 
@@ -33,15 +33,21 @@ class Stage(Enum):
     RENDER = "once a frame: the world is drawn"
     HUD = "once a frame: the figures are drawn over it"
 
+    __hash__ = object.__hash__  # Enum's own hashes the name, in Python, at every look-up
 
-M = TypeVar("M", bound=Callable[..., None])
 
-
-def at(stage: Stage) -> Callable[[M], M]:
+def at[M: Callable[..., None]](stage: Stage) -> Callable[[M], M]:
     """Mark a system's method to be called as ``method(world, h)`` at ``stage``.
 
     ``h`` is the time [s] that the call stands for: the substep, a part of it, or the step.
+
+    Raises
+    ------
+    TypeError
+        If ``stage`` is no Stage.
     """
+    if not isinstance(stage, Stage):
+        raise TypeError(f"@at takes a Stage, got {stage!r}: write @at(Stage.FORCE), or another of them")
 
     def mark(method: M) -> M:
         method.stage = stage  # type: ignore[attr-defined]
@@ -57,10 +63,13 @@ class System:
 
     1. Subclass ``System`` (or :class:`ForceSystem`) in a file of ``physicslab/systems``.
     2. Name the components it works on in ``needs``. While no entity has all of them, the system is left out.
-    3. Mark a method ``@at(Stage. ...)``. It gets the world and the time that the call stands for, and reads and writes
-       columns: ``world.batch(Velocity, Mass).rows`` are row numbers, ``world.table(Velocity)["linear"]`` a column.
+    3. Mark a method ``@at(Stage. ...)``. It gets the world and the time that the call stands for, and reads
+    and writes
+       columns: ``world.batch(Velocity, Mass).rows`` are row numbers, ``world.table(Velocity)["linear"]`` a
+       column.
     4. Say in :meth:`why_left_out` what else makes it needless. What was left out is shown with that reason.
-    5. Add it to the list in ``physicslab/systems/standard.py``, in the order in which it runs within its stage.
+    5. Add it to the list in ``physicslab/systems/standard.py``, in the order in which it runs within its
+    stage.
 
     Attributes
     ----------
@@ -90,30 +99,38 @@ class System:
 
     @classmethod
     def marked(cls) -> dict[Stage, str]:
-        """Return the stages of the system, each with the name of its method."""
+        """Return the stages of the system, each with the name of its method.
+
+        A method that overrides a marked one keeps its stage. Two at one stage have no order, and are refused.
+        """
         found: dict[Stage, str] = {}
-        for name in dir(cls):
-            stage = getattr(getattr(cls, name, None), "stage", None)
-            if isinstance(stage, Stage):
-                found[stage] = name
+        for base in reversed(cls.__mro__):
+            for name, attribute in vars(base).items():
+                stage = getattr(attribute, "stage", None)
+                if not isinstance(stage, Stage):
+                    continue
+                if found.setdefault(stage, name) != name:
+                    both = f"{found[stage]} and {name}"
+                    raise TypeError(f"{cls.__name__}: {both} are both at {stage}; let one call the other")
         return found
 
 
 class ForceSystem(System):
     """A system that adds to ``world.bodies.force`` [N] and ``.torque`` [N m] at ``Stage.FORCE``.
 
-    It must also say what energy its force stores, so that the energy shown stays true when someone adds a force.
+    It must also say what energy its force stores, so that the energy shown stays true when someone adds a
+    force.
     """
 
     potential: ClassVar[str | None] = None
-    """Under which name the energy is reported (``potential_<name>``); ``None`` for a force that stores none."""
+    """The name under which the energy is reported; ``None`` for a force that stores none."""
 
     def potential_energy(self, world: World) -> float:
         """Return the energy stored [J]; zero for a force that stores none."""
         return 0.0
 
     def strongest_rate(self, world: World) -> float:
-        """Return the fastest angular frequency [rad/s] that this force gives any body; 0 where it gives none."""
+        """Return the fastest angular frequency [rad/s] that this force gives any body; 0 if it gives none."""
         return 0.0
 
 
@@ -156,16 +173,24 @@ class Schedule:
     """
 
     def __init__(self, systems: Iterable[System]) -> None:
-        self.systems: tuple[System, ...] = tuple(systems)
-        names = [system.name for system in self.systems]
-        for name in names:
-            if names.count(name) > 1:
-                raise ValueError(f"{name} is in the schedule twice")
+        self.systems: tuple[System, ...] = ()
+        self._marked: dict[System, dict[Stage, str]] = {}
+        self.extend(systems)
         self.running: tuple[System, ...] = ()
         self.left_out: tuple[LeftOut, ...] = ()
         self.timings: dict[str, Timing] = {}
         self.compile_s = 0.0
         self._calls: dict[Stage, list[tuple[Callable[[World, float], None], Timing]]] = {}
+
+    def extend(self, systems: Iterable[System]) -> None:
+        """Put systems behind those there are; they are considered when the schedule is next remade."""
+        extended = (*self.systems, *systems)
+        marked = {system: _checked(system) for system in extended}
+        names = [system.name for system in extended]
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"{name} is in the schedule twice")
+        self.systems, self._marked = extended, marked
 
     def remake(self, world: World) -> None:
         """Choose the systems that ``world`` needs now."""
@@ -181,10 +206,14 @@ class Schedule:
         self.running, self.left_out = tuple(running), tuple(left_out)
         self._calls = {stage: [] for stage in Stage}
         for system in running:
-            self.compile_s += compile_kernels(system.kernels)
+            self.compile(system.kernels)
             timing = self.timings.setdefault(system.name, Timing())
-            for stage, method in system.marked().items():
+            for stage, method in self._marked[system].items():
                 self._calls[stage].append((getattr(system, method), timing))
+
+    def compile(self, kernels: Iterable[Any]) -> None:
+        """Compile kernels, or load them, and note how long it took."""
+        self.compile_s += compile_kernels(kernels)
 
     def runs(self, stage: Stage) -> bool:
         """Whether any system has work at ``stage``."""
@@ -201,3 +230,17 @@ class Schedule:
     def find(self, kind: type[System]) -> System | None:
         """Return the running system of a type, if there is one."""
         return next((system for system in self.running if isinstance(system, kind)), None)
+
+
+def _checked(system: System) -> dict[Stage, str]:
+    """Return the stages of a system; refuse what could never run, with the reason."""
+    if isinstance(system, type):
+        raise TypeError(f"a world takes systems, not their types: write {system.__name__}()")
+    if not isinstance(system, System):
+        raise TypeError(f"{system!r} is no System: subclass physicslab.schedule.System")
+    stages = system.marked()
+    if not stages:
+        raise TypeError(f"{system.name} has no method marked @at(Stage. ...), so it would never run")
+    if isinstance(system, ForceSystem) and Stage.FORCE not in stages:
+        raise TypeError(f"{system.name} is a ForceSystem and has no method marked @at(Stage.FORCE)")
+    return stages

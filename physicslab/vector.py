@@ -6,16 +6,17 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from numbers import Real
+from typing import ClassVar
 
 __all__ = ["Vector2"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, init=False)
 class Vector2:
     """A vector (x, y) of two floats; every operation returns a new one.
 
     Vectors add to vectors and scale by numbers. Nothing is broadcast: ``v + 5`` is a ``TypeError``, because a
-    vector and a number have no sum.
+    vector and a number have no sum; and a vector is not equal to a tuple, nor does it multiply with an array.
 
     Parameters
     ----------
@@ -34,16 +35,15 @@ class Vector2:
     TypeError: unsupported operand type(s) for +: 'Vector2' and 'int'
     """
 
-    x: float = 0.0
-    y: float = 0.0
+    x: float
+    y: float
 
-    def __post_init__(self) -> None:
-        for name in ("x", "y"):
-            value = getattr(self, name)
-            if type(value) is not float:
-                if isinstance(value, bool) or not isinstance(value, Real):
-                    raise TypeError(f"Vector2.{name} takes a number, got {value!r}")
-                object.__setattr__(self, name, float(value))
+    # numpy would otherwise take a Vector2 for a scalar and make an array of vectors of ``array * vector``.
+    __array_ufunc__: ClassVar[None] = None
+
+    def __init__(self, x: float = 0.0, y: float = 0.0) -> None:
+        _set_x(self, x if type(x) is float else _as_float("x", x))
+        _set_y(self, y if type(y) is float else _as_float("y", y))
 
     @classmethod
     def from_angle(cls, angle: float, magnitude: float = 1.0) -> Vector2:
@@ -65,15 +65,17 @@ class Vector2:
         return Vector2(self.x - other.x, self.y - other.y)
 
     def __mul__(self, factor: float) -> Vector2:
-        if isinstance(factor, bool) or not isinstance(factor, Real):
+        if not _is_number(factor):
             return NotImplemented
+        factor = float(factor)
         return Vector2(self.x * factor, self.y * factor)
 
     __rmul__ = __mul__
 
     def __truediv__(self, divisor: float) -> Vector2:
-        if isinstance(divisor, bool) or not isinstance(divisor, Real):
+        if not _is_number(divisor):
             return NotImplemented
+        divisor = float(divisor)
         return Vector2(self.x / divisor, self.y / divisor)
 
     def __neg__(self) -> Vector2:
@@ -113,7 +115,7 @@ class Vector2:
 
     @property
     def angle(self) -> float:
-        """The direction in radians, counter-clockwise from the x axis, in (-pi, pi].
+        """The direction in radians, counter-clockwise from the x axis, from -pi to pi.
 
         >>> Vector2(0, 1).angle == math.pi / 2
         True
@@ -127,10 +129,12 @@ class Vector2:
         >>> Vector2(3, 4).normalized
         Vector2(x=0.6, y=0.8)
         """
-        length = self.magnitude
-        if length == 0.0:
+        largest = max(abs(self.x), abs(self.y))
+        if largest == 0.0:
             raise ValueError("the zero vector has no direction to normalize")
-        return Vector2(self.x / length, self.y / length)
+        x, y = self.x / largest, self.y / largest  # so that neither a huge nor a tiny vector loses digits
+        length = math.hypot(x, y)
+        return Vector2(x / length, y / length)
 
     @property
     def perpendicular(self) -> Vector2:
@@ -147,14 +151,16 @@ class Vector2:
         >>> Vector2(1, 2).dot(Vector2(3, 4))
         11.0
         """
+        _require_vector("dot", other)
         return self.x * other.x + self.y * other.y
 
     def cross(self, other: Vector2) -> float:
-        """Return the signed area x1 y2 - y1 x2: positive where ``other`` lies counter-clockwise of this vector.
+        """Return the signed area x1 y2 - y1 x2: positive where ``other`` is counter-clockwise of this vector.
 
         >>> Vector2(1, 0).cross(Vector2(0, 1))
         1.0
         """
+        _require_vector("cross", other)
         return self.x * other.y - self.y * other.x
 
     def reflected(self, normal: Vector2) -> Vector2:
@@ -163,6 +169,7 @@ class Vector2:
         >>> Vector2(1, -1).reflected(Vector2(0, 1))
         Vector2(x=1.0, y=1.0)
         """
+        _require_vector("reflected", normal)
         n = normal.normalized
         return self - n * (2.0 * self.dot(n))
 
@@ -174,3 +181,24 @@ class Vector2:
         """
         c, s = math.cos(angle), math.sin(angle)
         return Vector2(c * self.x - s * self.y, s * self.x + c * self.y)
+
+
+# The slots' own setters: nothing else writes to a frozen dataclass as fast, and every read of a vector column
+# makes a vector.
+_set_x = Vector2.__dict__["x"].__set__
+_set_y = Vector2.__dict__["y"].__set__
+
+
+def _is_number(value: object) -> bool:
+    return type(value) is float or (isinstance(value, Real) and not isinstance(value, bool))
+
+
+def _as_float(name: str, value: float) -> float:
+    if not _is_number(value):
+        raise TypeError(f"Vector2.{name} takes a number, got {value!r}")
+    return float(value)
+
+
+def _require_vector(method: str, value: object) -> None:
+    if not isinstance(value, Vector2):
+        raise TypeError(f"Vector2.{method} takes a Vector2, got {value!r}")

@@ -7,13 +7,13 @@ import math
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, TypeVar
+from typing import Any
 
 import esper
 
 from physicslab.bodies import Bodies
-from physicslab.columns import Batch, Component, Table
-from physicslab.components import Name, Shape, Velocity
+from physicslab.columns import Batch, Table
+from physicslab.components import Name
 from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.contacts import Contacts
 from physicslab.integrators import Integrator, choose
@@ -21,8 +21,6 @@ from physicslab.roster import Roster
 from physicslab.schedule import ForceSystem, Schedule, Stage, System
 
 __all__ = ["World"]
-
-C = TypeVar("C")
 
 _numbers = itertools.count(1)
 
@@ -39,8 +37,8 @@ class World:
 
     Notes
     -----
-    Each world lives in an esper context of its own, so worlds never mix. A new world is esper's active one until
-    another is made or activated; every method enters its own context and leaves the one before.
+    Each world lives in an esper context of its own, so worlds never mix. A new world is esper's active one
+    until another is made or activated; every method enters its own context and leaves the one before.
 
     Examples
     --------
@@ -61,7 +59,7 @@ class World:
     ) -> None:
         self._physics = physics or PhysicsConfig()
         self._simulation = simulation or SimulationConfig()
-        self.title, self.description = "", ""
+        self.name, self.title, self.description = "", "", ""
         self.time = 0.0
         self.steps = 0
         self.force_evaluations = 0
@@ -80,7 +78,7 @@ class World:
         esper.switch_world(self.context)
         weakref.finalize(self, _forget, self.context)
 
-    # ---- contexts -------------------------------------------------------------------------------------------------
+    # ---- contexts ------------------------------------------------------------------------------------------
 
     def activate(self) -> None:
         """Make this the world that plain esper calls speak of, until another is activated."""
@@ -96,23 +94,22 @@ class World:
             yield self
         finally:
             if esper.current_world != before:
-                esper.switch_world(before)
+                # The world that was active before may have been forgotten meanwhile.
+                esper.switch_world(before if before in esper.list_worlds() else "default")
 
-    # ---- entities and components ----------------------------------------------------------------------------------
+    # ---- entities and components ---------------------------------------------------------------------------
 
     def spawn(self, *components: Any, name: str | None = None) -> int:
         """Make an entity of these components and return its number.
 
         Systems see it from the next step on. ``name`` is its id in scene files and reports.
         """
-        kinds = [type(component) for component in components]
-        for component, kind in zip(components, kinds, strict=True):
-            if isinstance(component, type):
-                raise TypeError(f"spawn takes components, not their types: write {component.__name__}(...)")
-            if kinds.count(kind) > 1:
-                raise ValueError(f"an entity has one {kind.__name__}, not {kinds.count(kind)}")
         if name is not None:
             components = (*components, Name(name))
+        kinds = [_kind(component) for component in components]
+        for kind in kinds:
+            if kinds.count(kind) > 1:
+                raise ValueError(f"an entity has one {kind.__name__}, not {kinds.count(kind)}")
         with self.active():
             return esper.create_entity(*components)
 
@@ -125,22 +122,24 @@ class World:
     def clear(self) -> None:
         """Remove every entity."""
         with self.active():
-            for entity in list(esper.get_entities()):
-                esper.delete_entity(entity, immediate=True)
+            for entity in esper.get_entities():
+                esper.delete_entity(entity)
+            self.roster.bury_dead()
 
     def add(self, entity: int, component: Any) -> None:
         """Give an entity a component, in place of the one of that type if it has one."""
         with self.active():
             self._require(entity)
+            _kind(component)
             esper.add_component(entity, component)
 
-    def discard(self, entity: int, component: type[C]) -> C | None:
+    def discard[C](self, entity: int, component: type[C]) -> C | None:
         """Take a component from an entity and return it, or ``None`` if it had none."""
         with self.active():
             self._require(entity)
             return esper.try_remove_component(entity, component)
 
-    def component(self, entity: int, component: type[C]) -> C:
+    def component[C](self, entity: int, component: type[C]) -> C:
         """Return an entity's component.
 
         Raises
@@ -150,7 +149,7 @@ class World:
         """
         with self.active():
             self._require(entity)
-            self.synchronise()
+            self._follow()
             found = esper.try_component(entity, component)
             if found is None:
                 raise KeyError(f"{self.label(entity)} has no {component.__name__}")
@@ -165,19 +164,19 @@ class World:
         """Return all components of an entity."""
         with self.active():
             self._require(entity)
-            self.synchronise()
+            self._follow()
             return esper.components_for_entity(entity)
 
     def entities(self) -> list[int]:
         """Return all entities, in the order of their numbers."""
         with self.active():
-            return sorted(esper.get_entities())
+            return sorted(filter(esper.entity_exists, esper.get_entities()))
 
     def entity(self, name: str) -> int:
         """Return the entity with this id, or raise ``KeyError``."""
         with self.active():
             for entity, named in esper.get_component(Name):
-                if named.id == name:
+                if named.id == name and esper.entity_exists(entity):
                     return entity
         raise KeyError(f"no entity has the id {name!r}")
 
@@ -191,7 +190,7 @@ class World:
         if not esper.entity_exists(entity):
             raise KeyError(f"there is no entity {entity} in this world")
 
-    # ---- columns --------------------------------------------------------------------------------------------------
+    # ---- columns -------------------------------------------------------------------------------------------
 
     def table(self, component: type[Any]) -> Table:
         """Return the columns of a component; rows are numbered alike in every table."""
@@ -201,7 +200,7 @@ class World:
         """Return the rows of the entities that have all of ``components``."""
         return self.roster.batch(*components)
 
-    # ---- configuration --------------------------------------------------------------------------------------------
+    # ---- configuration -------------------------------------------------------------------------------------
 
     @property
     def physics(self) -> PhysicsConfig:
@@ -232,26 +231,38 @@ class World:
         can_touch = self.schedule.runs(Stage.CONTACT)
         self.integrator, self.integrator_reason = choose(self._simulation.integrator, can_touch=can_touch)
 
-    # ---- time -----------------------------------------------------------------------------------------------------
+    # ---- time ----------------------------------------------------------------------------------------------
 
     def synchronise(self) -> None:
-        """Follow what entities and components there are now; the engine does so at the start of every step."""
+        """Follow what entities and components there are now, and weigh them.
+
+        The engine does so at the start of every step; what a system changes within one takes part from the
+        next.
+        """
+        with self.active():
+            self._follow()
+            if not self._stepping:
+                self.bodies.derive(self)
+
+    def _follow(self) -> None:
+        """Follow what changed in the structure of the world since the last call, if anything did."""
         if self._stepping:
             return
-        with self.active():
-            while self.roster.synchronise() or self._stale:
-                self._stale = False
-                self.bodies.derive(self)
-                self.schedule.remake(self)
-                self.has_forces = any(isinstance(system, ForceSystem) for system in self.schedule.running)
-                self._choose_integrator()
+        while self.roster.synchronise() or self._stale:
+            self._stale = True  # and stays so if a system refuses what it finds
             self.bodies.derive(self)
+            self.schedule.remake(self)
+            self.has_forces = any(isinstance(system, ForceSystem) for system in self.schedule.running)
+            self._choose_integrator()
+            self._stale = False
 
     def step(self, dt: float | None = None) -> None:
         """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps."""
         dt = self._simulation.dt if dt is None else dt
         if not (math.isfinite(dt) and dt > 0.0):
             raise ValueError(f"dt = {dt!r}: must be a finite number > 0 s")
+        if self._stepping:
+            raise RuntimeError("a system cannot step the world that is calling it")
         with self.active():
             self.synchronise()
             self._stepping = True
@@ -270,7 +281,8 @@ class World:
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.
 
-        ``world.time`` grows by exactly ``seconds``: the last step is shortened where they are no multiple of dt.
+        ``world.time`` grows by exactly ``seconds``: the last step is shortened where they are no multiple of
+        dt.
         """
         for _ in self.stepping(seconds=seconds, steps=steps):
             pass
@@ -281,27 +293,26 @@ class World:
             raise TypeError("give either seconds or steps")
         dt = self._simulation.dt
         if seconds is None:
-            assert steps is not None
-            if steps < 0:
+            if not isinstance(steps, int) or isinstance(steps, bool) or steps < 0:
                 raise ValueError(f"steps = {steps!r}: must be a whole number >= 0")
-            whole, rest = steps, 0.0
+            whole, rest, seconds = steps, 0.0, steps * dt
         else:
             if not (math.isfinite(seconds) and seconds >= 0.0):
                 raise ValueError(f"seconds = {seconds!r}: must be a finite number >= 0 s")
-            # A multiple of dt up to rounding takes no extra step of 1e-17 s.
-            whole = math.floor(seconds / dt * (1.0 + 1e-12) + 1e-9)
-            rest = max(seconds - whole * dt, 0.0)
-            rest = rest if rest > 1e-9 * dt else 0.0
-        start = self.time
-        for done in range(1, whole + 1):
-            self.step(dt)
-            self.time = start + done * dt
+            whole, rest = _whole_steps(seconds, dt)
+        start, last = self.time, whole + 1 if rest else whole
+        for done in range(1, last + 1):
+            self.step(dt if done <= whole else rest)
+            self.time = start + (done * dt if done < last else seconds)
             yield done
-        if rest:
-            self.step(rest)
-            yield whole + 1
-        if seconds is not None:
-            self.time = start + seconds
+
+    def install(self, *systems: System) -> None:
+        """Let further systems act on this world, behind those of the same stage that do already.
+
+        That is how a window looks at a world that was made without one.
+        """
+        self.schedule.extend(systems)
+        self._stale = True
 
     def frame(self, stage: Stage, dt: float) -> None:
         """Run the systems of a stage that belongs to frames: ``INPUT``, ``RENDER`` or ``HUD``."""
@@ -309,18 +320,34 @@ class World:
             self.synchronise()
             self.schedule.run(stage, self, dt)
 
-    # ---- what there is --------------------------------------------------------------------------------------------
 
-    @property
-    def can_touch(self) -> bool:
-        """Whether any two things in this world could ever meet."""
-        moving = len(self.batch(Shape, Velocity))
-        return moving > 0 and (len(self.batch(Shape)) > 1 or self._physics.bounds is not None)
+def _kind(component: Any) -> type[Any]:
+    """Return a component's type; refuse a type given in its place."""
+    if isinstance(component, type):
+        raise TypeError(f"an entity has components, not their types: write {component.__name__}(...)")
+    return type(component)
+
+
+def _whole_steps(seconds: float, dt: float) -> tuple[int, float]:
+    """Divide a time into steps of ``dt``: return how many, and the length of one more that makes up the rest.
+
+    Where the time is a multiple of ``dt`` up to rounding, there is no rest. A rest too short to be a step of
+    its own is taken together with the last whole step.
+    """
+    if not seconds / dt < 2**53:
+        raise ValueError(f"seconds = {seconds!r}: too many steps of dt = {dt!r} s")
+    whole = round(seconds / dt)
+    if whole and abs(seconds - whole * dt) <= 4.0 * math.ulp(seconds):
+        return whole, 0.0
+    whole = math.floor(seconds / dt)
+    if whole and seconds - whole * dt < 0.001 * dt:
+        whole -= 1
+    return whole, seconds - whole * dt
 
 
 def _forget(context: str) -> None:
+    """Drop the esper context of a world that is no more."""
     if esper.current_world == context:
         esper.switch_world("default")
-    esper.delete_world(context)
-
-
+    if context in esper.list_worlds():
+        esper.delete_world(context)

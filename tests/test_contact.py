@@ -29,7 +29,9 @@ def touch(
     made: dict[int, int] = {}
     for k in (1, 0) if reverse else (0, 1):
         shape, place, angle = (first, second)[k]
-        made[k] = world.spawn(Transform(place, angle), copy.copy(shape), Velocity(), Mass(1), Material(0.4, 0.25))
+        made[k] = world.spawn(
+            Transform(place, angle), copy.copy(shape), Velocity(), Mass(1), Material(0.4, 0.25)
+        )
     world.step(1e-6)
     return world.contacts.between(world, made[0], made[1])
 
@@ -38,7 +40,9 @@ def circle(x: float, y: float, radius: float) -> tuple[Shape, tuple[float, float
     return Shape.circle(radius), (x, y), 0.0
 
 
-def box(x: float, y: float, w: float, h: float, angle: float = 0.0) -> tuple[Shape, tuple[float, float], float]:
+def box(
+    x: float, y: float, w: float, h: float, angle: float = 0.0
+) -> tuple[Shape, tuple[float, float], float]:
     return Shape.box(w, h), (x, y), angle
 
 
@@ -106,7 +110,8 @@ def test_a_pair_uses_the_lesser_restitution_and_the_geometric_mean_of_friction()
     world.step(1e-6)
     contact = world.contacts.between(world, a, b)
     assert contact is not None
-    assert (contact.restitution, contact.friction) == (0.3, pytest.approx(0.4))
+    assert contact.restitution == 0.3
+    assert contact.friction == pytest.approx(0.4)
 
 
 def test_bounds_touch_with_an_inward_normal() -> None:
@@ -116,8 +121,8 @@ def test_bounds_touch_with_an_inward_normal() -> None:
     world.step(1e-6)
     wall, floor = world.contacts.between(world, 0, ball), world.contacts.between(world, 0, crate)
     assert wall is not None and floor is not None
-    assert (wall.normal, wall.depth) == (Vector2(-1, 0), pytest.approx(0.1))
-    assert (floor.normal, floor.depth, len(floor.points)) == (Vector2(0, 1), pytest.approx(0.05), 2)
+    assert (wall.normal, floor.normal, len(floor.points)) == (Vector2(-1, 0), Vector2(0, 1), 2)
+    assert (wall.depth, floor.depth) == pytest.approx((0.1, 0.05))
 
 
 angles = st.floats(-math.pi, math.pi)
@@ -141,7 +146,9 @@ def test_box_contacts_turn_with_the_scene(
 
 
 @given(st.floats(0.2, 1.0), st.floats(0.2, 1.0), angles, st.floats(-0.1, 0.05))
-def test_circle_depth_is_the_distance_of_the_surfaces(ra: float, rb: float, direction: float, gap: float) -> None:
+def test_circle_depth_is_the_distance_of_the_surfaces(
+    ra: float, rb: float, direction: float, gap: float
+) -> None:
     assume(gap < 0.015 * min(ra, rb))
     away = Vector2.from_angle(direction, ra + rb + gap)
     contact = touch(circle(0, 0, ra), circle(away.x, away.y, rb))

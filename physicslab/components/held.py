@@ -1,10 +1,10 @@
 """What a hand does to a body."""
 
-from physicslab.columns import Vector, component, field
+from physicslab.columns import Component, Vector, component, field
 
 
 @component
-class Held:
+class Held(Component):
     """Marks a body that is held: infinitely heavy for contacts and forces until it is let go."""
 
-    grip: Vector = field((0.0, 0.0), unit="m", meaning="where it is held, in the body's own frame")
+    grip: Vector = field(default=(0.0, 0.0), unit="m", meaning="where it is held, in the body's own frame")

@@ -1,14 +1,20 @@
 """How a body resists forces and torques."""
 
-from physicslab.columns import Derived, component, field
+from physicslab.columns import Component, Derived, component, field
 
 
 @component
-class Mass:
+class Mass(Component):
     """How a body resists forces and torques. A moving entity without it is kinematic: infinitely heavy."""
 
-    mass: float = field(1.0, unit="kg", above=0.0, meaning="resistance to force")
+    mass: float = field(default=1.0, unit="kg", above=0.0, meaning="resistance to force")
     inertia: Derived = field(
-        None, unit="kg m^2", above=0.0, derived="from the Shape", meaning="moment of inertia about the centre of mass"
+        default=None,
+        unit="kg m^2",
+        above=0.0,
+        derived="from the Shape",
+        meaning="moment of inertia about the centre of mass",
     )
-    fixed_rotation: bool = field(False, meaning="whether the body keeps its angle whatever the torque")
+    fixed_rotation: bool = field(
+        default=False, meaning="whether the body keeps its angle whatever the torque"
+    )

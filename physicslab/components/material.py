@@ -1,11 +1,13 @@
 """What a body's surface is like."""
 
-from physicslab.columns import component, field
+from physicslab.columns import Component, component, field
 
 
 @component
-class Material:
+class Material(Component):
     """What a surface does in a contact: a pair uses e = min(e_a, e_b) and mu = sqrt(mu_a mu_b)."""
 
-    restitution: float = field(0.0, minimum=0.0, maximum=1.0, meaning="share of the approach speed given back")
-    friction: float = field(0.5, minimum=0.0, meaning="Coulomb friction coefficient")
+    restitution: float = field(
+        default=0.0, minimum=0.0, maximum=1.0, meaning="share of the approach speed given back"
+    )
+    friction: float = field(default=0.5, minimum=0.0, meaning="Coulomb friction coefficient")

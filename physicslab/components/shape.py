@@ -11,13 +11,13 @@ BOX = 2
 
 
 @component
-class Shape:
+class Shape(Component):
     """The outline of a body, centred on its Transform. An entity without it cannot touch anything."""
 
     kind: str = field(choices=("circle", "box"), fixed=True, meaning="what sort of outline")
-    radius: float = field(0.0, unit="m", minimum=0.0, meaning="radius of a circle")
-    width: float = field(0.0, unit="m", minimum=0.0, meaning="extent of a box along its own x axis")
-    height: float = field(0.0, unit="m", minimum=0.0, meaning="extent of a box along its own y axis")
+    radius: float = field(default=0.0, unit="m", minimum=0.0, meaning="radius of a circle")
+    width: float = field(default=0.0, unit="m", minimum=0.0, meaning="extent of a box along its own x axis")
+    height: float = field(default=0.0, unit="m", minimum=0.0, meaning="extent of a box along its own y axis")
 
     SIZES = {"circle": ("radius",), "box": ("width", "height")}  # noqa: RUF012
 
@@ -40,6 +40,3 @@ class Shape:
                     raise InvalidValue("Shape", name, size, f"a finite number > 0 m for a {self.kind}")
             elif size != 0.0:
                 raise InvalidValue("Shape", name, size, f"left out: a {self.kind} has no {name}")
-
-
-assert issubclass(Shape, Component)

@@ -1,22 +1,26 @@
 """What pulls two points together."""
 
-from physicslab.columns import Vector, component, field
+from physicslab.columns import Component, Vector, component, field
 
 
 @component
-class Spring:
+class Spring(Component):
     """A spring and damper between two bodies, or a body and a fixed point.
 
-    The force along the line from A's anchor to B's is F = k (length - rest_length) + c (rate of lengthening), pulling
-    the ends together where positive. It lives on an entity of its own or on the body it holds.
+    The force along the line from A's anchor to B's is F = k (length - rest_length) + c (rate of lengthening),
+    pulling the ends together where positive. It lives on an entity of its own or on the body it holds.
     """
 
-    a: int | None = field(None, meaning="first body; the entity that carries the spring where absent")
-    b: int | None = field(None, meaning="second body; a fixed point of the world where absent")
-    anchor_a: Vector = field((0.0, 0.0), unit="m", meaning="where it holds A, in A's own frame")
-    anchor_b: Vector = field(
-        (0.0, 0.0), unit="m", meaning="where it holds B, in B's own frame, or a point of the world"
+    a: int | None = field(
+        default=None, fixed=True, meaning="first body; the entity that carries the spring where absent"
     )
-    rest_length: float = field(1.0, unit="m", minimum=0.0, meaning="length without force")
-    stiffness: float = field(100.0, unit="N/m", minimum=0.0, meaning="force per metre of extension")
-    damping: float = field(0.0, unit="N s/m", minimum=0.0, meaning="force per speed of lengthening")
+    b: int | None = field(
+        default=None, fixed=True, meaning="second body; a fixed point of the world where absent"
+    )
+    anchor_a: Vector = field(default=(0.0, 0.0), unit="m", meaning="where it holds A, in A's own frame")
+    anchor_b: Vector = field(
+        default=(0.0, 0.0), unit="m", meaning="where it holds B, in B's own frame, or a point of the world"
+    )
+    rest_length: float = field(default=1.0, unit="m", minimum=0.0, meaning="length without force")
+    stiffness: float = field(default=100.0, unit="N/m", minimum=0.0, meaning="force per metre of extension")
+    damping: float = field(default=0.0, unit="N s/m", minimum=0.0, meaning="force per speed of lengthening")

@@ -1,10 +1,10 @@
 """How much of a body's path is shown."""
 
-from physicslab.columns import component, field
+from physicslab.columns import Component, component, field
 
 
 @component
-class Trail:
+class Trail(Component):
     """Asks for a record of where the body has been."""
 
-    length: float = field(2.0, unit="s", above=0.0, meaning="how far back the record goes")
+    length: float = field(default=2.0, unit="s", above=0.0, meaning="how far back the record goes")

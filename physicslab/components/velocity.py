@@ -1,11 +1,11 @@
 """How a body moves."""
 
-from physicslab.columns import Vector, component, field
+from physicslab.columns import Component, Vector, component, field
 
 
 @component
-class Velocity:
+class Velocity(Component):
     """How a body moves. An entity without it is static."""
 
-    linear: Vector = field((0.0, 0.0), unit="m/s", meaning="velocity of the centre of mass")
-    angular: float = field(0.0, unit="rad/s", meaning="angular velocity, counter-clockwise")
+    linear: Vector = field(default=(0.0, 0.0), unit="m/s", meaning="velocity of the centre of mass")
+    angular: float = field(default=0.0, unit="rad/s", meaning="angular velocity, counter-clockwise")

@@ -20,7 +20,8 @@ def choose(name: str, *, can_touch: bool) -> tuple[Integrator, str]:
     """
     if name != "auto":
         if name not in INTEGRATORS:
-            raise LookupError(f'integrator "{name}" is not there yet; there are "auto", ' + ", ".join(f'"{n}"' for n in INTEGRATORS))
+            there_are = ", ".join(f'"{known}"' for known in ("auto", *INTEGRATORS))
+            raise LookupError(f'integrator "{name}" is not there yet; there are {there_are}')
         return INTEGRATORS[name], "asked for"
     if can_touch:
         return LEAPFROG, "bodies can touch"

@@ -5,9 +5,9 @@ from physicslab.schedule import Stage
 
 __all__ = ["LEAPFROG"]
 
-# Positions and velocities are both at the middle of the substep between the two half kicks. Impacts are resolved
-# there, because turning a velocity round at the place it belongs to leaves the energy as it was. The contact solver
-# needs the whole kick, or a body at rest would sag by half of one in every substep.
+# Between the two half kicks, positions and velocities are both those of the middle of the substep. Impacts
+# are resolved there: turning a velocity round at the place it belongs to leaves the energy as it was. The
+# contact solver needs the whole kick, or a body at rest would sag by half of one in every substep.
 LEAPFROG = Integrator(
     name="leapfrog",
     title="Leapfrog (drift-kick-drift)",

@@ -18,10 +18,9 @@ from pathlib import Path
 from typing import Annotated, Any, cast, get_args, get_origin, get_type_hints
 
 import numba
+import numba.core.config
 import numpy as np
 from numba import boolean, float64, int64, void
-from numba.core import config as numba_config
-from numba.core.typing.templates import Signature
 from numpy.typing import NDArray
 
 __all__ = [
@@ -79,12 +78,13 @@ _CACHE = str(cache_directory())
 
 
 def _jit[F: Callable[..., Any]](function: F) -> F:
-    before = numba_config.CACHE_DIR
-    numba_config.CACHE_DIR = _CACHE  # read by numba when the function is decorated
+    settings: Any = numba.core.config
+    before = settings.CACHE_DIR
+    settings.CACHE_DIR = _CACHE  # read by numba when the function is decorated
     try:
         jitted = numba.njit(cache=True, error_model="numpy", fastmath=_FASTMATH)(function)
     finally:
-        numba_config.CACHE_DIR = before
+        settings.CACHE_DIR = before
     return cast(F, jitted)
 
 
@@ -93,16 +93,10 @@ def inlined[F: Callable[..., Any]](function: F) -> F:
     return _jit(function)
 
 
-def kernel(function: Any) -> Any:
+def kernel[F: Callable[..., Any]](function: F) -> F:
     """Make a function that Python calls, for the one signature that its annotations give."""
-    if isinstance(function, Signature):  # TODO(lead): for kernels that are not annotated yet
-        return lambda really: _declared(really, function)
-    return _declared(function, _signature(function))
-
-
-def _declared[F: Callable[..., Any]](function: F, signature: Signature) -> F:
     jitted: Any = _jit(function)
-    jitted.declared_signature = signature
+    jitted.declared_signature = _signature(function)
     KERNELS.append(jitted)
     return cast(F, jitted)
 
@@ -114,7 +108,7 @@ def _signature(function: Callable[..., Any]) -> Any:
 
 
 def _numba_type(hint: Any) -> Any:
-    """Return what numba calls a type: that which an ``Annotated`` alias carries, or that of a plain Python type."""
+    """Return what numba calls a type: the one that an alias carries, or that of a plain Python type."""
     if get_origin(hint) is Annotated:
         return hint.__metadata__[0]
     if get_origin(hint) is tuple:

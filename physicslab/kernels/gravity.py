@@ -17,9 +17,7 @@ def uniform_gravity(force: Vectors, mass: Numbers, inverse_mass: Numbers, gx: fl
 
 
 @kernel
-def uniform_potential(
-    position: Vectors, mass: Numbers, inverse_mass: Numbers, gx: float, gy: float
-) -> float:
+def uniform_potential(position: Vectors, mass: Numbers, inverse_mass: Numbers, gx: float, gy: float) -> float:
     """Return the sum of -m g . x [J], zero at the origin."""
     total = 0.0
     for i in range(len(mass)):
@@ -47,7 +45,7 @@ def _inverse_cube(r2: float, softening2: float, plummer: bool) -> float:
 def planet_gravity(
     force: Vectors, position: Vectors, mass: Numbers, rows: Rows, G: float, softening: float, plummer: bool
 ) -> None:
-    """Add the pairwise attraction of ``rows`` to their forces, each pair equal and opposite to the last bit."""
+    """Add the attraction of every pair of ``rows`` to the forces on both, equal and opposite."""
     softening2 = softening * softening
     n = len(rows)
     for p in range(n):

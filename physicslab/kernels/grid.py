@@ -3,30 +3,36 @@
 import math
 
 import numpy as np
-from numba import boolean, float64, int64, void
 
-from physicslab.kernels import inlined, kernel
-from physicslab.kernels.records import Manifolds, Points
+from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.records import Manifolds, Pairs, Points
 
 __all__ = ["carry_over", "fat_boxes", "find_pairs", "still_holds"]
 
-_FLAGS = boolean[::1]
-_NUMBERS = float64[::1]
-_VECTORS = float64[:, ::1]
-_ROWS = int64[::1]
 
 @inlined
-def _bounding_radius(kind, radius, width, height):
+def _bounding_radius(kind: int, radius: float, width: float, height: float) -> float:
     if kind == 1:
         return radius
     return 0.5 * math.sqrt(width * width + height * height)
 
 
-@kernel(boolean(_VECTORS, _NUMBERS, _VECTORS, _ROWS, _NUMBERS, _NUMBERS, _NUMBERS, _VECTORS, float64))
-def still_holds(position, angle, linear, kind, radius, width, height, fat, h):
+@kernel
+def still_holds(
+    position: Vectors,
+    angle: Numbers,
+    linear: Vectors,
+    kind: Rows,
+    radius: Numbers,
+    width: Numbers,
+    height: Numbers,
+    fat: Vectors,
+    h: float,
+) -> bool:
     """Whether every body, with what it moves in a time h, is still inside the fat box made for it.
 
-    ``fat`` (rows, 5) holds where each body was (x, y, angle), its bounding radius then, and the margin around it.
+    ``fat`` (rows, 5) holds where each body was (x, y, angle), its bounding radius then, and the margin around
+    it.
     """
     for i in range(len(angle)):
         if kind[i] == 0:
@@ -42,12 +48,20 @@ def still_holds(position, angle, linear, kind, radius, width, height, fat, h):
     return True
 
 
-@kernel(
-    void(
-        _VECTORS, _NUMBERS, _VECTORS, _ROWS, _NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS, _VECTORS, _VECTORS, float64
-    )
-)
-def fat_boxes(position, angle, linear, kind, radius, width, height, inverse_mass, fat, boxes, h):
+@kernel
+def fat_boxes(
+    position: Vectors,
+    angle: Numbers,
+    linear: Vectors,
+    kind: Rows,
+    radius: Numbers,
+    width: Numbers,
+    height: Numbers,
+    inverse_mass: Numbers,
+    fat: Vectors,
+    boxes: Vectors,
+    h: float,
+) -> None:
     """Make each body's fat box (xmin, ymin, xmax, ymax), good for about two steps."""
     moving, speeds = 0, 0.0
     for i in range(len(angle)):
@@ -76,16 +90,16 @@ def fat_boxes(position, angle, linear, kind, radius, width, height, inverse_mass
 
 
 @inlined
-def _overlap(these, i, those, j):
+def _overlap(these: Vectors, i: int, those: Vectors, j: int) -> bool:
     # "&", not "and": one branch that is nearly always the same, not four that cannot be foretold.
-    return (
+    return bool(
         (these[i, 0] <= those[j, 2]) & (those[j, 0] <= these[i, 2])
         & (these[i, 1] <= those[j, 3]) & (those[j, 1] <= these[i, 3])
     )  # fmt: skip
 
 
 @inlined
-def _take(pairs, found, inverse_mass, i, j):
+def _take(pairs: Pairs, found: int, inverse_mass: Numbers, i: int, j: int) -> int:
     """Write the pair (i, j) in order, if it can be moved and there is room; return how many there are now."""
     if inverse_mass[i] + inverse_mass[j] == 0.0:
         return found
@@ -95,7 +109,7 @@ def _take(pairs, found, inverse_mass, i, j):
 
 
 @inlined
-def _bucket(ix, iy, low_x, low_y, up, buckets, dense):
+def _bucket(ix: int, iy: int, low_x: int, low_y: int, up: int, buckets: int, dense: bool) -> int:
     """Return the bucket of a cell: one of its own, or a shared one by a hash."""
     if dense:
         return (ix - low_x) * up + iy - low_y
@@ -103,11 +117,21 @@ def _bucket(ix, iy, low_x, low_y, up, buckets, dense):
 
 
 @inlined
-def _level(boxes, members, count, cell, inverse_mass, pairs, found, larges):
-    """Find all pairs in which at least one body is no larger than a cell; return how many there are, and the rest.
+def _level(
+    boxes: Vectors,
+    members: Rows,
+    count: int,
+    cell: float,
+    inverse_mass: Numbers,
+    pairs: Pairs,
+    found: int,
+    larges: Rows,
+) -> tuple[int, int]:
+    """Find all pairs with a body no larger than a cell; return how many there are, and how many are larger.
 
-    Each small body is in the one cell that holds its centre, so that its partners are in that cell and its eight
-    neighbours, of which four are looked at, to take each pair once. Each large body looks through all cells it spans.
+    Each small body is in the one cell that holds its centre, so that its partners are in that cell and its
+    eight neighbours, of which four are looked at, to take each pair once. Each large body looks through all
+    cells it spans.
     """
     small = np.empty(count, np.int64)
     cells = np.empty((count, 2), np.int64)
@@ -193,13 +217,15 @@ def _level(boxes, members, count, cell, inverse_mass, pairs, found, larges):
     return found, large_count
 
 
-@kernel(int64(_VECTORS, _ROWS, _NUMBERS, boolean, _NUMBERS, int64[:, ::1]))
-def find_pairs(boxes, kind, inverse_mass, bounded, bounds, pairs):
+@kernel
+def find_pairs(
+    boxes: Vectors, kind: Rows, inverse_mass: Numbers, bounded: bool, bounds: Numbers, pairs: Pairs
+) -> int:
     """Write the pairs (a, b, wall) whose fat boxes overlap, each once, sorted; return how many there are.
 
-    A grid whose cells fit the usual body finds the pairs of small ones, and of small with large ones; the large ones
-    go on to a coarser grid. Bodies past the bounds make pairs with row 0 and the wall. Pairs of which neither can be
-    moved do not count. More pairs than ``pairs`` has rows are counted and not written.
+    A grid whose cells fit the usual body finds the pairs of small ones, and of small with large ones; the
+    large ones go on to a coarser grid. Bodies past the bounds make pairs with row 0 and the wall. Pairs of
+    which neither can be moved do not count. More pairs than ``pairs`` has rows are counted and not written.
     """
     n = len(kind)
     members = np.empty(n, np.int64)
@@ -233,7 +259,7 @@ def find_pairs(boxes, kind, inverse_mass, bounded, bounds, pairs):
 
 
 @inlined
-def _sort_pairs(pairs, start, end, n):
+def _sort_pairs(pairs: Pairs, start: int, end: int, n: int) -> None:
     """Sort pairs by a, then b: by counting, twice, the last significant key first."""
     spare = np.empty((end - start, 2), np.int64)
     for key in (1, 0):
@@ -250,8 +276,17 @@ def _sort_pairs(pairs, start, end, n):
             pairs[p, 0], pairs[p, 1] = spare[p - start, 0], spare[p - start, 1]
 
 
-@kernel(void(int64[:, ::1], int64, _ROWS, Manifolds, Points, int64, Manifolds, Points))
-def carry_over(pairs, count, entities, old_manifolds, old_points, old_count, manifolds, points):
+@kernel
+def carry_over(
+    pairs: Pairs,
+    count: int,
+    entities: Rows,
+    old_manifolds: Manifolds,
+    old_points: Points,
+    old_count: int,
+    manifolds: Manifolds,
+    points: Points,
+) -> None:
     """Give each pair its manifold: the one it had, found by walking both sorted lists, or an empty one."""
     q = 0
     for p in range(count):

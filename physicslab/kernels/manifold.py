@@ -8,7 +8,9 @@ __all__ = ["box_box", "circle_box", "circle_circle", "wall_corner"]
 
 
 @inlined
-def circle_circle(dx, dy, radius_a, radius_b, tie):
+def circle_circle(
+    dx: float, dy: float, radius_a: float, radius_b: float, tie: int
+) -> tuple[float, float, float]:
     """Return the normal from A to B and the separation of two circles whose centres lie (dx, dy) apart.
 
     Coincident centres have no direction; ``tie`` gives each pair one of its own.
@@ -21,7 +23,9 @@ def circle_circle(dx, dy, radius_a, radius_b, tie):
 
 
 @inlined
-def circle_box(x, y, c, s, half_x, half_y, radius):
+def circle_box(
+    x: float, y: float, c: float, s: float, half_x: float, half_y: float, radius: float
+) -> tuple[float, float, float, float, float]:
     """Return the normal from box to circle, the point of the box's outline nearest, and the separation.
 
     (x, y) is the circle's centre from the box's, (c, s) the cosine and sine of the box's angle.
@@ -50,7 +54,7 @@ def circle_box(x, y, c, s, half_x, half_y, radius):
 
 
 @inlined
-def wall_corner(k, c, s, half_x, half_y):
+def wall_corner(k: int, c: float, s: float, half_x: float, half_y: float) -> tuple[float, float]:
     """Return corner k of a box, counted counter-clockwise from (+, +), relative to its centre."""
     x = half_x if k == 0 or k == 3 else -half_x
     y = half_y if k == 0 or k == 1 else -half_y
@@ -58,16 +62,30 @@ def wall_corner(k, c, s, half_x, half_y):
 
 
 @inlined
-def box_box(dx, dy, ca, sa, cb, sb, ax, ay, bx, by, margin):
-    """Return the contact of two boxes: separating axis test, then the incident edge clipped to the reference face.
+def box_box(
+    dx: float,
+    dy: float,
+    ca: float,
+    sa: float,
+    cb: float,
+    sb: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    margin: float,
+) -> tuple[float, float, float, int, float, float, float, int, float, float, float, int]:
+    """Return the contact of two boxes: separating axes, then the incident edge clipped to the reference face.
 
-    (dx, dy) leads from A's centre to B's; (c, s) are cosine and sine of the angles, (ax, ay), (bx, by) half extents.
+    (dx, dy) leads from A's centre to B's; (c, s) are cosine and sine of the angles, (ax, ay), (bx, by) half
+    extents.
 
     Returns
     -------
     gap, nx, ny, count, x1, y1, separation1, feature1, x2, y2, separation2, feature2
-        ``gap`` is the separation along the best axis, the normal leads from A to B, points are halfway between the
-        surfaces and relative to A's centre. No points where the gap exceeds ``margin``. (After Catto, box2d-lite.)
+        ``gap`` is the separation along the best axis, the normal leads from A to B, points are halfway
+        between the surfaces and relative to A's centre. No points where the gap exceeds ``margin``. (After
+        Catto, box2d-lite.)
     """
     # d in the frames of A and of B; the axes of B seen from A
     dax, day = ca * dx + sa * dy, ca * dy - sa * dx
@@ -110,10 +128,8 @@ def box_box(dx, dy, ca, sa, cb, sb, ax, ay, bx, by, margin):
         edge = 0 if sign > 0.0 else 2
     # The incident edge is the one that looks most against the normal.
     local_nx, local_ny = -(ic * nx + is_ * ny), -(ic * ny - is_ * nx)
-    if abs(local_nx) > abs(local_ny):
-        incident = 3 if local_nx > 0.0 else 1
-    else:
-        incident = 0 if local_ny > 0.0 else 2
+    sideways, upright = 3 if local_nx > 0.0 else 1, 0 if local_ny > 0.0 else 2
+    incident = sideways if abs(local_nx) > abs(local_ny) else upright
     x1, y1 = wall_corner(incident, ic, is_, ix, iy)
     x2, y2 = wall_corner((incident + 1) % 4, ic, is_, ix, iy)
     x1, y1 = x1 + incident_x - origin_x, y1 + incident_y - origin_y

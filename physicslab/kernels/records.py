@@ -1,9 +1,12 @@
-"""The layout of contact data: one record a pair, two a pair's points. SI units; directions are the world's."""
+"""The layout of contact data, in SI units and the world's directions."""
+
+from typing import Annotated, Any
 
 import numpy as np
-from numba import from_dtype
+from numba import from_dtype, int64
+from numpy.typing import NDArray
 
-__all__ = ["MANIFOLD", "POINT", "Manifolds", "Points"]
+__all__ = ["MANIFOLD", "POINT", "Manifold", "Manifolds", "Pairs", "Point", "Points"]
 
 MANIFOLD = np.dtype(
     [
@@ -27,8 +30,8 @@ MANIFOLD = np.dtype(
         ("base_angle_b", np.float64),
         ("base_sizes", np.float64),  # of both boxes, mixed into one number
         ("struck", np.int64),  # impacts of this step
-        # 1 where the normal is that of the moment within this substep at which they meet, 2 where they are known not to
-        # meet within it, 0 where normal and separation are those of now.
+        # 1 where the normal is that of the moment within this substep at which they meet, 2 where they are
+        # known not to meet within it, 0 where normal and separation are those of now.
         ("swept", np.int64),
         ("size", np.float64),  # of the smaller body
     ]
@@ -44,7 +47,10 @@ POINT = np.dtype(
         ("arm_by", np.float64),
         ("found_separation", np.float64),  # in the base pose
         ("separation", np.float64),  # now; negative where they overlap
-        ("ahead", np.int64),  # 1 where it approaches fast and meets after this substep: an impact of the next one
+        (
+            "ahead",
+            np.int64,
+        ),  # 1 where it approaches fast and meets after this substep: an impact of the next one
         ("normal_mass", np.float64),  # effective masses
         ("tangent_mass", np.float64),
         ("normal_impulse", np.float64),  # in one substep, kept for warm starting
@@ -56,5 +62,13 @@ POINT = np.dtype(
 )
 """A contact point; the points of pair p are numbers 2 p and 2 p + 1."""
 
-Manifolds = from_dtype(MANIFOLD)[::1]
-Points = from_dtype(POINT)[::1]
+Manifolds = Annotated[NDArray[np.void], from_dtype(MANIFOLD)[::1]]
+"""An array of MANIFOLD (n,)."""
+Points = Annotated[NDArray[np.void], from_dtype(POINT)[::1]]
+"""An array of POINT (2 n,)."""
+Pairs = Annotated[NDArray[np.int64], int64[:, ::1]]
+"""An int64 array (n, 3): rows a < b, and the wall or -1."""
+Manifold = Any
+"""One record of MANIFOLD; in compiled code its fields are attributes."""
+Point = Any
+"""One record of POINT."""

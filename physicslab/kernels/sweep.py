@@ -1,7 +1,7 @@
-"""When shapes that move at constant velocity first touch: for bodies so fast that they could step over each other.
+"""When moving shapes first touch: for bodies so fast that they could step over each other.
 
-Each function returns the share of the displacement (ux, uy) of B against A, 0 to 1, at which they touch, or 2 where
-they miss each other. Turning within the displacement is left out.
+Each function returns the share of the displacement (ux, uy) of B against A, 0 to 1, at which they touch, or 2
+where they miss each other. Turning within the displacement is left out.
 """
 
 import math
@@ -14,7 +14,7 @@ MISS = 2.0
 
 
 @inlined
-def sweep_circle_circle(dx, dy, ux, uy, reach):
+def sweep_circle_circle(dx: float, dy: float, ux: float, uy: float, reach: float) -> float:
     """Solve |d + t u| = reach for the first t, for centres (dx, dy) apart."""
     a = ux * ux + uy * uy
     b = dx * ux + dy * uy
@@ -31,7 +31,7 @@ def sweep_circle_circle(dx, dy, ux, uy, reach):
 
 
 @inlined
-def _slab(d, u, reach):
+def _slab(d: float, u: float, reach: float) -> tuple[float, float]:
     """Return when a point at d moving by u enters and leaves |d| <= reach."""
     if u == 0.0:
         return (-math.inf, math.inf) if abs(d) <= reach else (math.inf, -math.inf)
@@ -40,7 +40,9 @@ def _slab(d, u, reach):
 
 
 @inlined
-def sweep_circle_box(x, y, ux, uy, c, s, half_x, half_y, radius):
+def sweep_circle_box(
+    x: float, y: float, ux: float, uy: float, c: float, s: float, half_x: float, half_y: float, radius: float
+) -> float:
     """Return when a circle at (x, y) from a box's centre, moving by (ux, uy), touches the box."""
     px, py, qx, qy = c * x + s * y, c * y - s * x, c * ux + s * uy, c * uy - s * ux
     enter_x, leave_x = _slab(px, qx, half_x + radius)
@@ -58,7 +60,20 @@ def sweep_circle_box(x, y, ux, uy, c, s, half_x, half_y, radius):
 
 
 @inlined
-def sweep_box_box(dx, dy, ux, uy, ca, sa, cb, sb, ax, ay, bx, by):
+def sweep_box_box(
+    dx: float,
+    dy: float,
+    ux: float,
+    uy: float,
+    ca: float,
+    sa: float,
+    cb: float,
+    sb: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+) -> float:
     """Return when the last of the four axes along which two boxes are apart closes."""
     c, s = abs(ca * cb + sa * sb), abs(ca * sb - sa * cb)
     enter1, leave1 = _slab(ca * dx + sa * dy, ca * ux + sa * uy, ax + c * bx + s * by)

@@ -20,8 +20,8 @@ __all__ = ["ContactSystem"]
 class ContactSystem(System):
     """Finds the contact points of near pairs: normal from A to B, separation, arms, effective masses.
 
-    Boxes that have hardly moved against each other keep their points; bodies that are fast for their size are swept,
-    so that none passes through another.
+    Boxes that have hardly moved against each other keep their points; bodies that are fast for their size are
+    swept, so that none passes through another.
     """
 
     kernels = (contact.find_contacts,)
@@ -52,6 +52,7 @@ class ContactSystem(System):
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
             shape["kind"], shape["radius"], shape["width"], shape["height"],
             material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
-            self._bounds, physics.bounds_restitution, physics.bounds_friction, self._first, h, world.integrator.window[0],
+            self._bounds, physics.bounds_restitution, physics.bounds_friction, self._first, h,
+            world.integrator.window[0],
         )  # fmt: skip
         self._first = False

@@ -59,7 +59,8 @@ class GravitySystem(ForceSystem):
         """Add the pull to the forces."""
         bodies, physics, mass = world.bodies, world.physics, world.table(Mass)["mass"]
         if physics.gravity_mode == "linear":
-            gravity.uniform_gravity(bodies.force, mass, bodies.inverse_mass, physics.gravity.x, physics.gravity.y)
+            g = physics.gravity
+            gravity.uniform_gravity(bodies.force, mass, bodies.inverse_mass, g.x, g.y)
         else:
             gravity.planet_gravity(
                 bodies.force, world.table(Transform)["position"], mass, self._attracting,
@@ -67,15 +68,13 @@ class GravitySystem(ForceSystem):
             )  # fmt: skip
 
     def potential_energy(self, world: World) -> float:
-        """Return -m g . x over all bodies [J], zero at the origin; or the energy of the pairs, zero at infinity."""
+        """Return the sum of -m g . x [J], zero at the origin, or the pairs' energy, zero at infinity."""
         physics, mass = world.physics, world.table(Mass)["mass"]
         position = world.table(Transform)["position"]
         if physics.gravity_mode == "linear":
-            inverse_mass = world.bodies.inverse_mass
-            return float(gravity.uniform_potential(position, mass, inverse_mass, physics.gravity.x, physics.gravity.y))
-        return float(
-            gravity.planet_potential(
-                position, mass, self._attracting,
-                physics.G, physics.softening, physics.softening_law == "plummer",
-            )  # fmt: skip
-        )
+            g = physics.gravity
+            return gravity.uniform_potential(position, mass, world.bodies.inverse_mass, g.x, g.y)
+        return gravity.planet_potential(
+            position, mass, self._attracting,
+            physics.G, physics.softening, physics.softening_law == "plummer",
+        )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from physicslab.components import Transform, Velocity
-from physicslab.kernels import impulse
+from physicslab.kernels import impact, impulse
 from physicslab.schedule import Stage, System, at
 from physicslab.systems.broad_phase import nothing_to_touch
 
@@ -21,15 +21,15 @@ class ResolveSystem(System):
     Parameters
     ----------
     hertz, damping_ratio : float
-        The contact spring that takes overlap away: frequency [Hz] (a quarter of the substep rate at the most) and
-        damping ratio.
+        The contact spring that takes overlap away: frequency [Hz] (a quarter of the substep rate at the most)
+        and damping ratio.
     max_push : float
         Fastest [m/s] that overlap is taken away.
     slop : float
         Overlap [m] that is left alone.
     """
 
-    kernels = (impulse.strike, impulse.solve, impulse.relax, impulse.separate)
+    kernels = (impact.strike, impulse.solve, impulse.relax, impulse.separate)
 
     def __init__(
         self, hertz: float = 45.0, damping_ratio: float = 2.0, max_push: float = 1.0, slop: float = 0.0005
@@ -47,10 +47,11 @@ class ResolveSystem(System):
         transform, velocity = world.table(Transform), world.table(Velocity)
         start, end = world.integrator.window
         if contacts.count:
-            world.collisions += impulse.strike(
+            world.collisions += impact.strike(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.count,
-                transform["position"], transform["angle"], velocity["linear"], velocity["angular"], bodies.force,
-                bodies.inverse_mass, bodies.inverse_inertia, world.has_forces, h, start * h, end * h,
+                transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
+                bodies.force, bodies.inverse_mass, bodies.inverse_inertia, world.has_forces, h, start * h, end
+                * h,
             )  # fmt: skip
 
     @at(Stage.SOLVE)

@@ -1,0 +1,137 @@
+"""The desktop sandbox: the window and its loop."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pygame
+
+from physicslab.bodies import Diverged
+from physicslab.config import WindowConfig
+from physicslab.kernels.warm import Warmup, is_warm
+from physicslab.scene import load_scene
+from physicslab.schedule import Stage
+from physicslab.systems.hud import HudSystem
+from physicslab.systems.input import InputSystem
+from physicslab.systems.render import RenderSystem
+from physicslab.view.display import Display
+from physicslab.view.progress import draw_progress
+from physicslab.view.theme import DARK
+from physicslab.view.window import Window
+from physicslab.world import World
+
+__all__ = ["Sandbox", "open_window"]
+
+FIRST_SCENE = "sandbox"
+"""The scene that is opened where none is named."""
+
+
+class Sandbox:
+    """A world in a window. A call of :meth:`frame` is one frame; no real window is needed for it.
+
+    Parameters
+    ----------
+    world : World
+        What is shown; the systems of a frame are installed in it.
+    window : Window
+        Where it is shown.
+    clock : callable
+        Returns the time [s]; it limits how long the steps of a frame may take.
+    """
+
+    def __init__(
+        self, world: World, window: Window, clock: Callable[[], float] = time.perf_counter
+    ) -> None:
+        self.world = world
+        self.window = window
+        self._clock = clock
+        world.install(InputSystem(window), RenderSystem(window), HudSystem(window))
+        window.go_home(world)
+
+    def frame(self, elapsed: float) -> None:
+        """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last."""
+        self.window.pace.begin(elapsed)
+        self.world.frame(Stage.INPUT, elapsed)
+        self._advance()
+        self.world.frame(Stage.RENDER, elapsed)
+        self.world.frame(Stage.HUD, elapsed)
+
+    def _advance(self) -> None:
+        """Make the steps that are due.
+
+        None is begun once they have taken as long as a frame may make up for: a world too heavy for the
+        machine runs slowly, and the window stays awake.
+        """
+        world, pace, dt = self.world, self.window.pace, self.world.simulation.dt
+        deadline = self._clock() + pace.max_dt
+        made, due = 0, pace.due(dt)
+        try:
+            while made < due and (made == 0 or self._clock() < deadline):
+                world.step(dt * pace.speed)
+                made += 1
+        except Diverged as error:
+            pace.halt()
+            self.window.error = f"Stopped: {error}. R clears all."
+        else:
+            pace.done(made, dt)
+
+
+def open_window(scene: str | None) -> int:
+    """Open the sandbox on a scene and return the exit status when it is closed.
+
+    Parameters
+    ----------
+    scene : str, optional
+        A built-in scene's name or a path; a small playground where none is named.
+
+    Raises
+    ------
+    SceneError
+        If there is no such scene or it is not allowed; no window was opened then.
+    OSError
+        If there is no screen to open a window on.
+    """
+    world = load_scene(FIRST_SCENE if scene is None else scene)
+    config = WindowConfig()
+    with Display.open(config, f"{world.title or world.name} - PhysicsLab") as display:
+        if not is_warm() and not _warm_up(display):
+            return 0
+        window = Window(display.canvas, config)
+        sandbox = Sandbox(world, window)
+        sandbox.frame(0.0)
+        display.show()  # the time that the first frame took, with all that it loads, is not made up for
+        elapsed = 0.0
+        while not window.closing:
+            sandbox.frame(elapsed)
+            if window.wants_screenshot:
+                window.wants_screenshot = False
+                window.notify(_keep_screenshot(display))
+            elapsed = display.show()
+    return 0
+
+
+def _keep_screenshot(display: Display) -> str:
+    """Save a picture of the window where the program was started, and return what to say of it."""
+    try:
+        return f"Saved {display.save_screenshot(Path.cwd())}"
+    except OSError as error:
+        return f"The screenshot could not be saved: {error.strerror or error}"
+
+
+def _warm_up(display: Display) -> bool:
+    """Compile all kernels while the window shows how far it is; return whether the user stayed."""
+    start = time.perf_counter()
+    with Warmup() as warmup:
+        while not warmup.finished:
+            for event in pygame.event.get():
+                escape = event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE
+                if escape or event.type == pygame.QUIT:
+                    return False
+            progress = warmup.poll()
+            seconds = int(time.perf_counter() - start)
+            remark = f"{progress.done} of {progress.total} parts, {seconds} s"
+            draw_progress(display.canvas, DARK, progress.done / progress.total, remark)
+            display.show()
+    return True

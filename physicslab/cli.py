@@ -1,0 +1,110 @@
+"""The commands of the contract: ``physicslab [SCENE]``, ``physicslab run SCENE``, ``physicslab scenes``."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import NoReturn
+
+from physicslab.commands import COMMANDS, NOT_BUILT, CommandError
+from physicslab.commands.command_error import FAILED, USAGE
+from physicslab.commands.run import note_unbuilt
+from physicslab.scene import SceneError, load_scene
+from physicslab.scene_checks import printable
+
+__all__ = ["main"]
+
+_INTERRUPTED = 130
+_PIPE_CLOSED = 141
+"""What a shell reports of a program that a signal ended: 128 and the signal's number."""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Refuses bad usage in one line, and takes no option by half its name."""
+
+    def __init__(self, prog: str, description: str | None) -> None:
+        super().__init__(prog=prog, description=description, allow_abbrev=False)
+
+    def error(self, message: str) -> NoReturn:
+        raise CommandError(f"{message} (see {self.prog} --help)")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Do what the command line says and return the exit status.
+
+    0: done. 1: the run failed. 2: bad usage or a bad scene. 130: interrupted. 141: nobody reads stdout any
+    more. Whatever goes wrong is said in one line on stderr.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        The arguments, without the program's name; those of the process where none are given.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")  # a terminal may not know every letter of a title
+    try:
+        status = _dispatch(list(sys.argv[1:] if argv is None else argv))
+        if sys.stdout is not None:
+            sys.stdout.flush()
+        return status
+    except SystemExit as done:  # argparse, after --help
+        return done.code if isinstance(done.code, int) else 0
+    except CommandError as error:
+        return _complain(str(error), error.status)
+    except SceneError as error:
+        return _complain(str(error), USAGE)
+    except KeyboardInterrupt:
+        return _complain("interrupted", _INTERRUPTED)
+    except BrokenPipeError:
+        _let_go_of_stdout()
+        return _PIPE_CLOSED
+    except OSError as error:
+        _let_go_of_stdout()
+        return _complain(": ".join(filter(None, (error.filename, error.strerror or str(error)))), FAILED)
+
+
+def _dispatch(arguments: list[str]) -> int:
+    if arguments and arguments[0] in COMMANDS:
+        name, *rest = arguments
+        command = COMMANDS[name]
+        parser = _Parser(f"physicslab {name}", command.__doc__)
+        command.add_arguments(parser)
+        return command.execute(parser.parse_args(rest))
+    if arguments and arguments[0] in NOT_BUILT:
+        raise CommandError(f"the command {arguments[0]} is not there yet; there are {', '.join(COMMANDS)}")
+    return _open(arguments)
+
+
+def _open(arguments: list[str]) -> int:
+    """Open the window, on a scene if one is named."""
+    parser = _Parser("physicslab", "Open the desktop sandbox, or do one of the commands.")
+    parser.add_argument("scene", metavar="SCENE", nargs="?", help="a built-in scene's name, or a path")
+    parser.epilog = "commands: " + "; ".join(
+        f"{name} - {(command.__doc__ or '').splitlines()[0]}" for name, command in COMMANDS.items()
+    )
+    scene = parser.parse_args(arguments).scene
+    if scene is not None:
+        note_unbuilt(load_scene(scene))  # a bad scene is refused before a window flickers up
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+    from physicslab.app import open_window  # no command without a window imports pygame
+
+    return open_window(scene)
+
+
+def _complain(message: str, status: int) -> int:
+    print(f"physicslab: {printable(message)}", file=sys.stderr)
+    return status
+
+
+def _let_go_of_stdout() -> None:
+    """Send what is still to be written nowhere, or Python would fail on it once more at its end."""
+    with suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,32 @@
+"""The commands of the command line, one file each, in one explicit list.
+
+A command is a module with ``add_arguments(parser)`` and ``execute(arguments) -> int``, which returns the exit
+status or raises :class:`CommandError`. To add one, write its file and name it here.
+"""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from typing import Protocol
+
+from physicslab.commands import run, scenes
+from physicslab.commands.command_error import CommandError
+
+__all__ = ["COMMANDS", "NOT_BUILT", "Command", "CommandError"]
+
+
+class Command(Protocol):
+    """What the module of a command offers; its docstring is the help."""
+
+    def add_arguments(self, parser: ArgumentParser) -> None:
+        """Declare what the command takes."""
+
+    def execute(self, arguments: Namespace) -> int:
+        """Do it, and return the exit status."""
+
+
+COMMANDS: dict[str, Command] = {"run": run, "scenes": scenes}
+"""Every command by name."""
+
+NOT_BUILT = ("accuracy", "stability", "bench")
+"""Names that are kept for commands to come, so that no scene is mistaken for one."""

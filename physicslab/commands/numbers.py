@@ -1,0 +1,51 @@
+"""Numbers on the command line: each refused with what is allowed."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+__all__ = ["count", "duration", "positive_count", "positive_duration"]
+
+
+def duration(text: str) -> float:
+    """Return a time [s] that is finite and not negative."""
+    seconds = _number(text)
+    if not (math.isfinite(seconds) and seconds >= 0.0):
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a finite number >= 0 s")
+    return seconds
+
+
+def positive_duration(text: str) -> float:
+    """Return a time [s] that is finite and greater than 0."""
+    seconds = _number(text)
+    if not (math.isfinite(seconds) and seconds > 0.0):
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a finite number > 0 s")
+    return seconds
+
+
+def count(text: str) -> int:
+    """Return a whole number that is not negative."""
+    return _whole(text, 0)
+
+
+def positive_count(text: str) -> int:
+    """Return a whole number of at least 1."""
+    return _whole(text, 1)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def _whole(text: str, least: int) -> int:
+    try:
+        number = int(text)
+    except ValueError:
+        number = least - 1
+    if number < least:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a whole number >= {least}")
+    return number

@@ -1,0 +1,51 @@
+"""One line on the terminal that says how far a long run is."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TextIO
+
+__all__ = ["Progress"]
+
+_DELAY_S = 1.0
+_INTERVAL_S = 0.1
+
+
+class Progress:
+    """Keeps one line of a terminal up to date; says nothing to a file, or in the first second.
+
+    Parameters
+    ----------
+    label : str
+        What is under way.
+    stream : text stream or None
+        Usually stderr, which a program may be started without.
+    clock : callable, optional
+        Tells the time [s].
+    """
+
+    def __init__(
+        self, label: str, stream: TextIO | None, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._label, self._stream, self._clock = label, stream, clock
+        self._next = clock() + _DELAY_S if stream is not None and stream.isatty() else float("inf")
+        self._shown = False
+
+    def show(self, share: float) -> None:
+        """Say that this share of the work, from 0 to 1, is done."""
+        if self._clock() >= self._next:
+            self._next = self._clock() + _INTERVAL_S
+            self._shown = True
+            self._put(f"\r{self._label}: {100.0 * share:.0f} %\x1b[K")
+
+    def clear(self) -> None:
+        """Take the line away again."""
+        if self._shown:
+            self._shown = False
+            self._put("\r\x1b[K")
+
+    def _put(self, text: str) -> None:
+        if self._stream is not None:
+            self._stream.write(text)
+            self._stream.flush()

@@ -1,0 +1,161 @@
+"""Run a scene without a window, and say what came of it."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import os
+import sys
+import time
+from argparse import ArgumentParser, Namespace
+from contextlib import nullcontext
+from pathlib import Path
+
+from physicslab.bodies import Diverged
+from physicslab.columns import InvalidValue
+from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands.numbers import count, duration, positive_count, positive_duration
+from physicslab.commands.output import Output
+from physicslab.commands.progress import Progress
+from physicslab.config import INTEGRATORS
+from physicslab.diagnostics import Drift
+from physicslab.json_text import json_text
+from physicslab.report import RunRecord, find_not_finite, run_report, run_summary
+from physicslab.scene import load_scene
+from physicslab.scene_checks import shown
+from physicslab.scenes import SCENES
+from physicslab.trajectory import TrajectoryWriter
+from physicslab.world import World
+
+__all__ = ["add_arguments", "execute", "note_unbuilt"]
+
+_DEFAULT_S = 10.0
+_MOST_STEPS = 1e15
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Declare what the command takes."""
+    add = parser.add_argument
+    add("scene", metavar="SCENE", help="a built-in scene's name, or a path")
+    length = parser.add_mutually_exclusive_group()
+    seconds = f"how long, in the scene's time ({_DEFAULT_S:g}); the last step may be shorter"
+    length.add_argument("--seconds", metavar="T", type=duration, help=seconds)
+    length.add_argument("--steps", metavar="N", type=count, help="how long, in steps")
+    add("--dt", metavar="S", type=positive_duration, help="length of a step, in place of the scene's")
+    add("--substeps", metavar="N", type=positive_count, help="parts of a step, in place of the scene's")
+    add("--integrator", metavar="NAME", help=f"one of {', '.join(INTEGRATORS)}")
+    add("--json", metavar="FILE", help="write energies, momenta, costs and the final state (- for stdout)")
+    add(
+        "--csv",
+        metavar="FILE",
+        help="write every body's state at the start and after each step (- for stdout)",
+    )
+    add("--png", metavar="FILE", help="draw the final state, without a window (- for stdout)")
+
+
+def execute(arguments: Namespace) -> int:
+    """Run the scene and write what was asked for; a summary on stdout if nothing else goes there."""
+    outputs = _outputs(arguments)
+    world = load_scene(arguments.scene)
+    _configure(world, arguments)
+    name = world.name or Path(arguments.scene).stem
+    with outputs["csv"].stream() if "csv" in outputs else nullcontext() as stream:
+        trajectory = None if stream is None else TrajectoryWriter(stream)
+        try:
+            record = _run(world, name, arguments, trajectory)
+        except Diverged as error:
+            raise CommandError(f"{name}: {error}", FAILED) from error
+    report = run_report(world, record)
+    place = find_not_finite(report)
+    if place is not None:
+        where = f"{place} is not finite at t = {world.time:.9g} s"
+        raise CommandError(f"{name}: {where}: the run diverged", FAILED)
+    if "json" in outputs:
+        outputs["json"].write(json_text(report).encode("utf-8"))
+    if "png" in outputs:
+        outputs["png"].write(_picture(world))
+    if not any(output.to_stdout for output in outputs.values()):
+        print(run_summary(report, world.title))
+    return 0
+
+
+def _outputs(arguments: Namespace) -> dict[str, Output]:
+    """Return the outputs that were asked for, all of them writable and none in the way of another."""
+    wanted = {kind: getattr(arguments, kind) for kind in ("json", "csv", "png")}
+    outputs = {kind: Output(f"--{kind}", path) for kind, path in wanted.items() if path is not None}
+    for kind, output in outputs.items():
+        if arguments.scene not in SCENES and output.is_same_as(arguments.scene):
+            raise CommandError(f"--{kind} {output.path}: is the scene itself")
+        for other, second in outputs.items():
+            if other != kind and ((output.to_stdout and second.to_stdout) or output.is_same_as(second.path)):
+                raise CommandError(f"--{kind} and --{other} cannot both go to {output.path}")
+    return outputs
+
+
+def _configure(world: World, arguments: Namespace) -> None:
+    """Step the world as the command line says, and prepare it, so that only the run itself is timed."""
+    changes = {name: getattr(arguments, name) for name in ("dt", "substeps", "integrator")}
+    changes = {name: value for name, value in changes.items() if value is not None}
+    scene = shown(arguments.scene)
+    try:
+        world.simulation = dataclasses.replace(world.simulation, **changes)
+        world.synchronise()
+    except InvalidValue as error:
+        if error.component == world.simulation.section and error.field in changes:
+            raise CommandError(f"--{error.field} {shown(error.value)}: must be {error.allowed}") from error
+        raise CommandError(f"{scene}: {error}") from error
+    except LookupError as error:
+        if isinstance(error, KeyError | IndexError):
+            raise
+        raise CommandError(f"{scene}: {error}") from error
+    seconds = _DEFAULT_S if arguments.seconds is None else arguments.seconds
+    if arguments.steps is None and seconds / world.simulation.dt > _MOST_STEPS:
+        raise CommandError(f"--seconds {seconds:g}: must be at most {_MOST_STEPS:g} steps of dt")
+    note_unbuilt(world)
+
+
+def note_unbuilt(world: World) -> None:
+    """Say on stderr which of the scene's wishes nothing here fulfils yet."""
+    if world.simulation.collisions == "exact":
+        print(
+            'physicslab: note: "collisions": "exact" is not built yet; contacts are found within steps',
+            file=sys.stderr,
+        )
+
+
+def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWriter | None) -> RunRecord:
+    """Advance the world; between steps, outside the time that is counted, measure and record."""
+    record = RunRecord(name, Drift(world))
+    seconds = _DEFAULT_S if arguments.seconds is None and arguments.steps is None else arguments.seconds
+    length = arguments.steps * world.simulation.dt if seconds is None else seconds
+    start, progress = world.time, Progress(name, sys.stderr)
+    stepping = world.stepping(seconds=seconds, steps=arguments.steps)
+    try:
+        while True:
+            if trajectory is not None:
+                trajectory.write(world)
+            compiled, began = world.schedule.compile_s, time.perf_counter()
+            done = next(stepping, None)
+            record.wall_s += time.perf_counter() - began - (world.schedule.compile_s - compiled)
+            if done is None:
+                return record
+            record.steps = done
+            _measure(world, record)
+            progress.show((world.time - start) / length)
+    finally:
+        progress.clear()
+
+
+def _measure(world: World, record: RunRecord) -> None:
+    record.drift.sample(world)
+    record.max_penetration = max(record.max_penetration, world.contacts.max_penetration)
+
+
+def _picture(world: World) -> bytes:
+    """Return a PNG of the world as it is now; pygame draws it, without a display."""
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
+    from physicslab.view.picture import save_png
+
+    picture = io.BytesIO()
+    save_png(world, picture)
+    return picture.getvalue()

@@ -1,0 +1,41 @@
+"""List the built-in scenes: name, number of bodies and what there is to see."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+import esper
+
+from physicslab.commands.output import Output
+from physicslab.components import Transform
+from physicslab.json_text import json_text
+from physicslab.scenes import SCENES, Scene
+
+__all__ = ["add_arguments", "execute"]
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Declare what the command takes."""
+    parser.add_argument("--json", metavar="FILE", help="write the list as JSON (- for stdout)")
+
+
+def execute(arguments: Namespace) -> int:
+    """Print a line for each scene, or write them as JSON."""
+    output = None if arguments.json is None else Output("--json", arguments.json)
+    rows = [
+        {"name": scene.name, "title": scene.title, "bodies": _bodies(scene), "description": scene.description}
+        for scene in SCENES.values()
+    ]
+    if output is not None:
+        output.write(json_text({"scenes": rows}).encode("utf-8"))
+    if output is None or not output.to_stdout:
+        width = max(len(name) for name in SCENES)
+        for row in rows:
+            print(f"{row['name']:<{width}}  {row['bodies']:>5}  {row['description']}")
+    return 0
+
+
+def _bodies(scene: Scene) -> int:
+    # Asked of esper, because the world would compile the scene's kernels before it answered.
+    with scene.build().active():
+        return len(esper.get_component(Transform))

@@ -1,0 +1,34 @@
+"""``python -m physicslab.kernels`` fills the cache of kernels; a line "done total name" for each."""
+
+from __future__ import annotations
+
+import sys
+import time
+
+from physicslab.kernels import KERNELS, compile_kernels
+from physicslab.kernels.warm import Progress, Warmup, load_all
+
+
+def _fill() -> int:
+    shown = Progress(-1, 0)
+    with Warmup() as warmup:
+        while not warmup.finished:
+            progress = warmup.poll()
+            if progress != shown:
+                print(progress.done, progress.total, progress.name, flush=True)
+                shown = progress
+            time.sleep(0.05)
+    return 0 if shown.done == shown.total else 1
+
+
+def _work() -> int:
+    """Compile the kernels whose names come in, a line each, and say so when one is done."""
+    names = load_all()
+    for line in sys.stdin:
+        compile_kernels((KERNELS[names.index(line.strip())],))
+        print(line.strip(), flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_work() if sys.argv[1:] == ["worker"] else _fill())

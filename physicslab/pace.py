@@ -1,0 +1,97 @@
+"""From frames of any length to steps of one length."""
+
+from __future__ import annotations
+
+import math
+
+__all__ = ["Pace"]
+
+
+class Pace:
+    """Says how many steps are due in a frame, so that what happens does not hang on the frame rate.
+
+    Time that has passed on the wall is owed, and paid back in whole steps of ``dt``. Slow motion makes each
+    step shorter and not fewer, so that it looks as smooth as full speed.
+
+    Parameters
+    ----------
+    max_dt : float
+        The longest time [s] that one frame makes up for. What lies beyond is dropped: after a hitch the world
+        goes on where it was, and a world too heavy for the machine runs slower instead of ever more behind.
+
+    Attributes
+    ----------
+    paused : bool
+        Whether time stands still; :meth:`ask_step` still gives single steps.
+    slow_motion : bool
+        Whether the world runs at a quarter of its speed.
+    dropped : float
+        Time [s] dropped so far.
+
+    Examples
+    --------
+    >>> pace = Pace(max_dt=0.1)
+    >>> pace.begin(0.05)
+    >>> pace.due(1 / 60)
+    3
+    """
+
+    SLOW = 0.25
+    """The speed of slow motion."""
+
+    def __init__(self, max_dt: float) -> None:
+        self.max_dt = max_dt
+        self.paused = False
+        self.slow_motion = False
+        self.dropped = 0.0
+        self._owed = 0.0
+        self._single = 0
+
+    @property
+    def speed(self) -> float:
+        """How fast the world runs: 1 is as fast as life."""
+        return self.SLOW if self.slow_motion else 1.0
+
+    def begin(self, elapsed: float) -> None:
+        """Begin a frame, ``elapsed`` seconds after the last."""
+        if self.paused:
+            return
+        self._owed += min(elapsed, self.max_dt)
+        self.drop(max(elapsed - self.max_dt, 0.0))
+
+    def due(self, dt: float) -> int:
+        """Return how many steps of ``dt`` seconds are due in this frame."""
+        if self.paused:
+            return self._single
+        # Rounded to the nearest, not down: frames as long as a step, give or take, get one step each, and no
+        # step hangs on the last bit of a sum of frame times.
+        return max(math.floor(self._owed / dt + 0.5), 0)
+
+    def done(self, steps: int, dt: float) -> None:
+        """Note that so many steps were made; others that were due are dropped."""
+        due = self.due(dt)
+        if self.paused:
+            self._single = 0
+            return
+        self._owed -= due * dt
+        self.drop((due - steps) * dt)
+
+    def drop(self, seconds: float) -> None:
+        """Note that so much time is not made up for."""
+        self.dropped += seconds
+
+    def ask_step(self) -> None:
+        """Pause, and ask for one step."""
+        self.paused = True
+        self._single += 1
+
+    def halt(self) -> None:
+        """Pause because the world cannot go on, and owe nothing."""
+        self.paused = True
+        self._owed = 0.0
+        self._single = 0
+
+    def toggle_pause(self) -> None:
+        """Let time stand still, or go on."""
+        self.paused = not self.paused
+        self._single = 0

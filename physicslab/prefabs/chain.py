@@ -1,0 +1,57 @@
+"""Balls on a string."""
+
+from __future__ import annotations
+
+from physicslab.components import Spring
+from physicslab.prefabs.body import Pair
+from physicslab.prefabs.circle import circle
+from physicslab.vector import Vector2
+from physicslab.world import World
+
+__all__ = ["chain"]
+
+
+def chain(
+    world: World,
+    count: int,
+    start: Pair,
+    end: Pair,
+    *,
+    hold_end: bool = False,
+    radius: float = 0.1,
+    mass: float = 0.1,
+    stiffness: float = 500.0,
+    damping: float = 0.5,
+) -> list[int]:
+    """Spawn ``count`` balls on a line, joined by springs, the first to a fixed point; return them in order.
+
+    Parameters
+    ----------
+    start, end : vector
+        The fixed point, and where the line ends [m]: at the last ball, or a spring beyond it if ``hold_end``.
+    hold_end : bool
+        Whether the end is a fixed point too.
+    radius, mass : float
+        Of each ball [m], [kg].
+    stiffness, damping : float
+        Of each spring [N/m], [N s/m]; all are at their rest length.
+
+    Raises
+    ------
+    ValueError
+        If ``count`` is less than 1.
+    """
+    if count < 1:
+        raise ValueError(f"count = {count!r}: must be a whole number >= 1")
+    first, last = Vector2(*start), Vector2(*end)
+    link = (last - first) / (count + 1 if hold_end else count)
+    balls: list[int] = []
+    for i in range(1, count + 1):
+        ball = circle(world, first + link * i, radius=radius, mass=mass)
+        # Each ball carries the spring to the one before it, the first ball that to the fixed point.
+        before, anchor = (balls[-1], Vector2()) if balls else (None, first)
+        world.add(ball, Spring(None, before, (0.0, 0.0), anchor, link.magnitude, stiffness, damping))
+        balls.append(ball)
+    if hold_end:
+        world.spawn(Spring(balls[-1], None, (0.0, 0.0), last, link.magnitude, stiffness, damping))
+    return balls

@@ -1,0 +1,69 @@
+"""A gas of discs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from physicslab.prefabs.circle import circle
+from physicslab.vector import Vector2
+from physicslab.world import World
+
+__all__ = ["gas"]
+
+
+def gas(
+    world: World,
+    count: int,
+    region: tuple[float, float, float, float],
+    *,
+    radius: float = 0.1,
+    mass: float = 1.0,
+    slowest: float = 1.0,
+    fastest: float = 3.0,
+    seed: int = 1,
+) -> list[int]:
+    """Spawn elastic, frictionless discs that fly in all directions; return their entities.
+
+    No two overlap: each is at a random place in a cell of its own.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    region : tuple of four floats
+        Where they are at the start: xmin, ymin, xmax, ymax [m].
+    radius, mass : float
+        Of each [m], [kg].
+    slowest, fastest : float
+        Between which the speeds lie [m/s].
+    seed : int
+        Of places, directions and speeds.
+
+    Raises
+    ------
+    ValueError
+        If ``count`` is less than 1, or the region has no room for so many.
+    """
+    if count < 1:
+        raise ValueError(f"count = {count!r}: must be a whole number >= 1")
+    left, bottom, right, top = region
+    columns = max(1, math.ceil(math.sqrt(count * (right - left) / (top - bottom))))
+    rows = math.ceil(count / columns)
+    cell = Vector2((right - left) / columns, (top - bottom) / rows)
+    room = Vector2(cell.x / 2.0 - radius, cell.y / 2.0 - radius)
+    if min(room) < 0.0:
+        raise ValueError(f"{count} discs of radius {radius:g} m have no room in {region}")
+    random = np.random.default_rng(seed)
+    places = (random.uniform(-1.0, 1.0, (count, 2)) * tuple(room)).tolist()
+    angles = random.uniform(0.0, 2.0 * math.pi, count).tolist()
+    speeds = random.uniform(slowest, fastest, count).tolist()
+    discs: list[int] = []
+    for i, ((x, y), angle, speed) in enumerate(zip(places, angles, speeds, strict=True)):
+        place = Vector2(left + (i % columns + 0.5) * cell.x + x, bottom + (i // columns + 0.5) * cell.y + y)
+        velocity = Vector2.from_angle(angle, speed)
+        discs.append(
+            circle(world, place, radius=radius, mass=mass, velocity=velocity, restitution=1.0, friction=0.0)
+        )
+    return discs

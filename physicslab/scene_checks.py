@@ -1,0 +1,127 @@
+"""How a scene is refused: in one line that names the place, the value and what is allowed."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import math
+import unicodedata
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+__all__ = [
+    "JsonObject", "SceneError", "checked_keys", "checked_object", "checked_text", "is_number", "printable",
+    "refusal", "shown", "suggestion",
+]  # fmt: skip
+
+_LONGEST = 60
+
+
+class SceneError(ValueError):
+    """A scene that cannot be read, written or found; the message is one line that says where and why."""
+
+
+class JsonObject(dict[str, Any]):
+    """An object of a JSON text that remembers a key that stood in it twice.
+
+    A plain ``dict`` keeps the last of the two and says nothing.
+    """
+
+    repeated: str | None = None
+
+    @classmethod
+    def of(cls, pairs: Sequence[tuple[str, Any]]) -> JsonObject:
+        """Make the object of its keys and values; an ``object_pairs_hook`` for ``json.loads``."""
+        made = cls(pairs)
+        if len(made) < len(pairs):
+            seen: set[str] = set()
+            for key, _ in pairs:
+                if key in seen:
+                    made.repeated = key
+                seen.add(key)
+        return made
+
+
+def refusal(where: str, value: object, allowed: str) -> SceneError:
+    """Return the error for ``value`` at ``where``, of which ``allowed`` says in words what it must be.
+
+    >>> print(refusal('drop.json: entity "ball": Mass.mass', -1, "a finite number > 0 kg"))
+    drop.json: entity "ball": Mass.mass = -1: must be a finite number > 0 kg
+    """
+    return SceneError(f"{where} = {shown(value)}: must be {allowed}")
+
+
+def shown(value: object) -> str:
+    r"""Return a value as it would stand in a scene file: on one line, printable, and shortened if it is long.
+
+    >>> shown([1, None, "two\nlines"])
+    '[1, null, "two\\nlines"]'
+    """
+    try:
+        text = json.dumps(value, ensure_ascii=False, default=repr)
+    except (ValueError, RecursionError):  # a whole number of thousands of digits, or lists without end
+        text = f"<{type(value).__name__}>"
+    text = printable(text)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+
+
+def printable(text: str) -> str:
+    r"""Return a text with everything that a terminal would not print written as an escape.
+
+    >>> print(printable("a\x1b[2Jb"))
+    a\x1b[2Jb
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """Return ``"; did you mean ...?"`` with the likeliest of the ``known`` words, or nothing.
+
+    >>> suggestion("Velocty", ["Transform", "Velocity"])
+    '; did you mean "Velocity"?'
+    """
+    likely = difflib.get_close_matches(word, list(known), n=1)
+    return f"; did you mean {shown(likely[0])}?" if likely else ""
+
+
+def checked_object(value: object, where: str, allowed: str) -> Mapping[str, Any]:
+    """Return an object of the document, no key of which was given twice."""
+    if not isinstance(value, dict):
+        raise refusal(where, value, allowed)
+    if isinstance(value, JsonObject) and value.repeated is not None:
+        raise SceneError(f"{where}: the key {shown(value.repeated)} is given twice; must be given once")
+    return value
+
+
+def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequence[str]) -> None:
+    """Refuse the first key that is not ``known``; ``noun`` is what keys are called there."""
+    for key, value in given.items():
+        if key not in known:
+            name = key if isinstance(key, str) and key.isidentifier() else shown(key)
+            likely = suggestion(str(key), known)
+            allowed = ", ".join(known) or "none"
+            raise SceneError(
+                f"{where}{name} = {shown(value)}: unknown {noun}; must be one of {allowed}{likely}"
+            )
+
+
+def checked_text(value: object, where: str, *, lines: bool = False) -> str:
+    """Return a text without half surrogate pairs or control characters (but new lines, if ``lines``)."""
+    if isinstance(value, str):
+        unwanted = {unicodedata.category(c) for c in value if not (lines and c in "\n\t")} & {"Cc", "Cs"}
+        if not unwanted:
+            return value
+    raise refusal(where, value, "a text" if lines else "a text on one line")
+
+
+def is_number(value: object) -> bool:
+    """Whether this is a finite number that an int64 or a float64 can hold.
+
+    >>> is_number(2**63), is_number(float("nan")), is_number(True), is_number(1)
+    (False, False, False, True)
+    """
+    if isinstance(value, bool):
+        return False
+    if isinstance(value, int):
+        return -(2**63) <= value < 2**63
+    return isinstance(value, float) and math.isfinite(value)

@@ -1,0 +1,147 @@
+"""The entities of a scene document, checked: their ids, their components and what refers to them.
+
+Nothing here lists the fields of a component: names, types and ranges come from ``Component.FIELDS``, so a
+component that someone adds is read, checked and refused like the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from physicslab.columns import COMPONENTS, Component, InvalidValue
+from physicslab.components import Held, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.scene_checks import (
+    SceneError,
+    checked_keys,
+    checked_object,
+    checked_text,
+    is_number,
+    refusal,
+    shown,
+    suggestion,
+)
+
+__all__ = ["UNSAVED", "check_contacts", "check_entities", "check_ids"]
+
+UNSAVED: frozenset[type[Any]] = frozenset({Held})
+"""Components that scene files do not hold: no hand reaches into a file."""
+
+_NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Trail)
+
+
+def check_ids(entities: object, source: str) -> dict[str, int]:
+    """Return the place, from 1, of each entity that has an id; check that they are a list of objects."""
+    if not isinstance(entities, list):
+        raise refusal(f"{source}: entities", entities, "a list of entities")
+    ids: dict[str, int] = {}
+    for number, entity in enumerate(entities, start=1):
+        checked_object(entity, _label(number, entity, source), 'an object {"id": ..., "Transform": ..., ...}')
+        if "id" not in entity:
+            continue
+        where = f"{source}: entity {number}: id"
+        name = checked_text(entity["id"], where)
+        if not name.strip():
+            raise refusal(where, name, "a text that is not empty, or left out")
+        if name in ids:
+            raise refusal(where, name, f"an id of its own; entity {ids[name]} has this one")
+        ids[name] = number
+    return ids
+
+
+def check_entities(
+    entities: Sequence[Mapping[str, Any]], ids: Mapping[str, int], source: str
+) -> list[tuple[str | None, list[Component]]]:
+    """Return each entity's id and components, in order; they refer to each other by place, from 1."""
+    made: list[tuple[str | None, list[Component]]] = []
+    known = ["id", *(name for name, kind in COMPONENTS.items() if kind not in UNSAVED)]
+    for number, entity in enumerate(entities, start=1):
+        where = _label(number, entity, source)
+        checked_keys(entity, f"{where}: ", "component", known)
+        components = [
+            _component(COMPONENTS[name], values, ids, where)
+            for name, values in entity.items()
+            if name != "id"
+        ]
+        _check_together(components, entity, where)
+        for component in components:
+            if isinstance(component, Spring):
+                _check_ends(component, number, entities, where)
+        made.append((entity.get("id"), components))
+    return made
+
+
+def check_contacts(
+    rows: object, entities: Sequence[Mapping[str, Any]], ids: Mapping[str, int], source: str
+) -> list[list[Any]]:
+    """Return the rows of the contact solver's memory with places, from 1, for ids, and 0 for the bounds."""
+    if not isinstance(rows, list):
+        raise refusal(f"{source}: contacts", rows, "a list of lists")
+    mapped: list[list[Any]] = []
+    for index, row in enumerate(rows):
+        where = f"{source}: contacts[{index}]"
+        if not isinstance(row, list) or len(row) < 2:
+            raise refusal(where, row, "a list of two ids (null for the bounds) and numbers")
+        pair: list[int] = []
+        for place, name in enumerate(row[:2]):
+            number = ids.get(name, 0) if isinstance(name, str) else 0
+            if name is not None and (number == 0 or "Shape" not in entities[number - 1]):
+                raise refusal(
+                    f"{where}[{place}]", name, "the id of an entity with a Shape, or null for the bounds"
+                )
+            pair.append(number)
+        for place, value in enumerate(row[2:], start=2):
+            if not is_number(value):
+                raise refusal(f"{where}[{place}]", value, "a finite number")
+        mapped.append([*pair, *row[2:]])
+    return mapped
+
+
+def _label(number: int, entity: object, source: str) -> str:
+    name = entity.get("id") if isinstance(entity, dict) else None
+    return f"{source}: entity {shown(name) if isinstance(name, str) else number}"
+
+
+def _component(kind: type[Component], value: object, ids: Mapping[str, int], where: str) -> Component:
+    place = f"{where}: {kind.__name__}"
+    fields = {spec.name: spec for spec in kind.FIELDS}
+    given = checked_object(value, place, "an object {" + ", ".join(f'"{name}": ...' for name in fields) + "}")
+    checked_keys(given, f"{place}.", "field", tuple(fields))
+    values = dict(given)
+    for name, end in given.items():
+        if fields[name].kind == "entity" and end is not None:
+            values[name] = _entity_of(end, ids, f"{place}.{name}")
+    try:
+        return kind(**values)
+    except InvalidValue as error:
+        raise refusal(f"{where}: {error.component}.{error.field}", error.value, error.allowed) from error
+    except TypeError as error:  # a field without default was left out
+        raise SceneError(f"{where}: {error}") from error
+
+
+def _entity_of(name: object, ids: Mapping[str, int], where: str) -> int:
+    if isinstance(name, str) and name in ids:
+        return ids[name]
+    likely = suggestion(name, ids) if isinstance(name, str) else ""
+    raise refusal(where, name, f"the id of an entity in this scene, or null{likely}")
+
+
+def _check_together(components: Sequence[Component], entity: Mapping[str, Any], where: str) -> None:
+    """Check what no component can know of the others."""
+    for kind in _NEED_TRANSFORM:
+        name = kind.__name__
+        if name in entity and Transform.__name__ not in entity:
+            raise SceneError(f"{where}: {name} = {shown(entity[name])}: must have a Transform beside it")
+    of: dict[type[Any], Any] = {type(component): component for component in components}
+    fixed = Mass in of and of[Mass].fixed_rotation
+    if fixed and Velocity in of and of[Velocity].angular != 0.0:
+        angular = of[Velocity].angular
+        raise refusal(f"{where}: Velocity.angular", angular, "0 rad/s where Mass.fixed_rotation is true")
+
+
+def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any]], where: str) -> None:
+    for name, given in (("a", spring.a), ("b", spring.b)):
+        end = given or (number if name == "a" else None)
+        if end is not None and "Transform" not in entities[end - 1]:
+            value = entities[end - 1].get("id") if given else None
+            raise refusal(f"{where}: Spring.{name}", value, "the id of an entity with a Transform")

@@ -1,0 +1,135 @@
+"""From a world to a scene document."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Mapping
+from typing import Any
+
+import esper
+
+from physicslab.columns import COMPONENTS, Component
+from physicslab.components import Name, Shape
+from physicslab.config import PhysicsConfig, SimulationConfig, field_names
+from physicslab.fields import REQUIRED, Field
+from physicslab.scene_checks import SceneError
+from physicslab.scene_entities import UNSAVED
+from physicslab.scene_reader import FORMAT
+from physicslab.vector import Vector2
+from physicslab.world import World
+
+__all__ = ["unique_name", "write_scene"]
+
+_FIRST = ("Transform", "Velocity", "Mass", "Shape", "Material", "Spring", "Trail")
+
+
+def write_scene(world: World) -> dict[str, Any]:
+    """Return the scene document of a world, from which :func:`read_scene` makes the same world, bit for bit.
+
+    Fields at their default are left out. An entity that others refer to and that has no id gets one in the
+    document, not in the world. What is held is written as if it had been let go. Plain esper components, for
+    which there are no columns, have no place in a scene.
+
+    Raises
+    ------
+    SceneError
+        If a component refers to an entity that is not there.
+    """
+    world.synchronise()
+    with world.active():
+        parts: dict[int, tuple[Any, ...]] = {
+            number: esper.components_for_entity(number) for number in world.entities()
+        }
+    entities = {number: _saved(components) for number, components in parts.items()}
+    contacts = _contacts(world)
+    ids = {number: part.id for number in parts for part in parts[number] if isinstance(part, Name)}
+    ids |= _invented(entities, ids, {end for row in contacts for end in row[:2]})
+    texts = {key: getattr(world, key) for key in ("name", "title", "description")}
+    document: dict[str, Any] = {"format": FORMAT} | {key: text for key, text in texts.items() if text}
+    if world.time:
+        document["time"] = world.time
+    document["physics"] = _settings(world.physics)
+    document["simulation"] = _settings(world.simulation)
+    document["entities"] = [
+        ({"id": ids[number]} if number in ids else {})
+        | {type(component).__name__: _fields(component, ids, world.label(number)) for component in components}
+        for number, components in entities.items()
+    ]
+    if contacts:
+        document["contacts"] = [[ids.get(a), ids.get(b), *rest] for a, b, *rest in contacts]
+    return document
+
+
+def unique_name(wanted: str, taken: Container[str]) -> str:
+    """Return ``wanted``, numbered if it is taken.
+
+    >>> unique_name("entity 3", ["entity 3", "floor"])
+    'entity 3 (2)'
+    """
+    name, count = wanted, 1
+    while name in taken:
+        count += 1
+        name = f"{wanted} ({count})"
+    return name
+
+
+def _saved(components: Iterable[Any]) -> list[Component]:
+    """Return those of an entity's components that a file holds, the contract's first."""
+    order = [*_FIRST, *(name for name in COMPONENTS if name not in _FIRST)]
+    found = {type(component): component for component in components}
+    kinds = [COMPONENTS[name] for name in order if COMPONENTS[name] not in UNSAVED]
+    return [found[kind] for kind in kinds if kind in found]
+
+
+def _contacts(world: World) -> list[list[Any]]:
+    """Return the contact solver's memory of what is still there to touch."""
+    shaped = {0, *world.batch(Shape).entities.tolist()}
+    return [row for row in world.contacts.export(world) if shaped.issuperset(row[:2])]
+
+
+def _invented(
+    entities: Mapping[int, Iterable[Component]], ids: Mapping[int, str], referred: set[int]
+) -> dict[int, str]:
+    """Return ids for the entities that have none and are referred to, by components or in ``referred``."""
+    for components in entities.values():
+        for component in components:
+            ends = (getattr(component, spec.name) for spec in component.FIELDS if spec.kind == "entity")
+            referred.update(end for end in ends if end is not None)
+    invented: dict[int, str] = {}
+    taken = set(ids.values())
+    for place, number in enumerate(entities, start=1):
+        if number in referred and number not in ids:
+            # Its place in the file: what the entity will be called when the scene is read.
+            invented[number] = unique_name(f"entity {place}", taken)
+            taken.add(invented[number])
+    return invented
+
+
+def _fields(component: Component, ids: Mapping[int, str], label: str) -> dict[str, Any]:
+    written: dict[str, Any] = {}
+    given = component.given()
+    for spec in component.FIELDS:
+        value = given[spec.name]
+        if spec.kind == "entity" and value is not None:
+            if value not in ids:
+                place = f"{label}: {type(component).__name__}.{spec.name}"
+                raise SceneError(f"{place} = {value}: must be an entity of this world")
+            written[spec.name] = ids[value]
+        elif not _is_default(spec, value):
+            written[spec.name] = list(value) if isinstance(value, Vector2) else value
+    return written
+
+
+def _is_default(spec: Field, value: Any) -> bool:
+    """Whether leaving the field out gives the same bits: -0.0 is not 0.0."""
+    if spec.default is REQUIRED or spec.default is None:
+        return value is None
+    if isinstance(value, Vector2):
+        return repr(value) == repr(Vector2(*spec.default))
+    return repr(value) == repr(float(spec.default) if isinstance(value, float) else spec.default)
+
+
+def _settings(config: PhysicsConfig | SimulationConfig) -> dict[str, Any]:
+    values = {name: getattr(config, name) for name in field_names(type(config))}
+    return {
+        name: list(value) if isinstance(value, Vector2 | tuple) else value for name, value in values.items()
+    }

@@ -1,0 +1,23 @@
+"""Two thousand elastic discs between four walls."""
+
+from physicslab.config import PhysicsConfig
+from physicslab.prefabs import gas
+from physicslab.scenes.scene import Scene
+from physicslab.world import World
+
+__all__ = ["GAS"]
+
+_WALLS = (-12.0, -7.5, 12.0, 7.5)
+
+
+def _fill(world: World) -> None:
+    gas(world, 2_000, _WALLS)
+
+
+GAS = Scene(
+    name="gas",
+    title="A gas of two thousand discs",
+    description="Elastic, frictionless discs fill 17 % of a box; their kinetic energy should stay the same.",
+    fill=_fill,
+    physics=PhysicsConfig(gravity_mode="none", bounds=_WALLS, bounds_restitution=1.0, bounds_friction=0.0),
+)

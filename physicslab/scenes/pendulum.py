@@ -1,0 +1,19 @@
+"""A pendulum."""
+
+from physicslab.prefabs import pendulum
+from physicslab.scenes.scene import Scene
+from physicslab.world import World
+
+__all__ = ["PENDULUM"]
+
+
+def _fill(world: World) -> None:
+    pendulum(world, (0.0, 3.0), length=2.0, angle=0.5, name="bob")
+
+
+PENDULUM = Scene(
+    name="pendulum",
+    title="A pendulum",
+    description="A bob on a stiff spring of 2 m; its period is a little above 2 pi sqrt(l / g) = 2.84 s.",
+    fill=_fill,
+)

@@ -1,0 +1,20 @@
+"""A thousand discs that fall into a container."""
+
+from physicslab.prefabs import container, pile
+from physicslab.scenes.scene import Scene
+from physicslab.world import World
+
+__all__ = ["PILE"]
+
+
+def _fill(world: World) -> None:
+    container(world, width=11, height=8)
+    pile(world, 1_000, (0.0, 0.5))
+
+
+PILE = Scene(
+    name="pile",
+    title="A thousand discs",
+    description="A thousand discs of 0.2 m fall into a container and come to rest.",
+    fill=_fill,
+)

@@ -1,0 +1,23 @@
+"""A pyramid of 465 boxes."""
+
+from physicslab.config import PhysicsConfig
+from physicslab.prefabs import box, pyramid
+from physicslab.scenes.scene import Scene
+from physicslab.vector import Vector2
+from physicslab.world import World
+
+__all__ = ["PYRAMID"]
+
+
+def _fill(world: World) -> None:
+    box(world, (0, -0.5), width=100, height=1, static=True, friction=0.6, name="floor")
+    pyramid(world, 30)
+
+
+PYRAMID = Scene(
+    name="pyramid",
+    title="A pyramid of 465 boxes",
+    description="Thirty rows of boxes of 1 m, a measure for contact solvers: they should not sink or spread.",
+    fill=_fill,
+    physics=PhysicsConfig(gravity=Vector2(0.0, -10.0)),
+)

@@ -1,0 +1,35 @@
+"""The playground that the window opens with."""
+
+from __future__ import annotations
+
+import math
+
+from physicslab.config import PhysicsConfig
+from physicslab.prefabs import box, circle, pendulum
+from physicslab.scenes.scene import Scene
+from physicslab.world import World
+
+__all__ = ["SANDBOX"]
+
+
+def _fill(world: World) -> None:
+    box(world, (0.0, -0.2), width=11.6, height=0.4, static=True, friction=0.6, name="floor")
+    box(world, (-4.0, 0.9), width=3.2, height=0.16, angle=-0.42, static=True, friction=0.6, name="ramp")
+    for n, radius in enumerate((0.22, 0.3, 0.18)):
+        position = (-5.1 + 0.62 * n, 2.2 - 0.28 * n)
+        circle(world, position, radius=radius, mass=5.0 * math.pi * radius**2, restitution=0.3)
+    for row in range(4):
+        for column in range(4 - row):
+            position = (2.4 + 0.52 * column + 0.26 * row, 0.25 + 0.5 * row)
+            box(world, position, width=0.5, height=0.5, restitution=0.1, friction=0.6)
+    pendulum(world, (0.4, 4.6), length=2.6, angle=-1.0, radius=0.28, mass=2.0, restitution=0.3, name="bob")
+    circle(world, (-0.9, 0.4), radius=0.4, mass=1.5, restitution=0.7, name="ball")
+
+
+SANDBOX = Scene(
+    name="sandbox",
+    title="Sandbox",
+    description="A floor, a ramp, a pile of boxes and a pendulum to play with.",
+    fill=_fill,
+    physics=PhysicsConfig(bounds=(-5.8, -0.4, 5.8, 5.8)),
+)

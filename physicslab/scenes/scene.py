@@ -1,0 +1,41 @@
+"""What a built-in scene is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.systems.standard import standard_systems
+from physicslab.world import World
+
+__all__ = ["Scene"]
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A built-in scene: what it is called, the laws in it, and what fills it.
+
+    Attributes
+    ----------
+    name, title, description : str
+        For the command line, for a heading, and one line on what there is to see.
+    fill : callable
+        Spawns everything in the world that it is given.
+    physics, simulation : PhysicsConfig, SimulationConfig
+        The laws, and how they are stepped.
+    """
+
+    name: str
+    title: str
+    description: str
+    fill: Callable[[World], None]
+    physics: PhysicsConfig = field(default_factory=PhysicsConfig)
+    simulation: SimulationConfig = field(default_factory=SimulationConfig)
+
+    def build(self) -> World:
+        """Return a new world of this scene, the same each time."""
+        world = World(*standard_systems(), physics=self.physics, simulation=self.simulation)
+        world.name, world.title, world.description = self.name, self.title, self.description
+        self.fill(world)
+        return world

@@ -1,0 +1,31 @@
+"""Blocks of different friction on an inclined plane."""
+
+import math
+
+from physicslab.prefabs import box
+from physicslab.scenes.scene import Scene
+from physicslab.vector import Vector2
+from physicslab.world import World
+
+__all__ = ["SLOPE"]
+
+_ANGLE = math.radians(20.0)
+
+
+def _fill(world: World) -> None:
+    along = Vector2.from_angle(_ANGLE)
+    box(world, (0, 0), width=16, height=0.5, angle=_ANGLE, static=True, friction=1, name="slope")
+    for i, friction in enumerate((0.1, 0.2, 0.5, 0.8)):
+        # A pair rubs with the root of the product, and the slope's friction is 1.
+        place = along * (1.5 * i - 1.0) + along.perpendicular * 0.5
+        box(
+            world, place, width=0.8, height=0.5, angle=_ANGLE, friction=friction**2, name=f"mu = {friction:g}"
+        )
+
+
+SLOPE = Scene(
+    name="slope",
+    title="Friction on a slope",
+    description="Four blocks on a slope of 20 degrees: those with a friction below tan 20 = 0.364 slide.",
+    fill=_fill,
+)

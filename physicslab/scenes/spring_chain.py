@@ -1,0 +1,19 @@
+"""A chain of balls and springs between two fixed points."""
+
+from physicslab.prefabs import chain
+from physicslab.scenes.scene import Scene
+from physicslab.world import World
+
+__all__ = ["SPRING_CHAIN"]
+
+
+def _fill(world: World) -> None:
+    chain(world, 20, (-4.0, 3.0), (4.0, 3.0), hold_end=True)
+
+
+SPRING_CHAIN = Scene(
+    name="spring_chain",
+    title="A chain of springs",
+    description="Twenty balls on springs sag like a hanging chain; waves run along it and die out.",
+    fill=_fill,
+)

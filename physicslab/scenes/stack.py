@@ -1,0 +1,20 @@
+"""A tower of ten boxes."""
+
+from physicslab.prefabs import box, stack
+from physicslab.scenes.scene import Scene
+from physicslab.world import World
+
+__all__ = ["STACK"]
+
+
+def _fill(world: World) -> None:
+    box(world, (0, -0.5), width=20, height=1, static=True, friction=0.6, name="floor")
+    stack(world, 10)
+
+
+STACK = Scene(
+    name="stack",
+    title="A tower of ten boxes",
+    description="Ten boxes of 1 m and 1 kg on top of each other; they should stand.",
+    fill=_fill,
+)

@@ -1,0 +1,22 @@
+"""Two planets on elliptic orbits."""
+
+from physicslab.config import PhysicsConfig
+from physicslab.prefabs import binary
+from physicslab.scenes.scene import Scene
+from physicslab.world import World
+
+__all__ = ["TWO_PLANETS"]
+
+
+def _fill(world: World) -> None:
+    # Point masses: without Shapes, nothing has to be searched for contacts.
+    binary(world, (6.0, 3.0), separation=5.0, eccentricity=0.5, names=("heavy", "light"))
+
+
+TWO_PLANETS = Scene(
+    name="two_planets",
+    title="Two planets",
+    description="Two planets on ellipses about their centre of mass; their total momentum stays zero.",
+    fill=_fill,
+    physics=PhysicsConfig(gravity_mode="planet"),
+)

@@ -1,0 +1,102 @@
+"""What the user does to the world and to the window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import pygame
+
+from physicslab.schedule import Stage, System, at
+from physicslab.view import actions
+from physicslab.view.controls import KEYS
+
+if TYPE_CHECKING:
+    from physicslab.view.window import Window
+    from physicslab.world import World
+
+__all__ = ["InputSystem"]
+
+_OTHER_USE = pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META
+"""With these keys held, another key is meant for the desktop: Alt+Tab is no slow motion."""
+
+
+class InputSystem(System):
+    """Turns what SDL reports into actions, and leads the body that is held.
+
+    It reacts to reports alone and never asks for the state of keys and buttons, so that posted events are as
+    good as real ones.
+
+    Parameters
+    ----------
+    window : Window
+        Where the cursor is, and what is held.
+    """
+
+    def __init__(self, window: Window) -> None:
+        self._window = window
+        self._panning = False
+        self._handlers: dict[int, Callable[[World, pygame.Event], None]] = {
+            pygame.KEYDOWN: self._key,
+            pygame.MOUSEBUTTONDOWN: self._press,
+            pygame.MOUSEBUTTONUP: self._release,
+            pygame.MOUSEMOTION: self._motion,
+            pygame.MOUSEWHEEL: self._wheel,
+            pygame.WINDOWFOCUSLOST: self._leave,
+            pygame.WINDOWMINIMIZED: self._leave,
+            pygame.WINDOWHIDDEN: self._leave,
+            pygame.QUIT: lambda world, event: actions.close(world, window),
+        }
+
+    @at(Stage.INPUT)
+    def handle(self, world: World, elapsed: float) -> None:
+        """Do everything that was asked for since the last frame."""
+        window = self._window
+        window.now += elapsed
+        for event in pygame.event.get():
+            handler = self._handlers.get(event.type)
+            if handler is not None:
+                handler(world, event)
+        window.hand.move(window.place, window.now)
+        window.hand.lead(world, window.coming(world), window.pace.paused)
+
+    def _key(self, world: World, event: pygame.Event) -> None:
+        action = KEYS.get(pygame.key.name(event.key).lower())
+        if action is not None and not getattr(event, "mod", 0) & _OTHER_USE:
+            action(world, self._window)
+
+    def _press(self, world: World, event: pygame.Event) -> None:
+        self._window.pointer = event.pos
+        if event.button == pygame.BUTTON_LEFT:
+            actions.press(world, self._window)
+        elif event.button == pygame.BUTTON_RIGHT:
+            actions.spawn_box(world, self._window)
+        elif event.button == pygame.BUTTON_MIDDLE:
+            self._panning = True
+
+    def _release(self, world: World, event: pygame.Event) -> None:
+        self._window.pointer = event.pos
+        if event.button == pygame.BUTTON_LEFT:
+            actions.release(world, self._window)
+        elif event.button == pygame.BUTTON_MIDDLE:
+            self._panning = False
+
+    def _motion(self, world: World, event: pygame.Event) -> None:
+        window = self._window
+        left, middle, _ = event.buttons
+        if not left:  # let go where no report came from, as over another window
+            window.hand.drop(world)
+        self._panning = self._panning and bool(middle)
+        if self._panning:
+            dx, dy = event.pos[0] - window.pointer[0], event.pos[1] - window.pointer[1]
+            window.camera.pan(dx, dy)
+        window.pointer = event.pos
+
+    def _wheel(self, world: World, event: pygame.Event) -> None:
+        notches = getattr(event, "precise_y", event.y)
+        actions.zoom(self._window, notches)
+
+    def _leave(self, world: World, event: pygame.Event) -> None:
+        """Hold nothing while the user is elsewhere."""
+        self._window.hand.drop(world)
+        self._panning = False

@@ -1,0 +1,23 @@
+"""The whole picture of a world, from back to front."""
+
+from __future__ import annotations
+
+from physicslab.view.backdrop import draw_bounds, draw_grid
+from physicslab.view.bodies import draw_bodies
+from physicslab.view.camera import Camera
+from physicslab.view.canvas import Canvas
+from physicslab.view.springs import draw_springs
+from physicslab.view.theme import Theme
+from physicslab.world import World
+
+__all__ = ["draw_world"]
+
+
+def draw_world(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+    """Draw a world as it is now. Nothing of the world is changed."""
+    world.synchronise()
+    canvas.clear(theme.background)
+    draw_grid(camera, theme, canvas)
+    draw_bounds(world.physics.bounds, camera, theme, canvas)
+    draw_bodies(world, camera, theme, canvas)
+    draw_springs(world, camera, theme, canvas)

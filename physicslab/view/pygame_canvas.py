@@ -1,0 +1,145 @@
+"""A canvas on a pygame surface."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections import OrderedDict
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from physicslab.kernels import compile_kernels, raster
+from physicslab.view.canvas import Align, Look, Numbers, Points, Rect, TextStyle
+from physicslab.view.theme import Colour
+
+__all__ = ["PygameCanvas"]
+
+_KEPT_SURFACES = 512
+_RIM = 1.6
+"""Width of the rims [px]."""
+_CORNER = 8
+"""Radius of a panel's corners [px]."""
+_SMOOTHING = 4
+"""How many times too large panels are drawn, to be shrunk."""
+
+
+@lru_cache(maxsize=32)
+def _font(size: int, bold: bool) -> pygame.font.Font:
+    """Return a font by its nominal size [px]: Noto Sans, which comes with pygame_gui, or pygame's own."""
+    pygame.font.init()
+    package = importlib.util.find_spec("pygame_gui")
+    if package is not None and package.submodule_search_locations:
+        name = "NotoSans-Bold.ttf" if bold else "NotoSans-Regular.ttf"
+        path = Path(package.submodule_search_locations[0]) / "data" / name
+        if path.is_file():
+            return pygame.font.Font(path, size)
+    return pygame.font.Font(None, round(1.4 * size))
+
+
+class PygameCanvas:
+    """Draws on a surface of 32 bits a pixel: the window's, or one that no window shows.
+
+    Bodies and lines are painted into its pixels by compiled loops; words and panels are surfaces that are
+    kept, and drawn again for as long as they stay the same.
+
+    Parameters
+    ----------
+    surface : pygame.Surface
+        What to draw on.
+    """
+
+    def __init__(self, surface: pygame.Surface) -> None:
+        if surface.get_bytesize() != 4:
+            raise ValueError(f"a canvas needs 32 bits a pixel; this surface has {surface.get_bitsize()}")
+        self.surface = surface
+        red, green, blue, _ = surface.get_shifts()
+        self._shifts = np.array((red, green, blue), np.uint32)
+        self._kept: OrderedDict[tuple[object, ...], pygame.Surface] = OrderedDict()
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height [px]."""
+        return self.surface.get_size()
+
+    def _pixels(self) -> NDArray[np.uint32]:
+        # The surface is locked, and cannot be blitted to, until the array is let go of: so it is never kept.
+        flat = np.frombuffer(self.surface.get_buffer(), np.uint32)
+        pixels: NDArray[np.uint32] = flat.reshape(self.surface.get_height(), self.surface.get_pitch() // 4)
+        return pixels
+
+    def _packed(self, colours: NDArray[np.uint8]) -> NDArray[np.uint32]:
+        shifted = colours.astype(np.uint32) << self._shifts
+        packed: NDArray[np.uint32] = shifted[:, 0] | shifted[:, 1] | shifted[:, 2]
+        return packed
+
+    def clear(self, colour: Colour) -> None:
+        """Fill the whole picture."""
+        self.surface.fill(colour)
+
+    def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
+        """Draw discs, each with a rim and a line that shows its angle, or hatched."""
+        compile_kernels((raster.paint_discs,))
+        fill, rim = self._packed(look.fill), self._packed(look.rim)
+        raster.paint_discs(self._pixels(), centre, radius, angle, fill, rim, look.hatched, _RIM)
+
+    def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
+        """Draw boxes of the given widths and heights, each with a rim and a notch, or hatched."""
+        compile_kernels((raster.paint_boxes,))
+        fill, rim = self._packed(look.fill), self._packed(look.rim)
+        raster.paint_boxes(self._pixels(), centre, 0.5 * extent, angle, fill, rim, look.hatched, _RIM)
+
+    def lines(
+        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float = 1.0
+    ) -> None:
+        """Draw straight lines of one kind, with round ends."""
+        compile_kernels((raster.paint_lines,))
+        packed = int(self._packed(np.array([colour], np.uint8))[0])
+        raster.paint_lines(self._pixels(), start, end, width, packed, opacity)
+
+    def _keep(self, key: tuple[object, ...], make: Callable[[], pygame.Surface]) -> pygame.Surface:
+        surface = self._kept.get(key)
+        if surface is None:
+            surface = self._kept[key] = make()
+            if len(self._kept) > _KEPT_SURFACES:
+                self._kept.popitem(last=False)
+        else:
+            self._kept.move_to_end(key)
+        return surface
+
+    def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
+        """Draw a rectangle with rounded corners and a thin outline."""
+        left, top, width, height = rect
+        if width > 0 and height > 0:
+            key = ("panel", width, height, colour, outline, opacity)
+            made = self._keep(key, lambda: _rounded((width, height), colour, outline, opacity))
+            self.surface.blit(made, (left, top), special_flags=pygame.BLEND_PREMULTIPLIED)
+
+    def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
+        """Write one line; ``at`` is its top left, top middle or top right."""
+        font = _font(style.size, style.bold)
+        line = self._keep(("text", words, style), lambda: font.render(words, True, style.colour))
+        shift = {"left": 0, "centre": line.get_width() // 2, "right": line.get_width()}[align]
+        self.surface.blit(line, (at[0] - shift, at[1]))
+
+    def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
+        """Return the width and height of one line [px]."""
+        return _font(style.size, style.bold).size(words)
+
+
+def _rounded(
+    size: tuple[int, int], colour: Colour, outline: Colour, opacity: float
+) -> pygame.Surface:
+    """Return a rectangle with smooth round corners, its colours multiplied by its opacity."""
+    width, height = size
+    radius = _SMOOTHING * min(_CORNER, width // 2, height // 2)
+    large = pygame.Surface((_SMOOTHING * width, _SMOOTHING * height), pygame.SRCALPHA, 32)
+    pygame.draw.rect(large, outline, large.get_rect(), border_radius=radius)
+    inside = large.get_rect().inflate(-2 * _SMOOTHING, -2 * _SMOOTHING)
+    pygame.draw.rect(large, colour, inside, border_radius=radius - _SMOOTHING)
+    small = pygame.transform.smoothscale(large.premul_alpha(), size)
+    small.fill((round(255 * opacity),) * 4, special_flags=pygame.BLEND_RGBA_MULT)
+    return small

@@ -1,0 +1,117 @@
+"""Every colour there is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["DARK", "Colour", "Theme", "mixed"]
+
+type Colour = tuple[int, int, int]
+"""Red, green and blue, 0 to 255."""
+
+
+def mixed(under: Colour, over: Colour, share: float) -> Colour:
+    """Return ``under`` with a share (0 to 1) of ``over`` in it.
+
+    >>> mixed((0, 0, 0), (200, 100, 0), 0.5)
+    (100, 50, 0)
+    """
+    red, green, blue = (round(a + (b - a) * share) for a, b in zip(under, over, strict=True))
+    return red, green, blue
+
+
+@dataclass(frozen=True, slots=True)
+class Theme:
+    """The colours of the window; everything that is drawn takes its colour from here.
+
+    Attributes
+    ----------
+    background, grid, axis : Colour
+        Empty space, a line each metre or so, and the lines through the origin.
+    bodies : tuple of Colour
+        The rims of moving bodies, in turn; told apart by the colour-blind too (after Okabe & Ito, 2008).
+    fill_share : float
+        How much of the rim's colour is in a body's fill, the rest being background.
+    static, kinematic, held : Colour
+        The rims of what never moves, of what moves whatever pushes it, and of what is in the hand.
+    spring, pin, bounds : Colour
+        Springs, the fixed points they hang from, the walls of the world.
+    panel, panel_opacity, outline : Colour, float, Colour
+        What text stands on.
+    text, faint, accent, heading : Colour
+        Figures; what is said beside them; a number worth seeing; titles.
+    key, key_rim : Colour
+        The caps of the keys in the controls hint.
+    paused, slow, planet, warning, error, notice : Colour
+        The banners.
+    """
+
+    background: Colour
+    grid: Colour
+    axis: Colour
+    bodies: tuple[Colour, ...]
+    fill_share: float
+    static: Colour
+    kinematic: Colour
+    held: Colour
+    spring: Colour
+    pin: Colour
+    bounds: Colour
+    panel: Colour
+    panel_opacity: float
+    outline: Colour
+    text: Colour
+    faint: Colour
+    accent: Colour
+    heading: Colour
+    key: Colour
+    key_rim: Colour
+    paused: Colour
+    slow: Colour
+    planet: Colour
+    warning: Colour
+    error: Colour
+    notice: Colour
+
+    def fill(self, rim: Colour) -> Colour:
+        """Return the colour inside a body with this rim."""
+        return mixed(self.background, rim, self.fill_share)
+
+
+DARK = Theme(
+    background=(15, 17, 23),
+    grid=(25, 28, 37),
+    axis=(41, 46, 60),
+    bodies=(
+        (86, 180, 233),
+        (230, 159, 0),
+        (0, 190, 140),
+        (240, 228, 66),
+        (225, 100, 40),
+        (214, 130, 180),
+        (95, 125, 255),
+    ),
+    fill_share=0.30,
+    static=(112, 121, 140),
+    kinematic=(200, 206, 220),
+    held=(255, 255, 255),
+    spring=(160, 168, 186),
+    pin=(214, 219, 230),
+    bounds=(98, 108, 130),
+    panel=(22, 25, 34),
+    panel_opacity=0.88,
+    outline=(47, 53, 69),
+    text=(226, 230, 238),
+    faint=(139, 147, 165),
+    accent=(110, 200, 255),
+    heading=(245, 247, 250),
+    key=(38, 43, 57),
+    key_rim=(72, 80, 101),
+    paused=(240, 190, 70),
+    slow=(110, 200, 255),
+    planet=(190, 150, 255),
+    warning=(245, 150, 70),
+    error=(255, 105, 100),
+    notice=(90, 205, 160),
+)
+"""The theme there is: dark."""

@@ -1,0 +1,109 @@
+"""What the systems of a frame share: the eye, the canvas, the clock and the hand."""
+
+from __future__ import annotations
+
+from physicslab.config import WindowConfig
+from physicslab.pace import Pace
+from physicslab.vector import Vector2
+from physicslab.view.camera import Camera
+from physicslab.view.canvas import Canvas
+from physicslab.view.extent import extent_of
+from physicslab.view.hand import Hand
+from physicslab.view.theme import DARK, Theme
+from physicslab.world import World
+
+__all__ = ["Window"]
+
+_FOOT = 0.06
+"""Room left below the world for the controls hint, as a share of its height."""
+
+
+class Window:
+    """The state of the sandbox's window; the world knows nothing of it.
+
+    Attributes
+    ----------
+    canvas : Canvas
+        What is drawn on.
+    config : WindowConfig
+        Size, frame rate and limits.
+    theme : Theme
+        The colours.
+    camera : Camera
+        Which part of the world is shown.
+    pace : Pace
+        Whether time runs, and how fast.
+    hand : Hand
+        What is held.
+    now : float
+        Time [s] that the window has been open; it runs while the world is paused.
+    pointer : tuple of two floats
+        Where the cursor is [px].
+    gravity_before : str
+        The mode that gravity goes back to after planet mode.
+    spawned : int
+        How many bodies were made by hand; what comes next varies with it.
+    wants_screenshot : bool
+        Whether a picture of the window is to be kept as soon as it is drawn.
+    closing : bool
+        Whether the window is to be closed.
+    error : str
+        Why the world stopped; empty while all is well.
+    """
+
+    def __init__(self, canvas: Canvas, config: WindowConfig | None = None, theme: Theme = DARK) -> None:
+        self.canvas = canvas
+        self.config = config or WindowConfig()
+        self.theme = theme
+        self.camera = Camera(canvas.size, scale=self.config.pixels_per_metre)
+        self.pace = Pace(self.config.max_dt)
+        self.hand = Hand(self.config)
+        self.now = 0.0
+        self.pointer: tuple[float, float] = (0.5 * canvas.size[0], 0.5 * canvas.size[1])
+        self.gravity_before = "linear"
+        self.spawned = 0
+        self.wants_screenshot = False
+        self.closing = False
+        self.error = ""
+        self._notice, self._notice_until = "", 0.0
+
+    @property
+    def place(self) -> Vector2:
+        """The point of the world under the cursor [m]."""
+        return self.camera.to_world(self.pointer)
+
+    @property
+    def notice(self) -> str:
+        """What is to be said for a few seconds; empty when there is nothing."""
+        return self._notice if self.now < self._notice_until else ""
+
+    def notify(self, words: str, seconds: float = 3.0) -> None:
+        """Say something for a while."""
+        self._notice, self._notice_until = words, self.now + seconds
+
+    def coming(self, world: World) -> float:
+        """Return the time [s] that is about to be simulated in this frame."""
+        dt = world.simulation.dt
+        return self.pace.due(dt) * dt * self.pace.speed
+
+    def resize(self, canvas: Canvas) -> None:
+        """Go on with a canvas of another size."""
+        self.canvas = canvas
+        self.camera.resize(canvas.size)
+
+    def go_home(self, world: World) -> None:
+        """Show the world as at the start: at the usual scale where all of it fits, else smaller."""
+        self._show(world, self.config.pixels_per_metre)
+
+    def fit(self, world: World) -> None:
+        """Show all of the world, as large as it goes."""
+        self._show(world, float("inf"))
+
+    def _show(self, world: World, largest_scale: float) -> None:
+        extent = extent_of(world)
+        if extent is None:
+            self.camera.look_at((0.0, 0.0, 0.0, 0.0), self.config.pixels_per_metre)
+            return
+        xmin, ymin, xmax, ymax = extent
+        extent = (xmin, ymin - _FOOT * (ymax - ymin), xmax, ymax)
+        self.camera.look_at(extent, min(self.camera.fitting_scale(extent), largest_scale))

@@ -1,0 +1,406 @@
+"""The command line: what it writes where, and how it refuses."""
+
+import csv
+import errno
+import io
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+import physicslab
+from physicslab import cli, load_scene, save_scene
+from physicslab.commands import progress, run
+from physicslab.commands.output import Output
+from physicslab.report import find_not_finite
+from physicslab.scenes import SCENES
+
+ROOT = Path(__file__).parent.parent
+
+
+def document(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]:
+    """Run a command that writes JSON to stdout; return what it wrote."""
+    assert cli.main([*arguments, "--json", "-"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    read: dict[str, Any] = json.loads(out, parse_constant=lambda word: pytest.fail(f"{word} in JSON"))
+    return read
+
+
+def complaint(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 2) -> str:
+    """Run a command that must fail with this status; return its one line."""
+    assert cli.main(arguments) == status
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1 and err.startswith("physicslab: ")
+    return err.removeprefix("physicslab: ").rstrip("\n")
+
+
+def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[str]) -> None:
+    report = document(capsys, "run", "drop", "--seconds", "1")
+    assert list(report) == [
+        "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason", "force_evaluations",
+        "wall_s", "compile_s", "systems", "left_out", "energy", "momentum", "angular_momentum",
+        "candidate_pairs", "contacts", "collisions", "max_penetration", "entities",
+    ]  # fmt: skip
+    assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
+    assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "leapfrog")
+    assert report["integrator_reason"] == "bodies can touch"
+    assert report["force_evaluations"] == 240
+    assert 0.0 < report["wall_s"] < 10.0
+    gravity = next(system for system in report["systems"] if system["name"] == "GravitySystem")
+    assert gravity["calls"] == 240 and gravity["ms"] > 0.0
+    assert {"name": "SpringSystem", "reason": "no Spring in the scene"} in report["left_out"]
+    assert set(report["energy"]) == {
+        "initial", "final", "kinetic_linear", "kinetic_angular", "potential_gravity", "potential_spring",
+        "max_relative_drift",
+    }  # fmt: skip
+    assert report["energy"]["initial"] == 39.74
+    assert list(report["entities"]) == ["floor", "ball"]
+    assert list(report["entities"]["ball"]) == ["position", "angle", "linear", "angular"]
+    assert report["entities"]["floor"]["linear"] == [0.0, 0.0]
+    assert report["collisions"] == 1
+
+
+def test_the_numbers_are_those_of_the_world(capsys: pytest.CaptureFixture[str]) -> None:
+    from physicslab.components import Transform
+    from physicslab.diagnostics import measure_energy, measure_momentum
+
+    report = document(capsys, "run", "pendulum", "--seconds", "2.5")
+    world = load_scene("pendulum")
+    world.run(seconds=2.5)
+    bob = world.entity("bob")
+    assert report["entities"]["bob"]["position"] == list(world.component(bob, Transform).position)
+    energy = measure_energy(world)
+    assert report["energy"]["final"] == energy.total
+    assert report["energy"]["potential_spring"] == energy.potential["spring"] > 0.0
+    assert report["momentum"] == list(measure_momentum(world).linear)
+    assert report["angular_momentum"] == measure_momentum(world).angular
+    assert report["force_evaluations"] == world.force_evaluations
+
+
+def test_time_is_exactly_what_was_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    report = document(capsys, "run", "drop", "--seconds", "0.1", "--dt", "0.03")
+    assert (report["time"], report["steps"], report["dt"]) == (0.1, 4, 0.03)
+    report = document(capsys, "run", "drop", "--steps", "7", "--substeps", "2")
+    assert (report["steps"], report["substeps"], report["force_evaluations"]) == (7, 2, 14)
+    report = document(capsys, "run", "drop", "--steps", "0")
+    assert (report["steps"], report["time"], report["energy"]["max_relative_drift"]) == (0, 0.0, 0.0)
+    assert document(capsys, "run", "pendulum")["time"] == 10.0
+
+
+def test_the_method_can_be_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    report = document(capsys, "run", "pendulum", "--steps", "5", "--integrator", "symplectic_euler")
+    assert (report["integrator"], report["integrator_reason"]) == ("symplectic_euler", "asked for")
+
+
+def test_drift_and_penetration_are_the_largest_of_the_run(capsys: pytest.CaptureFixture[str]) -> None:
+    report = document(capsys, "run", "dominoes", "--seconds", "3")
+    now = abs(report["energy"]["final"] - report["energy"]["initial"]) / report["energy"]["initial"]
+    assert report["energy"]["max_relative_drift"] >= now > 0.0
+    world, deepest = load_scene("dominoes"), 0.0
+    for _ in world.stepping(seconds=3):
+        deepest = max(deepest, world.contacts.max_penetration)
+    assert report["max_penetration"] == deepest > world.contacts.max_penetration
+
+
+def test_bodies_are_named_without_doubt(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "twins.json"
+    entities = [{"id": "entity 2", "Transform": {}}, {"Transform": {}}, {"id": "note"}]
+    path.write_text(json.dumps({"format": "physicslab-scene/1", "entities": entities}))
+    report = document(capsys, "run", str(path), "--steps", "1")
+    assert list(report["entities"]) == ["entity 2", "entity 2 (2)"]
+    assert report["scene"] == "twins"
+
+
+def test_a_scene_goes_on_from_its_own_time(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    world = load_scene("pendulum")
+    world.run(seconds=1.0)
+    save_scene(world, tmp_path / "later.json")
+    report = document(capsys, "run", str(tmp_path / "later.json"), "--seconds", "0.5")
+    assert report["time"] == 1.5
+
+
+def test_run_writes_a_row_a_step_and_body(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["run", "drop", "--steps", "3", "--csv", "-"]) == 0
+    rows = list(csv.reader(io.StringIO(capsys.readouterr().out)))
+    assert rows[0] == [
+        "time [s]", "entity", "x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "omega [rad/s]",
+    ]  # fmt: skip
+    assert [row[1] for row in rows[1:]] == 4 * ["floor", "ball"]
+    assert [float(row[0]) for row in rows[1::2]] == [0.0, 1 / 60, 2 / 60, 3 / 60]
+    assert rows[2] == ["0.0", "ball", "-3.0", "4.0", "0.0", "1.0", "0.0", "0.0"]
+    assert float(rows[4][6]) == pytest.approx(-9.81 / 60, rel=1e-12)
+
+
+def test_files_are_written_and_the_summary_goes_to_stdout(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    report, table = tmp_path / "run.json", tmp_path / "run.csv"
+    assert cli.main(["run", "drop", "--steps", "5", "--json", str(report), "--csv", str(table)]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert out.startswith("drop: A ball on a floor\n")
+    assert "SpringSystem: no Spring in the scene" in out
+    assert json.loads(report.read_text())["steps"] == 5
+    assert len(table.read_text().splitlines()) == 1 + 6 * 2
+    assert sorted(os.listdir(tmp_path)) == ["run.csv", "run.json"]
+
+
+def test_a_picture_is_drawn_without_a_window(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "picture.png"
+    assert cli.main(["run", "drop", "--steps", "5", "--png", str(path)]) == 0
+    assert path.read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+    assert capsys.readouterr().err == ""
+
+
+def test_scenes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["scenes"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(SCENES)
+    assert next(line for line in lines if line.startswith("gas")).split()[1] == "2000"
+    listed = document(capsys, "scenes")["scenes"]
+    assert [scene["name"] for scene in listed] == list(SCENES)
+    assert {
+        "name": "drop", "title": "A ball on a floor", "bodies": 2, "description": SCENES["drop"].description,
+    } in listed  # fmt: skip
+
+
+USAGE = [
+    (["run"], "the following arguments are required: SCENE"),
+    (["run", "drop", "--dt", "0"], "argument --dt: '0': must be a finite number > 0 s"),
+    (["run", "drop", "--dt", "nan"], "argument --dt: 'nan': must be a finite number > 0 s"),
+    (["run", "drop", "--dt", "fast"], "argument --dt: 'fast': must be a finite number > 0 s"),
+    (["run", "drop", "--dt", "1e999"], "argument --dt: '1e999': must be a finite number > 0 s"),
+    (["run", "drop", "--seconds", "-1"], "argument --seconds: '-1': must be a finite number >= 0 s"),
+    (["run", "drop", "--seconds", "inf"], "argument --seconds: 'inf': must be a finite number >= 0 s"),
+    (["run", "drop", "--seconds", "1e300"], "--seconds 1e+300: must be at most 1e+15 steps of dt"),
+    (
+        ["run", "drop", "--seconds", "1e300", "--dt", "1e-300"],
+        "--seconds 1e+300: must be at most 1e+15 steps",
+    ),
+    (["run", "drop", "--steps", "1.5"], "argument --steps: '1.5': must be a whole number >= 0"),
+    (["run", "drop", "--steps", "-1"], "argument --steps: '-1': must be a whole number >= 0"),
+    (["run", "drop", "--substeps", "0"], "argument --substeps: '0': must be a whole number >= 1"),
+    (["run", "drop", "--substeps", "100000"], "--substeps 100000: must be a whole number"),
+    (["run", "drop", "--integrator", "magic"], '--integrator "magic": must be one of "auto", '),
+    (["run", "drop", "--seconds", "1", "--steps", "1"], "not allowed with argument"),
+    (["run", "drop", "--sec", "1"], "unrecognized arguments: --sec"),
+    (["run", "drop", "--json", "-", "--csv", "-"], "--json and --csv cannot both go to -"),
+    (
+        ["run", "drop", "--json", "none/x.json"],
+        "--json none/x.json: cannot be written: there is no directory",
+    ),
+    (["run", "drop", "--csv", "/"], "--csv /: cannot be written: / is a directory"),
+    (["run", "drop", "--png", "a\0b"], "--png a\\x00b: cannot be written"),
+    (["run", "drp"], 'drp: no such file, and no built-in scene; did you mean "drop"?'),
+    (["run", "a\nb"], "a\\nb: no such file"),
+    (["run", "."], ".: is a directory, not a scene file"),
+    (["scenes", "all"], "unrecognized arguments: all"),
+    (["scenes", "--json", "none/x.json"], "--json none/x.json: cannot be written"),
+    (["newtons_crade"], 'did you mean "newtons_cradle"?'),
+    (["nowhere.json"], "nowhere.json: no such file"),
+    (["drop", "--fast"], "unrecognized arguments: --fast"),
+    (["bench"], "the command bench is not there yet; there are run, scenes"),
+    (["accuracy", "kepler"], "the command accuracy is not there yet"),
+    (["stability"], "the command stability is not there yet"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "line"), USAGE, ids=[" ".join(map(ascii, a)) for a, _ in USAGE])
+def test_bad_usage_is_refused_in_one_line(
+    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert line in complaint(capsys, *arguments)
+
+
+def test_a_bad_scene_is_refused_in_one_line(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "bad.json"
+    entities = [{"id": "ball", "Transform": {}, "Mass": {"mass": -1}}]
+    path.write_text(json.dumps({"format": "physicslab-scene/1", "entities": entities}))
+    line = f'{path}: entity "ball": Mass.mass = -1: must be a finite number > 0 kg'
+    assert complaint(capsys, "run", str(path)) == line
+    assert complaint(capsys, str(path)) == line, "before any window opens"
+
+
+def test_a_run_does_not_write_over_its_own_scene(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "scene.json"
+    save_scene(load_scene("drop"), path)
+    before = path.read_bytes()
+    assert complaint(capsys, "run", str(path), "--json", str(path)).endswith("is the scene itself")
+    assert "cannot both go to" in complaint(
+        capsys, "run", "drop", "--csv", str(tmp_path / "x"), "--json", str(tmp_path / "x")
+    )
+    assert path.read_bytes() == before
+
+
+def test_a_run_that_diverges_says_where_and_when(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    world = load_scene("pendulum")
+    spring = world.component(world.entity("bob"), physicslab.components.Spring)
+    spring.stiffness = 1e9
+    save_scene(world, tmp_path / "stiff.json")
+    report, table = tmp_path / "run.json", tmp_path / "run.csv"
+    line = complaint(
+        capsys, "run", str(tmp_path / "stiff.json"), "--json", str(report), "--csv", str(table), status=1
+    )
+    assert line.startswith("pendulum: ") and "no longer finite at t = " in line
+    assert not report.exists(), "a report of a run that failed would be taken for one that did not"
+    rows = table.read_text().splitlines()
+    assert len(rows) > 2, "what led there can be looked at"
+    assert all(math.isfinite(float(value)) for value in rows[-1].split(",")[2:])
+
+
+def test_no_report_holds_what_is_not_a_number(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    ball = {"id": "ball", "Transform": {}, "Velocity": {"linear": [1e200, 0]}, "Mass": {}}
+    scene = {"format": "physicslab-scene/1", "physics": {"gravity_mode": "none"}, "entities": [ball]}
+    (tmp_path / "fast.json").write_text(json.dumps(scene))
+    line = complaint(capsys, "run", str(tmp_path / "fast.json"), "--json", "-", status=1)
+    assert line.startswith("fast: ") and "finite at t = " in line
+    ball |= {"Transform": {"position": [0, -1e308]}, "Velocity": {}, "Mass": {"mass": 1e3}, "Spring": {}}
+    (tmp_path / "far.json").write_text(json.dumps({"format": "physicslab-scene/1", "entities": [ball]}))
+    line = complaint(capsys, "run", str(tmp_path / "far.json"), status=1)
+    assert line.startswith("far: ") and "finite at t = " in line
+    assert find_not_finite({"a": [{"b": 1.0}, {"b": math.inf}]}) == "a.1.b"
+
+
+def test_what_is_not_built_yet_is_said(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "exact.json"
+    scene = {"format": "physicslab-scene/1", "simulation": {"collisions": "exact"}, "entities": []}
+    path.write_text(json.dumps(scene))
+    assert cli.main(["run", str(path), "--steps", "1", "--json", "-"]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out)["steps"] == 1
+    assert (
+        err == 'physicslab: note: "collisions": "exact" is not built yet; contacts are found within steps\n'
+    )
+
+
+def test_an_interrupted_run_ends_quietly(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(run, "_measure", interrupt)
+    path = tmp_path / "run.json"
+    assert complaint(capsys, "run", "drop", "--json", str(path), status=130) == "interrupted"
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_full_disk_is_said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("physicslab.commands.output.replace_file", full)
+    line = complaint(capsys, "run", "drop", "--steps", "1", "--json", "run.json", status=1)
+    assert line == "--json run.json: cannot be written: No space left on device"
+
+
+def test_help_is_no_failure(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["--help"]) == 0
+    assert "run - Run a scene without a window" in " ".join(capsys.readouterr().out.split())
+    assert cli.main(["run", "--help"]) == 0
+    assert "--substeps N" in capsys.readouterr().out
+
+
+def test_progress_is_for_terminals_and_long_runs() -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    for stream, after in ((Terminal(), "\rdrop: 50 %\x1b[K\r\x1b[K"), (io.StringIO(), "")):
+        line = progress.Progress("drop", stream, clock=iter([0.0, 0.5, 1.5, 1.5, 1.55]).__next__)
+        line.show(0.1)
+        assert stream.getvalue() == ""
+        line.show(0.5)
+        line.show(0.6)  # too soon after the last
+        line.clear()
+        line.clear()
+        assert stream.getvalue() == after
+
+
+def test_an_output_knows_its_file(tmp_path: Path) -> None:
+    output = Output("--json", str(tmp_path / "a"))
+    assert output.is_same_as(str(tmp_path / "b" / ".." / "a"))
+    assert not output.is_same_as(str(tmp_path / "b"))
+    assert not Output("--json", "-").is_same_as("-")
+
+
+def test_a_scene_or_nothing_opens_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str | None] = []
+
+    def open_window(scene: str | None) -> int:
+        opened.append(scene)
+        return 3
+
+    monkeypatch.setitem(sys.modules, "physicslab.app", SimpleNamespace(open_window=open_window))
+    assert cli.main([]) == 3
+    assert cli.main(["drop"]) == 3
+    assert cli.main(["nothing"]) == 2
+    assert opened == [None, "drop"]
+
+
+def process(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
+    """Run Python in a process of its own."""
+    return subprocess.run(
+        [sys.executable, *arguments], cwd=ROOT, capture_output=True, text=True, timeout=120, **options
+    )
+
+
+def test_main_py_is_the_same_program() -> None:
+    done = process("main.py", "run", "two_planets", "--steps", "3", "--json", "-")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads(done.stdout)["steps"] == 3
+    done = process("main.py", "run", "nothing")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("physicslab: nothing: no such file") and done.stderr.count("\n") == 1
+
+
+def test_a_reader_that_leaves_is_no_traceback() -> None:
+    command = f"{sys.executable} main.py run gas --steps 40 --csv - | head -1; echo ${{PIPESTATUS[0]}}"
+    done = process("-c", "import os, sys; os.execvp('bash', ['bash', '-c', sys.argv[1]])", command)
+    assert done.stdout.splitlines()[1] == "141"
+    assert done.stderr == ""
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_a_full_stdout_is_said() -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "main.py", "scenes"], cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True
+        )
+    assert (done.returncode, done.stderr) == (1, "physicslab: No space left on device\n")
+
+
+@pytest.mark.skipif(not Path("/dev/stdout").exists(), reason="needs /dev/stdout")
+def test_a_pipe_with_a_path_is_written_to_as_it_is() -> None:
+    done = process("main.py", "scenes", "--json", "/dev/stdout")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert '"name": "drop"' in done.stdout
+
+
+def test_nothing_without_a_window_imports_pygame() -> None:
+    code = """
+import sys
+import physicslab
+from physicslab import cli
+assert cli.main(["scenes"]) == 0
+assert cli.main(["run", "drop", "--steps", "2"]) == 0
+sys.exit(any(name.split(".")[0].startswith("pygame") for name in sys.modules))
+"""
+    done = process("-c", code)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_the_package_exports_the_names_of_the_contract_and_no_more() -> None:
+    assert sorted(physicslab.__all__) == [
+        "InvalidValue", "SceneError", "Vector2", "World", "load_scene", "save_scene",
+    ]  # fmt: skip
+    for name in physicslab.__all__:
+        assert getattr(physicslab, name).__doc__

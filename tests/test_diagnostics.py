@@ -1,0 +1,109 @@
+"""Diagnostics: energies and momenta against numbers worked out by hand."""
+
+import math
+
+import pytest
+
+from physicslab.components import Held, Mass, Shape, Spring, Transform, Velocity
+from physicslab.config import PhysicsConfig
+from physicslab.diagnostics import Drift, Energy, measure_energy, measure_momentum
+from physicslab.schedule import ForceSystem, Stage, at
+from physicslab.systems.gravity import GravitySystem
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.spring import SpringSystem
+from physicslab.vector import Vector2
+from physicslab.world import World
+
+
+def test_kinetic_energy_and_momenta() -> None:
+    world = World()
+    world.spawn(Transform((1, 2)), Velocity((3, 4), 5), Mass(2), Shape.circle(0.5))
+    world.spawn(Transform((-1, 0)), Velocity((0, -2)), Mass(3))
+    energy, momentum = measure_energy(world), measure_momentum(world)
+    assert energy.kinetic_linear == 0.5 * 2 * 25 + 0.5 * 3 * 4
+    assert energy.kinetic_angular == 0.5 * 0.25 * 25
+    assert energy.kinetic == energy.total == 31 + 3.125
+    assert momentum.linear == Vector2(2 * 3, 2 * 4 - 3 * 2)
+    assert momentum.angular == 2 * (1 * 4 - 2 * 3) + 0.25 * 5 + 3 * (-1 * -2)
+
+
+def test_only_what_forces_move_counts() -> None:
+    world = World()
+    world.spawn(Transform((1, 1)), Velocity((3, 4), 5))
+    world.spawn(Transform((1, 1)), Velocity((3, 4), 5), Mass(2, 1), Held())
+    world.spawn(Transform((1, 1)), Mass(2))
+    spinning = world.spawn(Transform(), Velocity((0, 0), 5), Mass(2, 1, fixed_rotation=True))
+    assert measure_energy(world) == Energy(0.0, 0.0, {})
+    assert measure_momentum(world).angular == 0.0
+    world.component(spinning, Mass).fixed_rotation = False
+    world.component(spinning, Velocity).angular = 2.0
+    assert measure_energy(world).kinetic_angular == 2.0
+
+
+def test_every_force_reports_what_it_stores() -> None:
+    class Wind(ForceSystem):
+        potential = "wind"
+
+        @at(Stage.FORCE)
+        def blow(self, world: World, h: float) -> None: ...
+
+        def potential_energy(self, world: World) -> float:
+            return 7.0
+
+    world = World(GravitySystem(), SpringSystem(), Wind())
+    world.spawn(Transform((0, 3)), Velocity(), Mass(2), Spring(rest_length=1, stiffness=10))
+    energy = measure_energy(world)
+    assert energy.potential == {"gravity": pytest.approx(2 * 9.81 * 3), "spring": 20.0, "wind": 7.0}
+    assert energy.total == pytest.approx(58.86 + 20 + 7)
+    world.physics = PhysicsConfig(gravity_mode="none")
+    assert measure_energy(world).potential == {"spring": 20.0, "wind": 7.0}
+
+
+def test_measuring_follows_changes_at_once_and_changes_nothing() -> None:
+    world = World(GravitySystem())
+    ball = world.spawn(Transform(), Velocity((2, 0)), Mass(1))
+    assert measure_energy(world).kinetic == 2.0
+    world.component(ball, Mass).mass = 3.0
+    assert measure_energy(world).kinetic == 6.0
+    world.add(ball, Velocity((0, 1)))
+    assert measure_energy(world).kinetic == 1.5
+    assert (world.time, world.force_evaluations) == (0.0, 0)
+    world.remove(ball)
+    assert measure_energy(world).total == 0.0
+
+
+def test_drift_keeps_the_largest_departure() -> None:
+    world = World(IntegrateSystem())
+    velocity = world.component(world.spawn(Transform(), Velocity((2, 0)), Mass(1)), Velocity)
+    drift = Drift(world)
+    assert (drift.initial.total, drift.relative) == (2.0, 0.0)
+    for speed in (2.2, 1.0, 2.0):
+        velocity.linear = (speed, 0)
+        drift.sample(world)
+    assert drift.largest == 1.5 and drift.relative == 0.75
+    assert drift.latest.total == 2.0
+
+
+def test_drift_from_nothing_is_relative_to_the_kinetic_energy_seen() -> None:
+    world = World(GravitySystem(), IntegrateSystem())
+    ball = world.spawn(Transform(), Velocity(), Mass(1))
+    drift = Drift(world)
+    assert drift.relative == 0.0
+    world.run(seconds=1.0)
+    drift.sample(world)
+    assert drift.latest.kinetic == pytest.approx(0.5 * 9.81**2)
+    assert drift.relative < 1e-12
+    world.component(ball, Transform).position = (0, 0)
+    drift.sample(world)
+    assert drift.relative == pytest.approx(1.0)
+
+
+def test_drift_does_not_hide_what_is_no_number() -> None:
+    world = World()
+    world.spawn(Transform(), Velocity((1, 0)), Mass(1))
+    drift = Drift(world)
+    world.table(Velocity)["linear"][1] = math.nan
+    drift.sample(world)
+    world.table(Velocity)["linear"][1] = 1.0
+    drift.sample(world)
+    assert math.isnan(drift.relative)

@@ -1,0 +1,146 @@
+"""The built-in scenes: each holds what it says and does what it is there to show."""
+
+import math
+
+import numpy as np
+import pytest
+
+from physicslab import World, load_scene
+from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.diagnostics import Drift, measure_energy, measure_momentum
+from physicslab.scene_checks import printable
+from physicslab.scenes import SCENES
+
+
+def x(world: World, name: str) -> float:
+    """Return an entity's horizontal place."""
+    return world.component(world.entity(name), Transform).position.x
+
+
+def speeds(world: World) -> list[float]:
+    """Return the horizontal velocities of all bodies."""
+    world.synchronise()
+    velocities: list[float] = world.table(Velocity)["linear"][1:, 0].tolist()
+    return velocities
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_scene_is_there_with_its_texts(name: str) -> None:
+    world = load_scene(name)
+    assert (world.name, name.isidentifier()) == (name, True)
+    assert world.title and len(world.description) > 30
+    assert printable(world.title + world.description) == world.title + world.description
+    assert world.entities()
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_scene_runs_and_stays_finite(name: str) -> None:
+    world = load_scene(name)
+    world.run(seconds=0.5)
+    assert world.time == 0.5
+    assert math.isfinite(measure_energy(world).total)
+
+
+def test_the_measured_scenes_are_what_the_measurements_say() -> None:
+    pyramid = load_scene("pyramid")
+    pyramid.synchronise()
+    assert len(pyramid.batch(Mass)) == 465
+    assert (pyramid.physics.gravity.y, pyramid.simulation.dt, pyramid.simulation.substeps) == (
+        -10.0,
+        1 / 60,
+        4,
+    )
+    gas = load_scene("gas")
+    gas.synchronise()
+    assert len(gas.batch(Mass)) == 2000
+    assert gas.physics.bounds is not None
+    left, bottom, right, top = gas.physics.bounds
+    share = float(np.sum(np.pi * gas.table(Shape)["radius"] ** 2)) / ((right - left) * (top - bottom))
+    assert 0.15 < share < 0.20
+    pile = load_scene("pile")
+    pile.synchronise()
+    assert len(pile.batch(Mass)) == 1000
+
+
+def test_what_a_scene_does_not_need_is_left_out() -> None:
+    planets = load_scene("two_planets")
+    planets.run(steps=1)
+    assert {"SpringSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem"} == {
+        left.name for left in planets.schedule.left_out
+    }
+    pendulum = load_scene("pendulum")
+    pendulum.run(steps=1)
+    assert {"BroadPhaseSystem", "ContactSystem", "ResolveSystem"} == {
+        left.name for left in pendulum.schedule.left_out
+    }
+
+
+def test_two_planets_have_and_keep_no_momentum() -> None:
+    world = load_scene("two_planets")
+    drift = Drift(world)
+    for _ in world.stepping(seconds=10):
+        drift.sample(world)
+        assert measure_momentum(world).linear.magnitude < 1e-12
+    assert drift.relative < 1e-4
+
+
+def test_the_cradle_lets_out_as_many_balls_as_come_in() -> None:
+    world = load_scene("newtons_cradle")
+    world.run(seconds=1.0)
+    first = speeds(world)
+    assert first[4] > 3.0 and max(map(abs, first[:4])) < 0.05
+    world.run(seconds=1.75)
+    back = speeds(world)
+    assert back[0] < -3.0 and max(map(abs, back[1:])) < 0.05
+
+
+def test_the_stack_stands() -> None:
+    world = load_scene("stack")
+    world.run(seconds=3.0)
+    top = world.component(world.entities()[-1], Transform).position
+    assert abs(top.x) < 0.01 and 9.4 < top.y <= 9.5
+
+
+def test_blocks_slide_where_friction_is_less_than_the_slope() -> None:
+    world = load_scene("slope")
+    names = [f"mu = {friction}" for friction in (0.1, 0.2, 0.5, 0.8)]
+    before = [x(world, name) for name in names]
+    world.run(seconds=1.0)
+    moved = [
+        (start - x(world, name)) / math.cos(math.radians(20))
+        for start, name in zip(before, names, strict=True)
+    ]
+    for way, friction in zip(moved[:2], (0.1, 0.2), strict=True):
+        slide = 0.5 * 9.81 * (math.sin(math.radians(20)) - friction * math.cos(math.radians(20)))
+        assert way == pytest.approx(slide, rel=0.01)
+    assert max(map(abs, moved[2:])) < 0.01
+
+
+def test_bounces_reach_the_square_of_the_restitution() -> None:
+    world = load_scene("bounces")
+    names = [f"e = {e}" for e in ("0", "0.25", "0.5", "0.75", "1")]
+    heights: dict[str, list[float]] = {name: [] for name in names}
+    bodies = {name: world.component(world.entity(name), Transform) for name in names}
+    for _ in world.stepping(seconds=2.2):
+        for name, transform in bodies.items():
+            heights[name].append(transform.position.y - 0.3)
+    for name, e in zip(names, (0.0, 0.25, 0.5, 0.75, 1.0), strict=True):
+        floor = int(np.argmin(heights[name][:70]))
+        assert max(heights[name][floor : floor + 75]) / 3.7 == pytest.approx(e * e, abs=0.01)
+
+
+def test_the_last_domino_falls() -> None:
+    world = load_scene("dominoes")
+    last = world.component(world.entities()[-1], Transform)
+    world.run(seconds=1.0)
+    assert abs(last.angle) < 0.01
+    world.run(seconds=6.0)
+    assert last.angle < -1.0
+
+
+def test_the_gas_keeps_its_energy() -> None:
+    world = load_scene("gas")
+    before = measure_energy(world).kinetic
+    world.run(seconds=1.0)
+    assert world.collisions > 1000
+    assert measure_energy(world).kinetic == pytest.approx(before, rel=1e-9)
