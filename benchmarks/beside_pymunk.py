@@ -1,13 +1,14 @@
 """Time a step beside pymunk's on the same scenes, interleaved in one run.
 
-``uv run --group peers python benchmarks/beside_pymunk.py [--repeats N]`` prints the median time a step of both
-engines and the median of the ratios, pymunk / PhysicsLab: above 1, PhysicsLab is faster. dt = 1/60 s, sleeping
-off; PhysicsLab takes 4 substeps, pymunk 10 iterations with a slop of 5 mm, its usual settings.
+``uv run --group peers python benchmarks/beside_pymunk.py [--repeats N]`` prints the median time a step of
+both engines and the median of the ratios, pymunk / PhysicsLab: above 1, PhysicsLab is faster. dt = 1/60 s,
+sleeping off; PhysicsLab takes 4 substeps, pymunk 10 iterations with a slop of 5 mm, its usual settings.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import statistics
 import time
 from collections.abc import Callable
@@ -100,12 +101,13 @@ SCENES: dict[str, tuple[Callable[[], World], float]] = {
 
 
 def kinetic_energy(space: pymunk.Space) -> float:
-    """Return the kinetic energy of all bodies [J]. (pymunk's own figure is twice that.)"""
+    """Return the kinetic energy of all bodies [J]; pymunk's own figure is twice that."""
     moving = [body for body in space.bodies if body.body_type == pymunk.Body.DYNAMIC]
-    return sum(
+    energies = [
         0.5 * body.mass * body.velocity.length**2 + 0.5 * body.moment * body.angular_velocity**2
         for body in moving
-    )
+    ]
+    return math.fsum(energies)
 
 
 def timed(step: Callable[[], None]) -> float:

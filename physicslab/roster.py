@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
-from operator import is_
 from typing import Any
 
 import esper
@@ -68,9 +67,12 @@ class Roster:
         changed: dict[int, tuple[Any, ...]] = {}
         for entity in living:
             components: tuple[Any, ...] = esper.components_for_entity(entity)
-            before = self._components.get(entity, ())
-            if len(before) != len(components) or not all(map(is_, before, components)):
-                changed[entity] = components
+            try:
+                if self._components.get(entity) == components:  # handles are equal only to themselves
+                    continue
+            except Exception:  # what a foreign component makes of == is no concern of ours
+                pass
+            changed[entity] = components
         self._follow_components(changed)
         self._components.update(changed)
         self._seen = esper.get_component(_Nothing)

@@ -1,6 +1,13 @@
 """What every test module shares."""
 
+import os
+
 from hypothesis import settings
+
+# Before anything imports pygame: tests draw, and open windows that nobody sees.
+os.environ["SDL_VIDEODRIVER"] = "dummy"
+os.environ["SDL_AUDIODRIVER"] = "dummy"
+os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 
 # No deadline: the first example of a test may load kernels.
 settings.register_profile("physicslab", deadline=None, max_examples=40)

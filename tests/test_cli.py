@@ -187,6 +187,7 @@ USAGE = [
     ),
     (["run", "drop", "--steps", "1.5"], "argument --steps: '1.5': must be a whole number >= 0"),
     (["run", "drop", "--steps", "-1"], "argument --steps: '-1': must be a whole number >= 0"),
+    (["run", "drop", "--steps", "9" * 400], "must be a whole number >= 0, at most 1e+15"),
     (["run", "drop", "--substeps", "0"], "argument --substeps: '0': must be a whole number >= 1"),
     (["run", "drop", "--substeps", "100000"], "--substeps 100000: must be a whole number"),
     (["run", "drop", "--integrator", "magic"], '--integrator "magic": must be one of "auto", '),

@@ -19,7 +19,7 @@ from physicslab.world import World
 
 
 @component
-class Charge(Component):
+class Ion(Component):
     """An example of a contributor's component."""
 
     charge: float = field(default=0.0, unit="C", meaning="electric charge")
@@ -33,14 +33,14 @@ class Marker(Component):
     """A component without fields: being there is all that it says."""
 
 
-class ChargeSystem(System):
+class IonSystem(System):
     """An example of a contributor's vectorised system."""
 
-    needs = (Charge, Velocity)
+    needs = (Ion, Velocity)
 
     @at(Stage.FORCE)
     def push(self, world: World, h: float) -> None:
-        rows, charge = world.batch(Charge, Velocity).rows, world.table(Charge)
+        rows, charge = world.batch(Ion, Velocity).rows, world.table(Ion)
         push = charge["charge"][rows, None] * charge["field_there"][rows]
         world.table(Velocity)["linear"][rows] += h * push
         charge["count"][rows] += 1
@@ -49,7 +49,7 @@ class ChargeSystem(System):
 @pytest.fixture(autouse=True, scope="module")
 def _registered() -> Iterator[None]:
     yield
-    del COMPONENTS["Charge"], COMPONENTS["Marker"]
+    del COMPONENTS["Ion"], COMPONENTS["Marker"]
 
 
 # ---- one memory --------------------------------------------------------------------------------------------
@@ -75,9 +75,9 @@ def test_a_handle_and_its_column_are_one_memory() -> None:
 
 def test_handles_read_plain_python_values() -> None:
     world = World()
-    entity = world.spawn(Transform(), Shape.circle(1), Mass(), Spring(anchor_b=(0, 1)), Charge())
+    entity = world.spawn(Transform(), Shape.circle(1), Mass(), Spring(anchor_b=(0, 1)), Ion())
     assert type(world.component(entity, Transform).position) is Vector2
-    assert type(world.component(entity, Charge).count) is int
+    assert type(world.component(entity, Ion).count) is int
     assert type(world.component(entity, Mass).mass) is float
     assert world.component(entity, Mass).fixed_rotation is False
     assert world.component(entity, Shape).kind == "circle"
@@ -188,10 +188,10 @@ REFUSED: list[tuple[type[Any], str, Any, str]] = [
     (Transform, "position", np.array(5.0), "must be two finite numbers"),
     (Transform, "position", np.zeros((2, 2)), "must be two finite numbers"),
     (Transform, "position", Vector2(math.inf, 0), "must be two finite numbers"),
-    (Charge, "count", 1.0, "Charge.count = 1.0: must be a whole number >= 0"),
-    (Charge, "count", True, "Charge.count = True: must be a whole number >= 0"),
-    (Charge, "count", 2**63, "must be a whole number >= 0"),
-    (Charge, "sign", "odd", 'Charge.sign = \'odd\': must be one of "fixed", "free"'),
+    (Ion, "count", 1.0, "Ion.count = 1.0: must be a whole number >= 0"),
+    (Ion, "count", True, "Ion.count = True: must be a whole number >= 0"),
+    (Ion, "count", 2**63, "must be a whole number >= 0"),
+    (Ion, "sign", "odd", 'Ion.sign = \'odd\': must be one of "fixed", "free"'),
 ]
 
 
@@ -299,7 +299,7 @@ def test_inertia_comes_from_the_shape_until_it_is_given() -> None:
 
 COPIES: list[Any] = [
     Transform((1, 2), 3), Mass(2.0), Mass(2.0, 5.0, True), Shape.box(1, 2), Spring(3, None, (1, 2)),
-    Charge(1, (2, 3), 4, "free"), Marker(),
+    Ion(1, (2, 3), 4, "free"), Marker(),
 ]  # fmt: skip
 
 
@@ -327,14 +327,14 @@ def test_a_copy_lets_go_of_the_world() -> None:
 
 
 def test_a_contributed_component_and_system_work_in_a_world() -> None:
-    world = World(ChargeSystem())
-    pushed = world.spawn(Transform(), Velocity(), Charge(2.0, (0, 3)))
+    world = World(IonSystem())
+    pushed = world.spawn(Transform(), Velocity(), Ion(2.0, (0, 3)))
     world.spawn(Transform(), Velocity())
     world.step(0.5)
     assert world.component(pushed, Velocity).linear == Vector2(0, 3.0)
-    assert world.component(pushed, Charge).count == 4
-    assert Charge.FIELDS[0].meaning == "electric charge"
-    assert Charge.charge.__doc__ == "electric charge [C]"
+    assert world.component(pushed, Ion).count == 4
+    assert Ion.FIELDS[0].meaning == "electric charge"
+    assert Ion.charge.__doc__ == "electric charge [C]"
 
 
 def test_mistakes_in_a_component_are_told_when_it_is_made() -> None:

@@ -178,6 +178,22 @@ def test_components_may_change_hands_in_one_go() -> None:
     assert world.component(b, Velocity) is velocity and velocity.linear.x == 3.0
 
 
+def test_foreign_components_are_left_alone_whatever_they_make_of_equality() -> None:
+    class Inventory:
+        def __eq__(self, other: object) -> bool:
+            raise ValueError("the truth value of an inventory is ambiguous")
+
+        __hash__ = None  # type: ignore[assignment]
+
+    world = World()
+    entity = world.spawn(Inventory(), Transform((1, 0)))
+    rows_and_handles_agree(world)
+    world.add(entity, Inventory())
+    world.add(entity, Transform((2, 0)))
+    rows_and_handles_agree(world)
+    assert world.component(entity, Transform).position.x == 2.0
+
+
 deeds = st.sampled_from(["spawn", "remove", "add", "discard", "delete", "step"])
 changes = st.lists(st.tuples(deeds, st.integers(0, 30)))
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 import argparse
 import math
 
-__all__ = ["count", "duration", "positive_count", "positive_duration"]
+__all__ = ["MOST_STEPS", "count", "duration", "positive_count", "positive_duration"]
+
+MOST_STEPS = 10**15
+"""More than any run will do; beyond it, times could no longer be counted exactly."""
 
 
 def duration(text: str) -> float:
@@ -46,6 +49,8 @@ def _whole(text: str, least: int) -> int:
         number = int(text)
     except ValueError:
         number = least - 1
-    if number < least:
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a whole number >= {least}")
+    if not least <= number <= MOST_STEPS:
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: must be a whole number >= {least}, at most {MOST_STEPS:g}"
+        )
     return number

@@ -14,7 +14,7 @@ from pathlib import Path
 from physicslab.bodies import Diverged
 from physicslab.columns import InvalidValue
 from physicslab.commands.command_error import FAILED, CommandError
-from physicslab.commands.numbers import count, duration, positive_count, positive_duration
+from physicslab.commands.numbers import MOST_STEPS, count, duration, positive_count, positive_duration
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.config import INTEGRATORS
@@ -30,7 +30,6 @@ from physicslab.world import World
 __all__ = ["add_arguments", "execute", "note_unbuilt"]
 
 _DEFAULT_S = 10.0
-_MOST_STEPS = 1e15
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -109,8 +108,8 @@ def _configure(world: World, arguments: Namespace) -> None:
             raise
         raise CommandError(f"{scene}: {error}") from error
     seconds = _DEFAULT_S if arguments.seconds is None else arguments.seconds
-    if arguments.steps is None and seconds / world.simulation.dt > _MOST_STEPS:
-        raise CommandError(f"--seconds {seconds:g}: must be at most {_MOST_STEPS:g} steps of dt")
+    if arguments.steps is None and seconds / world.simulation.dt > MOST_STEPS:
+        raise CommandError(f"--seconds {seconds:g}: must be at most {MOST_STEPS:g} steps of dt")
     note_unbuilt(world)
 
 

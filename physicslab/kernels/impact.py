@@ -37,19 +37,26 @@ def _shift(
 
 
 @inlined
-def _meeting_time(separation: float, v: float, pull: float, start: float, end: float) -> float:
-    """Return the first t in [start, end] at which separation + v t + pull t^2 / 2 = 0, for an approach v < 0.
+def _meeting_time(
+    separation: float, v: float, pull: float, start: float, end: float, earliest: float, pressed: bool
+) -> float:
+    """Return the t up to ``end`` at which separation + v t + pull t^2 / 2 = 0, for an approach v < 0.
 
-    Infinity where that is later; 0 where it was earlier, for the two then have overlapped for longer.
+    Infinity where that is later. Where it is earlier than ``start``, an impact with a third body has made them
+    approach too late to be seen in time, and they meet now. But if it is ``earliest``, or if they were
+    ``pressed`` together in the last substep, it is no impact but the pressing of others in a pile, which must
+    not bounce: minus infinity.
     """
     root = v * v - 2.0 * pull * separation
-    if root < 0.0:  # the forces keep them apart, or have held them together for longer
-        return math.inf if separation > 0.0 else 0.0
-    t = 2.0 * separation / (-v + math.sqrt(root))  # the form without cancellation
+    if root < 0.0 and separation > 0.0:  # the forces keep them apart
+        return math.inf
+    t = 2.0 * separation / (-v + math.sqrt(root)) if root >= 0.0 else -math.inf  # without cancellation
     if t > end:
         return math.inf
     # A meeting at the very seam of two substeps belongs to the later one.
-    return t if t >= start - 1e-6 * (end - start) else 0.0
+    if t >= start - 1e-6 * (end - start):
+        return t
+    return -math.inf if pressed or t <= earliest else 0.0
 
 
 @inlined
@@ -126,6 +133,7 @@ def _strike_pair(
     resting_speed: float,
     start: float,
     end: float,
+    earliest: float,
 ) -> bool:
     """Bounce one pair if it meets between ``start`` and ``end`` from now; return whether it did."""
     a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
@@ -137,23 +145,24 @@ def _strike_pair(
     moved = moved_x * nx + moved_y * ny
     # Half-way through leapfrog's substep, positions lack what the forces have done to them so far.
     moved += 0.125 * pull * (end - start) * (end - start)
-    t1 = t2 = math.inf
+    t1 = t2 = -math.inf
     if v1 < -resting_speed:
-        t1 = _meeting_time(one.separation + moved, v1, pull, start, end)
+        t1 = _meeting_time(one.separation + moved, v1, pull, start, end, earliest, one.normal_impulse > 0.0)
         one.ahead = 1 if t1 == math.inf else 0
     if v2 < -resting_speed:
-        t2 = _meeting_time(two.separation + moved, v2, pull, start, end)
+        t2 = _meeting_time(two.separation + moved, v2, pull, start, end, earliest, two.normal_impulse > 0.0)
         two.ahead = 1 if t2 == math.inf else 0
-    t = min(t1, t2)
-    if t == math.inf:
+    meets_1, meets_2 = abs(t1) < math.inf, abs(t2) < math.inf
+    if not (meets_1 or meets_2):
         return False
+    t = min(t1, t2) if meets_1 and meets_2 else (t1 if meets_1 else t2)
     # The speeds at the time of contact, not those of now.
     v1, v2 = v1 + pull * t, v2 + pull * t
     before = (linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
     j1 = j2 = 0.0
-    if t1 < math.inf and t2 < math.inf:
+    if meets_1 and meets_2:
         j1, j2 = _bounce_two(manifold, one, two, v1, v2, inverse_mass, inverse_inertia)
-    elif t1 < math.inf:
+    elif meets_1:
         j1 = -(1.0 + manifold.restitution) * v1 * one.normal_mass
     else:
         j2 = -(1.0 + manifold.restitution) * v2 * two.normal_mass
@@ -162,7 +171,9 @@ def _strike_pair(
     if j2 > 0.0:
         _hit(manifold, two, j2, v2, linear, angular, inverse_mass, inverse_inertia)
     _shift(a, b, before, position, angle, linear, angular, t)
-    if manifold.swept == 1:  # its normal is not that of now: the solver must not push along it
+    if (
+        manifold.swept == 1 and manifold.restitution > 0.0
+    ):  # its normal is not that of now: the solver must not push along it
         one.ahead = two.ahead = 1
     return j1 > 0.0 or j2 > 0.0
 
@@ -220,6 +231,7 @@ def strike(
     left that meets; inelastic ones only once, for what is left of their approach the solver takes away.
     """
     impacts = 0
+    earliest = start - 2.0 * (end - start) if has_forces else -math.inf  # without forces, nothing piles up
     for sweep in range(_SWEEPS):
         bounced = 0
         for k in range(count):
@@ -245,7 +257,7 @@ def strike(
                 pull = 0.0
             if _strike_pair(
                 manifold, one, two, position, angle, linear, angular, inverse_mass, inverse_inertia,
-                v1, v2, pull, resting_speed, start, end,
+                v1, v2, pull, resting_speed, start, end, earliest,
             ):  # fmt: skip
                 bounced += 1
                 manifold.struck += 1

@@ -21,6 +21,8 @@ __all__ = ["HudSystem"]
 
 _PERIOD = 0.1
 """Time [s] between two readings: figures that change faster cannot be read."""
+_BANNER = 16
+"""Room that the banners need, in heights of the text."""
 _DROP_SHOWN = 3.0
 """How long [s] the HUD speaks of time that was dropped."""
 
@@ -39,7 +41,8 @@ class HudSystem(System):
         self._meter = FrameMeter()
         self._next_reading = 0.0
         self._size = (0, 0)
-        self._panels: tuple[Panel, ...] = ()
+        self._panels: list[Panel] = []
+        self._middle = 0
         self._hint: Hint
         self._dropped = 0.0
         self._dropped_now = 0.0
@@ -72,11 +75,13 @@ class HudSystem(System):
         width, margin = round(19.5 * size), round(0.8 * size)
         figures = [*_figure_lines(world, measure_world(world), self._meter.frame_rate), *_method_lines(world)]
         costs = [*_cost_lines(world, self._meter), *_left_out_lines(world)]
+        self._panels = [lay_out(figures, margin, margin, width, size, canvas, theme)]
         right = canvas.size[0] - width - margin
-        self._panels = (
-            lay_out(figures, margin, margin, width, size, canvas, theme),
-            lay_out(costs, right, margin, width, size, canvas, theme),
-        )
+        if right - (margin + width) >= _BANNER * size:  # or the banners would have no room between them
+            self._panels.append(lay_out(costs, right, margin, width, size, canvas, theme))
+        else:
+            right = canvas.size[0]
+        self._middle = (margin + width + right) // 2
         self._hint = Hint(CONTROLS, size - 1, canvas, theme)
 
     def _draw_banners(self, world: World) -> None:
@@ -85,8 +90,9 @@ class HudSystem(System):
         size = self._text_size
         top = round(0.8 * size)
         for words, colour in self._banners(world):
-            middle = window.canvas.size[0] // 2
-            top += draw_pill([words], middle, top, size + 2, colour, window.canvas, window.theme) + size // 2
+            top += size // 2 + draw_pill(
+                [words], self._middle, top, size + 2, colour, window.canvas, window.theme
+            )
 
     def _banners(self, world: World) -> list[tuple[str, Colour]]:
         window, theme = self._window, self._window.theme

@@ -15,9 +15,6 @@ from physicslab.view.pygame_canvas import PygameCanvas
 
 __all__ = ["Display"]
 
-_SMALLEST = (480, 320)
-"""The least size of the window [px]."""
-
 
 class Display:
     """A real window with a canvas in it, and the clock that paces its frames.

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 from collections import OrderedDict
 from collections.abc import Callable
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -27,10 +26,8 @@ _SMOOTHING = 4
 """How many times too large panels are drawn, to be shrunk."""
 
 
-@lru_cache(maxsize=32)
-def _font(size: int, bold: bool) -> pygame.font.Font:
+def _load_font(size: int, bold: bool) -> pygame.font.Font:
     """Return a font by its nominal size [px]: Noto Sans, which comes with pygame_gui, or pygame's own."""
-    pygame.font.init()
     package = importlib.util.find_spec("pygame_gui")
     if package is not None and package.submodule_search_locations:
         name = "NotoSans-Bold.ttf" if bold else "NotoSans-Regular.ttf"
@@ -59,6 +56,7 @@ class PygameCanvas:
         red, green, blue, _ = surface.get_shifts()
         self._shifts = np.array((red, green, blue), np.uint32)
         self._kept: OrderedDict[tuple[object, ...], pygame.Surface] = OrderedDict()
+        self._fonts: dict[tuple[int, bool], pygame.font.Font] = {}
 
     @property
     def size(self) -> tuple[int, int]:
@@ -84,13 +82,15 @@ class PygameCanvas:
         """Draw discs, each with a rim and a line that shows its angle, or hatched."""
         compile_kernels((raster.paint_discs,))
         fill, rim = self._packed(look.fill), self._packed(look.rim)
+        centre, radius, angle = _plain(centre), _plain(radius), _plain(angle)
         raster.paint_discs(self._pixels(), centre, radius, angle, fill, rim, look.hatched, _RIM)
 
     def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
         """Draw boxes of the given widths and heights, each with a rim and a notch, or hatched."""
         compile_kernels((raster.paint_boxes,))
         fill, rim = self._packed(look.fill), self._packed(look.rim)
-        raster.paint_boxes(self._pixels(), centre, 0.5 * extent, angle, fill, rim, look.hatched, _RIM)
+        centre, half, angle = _plain(centre), _plain(0.5 * extent), _plain(angle)
+        raster.paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.hatched, _RIM)
 
     def lines(
         self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float = 1.0
@@ -98,7 +98,7 @@ class PygameCanvas:
         """Draw straight lines of one kind, with round ends."""
         compile_kernels((raster.paint_lines,))
         packed = int(self._packed(np.array([colour], np.uint8))[0])
-        raster.paint_lines(self._pixels(), start, end, width, packed, opacity)
+        raster.paint_lines(self._pixels(), _plain(start), _plain(end), width, packed, opacity)
 
     def _keep(self, key: tuple[object, ...], make: Callable[[], pygame.Surface]) -> pygame.Surface:
         surface = self._kept.get(key)
@@ -120,19 +120,29 @@ class PygameCanvas:
 
     def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
         """Write one line; ``at`` is its top left, top middle or top right."""
-        font = _font(style.size, style.bold)
+        font = self._font(style)
         line = self._keep(("text", words, style), lambda: font.render(words, True, style.colour))
         shift = {"left": 0, "centre": line.get_width() // 2, "right": line.get_width()}[align]
         self.surface.blit(line, (at[0] - shift, at[1]))
 
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return the width and height of one line [px]."""
-        return _font(style.size, style.bold).size(words)
+        return self._font(style).size(words)
+
+    def _font(self, style: TextStyle) -> pygame.font.Font:
+        key = (style.size, style.bold)
+        if key not in self._fonts:
+            pygame.font.init()  # where there is no window, nobody did
+            self._fonts[key] = _load_font(*key)
+        return self._fonts[key]
 
 
-def _rounded(
-    size: tuple[int, int], colour: Colour, outline: Colour, opacity: float
-) -> pygame.Surface:
+def _plain(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return numbers as the compiled loops take them, whatever stride and type they came in."""
+    return np.ascontiguousarray(numbers, np.float64)
+
+
+def _rounded(size: tuple[int, int], colour: Colour, outline: Colour, opacity: float) -> pygame.Surface:
     """Return a rectangle with smooth round corners, its colours multiplied by its opacity."""
     width, height = size
     radius = _SMOOTHING * min(_CORNER, width // 2, height // 2)

@@ -48,10 +48,7 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
         canvas.lines(start[plain], end[plain], theme.spring, 1.6)
     if not plain.all():
         path = coil(start[~plain], end[~plain], rest[~plain])
-        canvas.lines(
-            np.ascontiguousarray(path[:, :-1].reshape(-1, 2)),
-            np.ascontiguousarray(path[:, 1:].reshape(-1, 2)), theme.spring, 1.6,
-        )  # fmt: skip
+        canvas.lines(path[:, :-1].reshape(-1, 2), path[:, 1:].reshape(-1, 2), theme.spring, 1.6)
     if fixed.any():
         pins = end[fixed]
         count = len(pins)

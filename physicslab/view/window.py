@@ -86,11 +86,6 @@ class Window:
         dt = world.simulation.dt
         return self.pace.due(dt) * dt * self.pace.speed
 
-    def resize(self, canvas: Canvas) -> None:
-        """Go on with a canvas of another size."""
-        self.canvas = canvas
-        self.camera.resize(canvas.size)
-
     def go_home(self, world: World) -> None:
         """Show the world as at the start: at the usual scale where all of it fits, else smaller."""
         self._show(world, self.config.pixels_per_metre)

@@ -1,0 +1,102 @@
+"""A sandbox at which a test sits like a user: it sends SDL's events and lets frames go by."""
+
+from __future__ import annotations
+
+import numpy as np
+import pygame
+
+from physicslab.app import Sandbox
+from physicslab.components import Transform, Velocity
+from physicslab.config import PhysicsConfig, WindowConfig
+from physicslab.systems.standard import standard_systems
+from physicslab.vector import Vector2
+from physicslab.view.canvas import Canvas
+from physicslab.view.pygame_canvas import PygameCanvas
+from physicslab.view.window import Window
+from physicslab.world import World
+
+FRAME = 1.0 / 60.0
+BUTTONS = {"left": 1, "middle": 2, "right": 3}
+
+
+def empty_world(**physics: object) -> World:
+    """Return a world with every physics system and nothing in it."""
+    return World(*standard_systems(), physics=PhysicsConfig(**physics))  # type: ignore[arg-type]
+
+
+def bits(world: World) -> bytes:
+    """Return the whole state of motion of a world, bit for bit."""
+    world.synchronise()
+    transform, velocity = world.table(Transform), world.table(Velocity)
+    columns = (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
+    return b"".join(np.ascontiguousarray(column).tobytes() for column in columns)
+
+
+class Desk:
+    """A world in a window of 1280 x 720 whose camera shows 100 px per metre, the origin in the middle.
+
+    The clock that limits the steps of a frame stands still, so that no step hangs on how busy the machine is.
+    """
+
+    def __init__(
+        self, world: World, canvas: Canvas | None = None, config: WindowConfig | None = None
+    ) -> None:
+        pygame.display.init()
+        if canvas is None:
+            canvas = PygameCanvas(pygame.display.set_mode((1280, 720)))
+        self.world = world
+        self.window = Window(canvas, config)
+        self.sandbox = Sandbox(world, self.window, clock=lambda: 0.0)
+        self.window.camera.look_at((0.0, 0.0, 0.0, 0.0), 100.0)
+        self._held: set[str] = set()
+        pygame.event.clear()
+
+    def pixel(self, x: float, y: float) -> tuple[int, int]:
+        """Return the pixel that shows a point of the world [m]."""
+        across, down = self.window.camera.to_screen(Vector2(x, y))
+        return round(across), round(down)
+
+    def press(self, x: float, y: float, button: str = "left") -> None:
+        """Press a mouse button at a point of the world [m]."""
+        self._held.add(button)
+        pygame.event.post(
+            pygame.Event(pygame.MOUSEBUTTONDOWN, button=BUTTONS[button], pos=self.pixel(x, y), touch=False)
+        )
+
+    def release(self, x: float, y: float, button: str = "left") -> None:
+        """Let a mouse button go at a point of the world [m]."""
+        self._held.discard(button)
+        pygame.event.post(
+            pygame.Event(pygame.MOUSEBUTTONUP, button=BUTTONS[button], pos=self.pixel(x, y), touch=False)
+        )
+
+    def move(self, x: float, y: float) -> None:
+        """Move the cursor to a point of the world [m]."""
+        held = tuple(int(button in self._held) for button in BUTTONS)
+        pygame.event.post(
+            pygame.Event(pygame.MOUSEMOTION, pos=self.pixel(x, y), rel=(0, 0), buttons=held, touch=False)
+        )
+
+    def key(self, name: str, mod: int = 0) -> None:
+        """Press a key, by its name in SDL."""
+        code = pygame.key.key_code(name)
+        pygame.event.post(pygame.Event(pygame.KEYDOWN, key=code, mod=mod, unicode="", scancode=0))
+
+    def frames(self, count: int = 1, elapsed: float = FRAME) -> None:
+        """Let frames go by."""
+        for _ in range(count):
+            self.sandbox.frame(elapsed)
+
+    def drag(self, start: tuple[float, float], velocity: tuple[float, float], frames: int) -> Vector2:
+        """Press at a point, move the cursor at a speed [m/s] for so many frames, and let go there."""
+        self.press(*start)
+        self.frames()
+        x, y = start
+        for n in range(1, frames + 1):
+            x = start[0] + velocity[0] * n * FRAME
+            y = start[1] + velocity[1] * n * FRAME
+            self.move(x, y)
+            if n < frames:
+                self.frames()
+        self.release(x, y)
+        return Vector2(x, y)

@@ -1,0 +1,224 @@
+"""The sandbox as a whole: frames of any length, a world that diverges, the window's loop."""
+
+import itertools
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pygame
+import pytest
+from desk import FRAME, Desk, bits, empty_world
+
+from physicslab import app
+from physicslab.app import Sandbox, open_window
+from physicslab.components import Transform, Velocity
+from physicslab.prefabs import box, circle
+from physicslab.scene import SceneError, load_scene
+from physicslab.schedule import Stage, System, at
+from physicslab.view.canvas import RecordingCanvas
+from physicslab.view.display import Display
+from physicslab.view.window import Window
+from physicslab.world import World
+
+
+@pytest.mark.parametrize("name", ["sandbox", "newtons_cradle", "two_planets"])
+def test_the_frame_rate_changes_no_bit(name: str) -> None:
+    outcomes = set()
+    for frames in ([1 / 60] * 120, [1 / 30] * 60, [1 / 144] * 288, [0.004, 0.05, 0.071] * 16):
+        desk = Desk(load_scene(name), RecordingCanvas((1280, 720)))
+        for elapsed in frames:
+            desk.frames(1, elapsed)
+        desk.frames(1, 2.0 - sum(frames))
+        outcomes.add((bits(desk.world), desk.world.steps, desk.world.time))
+    assert len(outcomes) == 1
+    assert desk.world.steps == 120
+
+
+def test_a_long_frame_is_clamped_and_what_is_dropped_is_told() -> None:
+    world = empty_world()
+    circle(world, (0, 0))
+    desk = Desk(world)
+    desk.frames(1, elapsed=3.0)
+    assert world.steps == 6  # max_dt is 0.1 s
+    assert desk.window.pace.dropped == pytest.approx(2.9)
+
+
+class Sluggish(System):
+    """Makes the clock go on by a while in every step."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def clock(self) -> float:
+        return self.now
+
+    @at(Stage.FINISH)
+    def dawdle(self, world: World, h: float) -> None:
+        self.now += 0.06
+
+
+def test_a_world_too_heavy_runs_slowly_and_leaves_the_window_awake() -> None:
+    sluggish = Sluggish()
+    world = empty_world()
+    world.install(sluggish)
+    circle(world, (0, 0))
+    sandbox = Sandbox(world, Window(RecordingCanvas((800, 600))), clock=sluggish.clock)
+    sandbox.frame(0.1)
+    assert world.steps == 2  # of six
+    assert sandbox.window.pace.dropped == pytest.approx(4 * FRAME)
+
+
+def test_slow_motion_is_as_smooth_as_full_speed() -> None:
+    world = empty_world(gravity=(0, 0))
+    ball = circle(world, (0, 0), velocity=(1, 0))
+    desk = Desk(world)
+    desk.key("tab")
+    places = []
+    for _ in range(12):
+        desk.frames()
+        places.append(world.component(ball, Transform).position.x)
+    steps = [after - before for before, after in itertools.pairwise(places)]
+    assert steps == pytest.approx([0.25 * FRAME] * 11)
+
+
+def test_a_world_that_diverges_is_paused_and_says_so() -> None:
+    world = empty_world()
+    ball = circle(world, (0, 0), name="ball")
+    desk = Desk(world)
+    desk.frames(2)
+    world.table(Velocity)["linear"][world.roster.row_of[ball]] = float("nan")
+    desk.frames(3)
+    assert desk.window.pace.due(FRAME) == 0
+    assert "ball" in desk.window.error and "no longer finite" in desk.window.error
+    desk.key("space")
+    desk.frames(3)
+    assert desk.window.pace.paused and desk.window.error
+    desk.key("r")
+    desk.key("space")
+    desk.frames(3)
+    assert desk.window.error == "" and world.steps > 2
+
+
+def test_a_scene_opens_at_100_px_per_metre_if_it_fits_and_smaller_if_not() -> None:
+    small, large = empty_world(), empty_world()
+    circle(small, (3, 2))
+    circle(small, (2, 0))
+    box(large, (0, 0), width=80, height=1)
+    canvas = RecordingCanvas((1280, 720))
+    for world, scale in ((small, 100.0), (large, 1280 * 0.86 / 80)):
+        window = Window(canvas)
+        Sandbox(world, window)
+        assert window.camera.scale <= scale
+    assert Window(canvas).camera.scale == 100.0
+
+
+def test_installed_twice_is_refused() -> None:
+    world = empty_world()
+    window = Window(RecordingCanvas((800, 600)))
+    Sandbox(world, window)
+    with pytest.raises(ValueError, match="twice"):
+        Sandbox(world, window)
+
+
+@pytest.fixture
+def each_frame(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[Callable[[Display, int], None]], None]]:
+    """Have something done whenever a real window's frame is shown."""
+    monkeypatch.setattr(app, "is_warm", lambda: True)
+    show, shown = Display.show, [0]
+
+    def install(deed: Callable[[Display, int], None]) -> None:
+        def watched(display: Display) -> float:
+            shown[0] += 1
+            deed(display, shown[0])
+            return show(display)
+
+        monkeypatch.setattr(Display, "show", watched)
+
+    yield install
+    pygame.quit()
+
+
+def press(key: int) -> None:
+    pygame.event.post(pygame.Event(pygame.KEYDOWN, key=key, mod=0, unicode="", scancode=0))
+
+
+type EachFrame = Callable[[Callable[[Display, int], None]], None]
+
+
+def test_the_window_opens_on_the_playground_and_escape_closes_it(each_frame: EachFrame) -> None:
+    captions = []
+
+    def deed(display: Display, frame: int) -> None:
+        captions.append(pygame.display.get_caption()[0])
+        assert pygame.display.get_window_size() == (1280, 720)
+        if frame == 10:
+            press(pygame.K_ESCAPE)
+
+    each_frame(deed)
+    assert open_window(None) == 0
+    assert len(captions) in (10, 11)
+    assert captions[0] == "Sandbox - PhysicsLab"
+    assert not pygame.display.get_init()
+
+
+def test_f12_keeps_a_screenshot(
+    each_frame: EachFrame, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+
+    def deed(display: Display, frame: int) -> None:
+        if frame in (3, 5):
+            press(pygame.K_F12)
+        if frame == 8:
+            press(pygame.K_ESCAPE)
+
+    each_frame(deed)
+    assert open_window("drop") == 0
+    pictures = list(tmp_path.glob("physicslab-*.png"))
+    assert len(pictures) == 2
+    assert pygame.image.load(pictures[0]).get_size() == (1280, 720)
+
+
+def test_a_screenshot_that_cannot_be_saved_is_no_crash(
+    each_frame: EachFrame, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(display: Display, directory: Path) -> Path:
+        raise PermissionError(13, "Permission denied", str(directory))
+
+    monkeypatch.setattr(Display, "save_screenshot", refuse)
+
+    def deed(display: Display, frame: int) -> None:
+        press(pygame.K_F12 if frame == 2 else pygame.K_ESCAPE)
+
+    each_frame(deed)
+    assert open_window("drop") == 0
+
+
+def test_a_bad_scene_is_refused_before_a_window_opens(monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_window(*arguments: object) -> None:
+        raise AssertionError("a window was opened")
+
+    monkeypatch.setattr(pygame.display, "set_mode", no_window)
+    with pytest.raises(SceneError, match="no such file"):
+        open_window("no_such_scene")
+
+
+def test_no_screen_is_an_os_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "no such driver")
+    pygame.quit()
+    with pytest.raises(OSError, match="no window can be opened"):
+        open_window("drop")
+
+
+def test_frames_come_at_the_rate_asked_for(each_frame: EachFrame) -> None:
+    times: list[float] = []
+
+    def deed(display: Display, frame: int) -> None:
+        times.append(time.perf_counter())
+        if frame == 40:
+            press(pygame.K_ESCAPE)
+
+    each_frame(deed)
+    open_window("drop")
+    elapsed = sorted(after - before for before, after in itertools.pairwise(times))
+    assert 1 / 63 < elapsed[len(elapsed) // 2] < 1 / 40  # the median, for machines that are busy

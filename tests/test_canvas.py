@@ -1,0 +1,200 @@
+"""Canvas: smooth shapes on a pygame surface, exact to a fraction of a pixel; and one that takes notes."""
+
+import math
+
+import numpy as np
+import pygame
+import pytest
+from numpy.typing import NDArray
+
+from physicslab.view.canvas import Canvas, Look, RecordingCanvas, TextStyle
+from physicslab.view.pygame_canvas import PygameCanvas
+from physicslab.view.theme import Colour
+
+BLACK, WHITE, RED = (0, 0, 0), (255, 255, 255), (255, 0, 0)
+
+
+def canvas_of(width: int = 200, height: int = 150) -> PygameCanvas:
+    canvas = PygameCanvas(pygame.Surface((width, height), 0, 32))
+    canvas.clear(BLACK)
+    return canvas
+
+
+def light(canvas: PygameCanvas) -> NDArray[np.float64]:
+    """Return how much of each pixel is covered, (height, width), for white on black."""
+    return pygame.surfarray.array3d(canvas.surface)[:, :, 0].T / 255.0
+
+
+def disc(canvas: Canvas, x: float, y: float, radius: float, angle: float = 0.0, rim: Colour = WHITE) -> None:
+    look = Look.plain(WHITE, rim, 1)
+    canvas.discs(np.array([[x, y]]), np.array([radius]), np.array([angle]), look)
+
+
+def box(canvas: Canvas, x: float, y: float, width: float, height: float, angle: float = 0.0) -> None:
+    look = Look.plain(WHITE, WHITE, 1)
+    canvas.boxes(np.array([[x, y]]), np.array([[width, height]]), np.array([angle]), look)
+
+
+@pytest.mark.parametrize("radius", [1.0, 2.5, 8.0, 31.4, 60.0])
+def test_a_disc_covers_its_area_and_sits_where_it_should(radius: float) -> None:
+    canvas = canvas_of()
+    disc(canvas, 100.3, 70.8, radius)
+    covered = light(canvas)
+    assert covered.sum() == pytest.approx(math.pi * radius**2, rel=0.02, abs=0.5)
+    rows, columns = np.mgrid[0:150, 0:200] + 0.5
+    assert (covered * columns).sum() / covered.sum() == pytest.approx(100.3, abs=0.05)
+    assert (covered * rows).sum() / covered.sum() == pytest.approx(70.8, abs=0.05)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.1, 0.785, 1.57, 2.5])
+def test_a_box_covers_its_area_at_any_angle(angle: float) -> None:
+    canvas = canvas_of()
+    box(canvas, 99.6, 75.2, 70.5, 30.25, angle)
+    covered = light(canvas)
+    assert covered.sum() == pytest.approx(70.5 * 30.25, rel=0.01)
+    columns = np.arange(200) + 0.5
+    spread_x = (covered * (columns - 99.6) ** 2).sum() / covered.sum()
+    expected = (70.5**2 * math.cos(angle) ** 2 + 30.25**2 * math.sin(angle) ** 2) / 12
+    assert spread_x == pytest.approx(expected, rel=0.02)
+
+
+def test_angles_turn_counter_clockwise_on_the_screen() -> None:
+    canvas = canvas_of()
+    box(canvas, 100, 75, 80, 10, angle=math.pi / 4)
+    covered = light(canvas)
+    assert covered[75 - 20, 100 + 20] == 1.0  # right and up
+    assert covered[75 + 20, 100 + 20] == 0.0
+
+
+def test_edges_are_smooth() -> None:
+    canvas = canvas_of()
+    disc(canvas, 100.2, 75.3, 40)
+    shades = np.unique(light(canvas))
+    assert len(shades) > 50
+
+
+@pytest.mark.parametrize("shape", ["disc", "box"])
+def test_rotation_can_be_seen(shape: str) -> None:
+    pictures = []
+    for angle in (0.0, 0.3):
+        canvas = canvas_of()
+        look = Look.plain((40, 40, 40), WHITE, 1)
+        centre, turn = np.array([[100.0, 75.0]]), np.array([angle])
+        if shape == "disc":
+            canvas.discs(centre, np.array([30.0]), turn, look)
+        else:
+            canvas.boxes(centre, np.array([[60.0, 60.0]]), turn, look)
+        pictures.append(light(canvas))
+    assert np.abs(pictures[0] - pictures[1]).sum() > 20.0
+
+
+def test_a_box_turned_by_a_quarter_is_not_the_same() -> None:
+    pictures = []
+    for angle in (0.0, math.pi / 2):
+        canvas = canvas_of()
+        look = Look.plain((40, 40, 40), WHITE, 1)
+        canvas.boxes(np.array([[100.0, 75.0]]), np.array([[60.0, 60.0]]), np.array([angle]), look)
+        pictures.append(light(canvas))
+    assert np.abs(pictures[0] - pictures[1]).sum() > 5.0
+
+
+def test_hatching_marks_what_cannot_move() -> None:
+    canvas = canvas_of()
+    fill, rim = np.array([[40, 40, 40]], np.uint8), np.array([[255, 255, 255]], np.uint8)
+    look = Look(fill, rim, np.array([True]))
+    canvas.boxes(np.array([[100.0, 75.0]]), np.array([[120.0, 90.0]]), np.zeros(1), look)
+    inside = light(canvas)[45:105, 60:140]
+    assert inside.min() == pytest.approx(40 / 255, abs=0.01)
+    assert inside.max() > 0.4
+
+
+@pytest.mark.parametrize("place", [(-20.0, 75.0), (205.0, 150.0), (1e7, 1e7), (-1e12, 3.0), (100.0, -1e15)])
+@pytest.mark.parametrize("size", [0.2, 30.0, 1e6, 1e9])
+def test_what_is_partly_or_far_off_the_picture_does_no_harm(place: tuple[float, float], size: float) -> None:
+    canvas = canvas_of()
+    disc(canvas, *place, size)
+    box(canvas, *place, size, 3 * size, 0.5)
+    ends = np.array([place]), np.array([[100.0, 75.0]])
+    canvas.lines(*ends, WHITE, 3.0)
+
+
+def test_a_disc_larger_than_the_picture_fills_it() -> None:
+    canvas = canvas_of()
+    disc(canvas, 100, 75, 1e6)
+    box(canvas, 100, 75, 1e6, 1e6, 0.3)
+    assert light(canvas).min() == 1.0
+
+
+@pytest.mark.parametrize(("dx", "dy"), [(100.0, 0.0), (0.0, 90.0), (70.0, 50.0), (-60.0, 55.0)])
+def test_a_line_covers_its_length_times_its_width(dx: float, dy: float) -> None:
+    canvas = canvas_of()
+    start = np.array([[90.5, 40.25]])
+    canvas.lines(start, start + np.array([dx, dy]), WHITE, 3.0)
+    length = math.hypot(dx, dy)
+    assert light(canvas).sum() == pytest.approx(3.0 * length + math.pi * 1.5**2, rel=0.03)
+
+
+def test_opacity_lets_the_picture_through() -> None:
+    canvas = canvas_of()
+    canvas.lines(np.array([[10.0, 75.0]]), np.array([[190.0, 75.0]]), WHITE, 9.0, 0.5)
+    assert light(canvas)[75, 100] == pytest.approx(0.5, abs=0.01)
+
+
+@pytest.mark.parametrize("masks", [(0xFF0000, 0xFF00, 0xFF, 0), (0xFF, 0xFF00, 0xFF0000, 0)])
+def test_colours_are_right_whatever_the_order_of_channels(masks: tuple[int, int, int, int]) -> None:
+    canvas = PygameCanvas(pygame.Surface((60, 60), 0, 32, masks))
+    canvas.clear((10, 20, 30))
+    look = Look.plain((200, 100, 50), (200, 100, 50), 1)
+    canvas.discs(np.array([[30.0, 30.0]]), np.array([10.0]), np.zeros(1), look)
+    assert tuple(canvas.surface.get_at((30, 30)))[:3] == (200, 100, 50)
+    assert tuple(canvas.surface.get_at((2, 2)))[:3] == (10, 20, 30)
+
+
+def test_other_depths_are_refused() -> None:
+    with pytest.raises(ValueError, match="32 bits"):
+        PygameCanvas(pygame.Surface((10, 10), 0, 24))
+
+
+def test_panels_have_round_corners_and_let_through_what_they_should() -> None:
+    canvas = canvas_of()
+    canvas.clear(WHITE)
+    canvas.panel((20, 20, 100, 60), BLACK, BLACK, 0.75)
+    covered = 1.0 - light(canvas)
+    assert covered[50, 70] == pytest.approx(0.75, abs=0.01)
+    assert covered[20, 20] < 0.2  # cut by the round corner
+    assert covered[19, 70] == 0.0
+    canvas.panel((0, 0, 0, 10), BLACK, BLACK)  # nothing to draw is no error
+
+
+def test_words_are_as_wide_as_announced_and_align() -> None:
+    canvas = canvas_of()
+    style = TextStyle(16, WHITE)
+    width, height = canvas.text_size("Energy 12 J", style)
+    canvas.text("Energy 12 J", (190, 10), style, "right")
+    columns = np.flatnonzero(light(canvas).max(axis=0))
+    rows = np.flatnonzero(light(canvas).max(axis=1))
+    assert columns[0] >= 190 - width and columns[-1] <= 190
+    assert rows[0] >= 10 and rows[-1] <= 10 + height
+
+
+def test_the_same_words_are_rendered_once() -> None:
+    canvas = canvas_of()
+    for _ in range(3):
+        canvas.text("again", (5, 5), TextStyle(14, RED))
+    assert len(canvas._kept) == 1
+    for n in range(2000):
+        canvas.text(f"{n}", (5, 5), TextStyle(14, RED))
+    assert len(canvas._kept) <= 512
+
+
+def test_a_recording_canvas_takes_the_same_calls() -> None:
+    canvas = RecordingCanvas((100, 80))
+    canvas.clear(BLACK)
+    disc(canvas, 10, 20, 5)
+    box(canvas, 10, 20, 5, 6)
+    canvas.lines(np.zeros((1, 2)), np.ones((1, 2)), RED)
+    canvas.panel((1, 2, 3, 4), BLACK, RED)
+    canvas.text("hello", (1, 2), TextStyle(12, RED))
+    assert [name for name, _ in canvas.calls] == ["clear", "discs", "boxes", "lines", "panel", "text"]
+    assert canvas.words == ["hello"]
+    assert canvas.text_size("hello", TextStyle(12, RED))[0] > 0

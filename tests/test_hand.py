@@ -1,0 +1,176 @@
+"""Hand: takes hold of a body, leads it, throws it."""
+
+import math
+
+import pytest
+from desk import FRAME, empty_world
+
+from physicslab.components import Held, Mass, Transform, Velocity
+from physicslab.config import WindowConfig
+from physicslab.prefabs import box, circle
+from physicslab.vector import Vector2
+from physicslab.view.hand import Hand
+from physicslab.world import World
+
+
+@pytest.fixture
+def world() -> World:
+    return empty_world(gravity=(0, 0))
+
+
+def lead(hand: Hand, world: World, path: list[Vector2], now: float = 0.0) -> float:
+    """Lead what is held along a path, a point a frame, in running time; return the time of the last."""
+    for place in path:
+        now += FRAME
+        hand.move(place, now)
+        hand.lead(world, FRAME, paused=False)
+        world.step(FRAME)
+    return now
+
+
+def test_the_grip_follows_exactly_whatever_the_angle(world: World) -> None:
+    plank = box(world, (1, 1), width=2, height=0.5, angle=0.7, angular_velocity=3.0)
+    hand = Hand(WindowConfig())
+    assert hand.take(world, plank, Vector2(1.5, 1.4), 0.0)
+    grip = world.component(plank, Held).grip
+    for target in (Vector2(2, 2), Vector2(-3, 0.5), Vector2(-3, 0.5)):
+        lead(hand, world, [target])
+        pose = world.component(plank, Transform)
+        assert (pose.position + grip.rotated(pose.angle) - target).magnitude < 1e-12
+        assert pose.angle == 0.7
+
+
+def test_a_held_body_is_infinitely_heavy(world: World) -> None:
+    ball = circle(world, (0, 0))
+    Hand(WindowConfig()).take(world, ball, Vector2(), 0.0)
+    world.synchronise()
+    assert world.bodies.inverse_mass[world.roster.row_of[ball]] == 0.0
+
+
+def test_the_hand_pushes_and_does_not_jump_over(world: World) -> None:
+    ball = circle(world, (0, 0), radius=0.2)
+    other = circle(world, (1, 0), radius=0.2)
+    hand = Hand(WindowConfig())
+    hand.take(world, ball, Vector2(), 0.0)
+    lead(hand, world, [Vector2(0.1 * n, 0) for n in range(1, 13)])
+    assert world.component(other, Transform).position.x > 1.5
+    assert world.component(other, Velocity).linear.x > 3.0
+
+
+@pytest.mark.parametrize("velocity", [Vector2(3, 0), Vector2(-4, 7), Vector2(0.5, -0.25)])
+def test_a_throw_has_the_velocity_of_the_hand(world: World, velocity: Vector2) -> None:
+    ball = circle(world, (0, 0))
+    hand = Hand(WindowConfig())
+    hand.take(world, ball, Vector2(), 0.0)
+    path = [velocity * (n * FRAME) for n in range(1, 30)]
+    now = lead(hand, world, path)
+    hand.release(world, path[-1], now, paused=False)
+    assert (world.component(ball, Velocity).linear - velocity).magnitude < 0.02 * velocity.magnitude
+    assert hand.entity is None and not world.has(ball, Held)
+
+
+def test_only_the_last_150_ms_count(world: World) -> None:
+    ball = circle(world, (0, 0))
+    hand = Hand(WindowConfig())
+    hand.take(world, ball, Vector2(), 0.0)
+    fast = [Vector2(10 * n * FRAME, 0) for n in range(1, 40)]
+    slow = [fast[-1] + Vector2(0, 2 * n * FRAME) for n in range(1, 11)]
+    now = lead(hand, world, fast + slow)
+    hand.release(world, slow[-1], now, paused=False)
+    assert (world.component(ball, Velocity).linear - Vector2(0, 2)).magnitude < 0.04
+
+
+def test_a_hand_at_rest_throws_nothing(world: World) -> None:
+    ball = circle(world, (0, 0), velocity=(5, 5))
+    hand = Hand(WindowConfig())
+    hand.take(world, ball, Vector2(), 0.0)
+    now = lead(hand, world, [Vector2(0.5, 0)] * 12)
+    hand.release(world, Vector2(0.5, 0), now, paused=False)
+    assert world.component(ball, Velocity).linear == Vector2(0, 0)
+
+
+def test_a_single_jerk_is_no_throw(world: World) -> None:
+    ball = circle(world, (0, 0))
+    hand = Hand(WindowConfig())
+    hand.take(world, ball, Vector2(), 0.0)
+    now = lead(hand, world, [Vector2(0.3, 0)])
+    hand.release(world, Vector2(0.3, 0), now, paused=False)
+    assert world.component(ball, Velocity).linear == Vector2(0, 0)
+
+
+def test_throws_are_capped_in_their_own_direction(world: World) -> None:
+    ball = circle(world, (0, 0))
+    hand = Hand(WindowConfig(max_throw_speed=30.0))
+    hand.take(world, ball, Vector2(), 0.0)
+    path = [Vector2(60, 80) * (n * FRAME) for n in range(1, 12)]
+    now = lead(hand, world, path)
+    hand.release(world, path[-1], now, paused=False)
+    thrown = world.component(ball, Velocity).linear
+    assert thrown.magnitude == pytest.approx(30.0)
+    assert thrown.angle == pytest.approx(math.atan2(80, 60))
+
+
+def test_while_paused_the_body_is_put_where_the_hand_is_and_goes_on_as_before(world: World) -> None:
+    ball = circle(world, (0, 0), velocity=(1, 2), angular_velocity=3.0)
+    hand = Hand(WindowConfig())
+    hand.take(world, ball, Vector2(), 0.0)
+    hand.move(Vector2(4, 4), FRAME)
+    hand.lead(world, 0.0, paused=True)
+    assert world.component(ball, Transform).position == Vector2(4, 4)
+    hand.release(world, Vector2(4, 4), 2 * FRAME, paused=True)
+    velocity = world.component(ball, Velocity)
+    assert (velocity.linear, velocity.angular) == (Vector2(1, 2), 3.0)
+
+
+def test_a_frame_without_a_step_moves_nothing(world: World) -> None:
+    ball = circle(world, (0, 0))
+    hand = Hand(WindowConfig())
+    hand.take(world, ball, Vector2(), 0.0)
+    hand.move(Vector2(4, 4), FRAME)
+    hand.lead(world, 0.0, paused=False)
+    assert world.component(ball, Transform).position == Vector2(0, 0)
+    assert world.component(ball, Velocity).linear == Vector2(0, 0)
+
+
+def test_walls_cannot_be_held(world: World) -> None:
+    wall = box(world, (0, 0), static=True)
+    hand = Hand(WindowConfig())
+    assert not hand.take(world, wall, Vector2(), 0.0)
+    assert hand.entity is None and not world.has(wall, Held)
+
+
+def test_taking_another_lets_the_first_go(world: World) -> None:
+    first, second = circle(world, (0, 0)), circle(world, (2, 0))
+    hand = Hand(WindowConfig())
+    hand.take(world, first, Vector2(), 0.0)
+    hand.take(world, second, Vector2(2, 0), 0.0)
+    assert not world.has(first, Held) and world.has(second, Held)
+
+
+def test_a_body_that_vanishes_is_no_longer_held(world: World) -> None:
+    ball = circle(world, (0, 0))
+    hand = Hand(WindowConfig())
+    hand.take(world, ball, Vector2(), 0.0)
+    world.remove(ball)
+    hand.lead(world, FRAME, paused=False)
+    assert hand.entity is None
+    hand.release(world, Vector2(), 0.1, paused=False)
+    hand.drop(world)
+
+
+def test_dropped_is_not_thrown(world: World) -> None:
+    ball = circle(world, (0, 0))
+    hand = Hand(WindowConfig())
+    hand.take(world, ball, Vector2(), 0.0)
+    lead(hand, world, [Vector2(0.2 * n, 0) for n in range(1, 12)])
+    hand.drop(world)
+    assert world.component(ball, Velocity).linear == Vector2(0, 0)
+    assert not world.has(ball, Held)
+
+
+def test_a_planet_without_a_shape_can_be_held(world: World) -> None:
+    planet = world.spawn(Transform((1, 0)), Velocity(), Mass(3))
+    hand = Hand(WindowConfig())
+    assert hand.take(world, planet, Vector2(1, 0), 0.0)
+    lead(hand, world, [Vector2(2, 0)])
+    assert world.component(planet, Transform).position.x == pytest.approx(2.0)

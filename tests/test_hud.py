@@ -1,0 +1,275 @@
+"""HudSystem: the right figures, readable at any size of window."""
+
+import itertools
+from typing import Any
+
+import pygame
+import pytest
+from desk import FRAME, Desk, empty_world
+
+from physicslab.config import PhysicsConfig, WindowConfig
+from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.prefabs import box, circle
+from physicslab.scene import load_scene
+from physicslab.view.canvas import Align, RecordingCanvas, Rect, TextStyle
+from physicslab.view.controls import CONTROLS
+from physicslab.view.figures import FrameMeter
+from physicslab.view.pygame_canvas import PygameCanvas
+from physicslab.view.quantities import quantity
+from physicslab.world import World
+
+SIZES = [(1280, 720), (800, 600), (1920, 1080), (1000, 1300), (720, 540), (2560, 1440)]
+
+
+def recorded(world: World) -> tuple[Desk, RecordingCanvas]:
+    canvas = RecordingCanvas((1280, 720))
+    return Desk(world, canvas), canvas
+
+
+def row(canvas: RecordingCanvas, label: str, *, panel: str = "left") -> str:
+    """Return the figure that stands on the same line of a panel as a label."""
+    texts = [text for text in canvas.called("text") if (text["at"][0] < 640) == (panel == "left")]
+    (y,) = [text["at"][1] for text in texts if text["words"] == label]
+    (value,) = [text["words"] for text in texts if text["align"] == "right" and abs(text["at"][1] - y) < 6]
+    return str(value)
+
+
+def frame(desk: Desk, canvas: RecordingCanvas) -> None:
+    """Let enough time go by for new figures, and keep the last frame alone."""
+    desk.frames(8)
+    canvas.calls.clear()
+    desk.frames()
+
+
+def test_the_figures_are_those_of_the_diagnostics() -> None:
+    world = empty_world(gravity=(0, 0))
+    circle(world, (0, 0), mass=2.0, velocity=(3, 0), angular_velocity=4.0, radius=0.5)
+    circle(world, (0.9, 0), mass=1.0, radius=0.5, velocity=(3, 0))
+    desk, canvas = recorded(world)
+    desk.key("space")
+    frame(desk, canvas)
+    energy, momentum = measure_energy(world), measure_momentum(world)
+    assert row(canvas, "Bodies") == "2"
+    assert row(canvas, "Candidate pairs") == str(world.contacts.candidate_pairs)
+    assert row(canvas, "Contacts") == str(world.contacts.count)
+    assert row(canvas, "Kinetic energy") == quantity(energy.kinetic, "J") == "15.50 J"
+    assert row(canvas, "linear") == "13.50 J"
+    assert row(canvas, "rotational") == "2.000 J"
+    assert row(canvas, "Total momentum") == quantity(momentum.linear.magnitude, "kg m/s") == "9.000 kg m/s"
+    assert row(canvas, "Gravity") == "off"
+
+
+def test_pairs_and_contacts_are_shown_as_they_come() -> None:
+    world = empty_world()
+    box(world, (0, -0.5), width=10, height=1, static=True)
+    box(world, (0, 0.25))
+    desk, canvas = recorded(world)
+    desk.frames(30)
+    frame(desk, canvas)
+    assert row(canvas, "Candidate pairs") == "1"
+    assert row(canvas, "Contacts") == "1"
+
+
+def test_the_frame_rate_is_smoothed() -> None:
+    world = empty_world()
+    meter = FrameMeter()
+    for _ in range(120):
+        meter.note(world, 1 / 60)
+    assert meter.frame_rate == pytest.approx(60.0, rel=1e-6)
+    meter.note(world, 1 / 30)
+    assert 55.0 < meter.frame_rate < 60.0
+    for _ in range(200):
+        meter.note(world, 1 / 30)
+    assert meter.frame_rate == pytest.approx(30.0, rel=0.01)
+
+
+def test_every_running_system_has_its_cost_and_every_other_its_reason() -> None:
+    world = empty_world()
+    circle(world, (0, 0))
+    desk, canvas = recorded(world)
+    frame(desk, canvas)
+    running = {system.name for system in world.schedule.running}
+    assert {"InputSystem", "RenderSystem", "HudSystem", "GravitySystem"} <= running
+    for name in running:
+        assert row(canvas, name.removesuffix("System"), panel="right").endswith(" ms")
+    words = " ".join(canvas.words)
+    assert world.schedule.left_out
+    for out in world.schedule.left_out:
+        assert f"{out.name.removesuffix('System')}: {out.reason}" in words
+
+
+def test_costs_are_those_of_a_frame() -> None:
+    world = empty_world()
+    circle(world, (0, 0))
+    desk = Desk(world, RecordingCanvas((1280, 720)))
+    desk.frames()
+    meter = FrameMeter()
+    meter.note(world, FRAME)
+    timing = world.schedule.timings["GravitySystem"]
+    for _ in range(200):
+        timing.nanoseconds += 2_000_000
+        meter.note(world, FRAME)
+    assert meter.cost["GravitySystem"] == pytest.approx(2.0, rel=0.05)
+
+
+def test_the_integrator_is_shown_with_its_reason() -> None:
+    world = load_scene("pendulum")
+    desk, canvas = recorded(world)
+    frame(desk, canvas)
+    words = " ".join(canvas.words)
+    assert world.integrator.title in words
+    assert world.integrator_reason in words
+    assert "16.7 ms in 4 substeps" in words
+
+
+@pytest.mark.parametrize(
+    ("physics", "words"),
+    [
+        (PhysicsConfig(), "9.81 m/s² down"),
+        (PhysicsConfig(gravity=(0, 3)), "3 m/s² up"),  # type: ignore[arg-type]
+        (PhysicsConfig(gravity=(1, -2)), "(1, -2) m/s²"),  # type: ignore[arg-type]
+        (PhysicsConfig(gravity_mode="none"), "off"),
+        (PhysicsConfig(gravity_mode="planet", G=2.5), "G = 2.5 N m²/kg²"),
+    ],
+)
+def test_gravity_in_words(physics: PhysicsConfig, words: str) -> None:
+    world = empty_world()
+    world.physics = physics
+    desk, canvas = recorded(world)
+    frame(desk, canvas)
+    assert row(canvas, "Gravity") == words
+
+
+def test_all_controls_are_hinted_at() -> None:
+    desk, canvas = recorded(empty_world())
+    frame(desk, canvas)
+    for control in CONTROLS:
+        assert control.label in canvas.words and control.does in canvas.words
+
+
+def test_banners_say_what_is_not_as_usual() -> None:
+    desk, canvas = recorded(empty_world())
+    frame(desk, canvas)
+    quiet = {"PAUSED", "PLANET MODE", "SLOW MOTION 0.25x"}
+    assert not quiet & set(canvas.words)
+    for key in ("space", "tab", "o"):
+        desk.key(key)
+    frame(desk, canvas)
+    assert quiet <= set(canvas.words)
+
+
+def test_dropped_time_is_announced_and_then_forgotten() -> None:
+    desk, canvas = recorded(empty_world())
+    frame(desk, canvas)
+    assert not any("DROPPED" in words for words in canvas.words)
+    desk.frames(1, elapsed=0.6)
+    desk.frames(1, elapsed=0.2)
+    frame(desk, canvas)
+    assert "0.60 s DROPPED" in canvas.words
+    desk.frames(240)
+    frame(desk, canvas)
+    assert not any("DROPPED" in words for words in canvas.words)
+
+
+def test_numbers_are_read_ten_times_a_second_and_not_more_often() -> None:
+    world = empty_world()
+    circle(world, (0, 50))
+    desk, canvas = recorded(world)
+    seen = []
+    for _ in range(60):
+        canvas.calls.clear()
+        desk.frames()
+        seen.append(row(canvas, "Kinetic energy"))
+    assert 8 <= len(list(itertools.groupby(seen))) <= 11
+
+
+class MeasuringCanvas(PygameCanvas):
+    """Draws, and notes where each word and panel went."""
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        super().__init__(pygame.Surface(size, 0, 32))
+        self.words: list[tuple[str, pygame.Rect]] = []
+        self.panels: list[pygame.Rect] = []
+
+    def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
+        width, height = self.text_size(words, style)
+        shift = {"left": 0, "centre": width // 2, "right": width}[align]
+        self.words.append((words, pygame.Rect(at[0] - shift, at[1], width, height)))
+        super().text(words, at, style, align)
+
+    def panel(self, rect: Rect, colour: Any, outline: Any, opacity: float = 1.0) -> None:
+        self.panels.append(pygame.Rect(rect))
+        super().panel(rect, colour, outline, opacity)
+
+
+def crowded(size: tuple[int, int]) -> MeasuringCanvas:
+    """Return a canvas on which the HUD had as much to say as it ever has."""
+    canvas = MeasuringCanvas(size)
+    world = load_scene("two_planets")
+    world.physics = PhysicsConfig(gravity_mode="planet", G=6.674e-11)
+    world.title = "A title that goes on for longer than anyone would wish, in a window of any size"
+    desk = Desk(world, canvas, WindowConfig())
+    desk.key("space")
+    desk.key("tab")
+    desk.frames(3, elapsed=0.5)
+    desk.window.pace.drop(123.4)
+    desk.window.notify("Saved /a/rather/long/directory/name/of/some/user/physicslab-20300101-120000.png")
+    desk.window.error = (
+        "Stopped: entity 12: Velocity is no longer finite at t = 1.23456789 s; a smaller dt or more substeps "
+        "may help. R clears all."
+    )
+    desk.frames(8)
+    canvas.words.clear()
+    canvas.panels.clear()
+    desk.frames()
+    return canvas
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_no_word_is_cut_and_none_lies_over_another(size: tuple[int, int]) -> None:
+    canvas = crowded(size)
+    screen = pygame.Rect(0, 0, *size)
+    for words, rect in canvas.words:
+        assert screen.contains(rect), f"{words!r} at {rect} leaves {size}"
+        if words in {control.does for control in CONTROLS}:
+            continue
+        around = [panel for panel in canvas.panels if panel.contains(rect)]
+        assert around, f"{words!r} at {rect} is in no panel"
+    for (a, one), (b, two) in itertools.combinations(canvas.words, 2):
+        assert not one.inflate(-2, -2).colliderect(two.inflate(-2, -2)), f"{a!r} lies over {b!r} at {size}"
+    for one, two in itertools.combinations(canvas.panels, 2):
+        assert not one.colliderect(two), f"panels {one} and {two} overlap at {size}"
+
+
+@pytest.mark.parametrize("size", [(1, 1), (60, 40), (200, 100), (320, 200)])
+def test_a_tiny_window_does_no_harm(size: tuple[int, int]) -> None:
+    crowded(size)
+
+
+def test_a_resized_window_is_laid_out_anew_at_once() -> None:
+    canvas = RecordingCanvas((1280, 720))
+    desk = Desk(empty_world(), canvas)
+    desk.frames()
+    canvas.size = (800, 600)
+    canvas.calls.clear()
+    desk.frames()
+    assert max(text["at"][0] for text in canvas.called("text")) <= 800
+    assert desk.window.camera.size == (800, 600)
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (0.0, "0 J"),
+        (1.0, "1.000 J"),
+        (-12.3456, "-12.35 J"),
+        (999999.0, "999999 J"),
+        (1.5e6, "1.500·10⁶ J"),
+        (0.00123, "0.0012 J"),
+        (1e-12, "1.000·10⁻¹² J"),
+        (float("nan"), "not finite, J"),
+        (float("inf"), "not finite, J"),
+    ],
+)
+def test_quantities(value: float, words: str) -> None:
+    assert quantity(value, "J") == words

@@ -1,0 +1,220 @@
+"""RenderSystem: what is drawn of a world, and that drawing changes nothing of it."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pygame
+import pytest
+from desk import FRAME, Desk, bits, empty_world
+
+from physicslab.components import Held, Mass, Spring, Transform, Velocity
+from physicslab.prefabs import box, circle, pendulum
+from physicslab.scene import load_scene
+from physicslab.scenes import SCENES
+from physicslab.schedule import Stage
+from physicslab.systems.render import RenderSystem
+from physicslab.view.backdrop import grid_spacing
+from physicslab.view.canvas import RecordingCanvas
+from physicslab.view.extent import extent_of
+from physicslab.view.pygame_canvas import PygameCanvas
+from physicslab.view.springs import coil
+from physicslab.view.theme import DARK
+from physicslab.view.window import Window
+from physicslab.world import World
+
+
+def drawn(world: World, scale: float = 100.0) -> RecordingCanvas:
+    """Draw a world onto a canvas that takes notes."""
+    canvas = RecordingCanvas((1280, 720))
+    window = Window(canvas)
+    window.camera.scale = scale
+    world.install(RenderSystem(window))
+    world.frame(Stage.RENDER, FRAME)
+    return canvas
+
+
+def only(canvas: RecordingCanvas, name: str) -> dict[str, Any]:
+    (call,) = canvas.called(name)
+    return call
+
+
+def test_the_picture_begins_with_the_background() -> None:
+    canvas = drawn(empty_world())
+    assert canvas.calls[0] == ("clear", {"colour": DARK.background})
+
+
+def test_bodies_are_drawn_where_and_as_large_as_they_are() -> None:
+    world = empty_world()
+    circle(world, (1, 2), radius=0.5, angle=0.7)
+    box(world, (-1, 0), width=2, height=0.5, angle=-0.2)
+    canvas = drawn(world)
+    discs, boxes = only(canvas, "discs"), only(canvas, "boxes")
+    assert discs["centre"].tolist() == [[740.0, 160.0]]
+    assert discs["radius"].tolist() == [50.0] and discs["angle"].tolist() == [0.7]
+    assert boxes["centre"].tolist() == [[540.0, 360.0]]
+    assert boxes["extent"].tolist() == [[200.0, 50.0]] and boxes["angle"].tolist() == [-0.2]
+
+
+def test_what_cannot_move_is_hatched_and_has_its_own_colour() -> None:
+    world = empty_world()
+    box(world, (0, 0), static=True)
+    box(world, (1, 0))
+    kinematic = box(world, (2, 0))
+    world.discard(kinematic, Mass)
+    held = box(world, (3, 0))
+    world.add(held, Held())
+    look = only(drawn(world), "boxes")["look"]
+    assert look.hatched.tolist() == [True, False, False, False]
+    rims = [tuple(rim) for rim in look.rim.tolist()]
+    assert rims[0] == DARK.static and rims[1] in DARK.bodies
+    assert rims[2] == DARK.kinematic and rims[3] == DARK.held
+
+
+def test_neighbours_in_time_differ_in_colour() -> None:
+    world = empty_world()
+    for n in range(6):
+        circle(world, (n * 0.5, 0))
+    rims = only(drawn(world), "discs")["look"].rim
+    assert len({tuple(rim) for rim in rims.tolist()}) == 6
+
+
+def test_off_the_screen_is_off_the_list() -> None:
+    world = empty_world()
+    for x in (0.0, 6.5, 7.0, -50.0):
+        circle(world, (x, 0), radius=0.25)
+        box(world, (0, x), width=0.5, height=0.5)
+    canvas = drawn(world)
+    assert only(canvas, "discs")["centre"][:, 0].tolist() == [640.0, 1290.0]
+    assert only(canvas, "boxes")["centre"][:, 1].tolist() == [360.0]
+
+
+@pytest.mark.parametrize("scale", [1.0, 100.0])
+def test_points_without_shape_have_a_size_of_their_own(scale: float) -> None:
+    world = empty_world()
+    world.spawn(Transform((0, 0)), Mass(1e30))
+    world.spawn(Transform((1, 0)), Velocity(), Mass(1))
+    world.spawn(Transform((2, 0)))  # no body
+    points = only(drawn(world, scale), "discs")
+    assert points["radius"].tolist() == [5.0, 5.0]
+    assert all(tuple(rim) in DARK.bodies for rim in points["look"].rim.tolist())
+    assert not points["look"].hatched.any()
+
+
+@pytest.mark.filterwarnings("error")
+def test_lost_bodies_are_left_out() -> None:
+    world = empty_world()
+    for n in range(4):
+        circle(world, (n, 0))
+        box(world, (n, 1))
+    world.spawn(Transform((0, 0)), Velocity())
+    world.synchronise()
+    position, angle = world.table(Transform)["position"], world.table(Transform)["angle"]
+    position[1], position[2], position[9] = math.nan, (math.inf, 0), math.nan
+    angle[3] = math.inf
+    canvas = drawn(world)
+    for given in canvas.called("discs") + canvas.called("boxes"):
+        assert np.isfinite(given["centre"]).all() and np.isfinite(given["angle"]).all()
+    assert len(only(canvas, "discs")["centre"]) == 2
+
+
+def test_a_spring_is_a_coil_with_a_pin() -> None:
+    world = empty_world()
+    pendulum(world, (0, 1), length=2.0, angle=0.0)
+    canvas = drawn(world)
+    path = [call for call in canvas.called("lines") if call["colour"] == DARK.spring]
+    assert np.allclose(path[0]["start"][0], (640, 460)) and np.allclose(path[0]["end"][-1], (640, 260))
+    assert len(path[0]["start"]) > 10
+    pin = canvas.called("discs")[-1]
+    assert np.allclose(pin["centre"], [[640, 260]]) and tuple(pin["look"].rim[0]) == DARK.pin
+
+
+def test_springs_hold_where_they_are_fastened() -> None:
+    world = empty_world()
+    bar = box(world, (0, 0), width=2, height=0.2, angle=math.pi / 2)
+    other = circle(world, (0, 3))
+    world.spawn(Spring(a=bar, b=other, anchor_a=(1, 0), rest_length=1.0))
+    canvas = drawn(world)
+    (path,) = [call for call in canvas.called("lines") if call["colour"] == DARK.spring]
+    assert np.allclose(path["start"][0], (640, 260)) and np.allclose(path["end"][-1], (640, 60))
+
+
+def test_the_wire_of_a_coil_keeps_its_length() -> None:
+    start = np.zeros((2, 2))
+    end = np.array([[200.0, 0.0], [230.0, 0.0]])
+    path = coil(start, end, np.array([200.0, 200.0]))
+    length = np.hypot(*np.diff(path, axis=1).reshape(-1, 2).T).reshape(2, -1)
+    zigzag = length[:, 2:-2].sum(axis=1)
+    assert zigzag[1] == pytest.approx(zigzag[0], rel=0.01)
+    assert np.abs(path[1, :, 1]).max() < np.abs(path[0, :, 1]).max()
+
+
+def test_many_springs_are_plain_lines() -> None:
+    world = empty_world()
+    for n in range(600):
+        bob = circle(world, (0.01 * n, 0))
+        world.add(bob, Spring(anchor_b=(0.01 * n, 2)))
+    (lines,) = [call for call in drawn(world).called("lines") if call["colour"] == DARK.spring]
+    assert len(lines["start"]) == 600
+
+
+def test_walls_of_the_world_are_drawn() -> None:
+    canvas = drawn(empty_world(bounds=(-1, -2, 3, 2)))
+    (walls,) = [call for call in canvas.called("lines") if call["colour"] == DARK.bounds]
+    assert walls["start"].tolist() == [[540, 560], [940, 560], [940, 160], [540, 160]]
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1e-3, 0.7, 100.0, 12345.0])
+def test_grid_lines_are_round_numbers_apart_and_not_too_many(scale: float) -> None:
+    spacing = grid_spacing(scale)
+    assert 45.0 - 1e-6 <= spacing * scale <= 45.0 * 2.5 + 1e-6
+    first = spacing / 10.0 ** math.floor(math.log10(spacing) + 1e-9)
+    assert min(abs(first - round_number) for round_number in (1, 2, 5)) < 1e-9
+
+
+def test_extent_is_of_what_there_is_to_see() -> None:
+    world = empty_world()
+    assert extent_of(world) is None
+    circle(world, (0, 0), radius=0.5)
+    circle(world, (10, 2), radius=0.5)
+    box(world, (0, -1), width=1e6, height=1, static=True)
+    extent = extent_of(world)
+    assert extent is not None
+    xmin, ymin, xmax, ymax = extent
+    assert -20 < xmin <= -0.5 and 10.5 <= xmax < 30 and ymin == -1.5 and ymax >= 2.5
+
+
+def test_extent_of_walls_alone_and_of_lost_bodies() -> None:
+    world = empty_world()
+    box(world, (0, 0), width=4, height=2, static=True)
+    assert extent_of(world) == (-2.0, -1.0, 2.0, 1.0)
+    lost = circle(world, (0, 0))
+    world.synchronise()
+    world.table(Transform)["position"][world.roster.row_of[lost]] = math.nan
+    assert extent_of(world) == (-2.0, -1.0, 2.0, 1.0)
+
+
+@pytest.mark.parametrize("name", ["sandbox", "stack", "spring_chain", "two_planets"])
+def test_drawing_changes_no_bit_of_the_world(name: str) -> None:
+    alone, watched = load_scene(name), load_scene(name)
+    desk = Desk(watched)
+    for n in range(40):
+        alone.step()
+        desk.frames()
+        if n % 7 == 0:
+            desk.key("f" if n % 2 else "home")
+    assert watched.steps == alone.steps == 40
+    assert bits(watched) == bits(alone)
+    assert watched.time == alone.time
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_built_in_scene_can_be_drawn(name: str) -> None:
+    world = load_scene(name)
+    canvas = PygameCanvas(pygame.Surface((640, 360), 0, 32))
+    window = Window(canvas)
+    world.install(RenderSystem(window))
+    window.fit(world)
+    world.frame(Stage.RENDER, FRAME)
+    picture = pygame.surfarray.array2d(canvas.surface)
+    assert len(np.unique(picture)) > 20

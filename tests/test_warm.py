@@ -1,0 +1,120 @@
+"""Warmup: kernels are compiled by other processes while the window stays awake."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pygame
+import pytest
+
+from physicslab import app
+from physicslab.config import WindowConfig
+from physicslab.kernels import warm
+from physicslab.kernels.warm import Progress, Warmup, is_warm, load_all
+from physicslab.view.canvas import RecordingCanvas
+from physicslab.view.display import Display
+from physicslab.view.progress import draw_progress
+from physicslab.view.theme import DARK
+
+ECHO = (sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line.strip(), flush=True)")
+ASLEEP = (sys.executable, "-c", "import time; time.sleep(60)")
+BROKEN = (sys.executable, "-c", "import sys; sys.stdin.readline(); sys.exit(1)")
+
+
+@pytest.fixture
+def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Put the mark of a full cache elsewhere."""
+    monkeypatch.setattr(warm, "_mark", lambda: tmp_path / "complete")
+    return tmp_path / "complete"
+
+
+def wait_for(warmup: Warmup, seconds: float = 30.0) -> Progress:
+    deadline = time.monotonic() + seconds
+    while not warmup.finished:
+        assert time.monotonic() < deadline
+        warmup.poll()
+        time.sleep(0.01)
+    return warmup.poll()
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_every_kernel_is_given_out_once_and_the_cache_is_marked(mark: Path, workers: int) -> None:
+    assert not is_warm()
+    with Warmup(workers, ECHO) as warmup:
+        progress = wait_for(warmup)
+    assert progress.done == progress.total == len(load_all()) > 20
+    assert is_warm() and mark.exists()
+
+
+def test_a_worker_that_fails_ends_the_wait_without_the_mark(mark: Path) -> None:
+    with Warmup(2, BROKEN) as warmup:
+        progress = wait_for(warmup)
+    assert progress.done == 0
+    assert not is_warm()
+
+
+def test_leaving_early_stops_the_workers(mark: Path) -> None:
+    start = time.monotonic()
+    with Warmup(2, ASLEEP) as warmup:
+        assert warmup.poll().done == 0
+        processes = list(warmup._processes)
+    assert time.monotonic() - start < 20.0
+    assert all(process.poll() is not None for process in processes)
+
+
+def test_kernels_have_names_of_their_own() -> None:
+    names = load_all()
+    assert len(set(names)) == len(names)
+    assert "physicslab.kernels.raster.paint_discs" in names
+
+
+def test_the_mark_hangs_on_the_sources(tmp_path: Path) -> None:
+    before = warm._mark()
+    source = Path(warm.__file__)
+    status = source.stat()
+    os.utime(source, ns=(status.st_atime_ns, status.st_mtime_ns + 1_000_000_000))
+    try:
+        assert warm._mark() != before
+    finally:
+        os.utime(source, ns=(status.st_atime_ns, status.st_mtime_ns))
+    assert warm._mark() == before
+
+
+def test_a_worker_compiles_what_it_is_told() -> None:
+    name = "physicslab.kernels.motion.clear"
+    done = subprocess.run(
+        [sys.executable, "-m", "physicslab.kernels", "worker"],
+        input=f"{name}\n", capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert done.stdout == f"{name}\n"
+
+
+def test_the_window_shows_progress_and_stays_awake(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(app, "Warmup", lambda: Warmup(1, ECHO))
+    with Display.open(WindowConfig(), "test") as display:
+        assert app._warm_up(display)
+        assert len({tuple(display.canvas.surface.get_at((x, 367)))[:3] for x in range(300, 980)}) > 2
+
+
+@pytest.mark.parametrize("event", ["escape", "close"])
+def test_the_user_may_leave_while_it_compiles(
+    mark: Path, monkeypatch: pytest.MonkeyPatch, event: str
+) -> None:
+    monkeypatch.setattr(app, "Warmup", lambda: Warmup(1, ASLEEP))
+    with Display.open(WindowConfig(), "test") as display:
+        if event == "escape":
+            pygame.event.post(pygame.Event(pygame.KEYDOWN, key=pygame.K_ESCAPE, mod=0, unicode="", scancode=0))
+        else:
+            pygame.event.post(pygame.Event(pygame.QUIT))
+        assert not app._warm_up(display)
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (480, 320), (200, 100)])
+def test_the_bar_is_as_long_as_what_is_done(size: tuple[int, int]) -> None:
+    canvas = RecordingCanvas(size)
+    draw_progress(canvas, DARK, 0.25, "5 of 20")
+    frame, filled = (call["rect"] for call in canvas.called("panel"))
+    assert filled[2] == round(0.25 * frame[2])
+    assert "5 of 20" in canvas.words

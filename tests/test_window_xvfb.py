@@ -1,0 +1,136 @@
+"""End to end: ``python main.py`` in a real window on a virtual screen, with a real mouse and keyboard."""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+from numpy.typing import NDArray
+
+MISSING = [tool for tool in ("Xvfb", "xdotool", "import") if shutil.which(tool) is None]
+pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
+
+ROOT = Path(__file__).parent.parent
+PATIENCE = 120.0
+"""How long [s] a window may take to come up: the first start compiles."""
+
+
+class Screen:
+    """A virtual screen of 1280 x 720, and what a user does at it."""
+
+    def __init__(self, number: str, folder: Path) -> None:
+        self.environment = {**os.environ, "DISPLAY": number}
+        self.environment.pop("SDL_VIDEODRIVER", None)
+        self.folder = folder
+        self.shots = 0
+
+    def do(self, *words: object) -> str:
+        """Run xdotool, and wait a little for the window to notice."""
+        command = ["xdotool", *map(str, words)]
+        done = subprocess.run(command, env=self.environment, check=True, capture_output=True, text=True)
+        time.sleep(0.15)
+        return done.stdout
+
+    def picture(self) -> NDArray[np.int64]:
+        """Return what the screen shows, (width, height, 3)."""
+        self.shots += 1
+        path = self.folder / f"shot{self.shots}.png"
+        subprocess.run(["import", "-window", "root", str(path)], env=self.environment, check=True)
+        return pygame.surfarray.array3d(pygame.image.load(path)).astype(np.int64)
+
+    def launch(self, *arguments: str) -> subprocess.Popen[str]:
+        """Start the program and wait until its window has drawn the world."""
+        program = subprocess.Popen(
+            [sys.executable, str(ROOT / "main.py"), *arguments], env=self.environment, cwd=self.folder,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            assert program.poll() is None, program.communicate()[1]
+            found = subprocess.run(
+                ["xdotool", "search", "--onlyvisible", "--name", "PhysicsLab"],
+                env=self.environment, capture_output=True, text=True, check=False,
+            )  # fmt: skip
+            if found.stdout.strip() and self.picture()[60:280, 30:300].max() > 200:  # the figures' panel is there
+                return program
+            time.sleep(0.2)
+        program.kill()
+        raise AssertionError("no window came up")
+
+
+@pytest.fixture
+def screen(tmp_path: Path) -> Iterator[Screen]:
+    reader, writer = os.pipe()
+    command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1280x720x24", "-nolisten", "tcp"]
+    with subprocess.Popen(command, pass_fds=(writer,), stderr=subprocess.DEVNULL) as server:
+        os.close(writer)
+        with os.fdopen(reader) as number:
+            yield Screen(f":{number.readline().strip()}", tmp_path)
+        server.terminate()
+
+
+def test_a_user_spawns_drags_throws_and_quits(screen: Screen) -> None:
+    program = screen.launch()
+    try:
+        middle = (slice(560, 720), slice(330, 480))
+        screen.do("key", "r")
+        screen.do("key", "g")
+        screen.do("mousemove", 640, 400)
+        empty = screen.picture()
+        screen.do("click", 1)
+        spawned = screen.picture()
+        assert np.abs(spawned[middle] - empty[middle]).sum() > 10_000
+
+        screen.do("mousedown", 1)
+        for x in range(640, 400, -8):
+            screen.do("mousemove", x, 300)
+        dragged = screen.picture()
+        assert np.abs(dragged[middle] - empty[middle]).sum() < 2_000
+        assert np.abs(dragged[360:460, 250:350] - empty[360:460, 250:350]).sum() > 10_000
+        screen.do("mouseup", 1)
+
+        screen.do("key", "r")
+        screen.do("mousemove", 300, 500)
+        screen.do("click", 3)
+        screen.do("mousedown", 1)
+        words: list[object] = []
+        for x in range(300, 900, 12):
+            words += ["mousemove", x, 500, "sleep", 0.01]
+        screen.do(*words, "mouseup", 1)
+        first = screen.picture()
+        time.sleep(0.3)
+        second = screen.picture()
+        assert np.abs(first[:, 380:620] - second[:, 380:620]).sum() > 5_000, "a throw goes on by itself"
+
+        screen.do("key", "F12")
+        time.sleep(0.5)
+        (shot,) = screen.folder.glob("physicslab-*.png")
+        assert pygame.image.load(shot).get_size() == (1280, 720)
+        screen.do("key", "Escape")
+        out, err = program.communicate(timeout=20)
+        assert (program.returncode, out, err) == (0, "", "")
+    finally:
+        program.kill()
+        program.communicate()
+
+
+def test_a_resized_window_shows_more_of_the_world(screen: Screen) -> None:
+    program = screen.launch("pyramid")
+    try:
+        window = screen.do("search", "--onlyvisible", "--name", "PhysicsLab").split()[-1]
+        screen.do("windowsize", window, 900, 620)
+        time.sleep(0.5)
+        picture = screen.picture()
+        assert picture[905:].max() == 0, "nothing is drawn outside"
+        assert picture[700:880, 20:120].max() > 200, "the right panel moved along"
+        screen.do("key", "Escape")
+        assert program.wait(timeout=20) == 0
+    finally:
+        program.kill()
+        program.communicate()
