@@ -41,9 +41,7 @@ class Sandbox:
         Returns the time [s]; it limits how long the steps of a frame may take.
     """
 
-    def __init__(
-        self, world: World, window: Window, clock: Callable[[], float] = time.perf_counter
-    ) -> None:
+    def __init__(self, world: World, window: Window, clock: Callable[[], float] = time.perf_counter) -> None:
         self.world = world
         self.window = window
         self._clock = clock

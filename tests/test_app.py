@@ -112,6 +112,22 @@ def test_a_scene_opens_at_100_px_per_metre_if_it_fits_and_smaller_if_not() -> No
     assert Window(canvas).camera.scale == 100.0
 
 
+def test_a_view_that_was_not_touched_follows_the_size_of_the_window() -> None:
+    canvas = RecordingCanvas((1280, 720))
+    world = load_scene("sandbox")
+    sandbox = Sandbox(world, Window(canvas))
+    camera = sandbox.window.camera
+    sandbox.frame(FRAME)
+    canvas.size = (640, 360)
+    sandbox.frame(FRAME)
+    assert camera.size == (640, 360) and camera.scale < 60.0
+    camera.pan(30, 0)
+    scale, centre = camera.scale, camera.centre
+    canvas.size = (1280, 720)
+    sandbox.frame(FRAME)
+    assert (camera.scale, camera.centre) == (scale, centre)
+
+
 def test_installed_twice_is_refused() -> None:
     world = empty_world()
     window = Window(RecordingCanvas((800, 600)))

@@ -231,14 +231,13 @@ def test_no_word_is_cut_and_none_lies_over_another(size: tuple[int, int]) -> Non
     screen = pygame.Rect(0, 0, *size)
     for words, rect in canvas.words:
         assert screen.contains(rect), f"{words!r} at {rect} leaves {size}"
-        if words in {control.does for control in CONTROLS}:
-            continue
         around = [panel for panel in canvas.panels if panel.contains(rect)]
         assert around, f"{words!r} at {rect} is in no panel"
     for (a, one), (b, two) in itertools.combinations(canvas.words, 2):
         assert not one.inflate(-2, -2).colliderect(two.inflate(-2, -2)), f"{a!r} lies over {b!r} at {size}"
     for one, two in itertools.combinations(canvas.panels, 2):
-        assert not one.colliderect(two), f"panels {one} and {two} overlap at {size}"
+        apart = not one.colliderect(two) or one.contains(two) or two.contains(one)
+        assert apart, f"panels {one} and {two} overlap at {size}"
 
 
 @pytest.mark.parametrize("size", [(1, 1), (60, 40), (200, 100), (320, 200)])

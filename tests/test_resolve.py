@@ -385,3 +385,16 @@ def test_what_the_solver_remembers_survives_export() -> None:
         again.step()
     for component, name in ((Transform, "position"), (Transform, "angle"), (Velocity, "linear")):
         assert world.table(component)[name].tobytes() == again.table(component)[name].tobytes()
+
+
+def test_free_flight_is_exact_in_a_scene_with_contacts_too() -> None:
+    world = laboratory(PhysicsConfig(bounds=(-1e5, -1e6, 1e5, 1e5)))
+    floor(world, 0, 0.5)
+    world.spawn(Transform((0, 0.5)), Velocity(), Mass(1), Shape.box(1, 1), Material(0, 0.5))
+    flier = disc(world, (150, 20), (7, 30))
+    world.run(steps=1000)
+    t = 1000 / 60
+    x, y = world.component(flier, Transform).position
+    assert world.contacts.count > 0
+    assert x == pytest.approx(150 + 7 * t, rel=1e-12)
+    assert y == pytest.approx(20 + 30 * t - 9.81 * t * t / 2, rel=1e-12)

@@ -53,15 +53,18 @@ class Screen:
         deadline = time.monotonic() + PATIENCE
         while time.monotonic() < deadline:
             assert program.poll() is None, program.communicate()[1]
-            found = subprocess.run(
-                ["xdotool", "search", "--onlyvisible", "--name", "PhysicsLab"],
-                env=self.environment, capture_output=True, text=True, check=False,
-            )  # fmt: skip
-            if found.stdout.strip() and self.picture()[60:280, 30:300].max() > 200:  # the figures' panel is there
-                return program
+            if self.windows() and self.picture()[30:280, 30:300].max() > 200:
+                return program  # the figures are there
             time.sleep(0.2)
         program.kill()
+        program.communicate()
         raise AssertionError("no window came up")
+
+    def windows(self) -> list[str]:
+        """Return the windows of the program; without a window manager xdotool finds them by class alone."""
+        command = ["xdotool", "search", "--onlyvisible", "--classname", "main.py"]
+        found = subprocess.run(command, env=self.environment, capture_output=True, text=True, check=False)
+        return found.stdout.split()
 
 
 @pytest.fixture
@@ -123,7 +126,8 @@ def test_a_user_spawns_drags_throws_and_quits(screen: Screen) -> None:
 def test_a_resized_window_shows_more_of_the_world(screen: Screen) -> None:
     program = screen.launch("pyramid")
     try:
-        window = screen.do("search", "--onlyvisible", "--name", "PhysicsLab").split()[-1]
+        (window,) = screen.windows()
+        assert screen.do("getwindowname", window).strip() == "A pyramid of 465 boxes - PhysicsLab"
         screen.do("windowsize", window, 900, 620)
         time.sleep(0.5)
         picture = screen.picture()

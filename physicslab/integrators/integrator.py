@@ -18,7 +18,9 @@ class Integrator:
     name, title : str
         For files, and for people.
     order : int
-        The error after a fixed time falls with the ``order``-th power of the step.
+        The error after a fixed time falls with the ``order``-th power of the step, for smooth forces that
+        depend on positions. (Dampers of springs see the velocity of the substep's start, and are first
+        order.)
     evaluations : int
         Force evaluations a substep.
     stability_limit : float

@@ -42,8 +42,8 @@ def _meeting_time(
 ) -> float:
     """Return the t up to ``end`` at which separation + v t + pull t^2 / 2 = 0, for an approach v < 0.
 
-    Infinity where that is later. Where it is earlier than ``start``, an impact with a third body has made them
-    approach too late to be seen in time, and they meet now. But if it is ``earliest``, or if they were
+    Infinity where that is later. Where it is earlier than ``start``, an impact with a third body has made
+    them approach too late to be seen in time, and they meet now. But if it is ``earliest``, or if they were
     ``pressed`` together in the last substep, it is no impact but the pressing of others in a pile, which must
     not bounce: minus infinity.
     """

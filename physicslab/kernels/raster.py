@@ -228,6 +228,4 @@ def paint_lines(
 ) -> None:
     """Paint straight lines with round ends; ends and width in px, opacity 0..1."""
     for i in range(len(start)):
-        _stroke(
-            pixels, start[i, 0], start[i, 1], end[i, 0], end[i, 1], 0.5 * line_width, colour, opacity
-        )
+        _stroke(pixels, start[i, 0], start[i, 1], end[i, 0], end[i, 1], 0.5 * line_width, colour, opacity)

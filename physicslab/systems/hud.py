@@ -54,9 +54,12 @@ class HudSystem(System):
         window = self._window
         canvas, theme = window.canvas, window.theme
         self._meter.note(world, elapsed)
-        if window.now >= self._next_reading or canvas.size != self._size:
-            self._next_reading = window.now + _PERIOD
+        if canvas.size != self._size:
             self._size = canvas.size
+            self._hint = Hint(CONTROLS, self._text_size - 1, canvas, theme)
+            self._next_reading = window.now
+        if window.now >= self._next_reading:
+            self._next_reading = window.now + _PERIOD
             self._read(world)
         for panel in self._panels:
             panel.draw(canvas, theme)
@@ -82,7 +85,6 @@ class HudSystem(System):
         else:
             right = canvas.size[0]
         self._middle = (margin + width + right) // 2
-        self._hint = Hint(CONTROLS, size - 1, canvas, theme)
 
     def _draw_banners(self, world: World) -> None:
         """Say at the top what is not as usual."""

@@ -57,8 +57,7 @@ class InputSystem(System):
             handler = self._handlers.get(event.type)
             if handler is not None:
                 handler(world, event)
-        if window.camera.size != window.canvas.size:
-            window.camera.resize(window.canvas.size)
+        window.follow_size(world)
         window.hand.move(window.place, window.now)
         window.hand.lead(world, window.coming(world), window.pace.paused)
 

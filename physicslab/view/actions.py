@@ -129,5 +129,3 @@ def ask_screenshot(world: World, window: Window) -> None:
 def close(world: World, window: Window) -> None:
     """Close the window."""
     window.closing = True
-
-

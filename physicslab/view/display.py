@@ -12,6 +12,7 @@ import pygame
 
 from physicslab.config import WindowConfig
 from physicslab.view.pygame_canvas import PygameCanvas
+from physicslab.view.theme import DARK, Theme
 
 __all__ = ["Display"]
 
@@ -32,7 +33,7 @@ class Display:
 
     @classmethod
     @contextmanager
-    def open(cls, config: WindowConfig, title: str) -> Iterator[Display]:
+    def open(cls, config: WindowConfig, title: str, theme: Theme = DARK) -> Iterator[Display]:
         """Open a window for the length of a ``with`` block.
 
         Raises
@@ -43,12 +44,15 @@ class Display:
         try:
             pygame.display.init()  # not pygame.init(): sound is not needed, and complains where there is none
             pygame.font.init()
+            pygame.display.set_icon(_icon(theme))
             surface = pygame.display.set_mode(config.size, pygame.RESIZABLE)
         except pygame.error as error:
             pygame.quit()
             raise OSError(f"no window can be opened: {error}") from error
         try:
             pygame.display.set_caption(title)
+            surface.fill(theme.background)
+            pygame.display.flip()  # at once, so that no black rectangle greets the user
             yield cls(PygameCanvas(surface), config.fps)
         finally:
             pygame.quit()
@@ -77,3 +81,17 @@ class Display:
         with path.open("wb") as stream:
             pygame.image.save(self.canvas.surface, stream, path.name)
         return path
+
+
+def _icon(theme: Theme) -> pygame.Surface:
+    """Return the program's icon: a ball that strikes a box. Nothing needs to be compiled for it."""
+    large = pygame.Surface((256, 256), pygame.SRCALPHA, 32)
+    pygame.draw.rect(large, theme.background, large.get_rect(), border_radius=56)
+    ball, box, *_ = theme.bodies
+    for colour, width in ((theme.fill(ball), 0), (ball, 16)):
+        pygame.draw.circle(large, colour, (92, 124), 56, width)
+    pygame.draw.line(large, ball, (92, 124), (124, 90), 16)
+    for colour, width in ((theme.fill(box), 0), (box, 16)):
+        pygame.draw.rect(large, colour, pygame.Rect(150, 92, 72, 88), width)
+    pygame.draw.line(large, theme.static, (36, 196), (220, 196), 16)
+    return pygame.transform.smoothscale(large, (64, 64))

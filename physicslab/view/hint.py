@@ -12,7 +12,7 @@ __all__ = ["Hint"]
 
 
 class Hint:
-    """Keys and what they do, in as few rows as the window's width allows.
+    """Keys and what they do, in as few rows as the window's width allows, all about as long.
 
     Parameters
     ----------
@@ -35,40 +35,50 @@ class Hint:
         self._words = TextStyle(size, theme.faint)
         self._pad = size // 2
         self._row = canvas.text_size("Ag", self._words)[1] + self._pad
+        self._cap_widths = {c: canvas.text_size(c.label, self._cap)[0] + 2 * self._pad for c in controls}
+        self._widths = {
+            c: self._cap_widths[c] + self._pad + canvas.text_size(c.does, self._words)[0] for c in controls
+        }
         width, height = canvas.size
-        room = width - 2 * size
-        self._rows: list[list[tuple[int, Control]]] = [[]]
-        self._widths: list[int] = []
-        x = 0
+        self._rows = self._break(controls, width - 3 * size)
+        self._middle = width // 2
+        widest = max(map(self._width, self._rows)) + 4 * self._pad
+        self.top = height - len(self._rows) * self._row - 2 * self._pad
+        self._rect = (self._middle - widest // 2, self.top, widest, height - self.top - self._pad // 2)
+
+    def _width(self, row: Sequence[Control]) -> int:
+        return sum(self._widths[control] for control in row) + 2 * self._pad * (len(row) - 1)
+
+    def _break(self, controls: Sequence[Control], room: int) -> list[list[Control]]:
+        """Return the controls in rows: as few as fit into ``room`` px, and then as narrow as that allows."""
+        fewest = self._fill(controls, room)
+        for narrower in range(self._width(controls) // len(fewest), room, 8):
+            rows = self._fill(controls, narrower)
+            if len(rows) == len(fewest):
+                return rows
+        return fewest
+
+    def _fill(self, controls: Sequence[Control], room: int) -> list[list[Control]]:
+        rows: list[list[Control]] = [[]]
         for control in controls:
-            wide = self._width(control, canvas)
-            if x + wide > room and self._rows[-1]:
-                self._widths.append(x - 2 * self._pad)
-                self._rows.append([])
-                x = 0
-            self._rows[-1].append((x, control))
-            x += wide + 2 * self._pad
-        self._widths.append(x - 2 * self._pad)
-        self._width_px = width
-        self.top = height - len(self._rows) * self._row - self._pad
-
-    def _cap_width(self, control: Control, canvas: Canvas) -> int:
-        return canvas.text_size(control.label, self._cap)[0] + 2 * self._pad
-
-    def _width(self, control: Control, canvas: Canvas) -> int:
-        return self._cap_width(control, canvas) + self._pad + canvas.text_size(control.does, self._words)[0]
+            if rows[-1] and self._width([*rows[-1], control]) > room:
+                rows.append([])
+            rows[-1].append(control)
+        return rows
 
     def draw(self, canvas: Canvas) -> None:
         """Draw it, each row in the middle."""
-        theme = self._theme
+        theme, pad = self._theme, self._pad
+        canvas.panel(self._rect, theme.panel, theme.outline, theme.panel_opacity)
+        height = self._row - pad // 2
+        cap_drop = (height - canvas.text_size("Ag", self._cap)[1]) // 2
+        words_drop = (height - canvas.text_size("Ag", self._words)[1]) // 2
         for n, row in enumerate(self._rows):
-            left = (self._width_px - self._widths[n]) // 2
-            y = self.top + n * self._row
-            for x, control in row:
-                cap = self._cap_width(control, canvas)
-                height = self._row - self._pad // 2
-                canvas.panel((left + x, y, cap, height), theme.key, theme.key_rim)
-                drop = (height - canvas.text_size("Ag", self._cap)[1]) // 2
-                canvas.text(control.label, (left + x + cap // 2, y + drop), self._cap, "centre")
-                drop = (height - canvas.text_size("Ag", self._words)[1]) // 2
-                canvas.text(control.does, (left + x + cap + self._pad, y + drop), self._words)
+            x = self._middle - self._width(row) // 2
+            y = self.top + pad + n * self._row
+            for control in row:
+                cap = self._cap_widths[control]
+                canvas.panel((x, y, cap, height), theme.key, theme.key_rim)
+                canvas.text(control.label, (x + cap // 2, y + cap_drop), self._cap, "centre")
+                canvas.text(control.does, (x + cap + pad, y + words_drop), self._words)
+                x += self._widths[control] + 2 * pad

@@ -66,6 +66,7 @@ class Window:
         self.closing = False
         self.error = ""
         self._notice, self._notice_until = "", 0.0
+        self._shown: tuple[Vector2, float, float] | None = None
 
     @property
     def place(self) -> Vector2:
@@ -86,6 +87,14 @@ class Window:
         dt = world.simulation.dt
         return self.pace.due(dt) * dt * self.pace.speed
 
+    def follow_size(self, world: World) -> None:
+        """Let the camera follow the size of the canvas; an untouched view still shows all of the world."""
+        if self.camera.size == self.canvas.size:
+            return
+        self.camera.resize(self.canvas.size)
+        if self._shown is not None and self._shown[:2] == (self.camera.centre, self.camera.scale):
+            self._show(world, self._shown[2])
+
     def go_home(self, world: World) -> None:
         """Show the world as at the start: at the usual scale where all of it fits, else smaller."""
         self._show(world, self.config.pixels_per_metre)
@@ -98,7 +107,8 @@ class Window:
         extent = extent_of(world)
         if extent is None:
             self.camera.look_at((0.0, 0.0, 0.0, 0.0), self.config.pixels_per_metre)
-            return
-        xmin, ymin, xmax, ymax = extent
-        extent = (xmin, ymin - _FOOT * (ymax - ymin), xmax, ymax)
-        self.camera.look_at(extent, min(self.camera.fitting_scale(extent), largest_scale))
+        else:
+            xmin, ymin, xmax, ymax = extent
+            extent = (xmin, ymin - _FOOT * (ymax - ymin), xmax, ymax)
+            self.camera.look_at(extent, min(self.camera.fitting_scale(extent), largest_scale))
+        self._shown = (self.camera.centre, self.camera.scale, largest_scale)
