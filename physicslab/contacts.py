@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Contact", "ContactPoint", "Contacts"]
 
-_NO_ROWS = ("entity_a", "entity_b", "a", "b")
+_NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap")
 _KEPT = tuple(name for name in MANIFOLD.names or () if name not in _NO_ROWS)
 _WARM = ("feature", "normal_impulse", "tangent_impulse")
 
@@ -95,13 +95,15 @@ class Contacts:
         they would meet within a substep.
     candidate_pairs, count : int
         How many pairs are near each other, and how many have points.
+    left : int
+        How many pairs the impacts of this substep have left to the solver.
     stale : bool
         Whether the pairs must be found anew because bodies came, went or changed.
     """
 
     def __init__(self) -> None:
         self.candidate_pairs = 0
-        self.count = 0
+        self.count = self.left = 0
         self.stale = True
         self._fit(64)
 
@@ -197,7 +199,7 @@ class Contacts:
         for p in range(self.candidate_pairs):
             manifold = self.manifolds[p]
             pair = [int(manifold["entity_a"]), int(manifold["entity_b"]), int(manifold["wall"])]
-            if manifold["found"] == 2:
+            if manifold["found"] == 2 and manifold["count"] > 0:
                 kept = [manifold[name].item() for name in _KEPT[1:]]
                 both = [value for j in (2 * p, 2 * p + 1) for value in self.points[j].item()]
                 rows.append([*pair, *kept, *both])

@@ -398,3 +398,21 @@ def test_free_flight_is_exact_in_a_scene_with_contacts_too() -> None:
     assert world.contacts.count > 0
     assert x == pytest.approx(150 + 7 * t, rel=1e-12)
     assert y == pytest.approx(20 + 30 * t - 9.81 * t * t / 2, rel=1e-12)
+
+
+def test_what_is_beyond_the_bounds_is_put_back_inside() -> None:
+    world = laboratory(PhysicsConfig(bounds=(-5, -5, 5, 5)))
+    ball = disc(world, (100, 0), e=0.5)
+    world.step()
+    assert world.component(ball, Transform).position.x < 5.0
+    assert world.component(ball, Velocity).linear.magnitude < 1.0
+
+
+def test_coincident_boxes_come_apart_slowly() -> None:
+    world = laboratory()
+    for _ in range(10):
+        world.spawn(Transform(), Velocity(), Mass(1), Shape.box(1, 1), Material(0, 0.5))
+    for _ in range(300):
+        world.step()
+        assert float(np.abs(world.table(Velocity)["linear"]).max()) < 2.0
+    assert world.contacts.max_penetration < 0.05

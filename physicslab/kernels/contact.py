@@ -73,13 +73,15 @@ def find_contacts(
     first: bool,
     h: float,
     start: float,
+    fall: float,
 ) -> int:
     """Find or refresh the contact points of every near pair; return how many pairs have any.
 
     Their numbers are written to ``touching``, in order. A pair of boxes that has hardly moved keeps its
     points. The substep spans ``h`` seconds from ``start`` h before or after now: a pair that meets within it
     has points with the normal of that moment and the separation, along it, of now. ``first`` marks the first
-    substep of a step, in which records of impacts begin anew.
+    substep of a step, in which records of impacts begin anew; ``fall`` is how far [m] the forces may bring
+    two bodies together within the substep.
     """
     found = 0
     for p in range(count):
@@ -97,7 +99,7 @@ def find_contacts(
         had_points = manifold.count > 0
         if not (a_box or b_box or had_points or manifold.wall >= 0):
             # Most near circles are too far apart for this substep: settle those without a call.
-            reach = 1.02 * (radius[a] + radius[b]) + abs(ux) + abs(uy)
+            reach = 1.02 * (radius[a] + radius[b]) + abs(ux) + abs(uy) + fall
             if dx * dx + dy * dy > reach * reach:
                 continue
         if (a_box and b_box) or (manifold.wall >= 0 and b_box):
@@ -109,21 +111,27 @@ def find_contacts(
             moved_x, moved_y = dx - manifold.base_x, dy - manifold.base_y
             turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
             travel = abs(ux) + abs(uy)
+            known = manifold.found == 2 and manifold.base_sizes == sizes
+            if known and not had_points:
+                # Whatever they have done since, they cannot have come nearer than this.
+                turned = abs(turn_a) * (width[a] + height[a]) + abs(turn_b) * (width[b] + height[b])
+                nearest = manifold.gap - abs(moved_x) - abs(moved_y) - 0.5 * turned - 0.0025 * size
+                if nearest > NEAR * size + travel + fall:
+                    continue
             if (
-                manifold.found == 2
-                and manifold.base_sizes == sizes
+                known
+                and had_points
                 and abs(moved_x) + abs(moved_y) <= _KEEP * size
                 and abs(turn_a) <= _KEEP_TURN
                 and abs(turn_b) <= _KEEP_TURN
                 and travel <= 0.5 * NEAR * size
             ):
-                if manifold.count > 0:
-                    _refresh(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
-                    touching[found] = p
-                    found += 1
-                    if first:
-                        _effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
-                        _mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
+                _refresh(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
+                touching[found] = p
+                found += 1
+                if first:
+                    _effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
+                    _mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
                 continue
             manifold.base_x, manifold.base_y = dx, dy
             manifold.base_angle_a, manifold.base_angle_b = angle[a], angle[b]
@@ -134,7 +142,7 @@ def find_contacts(
         if manifold.wall >= 0:
             spin = abs(angular[b]) * h * math.sqrt(half_bx * half_bx + half_by * half_by)
             touch_wall(
-                manifold, one, two, position[b, 0], position[b, 1], ux, uy, spin, b_box, cb, sb,
+                manifold, one, two, position[b, 0], position[b, 1], ux, uy, spin, fall, b_box, cb, sb,
                 half_bx, half_by, radius[b], bounds,
             )  # fmt: skip
         else:
@@ -150,6 +158,7 @@ def find_contacts(
                     ux,
                     uy,
                     start,
+                    fall,
                     ca,
                     sa,
                     half_ax,
@@ -161,7 +170,7 @@ def find_contacts(
                 )
             else:
                 touch_with_circle(
-                    manifold, one, dx, dy, ux, uy, start, a_box, ca, sa, half_ax, half_ay, radius[a],
+                    manifold, one, dx, dy, ux, uy, start, fall, a_box, ca, sa, half_ax, half_ay, radius[a],
                     b_box, cb, sb, half_bx, half_by, radius[b],
                 )  # fmt: skip
         if manifold.count > 0:

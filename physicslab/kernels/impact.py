@@ -3,7 +3,7 @@
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.impulse import apply_impulse, relative_velocity
+from physicslab.kernels.impulse import apply_impulse, follow_drift, relative_velocity
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 
 __all__ = ["strike"]
@@ -218,8 +218,8 @@ def strike(
     h: float,
     start: float,
     end: float,
-) -> int:
-    """Bounce the pairs that meet in this substep, each at its own time; return how many impacts there were.
+) -> tuple[int, int]:
+    """Bounce the pairs that meet in this substep, each at its own time.
 
     The substep spans the times ``start`` to ``end`` from now. An impact at the time t takes the speeds of
     that time, j = -(1 + e) v_n / effective mass with friction up to mu j, and leaves the bodies where they
@@ -230,14 +230,15 @@ def strike(
     resting contact, which the solver handles. Pairs are taken one after the other, in order, until none is
     left that meets; inelastic ones only once, for what is left of their approach the solver takes away.
     """
-    impacts = 0
+    impacts, left = 0, count
     earliest = start - 2.0 * (end - start) if has_forces else -math.inf  # without forces, nothing piles up
     for sweep in range(_SWEEPS):
-        bounced = 0
+        bounced, left = 0, 0
         for k in range(count):
             p = touching[k]
             manifold = manifolds[p]
             if sweep > 0 and manifold.restitution == 0.0:
+                left += 1
                 continue
             # Most pairs rest: what follows settles those without a call.
             a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
@@ -245,13 +246,17 @@ def strike(
             one.ahead = two.ahead = 0
             vx, vy = relative_velocity(one, a, b, linear, angular)
             v1, v2 = vx * nx + vy * ny, 0.0
+            overlap, pressed = one.separation < 0.0, one.normal_impulse > 0.0
             if manifold.count == 2:
                 vx, vy = relative_velocity(two, a, b, linear, angular)
                 v2 = vx * nx + vy * ny
+                overlap, pressed = overlap or two.separation < 0.0, pressed or two.normal_impulse > 0.0
             if v1 >= 0.0 and v2 >= 0.0:
+                left += 1 if has_forces or overlap or pressed else 0
                 continue
             pull, resting_speed = _forced(a, b, nx, ny, linear, force, inverse_mass, has_forces, h)
             if v1 >= -resting_speed and v2 >= -resting_speed:
+                left += 1
                 continue
             if start >= 0.0:  # in symplectic Euler the forces have acted already
                 pull = 0.0
@@ -261,12 +266,15 @@ def strike(
             ):  # fmt: skip
                 bounced += 1
                 manifold.struck += 1
+            left += 1 - one.ahead
         impacts += bounced
         if bounced == 0:
             break
     if impacts:
         _measure_again(manifolds, points, touching, count, position)
-    return impacts
+    if left == 0:
+        follow_drift(manifolds, points, touching, count, linear, angular, end)
+    return impacts, left
 
 
 @inlined

@@ -5,12 +5,12 @@ import math
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.records import Manifolds, Point, Points
 
-__all__ = ["apply_impulse", "deepest", "relative_velocity", "relax", "separate", "solve"]
+__all__ = ["apply_impulse", "deepest", "follow_drift", "relative_velocity", "relax", "separate", "solve"]
 
 
 _SOFT = 0.01
-"""Share of the smaller body's size that the contact spring takes away at its full rate; the load on it
-comes on top."""
+"""Share of the smaller body's size that the contact spring takes away at its full rate; the load on it comes
+on top."""
 _DEEP = 0.1
 """Share beyond which overlap is taken away by moving."""
 
@@ -59,6 +59,7 @@ def _sweep(
     mass_scale: float,
     impulse_scale: float,
     slop: float,
+    heaviest: float,
 ) -> None:
     """Go once through all contacts; friction goes by the newest normal impulse.
 
@@ -85,9 +86,9 @@ def _sweep(
             else:
                 # No faster than what balances twice the load, or a pile of overlapping bodies would fly
                 # apart.
-                load = impulse_scale * point.normal_impulse / (mass_scale * point.normal_mass)
+                load = min(point.normal_impulse, heaviest) * impulse_scale / (mass_scale * point.normal_mass)
                 limit = push_rate * _SOFT * manifold.size + 2.0 * load
-                bias = max(push_rate * min(separation + slop, 0.0), -limit)
+                bias = max(push_rate * min(separation + slop * manifold.size, 0.0), -limit)
                 hardness, softness = mass_scale, impulse_scale
             change = -point.normal_mass * hardness * (vn + bias) - softness * point.normal_impulse
             total = max(point.normal_impulse + change, 0.0)
@@ -122,6 +123,8 @@ def solve(
     angular: Numbers,
     inverse_mass: Numbers,
     inverse_inertia: Numbers,
+    force: Vectors,
+    has_forces: bool,
     h: float,
     iterations: int,
     hertz: float,
@@ -147,14 +150,38 @@ def solve(
             apply_impulse(
                 point, px, py, manifold.a, manifold.b, linear, angular, inverse_mass, inverse_inertia
             )
+    heaviest = 0.0
+    if has_forces:
+        for i in range(len(inverse_mass)):
+            heaviest += h * math.sqrt(force[i, 0] * force[i, 0] + force[i, 1] * force[i, 1])
     omega = 2.0 * math.pi * min(hertz, 0.25 / h)
     q = 2.0 * damping_ratio + h * omega
     stiffness = h * omega * q
     for _ in range(iterations):
         _sweep(
             manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
-            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop,
+            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, heaviest,
         )  # fmt: skip
+
+
+@inlined
+def follow_drift(
+    manifolds: Manifolds,
+    points: Points,
+    touching: Rows,
+    count: int,
+    linear: Vectors,
+    angular: Numbers,
+    h: float,
+) -> None:
+    """Bring separations up to date for a drift of h at the present velocities."""
+    for k in range(count):
+        p = touching[k]
+        manifold = manifolds[p]
+        for j in range(2 * p, 2 * p + manifold.count):
+            point = points[j]
+            vx, vy = relative_velocity(point, manifold.a, manifold.b, linear, angular)
+            point.separation += h * (vx * manifold.normal_x + vy * manifold.normal_y)
 
 
 @kernel
@@ -174,17 +201,11 @@ def relax(
 
     ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call.
     """
-    for k in range(count):
-        p = touching[k]
-        manifold = manifolds[p]
-        for j in range(2 * p, 2 * p + manifold.count):
-            point = points[j]
-            vx, vy = relative_velocity(point, manifold.a, manifold.b, linear, angular)
-            point.separation += h * (vx * manifold.normal_x + vy * manifold.normal_y)
+    follow_drift(manifolds, points, touching, count, linear, angular, h)
     for _ in range(iterations):
         _sweep(
             manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
-            1.0 / h, 0.0, 1.0, 0.0, 0.0,
+            1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0,
         )  # fmt: skip
 
 
@@ -198,9 +219,10 @@ def separate(
     inverse_mass: Numbers,
     farthest: float,
 ) -> None:
-    """Move bodies that overlap deeply apart, a fifth of the way, by no more than ``farthest`` [m] each.
+    """Move bodies that overlap deeply apart, a fifth of the way and by ``farthest`` [m] at the most.
 
-    Only positions change: however many bodies lie on one spot, coming apart gives them no speed.
+    Only positions change: however many bodies lie on one spot, coming apart gives them no speed. What is
+    beyond the world's bounds is put back inside at once.
     """
     deep = False
     for k in range(count):
@@ -234,6 +256,20 @@ def separate(
         if way > farthest:
             position[i, 0] = before[i, 0] + x * farthest / way
             position[i, 1] = before[i, 1] + y * farthest / way
+    for k in range(count):
+        p = touching[k]
+        manifold = manifolds[p]
+        if manifold.wall < 0 or manifold.swept == 1:
+            continue
+        b, nx, ny = manifold.b, manifold.normal_x, manifold.normal_y
+        moved = (position[b, 0] - before[b, 0]) * nx + (position[b, 1] - before[b, 1]) * ny
+        lowest = points[2 * p].separation
+        if manifold.count == 2:
+            lowest = min(lowest, points[2 * p + 1].separation)
+        depth = -(lowest + moved) - _DEEP * manifold.size
+        if depth > 0.0:
+            position[b, 0] += depth * nx
+            position[b, 1] += depth * ny
 
 
 @kernel

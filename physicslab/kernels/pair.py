@@ -87,6 +87,7 @@ def touch_with_circle(
     ux: float,
     uy: float,
     start: float,
+    fall: float,
     a_box: bool,
     ca: float,
     sa: float,
@@ -111,7 +112,8 @@ def touch_with_circle(
     )
     reach = math.sqrt(ux * ux + uy * uy)
     manifold.count, manifold.swept, manifold.size = 0, 0, 2.0 * size
-    if separation > max(reach, NEAR * size):
+    near = NEAR * size + fall
+    if separation > max(reach, near):
         return
     if reach > _STILL * size:
         # The normal is that of the moment of contact, if there is one in this substep.
@@ -132,11 +134,11 @@ def touch_with_circle(
             nx, ny, arm_ax, arm_ay, arm_bx, arm_by = mx, my, met_ax, met_ay, met_bx, met_by
             separation = gap - (start + t) * (ux * nx + uy * ny)
             manifold.swept = 1
-        elif separation > NEAR * size:
+        elif separation > near:
             return
         elif t == MISS:
             manifold.swept = 2
-    elif separation > NEAR * size:
+    elif separation > near:
         return
     manifold.normal_x, manifold.normal_y, manifold.count = nx, ny, 1
     _put(
@@ -155,6 +157,7 @@ def touch_boxes(
     ux: float,
     uy: float,
     start: float,
+    fall: float,
     ca: float,
     sa: float,
     ax: float,
@@ -164,13 +167,16 @@ def touch_boxes(
     bx: float,
     by: float,
 ) -> None:
-    """Find the points of two boxes: as they are now, or where they meet if they are fast for their size."""
+    """Find the points of two boxes: as they are now, or where they meet if they are fast for their size.
+
+    ``fall`` is how far the forces may bring them together within the substep.
+    """
     size = 2.0 * min(min(ax, ay), min(bx, by))
     travel = math.sqrt(ux * ux + uy * uy)
-    x, y, lead_x, lead_y, margin = dx, dy, 0.0, 0.0, NEAR * size + travel
-    manifold.swept, manifold.size = 0, size
+    x, y, lead_x, lead_y, margin = dx, dy, 0.0, 0.0, NEAR * size + travel + fall
+    manifold.swept, manifold.size, manifold.gap = 0, size, -math.inf
     if travel > _FAST * size:
-        margin = NEAR * size
+        margin = NEAR * size + fall
         x, y = dx + start * ux, dy + start * uy
         t = 0.0
         if box_box(x, y, ca, sa, cb, sb, ax, ay, bx, by, -math.inf)[0] > 0.0:
@@ -183,7 +189,9 @@ def touch_boxes(
         manifold.swept = 1
     f1, n1, t1 = one.feature, one.normal_impulse, one.tangent_impulse
     f2, n2, t2 = two.feature, two.normal_impulse, two.tangent_impulse
-    _, nx, ny, count, x1, y1, s1, g1, x2, y2, s2, g2 = box_box(x, y, ca, sa, cb, sb, ax, ay, bx, by, margin)
+    gap, nx, ny, count, x1, y1, s1, g1, x2, y2, s2, g2 = box_box(x, y, ca, sa, cb, sb, ax, ay, bx, by, margin)
+    if not manifold.swept:
+        manifold.gap = gap
     manifold.count = count
     if count > 0:
         manifold.normal_x, manifold.normal_y = nx, ny
@@ -203,6 +211,7 @@ def touch_wall(
     ux: float,
     uy: float,
     spin: float,
+    fall: float,
     box: bool,
     c: float,
     s: float,
@@ -216,7 +225,8 @@ def touch_wall(
     nx = 1.0 if wall == 0 else (-1.0 if wall == 2 else 0.0)
     ny = 1.0 if wall == 1 else (-1.0 if wall == 3 else 0.0)
     height = (x - bounds[wall]) * nx if wall == 0 or wall == 2 else (y - bounds[wall]) * ny
-    travel = max(-(ux * nx + uy * ny), 0.0) + spin
+    travel = max(-(ux * nx + uy * ny), 0.0) + spin + fall
+    manifold.gap = -math.inf
     manifold.normal_x, manifold.normal_y = nx, ny
     f1, n1, t1 = one.feature, one.normal_impulse, one.tangent_impulse
     f2, n2, t2 = two.feature, two.normal_impulse, two.tangent_impulse

@@ -28,6 +28,7 @@ MANIFOLD = np.dtype(
         ("base_y", np.float64),
         ("base_angle_a", np.float64),
         ("base_angle_b", np.float64),
+        ("gap", np.float64),  # of boxes in that pose, where they had no points: they have none while it lasts
         ("base_sizes", np.float64),  # of both boxes, mixed into one number
         ("struck", np.int64),  # impacts of this step
         # 1 where the normal is that of the moment within this substep at which they meet, 2 where they are

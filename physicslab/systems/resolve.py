@@ -26,7 +26,7 @@ class ResolveSystem(System):
     max_push : float
         Fastest [m/s] that overlap is taken away.
     slop : float
-        Overlap [m] that is left alone.
+        Overlap that is left alone, as a share of the smaller body's size.
     """
 
     kernels = (impact.strike, impulse.solve, impulse.relax, impulse.separate)
@@ -47,29 +47,31 @@ class ResolveSystem(System):
         transform, velocity = world.table(Transform), world.table(Velocity)
         start, end = world.integrator.window
         if contacts.count:
-            world.collisions += impact.strike(
+            impacts, contacts.left = impact.strike(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.count,
                 transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
-                bodies.force, bodies.inverse_mass, bodies.inverse_inertia, world.has_forces, h, start * h, end
-                * h,
+                bodies.force, bodies.inverse_mass, bodies.inverse_inertia, world.has_forces,
+                h, start * h, end * h,
             )  # fmt: skip
+            world.collisions += impacts
 
     @at(Stage.SOLVE)
     def solve(self, world: World, h: float) -> None:
         """Find the impulses that keep bodies apart, taking some of the overlap away."""
         contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
-        if contacts.count:
+        if contacts.count and contacts.left:
             impulse.solve(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.count,
                 velocity["linear"], velocity["angular"], bodies.inverse_mass, bodies.inverse_inertia,
-                h, world.simulation.iterations or 1, self.hertz, self.damping_ratio, self.slop,
+                bodies.force, world.has_forces, h, world.simulation.iterations or 1,
+                self.hertz, self.damping_ratio, self.slop,
             )  # fmt: skip
 
     @at(Stage.RELAX)
     def relax(self, world: World, h: float) -> None:
         """Take back the velocity that came from taking overlap away."""
         contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
-        if contacts.count:
+        if contacts.count and contacts.left:
             impulse.relax(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.count,
                 velocity["linear"], velocity["angular"], bodies.inverse_mass, bodies.inverse_inertia,
