@@ -5,13 +5,15 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pygame
 import pytest
 from numpy.typing import NDArray
+
+type Seen = Callable[[NDArray[np.int64]], bool]
 
 MISSING = [tool for tool in ("Xvfb", "xdotool", "import") if shutil.which(tool) is None]
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
@@ -43,6 +45,15 @@ class Screen:
         path = self.folder / f"shot{self.shots}.png"
         subprocess.run(["import", "-window", "root", str(path)], env=self.environment, check=True)
         return pygame.surfarray.array3d(pygame.image.load(path)).astype(np.int64)
+
+    def until(self, seen: Seen, what: str) -> NDArray[np.int64]:
+        """Take pictures until ``seen`` accepts one, and return it: a busy machine is late, not wrong."""
+        deadline = time.monotonic() + 30.0
+        while time.monotonic() < deadline:
+            picture = self.picture()
+            if seen(picture):
+                return picture
+        raise AssertionError(f"not seen: {what}")
 
     def launch(self, *arguments: str) -> subprocess.Popen[str]:
         """Start the program and wait until its window has drawn the world."""
@@ -82,36 +93,45 @@ def test_a_user_spawns_drags_throws_and_quits(screen: Screen) -> None:
     program = screen.launch()
     try:
         middle = (slice(560, 720), slice(330, 480))
+        left = (slice(360, 460), slice(250, 350))
+
+        def differs(part: tuple[slice, slice], other: NDArray[np.int64], by: int) -> Seen:
+            return lambda picture: bool(np.abs(picture[part] - other[part]).sum() > by)
+
+        full = screen.picture()
         screen.do("key", "r")
         screen.do("key", "g")
         screen.do("mousemove", 640, 400)
+        screen.until(differs((slice(400, 1100), slice(300, 640)), full, 50_000), "an empty world")
+        time.sleep(0.5)
         empty = screen.picture()
         screen.do("click", 1)
-        spawned = screen.picture()
-        assert np.abs(spawned[middle] - empty[middle]).sum() > 10_000
+        screen.until(differs(middle, empty, 10_000), "a circle where the click was")
 
         screen.do("mousedown", 1)
         for x in range(640, 400, -8):
             screen.do("mousemove", x, 300)
-        dragged = screen.picture()
-        assert np.abs(dragged[middle] - empty[middle]).sum() < 2_000
-        assert np.abs(dragged[360:460, 250:350] - empty[360:460, 250:350]).sum() > 10_000
+        screen.until(differs(left, empty, 10_000), "the circle dragged to the left")
+        gone = screen.until(lambda picture: not differs(middle, empty, 2_000)(picture), "the middle empty")
+        assert differs(left, empty, 10_000)(gone)
         screen.do("mouseup", 1)
 
         screen.do("key", "r")
+        screen.until(lambda picture: not differs(left, empty, 2_000)(picture), "an empty world again")
         screen.do("mousemove", 300, 500)
         screen.do("click", 3)
+        screen.until(differs((slice(270, 330), slice(470, 530)), empty, 5_000), "a box")
         screen.do("mousedown", 1)
         words: list[object] = []
         for x in range(300, 900, 12):
             words += ["mousemove", x, 500, "sleep", 0.01]
         screen.do(*words, "mouseup", 1)
         first = screen.picture()
-        time.sleep(0.3)
-        second = screen.picture()
-        assert np.abs(first[:, 380:620] - second[:, 380:620]).sum() > 5_000, "a throw goes on by itself"
+        path = (slice(None), slice(380, 620))
+        screen.until(differs(path, first, 5_000), "a throw going on by itself")
 
         screen.do("key", "F12")
+        screen.until(lambda _: any(screen.folder.glob("physicslab-*.png")), "a screenshot in the folder")
         time.sleep(0.5)
         (shot,) = screen.folder.glob("physicslab-*.png")
         assert pygame.image.load(shot).get_size() == (1280, 720)
