@@ -42,16 +42,27 @@ class Sandbox:
     """
 
     def __init__(self, world: World, window: Window, clock: Callable[[], float] = time.perf_counter) -> None:
-        self.world = world
         self.window = window
         self._clock = clock
-        world.install(InputSystem(window), RenderSystem(window), HudSystem(window))
+        self._systems = InputSystem(window), RenderSystem(window), HudSystem(window)
+        self.show(world)
+
+    def show(self, world: World) -> None:
+        """Show a world in place of the one that was shown, with nothing held and nothing begun."""
+        self.world = world
+        world.install(*self._systems)
+        window = self.window
+        window.spring_tool.cancel()
+        window.error, window.next_world = "", None
         window.go_home(world)
 
     def frame(self, elapsed: float) -> None:
         """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last."""
         self.window.pace.begin(elapsed)
         self.world.frame(Stage.INPUT, elapsed)
+        if self.window.next_world is not None:
+            self.window.hand.drop(self.world)
+            self.show(self.window.next_world)
         self._advance()
         self.world.frame(Stage.RENDER, elapsed)
         self.world.frame(Stage.HUD, elapsed)
@@ -67,7 +78,7 @@ class Sandbox:
         made, due = 0, pace.due(dt)
         try:
             while made < due and (made == 0 or self._clock() < deadline):
-                world.step(dt * pace.speed)
+                world.step(dt * pace.shortening)
                 made += 1
         except Diverged as error:
             pace.halt()
@@ -93,7 +104,7 @@ def open_window(scene: str | None) -> int:
     """
     world = load_scene(FIRST_SCENE if scene is None else scene)
     config = WindowConfig()
-    with Display.open(config, f"{world.title or world.name} - PhysicsLab") as display:
+    with Display.open(config, _title(world)) as display:
         if not is_warm() and not _warm_up(display):
             return 0
         window = Window(display.canvas, config)
@@ -103,11 +114,16 @@ def open_window(scene: str | None) -> int:
         elapsed = 0.0
         while not window.closing:
             sandbox.frame(elapsed)
+            display.title = _title(sandbox.world)
             if window.wants_screenshot:
                 window.wants_screenshot = False
                 window.notify(_keep_screenshot(display))
             elapsed = display.show()
     return 0
+
+
+def _title(world: World) -> str:
+    return f"{world.title or world.name or 'A scene'} - PhysicsLab"
 
 
 def _keep_screenshot(display: Display) -> str:

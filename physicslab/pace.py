@@ -10,8 +10,9 @@ __all__ = ["Pace"]
 class Pace:
     """Says how many steps are due in a frame, so that what happens does not hang on the frame rate.
 
-    Time that has passed on the wall is owed, and paid back in whole steps of ``dt``. Slow motion makes each
-    step shorter and not fewer, so that it looks as smooth as full speed.
+    Time that has passed on the wall is owed, and paid back in whole steps of ``dt``. Below full speed each
+    step is shorter and there are not fewer, so that it looks as smooth; above, there are more steps and none
+    is longer, so that it is as accurate.
 
     Parameters
     ----------
@@ -24,9 +25,11 @@ class Pace:
     paused : bool
         Whether time stands still; :meth:`ask_step` still gives single steps.
     slow_motion : bool
-        Whether the world runs at a quarter of its speed.
+        Whether the world runs at a quarter of its speed, whatever speed was chosen.
+    chosen : float
+        The speed when there is no slow motion; 1 is as fast as life.
     dropped : float
-        Time [s] dropped so far.
+        Time [s] on the wall that was dropped so far.
 
     Examples
     --------
@@ -38,11 +41,14 @@ class Pace:
 
     SLOW = 0.25
     """The speed of slow motion."""
+    SLOWEST, FASTEST = 0.0625, 4.0
+    """The speeds that can be chosen."""
 
     def __init__(self, max_dt: float) -> None:
         self.max_dt = max_dt
         self.paused = False
         self.slow_motion = False
+        self.chosen = 1.0
         self.dropped = 0.0
         self._owed = 0.0
         self._single = 0
@@ -50,13 +56,28 @@ class Pace:
     @property
     def speed(self) -> float:
         """How fast the world runs: 1 is as fast as life."""
-        return self.SLOW if self.slow_motion else 1.0
+        return self.SLOW if self.slow_motion else self.chosen
+
+    @property
+    def shortening(self) -> float:
+        """How long a step is, as a share of ``dt``: less than 1 below full speed, never more."""
+        return min(self.speed, 1.0)
+
+    @property
+    def _rate(self) -> float:
+        """How many steps are made for each at full speed: more than 1 above it, never less."""
+        return max(self.speed, 1.0)
+
+    def choose(self, factor: float) -> None:
+        """Make the world run so many times as fast as it does, within the speeds there are."""
+        self.chosen = min(max(self.speed * factor, self.SLOWEST), self.FASTEST)
+        self.slow_motion = False
 
     def begin(self, elapsed: float) -> None:
         """Begin a frame, ``elapsed`` seconds after the last."""
         if self.paused:
             return
-        self._owed += min(elapsed, self.max_dt)
+        self._owed += min(elapsed, self.max_dt) * self._rate
         self.drop(max(elapsed - self.max_dt, 0.0))
 
     def due(self, dt: float) -> int:
@@ -74,7 +95,7 @@ class Pace:
             self._single = 0
             return
         self._owed -= due * dt
-        self.drop((due - steps) * dt)
+        self.drop((due - steps) * dt / self._rate)
 
     def drop(self, seconds: float) -> None:
         """Note that so much time is not made up for."""

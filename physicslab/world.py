@@ -35,6 +35,11 @@ class World:
     physics, simulation : PhysicsConfig, SimulationConfig, optional
         The laws, and how they are stepped. Assign new ones at any time.
 
+    Attributes
+    ----------
+    revision : int
+        How often its structure or its configuration changed: what was measured before is another world's.
+
     Notes
     -----
     Each world lives in an esper context of its own, so worlds never mix. A new world is esper's active one
@@ -62,6 +67,7 @@ class World:
         self.name, self.title, self.description = "", "", ""
         self.time = 0.0
         self.steps = 0
+        self.revision = 0
         self.force_evaluations = 0
         self.collisions = 0
         self.bodies = Bodies()
@@ -254,6 +260,7 @@ class World:
             self.schedule.remake(self)
             self.has_forces = any(isinstance(system, ForceSystem) for system in self.schedule.running)
             self._choose_integrator()
+            self.revision += 1
             self._stale = False
 
     def step(self, dt: float | None = None) -> None:

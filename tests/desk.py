@@ -44,12 +44,16 @@ class Desk:
         pygame.display.init()
         if canvas is None:
             canvas = PygameCanvas(pygame.display.set_mode((1280, 720)))
-        self.world = world
         self.window = Window(canvas, config)
         self.sandbox = Sandbox(world, self.window, clock=lambda: 0.0)
         self.window.camera.look_at((0.0, 0.0, 0.0, 0.0), 100.0)
         self._held: set[str] = set()
         pygame.event.clear()
+
+    @property
+    def world(self) -> World:
+        """The world that is shown."""
+        return self.sandbox.world
 
     def pixel(self, x: float, y: float) -> tuple[int, int]:
         """Return the pixel that shows a point of the world [m]."""
@@ -81,6 +85,11 @@ class Desk:
         """Press a key, by its name in SDL."""
         code = pygame.key.key_code(name)
         pygame.event.post(pygame.Event(pygame.KEYDOWN, key=code, mod=mod, unicode="", scancode=0))
+
+    def key_up(self, name: str) -> None:
+        """Let a key go."""
+        code = pygame.key.key_code(name)
+        pygame.event.post(pygame.Event(pygame.KEYUP, key=code, mod=0, unicode="", scancode=0))
 
     def frames(self, count: int = 1, elapsed: float = FRAME) -> None:
         """Let frames go by."""

@@ -8,7 +8,7 @@ from physicslab.components import Held, Shape, Spring, Transform, Velocity
 from physicslab.config import WindowConfig
 from physicslab.prefabs import box, circle
 from physicslab.vector import Vector2
-from physicslab.view.controls import CONTROLS, KEYS
+from physicslab.view.controls import CONTROLS, KEYS, RELEASES
 
 
 @pytest.fixture
@@ -269,7 +269,9 @@ def test_f_fits_and_home_goes_back(desk: Desk) -> None:
     assert desk.window.camera.scale > 100.0
 
 
-@pytest.mark.parametrize("key", ["f", "home", "r", "p", ".", "tab", "g", "o", "f12"])
+@pytest.mark.parametrize(
+    "key", ["f", "home", "r", "p", ".", "tab", "g", "o", "f12", "s", "delete", "[", "]", "h", "f1"]
+)
 def test_every_key_works_in_an_empty_world(desk: Desk, key: str) -> None:
     desk.key(key)
     desk.frames(3)
@@ -288,7 +290,9 @@ def test_escape_and_the_close_button_close(desk: Desk) -> None:
 def test_the_table_of_controls_is_what_works() -> None:
     assert len({control.label for control in CONTROLS}) == len(CONTROLS)
     assert all(control.label and control.does for control in CONTROLS)
-    assert all(pygame.key.name(pygame.key.key_code(key)).lower() == key for key in KEYS)
+    names = [key.removeprefix("ctrl+") for key in (*KEYS, *RELEASES)]
+    assert all(pygame.key.name(pygame.key.key_code(name)).lower() == name for name in names)
+    assert len(KEYS) == sum(bool(c.key) + bool(c.also) for c in CONTROLS), "no key means two things"
 
 
 def test_unknown_keys_and_buttons_do_nothing(desk: Desk) -> None:

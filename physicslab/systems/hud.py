@@ -7,12 +7,16 @@ from typing import TYPE_CHECKING
 from physicslab.schedule import Stage, System, at
 from physicslab.view.canvas import TextStyle
 from physicslab.view.controls import CONTROLS
-from physicslab.view.figures import FrameMeter, WorldFigures, measure_world
+from physicslab.view.edge_arrows import draw_edge_arrows
+from physicslab.view.figures import EnergyWatch, FrameMeter, measure_world
+from physicslab.view.help import Help
 from physicslab.view.hint import Hint
-from physicslab.view.panels import Line, Panel, broken, draw_pill, lay_out
-from physicslab.view.quantities import quantity
+from physicslab.view.panels import Panel, broken, draw_pill, lay_out
+from physicslab.view.readings import cost_lines, figure_lines, left_out_lines, method_lines
+from physicslab.view.scale_bar import draw_scale_bar
 
 if TYPE_CHECKING:
+    from physicslab.view.canvas import Rect
     from physicslab.view.theme import Colour
     from physicslab.view.window import Window
     from physicslab.world import World
@@ -23,6 +27,8 @@ _PERIOD = 0.1
 """Time [s] between two readings: figures that change faster cannot be read."""
 _BANNER = 16
 """Room that the banners need, in heights of the text."""
+_MESSAGE = 0.56
+"""How wide a message may be, as a share of the window: the scale bar stands beside it."""
 _DROP_SHOWN = 3.0
 """How long [s] the HUD speaks of time that was dropped."""
 
@@ -39,11 +45,14 @@ class HudSystem(System):
     def __init__(self, window: Window) -> None:
         self._window = window
         self._meter = FrameMeter()
+        self._watch = EnergyWatch()
         self._next_reading = 0.0
         self._size = (0, 0)
+        self._world: World | None = None
         self._panels: list[Panel] = []
         self._middle = 0
         self._hint: Hint
+        self._help: Help
         self._dropped = 0.0
         self._dropped_now = 0.0
         self._drop_until = 0.0
@@ -56,16 +65,30 @@ class HudSystem(System):
         self._meter.note(world, elapsed)
         if canvas.size != self._size:
             self._size = canvas.size
-            self._hint = Hint(CONTROLS, self._text_size - 1, canvas, theme)
+            hinted = [control for control in CONTROLS if not control.minor]
+            self._hint = Hint(hinted, self._text_size - 1, canvas, theme)
+            self._help = Help(CONTROLS, self._text_size, canvas, theme)
             self._next_reading = window.now
-        if window.now >= self._next_reading:
-            self._next_reading = window.now + _PERIOD
+        self._watch.follow(world)
+        if window.now >= self._next_reading or world is not self._world:
+            self._next_reading, self._world = window.now + _PERIOD, world
             self._read(world)
+        if window.help:
+            self._help.draw(canvas)
+        else:
+            self._draw_all(world)
+
+    def _draw_all(self, world: World) -> None:
+        window = self._window
+        canvas, theme, size = window.canvas, window.theme, self._text_size
         for panel in self._panels:
             panel.draw(canvas, theme)
         self._hint.draw(canvas)
-        self._draw_banners(world)
-        self._draw_messages()
+        taken = [*(panel.rect for panel in self._panels), self._hint.rect]
+        taken.append(draw_scale_bar(window.camera, self._hint.top - size // 2, size, canvas, theme))
+        taken += self._draw_banners(world)
+        taken += self._draw_messages()
+        draw_edge_arrows(world, window.camera, taken, size, canvas, theme)
 
     @property
     def _text_size(self) -> int:
@@ -76,9 +99,16 @@ class HudSystem(System):
     def _read(self, world: World) -> None:
         canvas, theme, size = self._window.canvas, self._window.theme, self._text_size
         width, margin = round(19.5 * size), round(0.8 * size)
-        figures = [*_figure_lines(world, measure_world(world), self._meter.frame_rate), *_method_lines(world)]
-        costs = [*_cost_lines(world, self._meter), *_left_out_lines(world)]
-        self._panels = [lay_out(figures, margin, margin, width, size, canvas, theme)]
+        measured = measure_world(world, self._watch)
+        figures = figure_lines(world, measured, self._meter.frame_rate)
+        costs = [*cost_lines(world, self._meter), *left_out_lines(world)]
+        plain = [line for line in figures if line.kind != "detail"]
+        bottom = self._hint.top - size - sum(height + size // 2 for _, _, height in self._messages())
+        for lines in ([*figures, *method_lines(world)], figures, plain):
+            left = lay_out(lines, margin, margin, width, size, canvas, theme)
+            if margin + left.rect[3] <= bottom:
+                break  # else less is said, so that no message lies over it
+        self._panels = [left]
         right = canvas.size[0] - width - margin
         if right - (margin + width) >= _BANNER * size:  # or the banners would have no room between them
             self._panels.append(lay_out(costs, right, margin, width, size, canvas, theme))
@@ -86,23 +116,25 @@ class HudSystem(System):
             right = canvas.size[0]
         self._middle = (margin + width + right) // 2
 
-    def _draw_banners(self, world: World) -> None:
-        """Say at the top what is not as usual."""
+    def _draw_banners(self, world: World) -> list[Rect]:
+        """Say at the top what is not as usual, and return where [px]."""
         window = self._window
         size = self._text_size
         top = round(0.8 * size)
+        taken: list[Rect] = []
         for words, colour in self._banners(world):
-            top += size // 2 + draw_pill(
-                [words], self._middle, top, size + 2, colour, window.canvas, window.theme
-            )
+            taken.append(draw_pill([words], self._middle, top, size + 2, colour, window.canvas, window.theme))
+            top += size // 2 + taken[-1][3]
+        return taken
 
     def _banners(self, world: World) -> list[tuple[str, Colour]]:
         window, theme = self._window, self._window.theme
         banners: list[tuple[str, Colour]] = []
         if window.pace.paused:
             banners.append(("PAUSED", theme.paused))
-        if window.pace.slow_motion:
-            banners.append((f"SLOW MOTION {window.pace.speed:g}x", theme.slow))
+        if window.pace.speed != 1.0:
+            name = "SLOW MOTION" if window.pace.speed < 1.0 else "FAST MOTION"
+            banners.append((f"{name} {window.pace.speed:g}x", theme.slow))
         if world.physics.gravity_mode == "planet":
             banners.append(("PLANET MODE", theme.planet))
         if window.pace.dropped > self._dropped:
@@ -115,74 +147,25 @@ class HudSystem(System):
             banners.append((f"{self._dropped_now:.2f} s DROPPED", theme.warning))
         return banners
 
-    def _draw_messages(self) -> None:
-        """Say above the hint what went wrong, and what was just done."""
-        window, canvas, theme = self._window, self._window.canvas, self._window.theme
-        size = self._text_size
-        bottom = self._hint.top - size // 2
-        for words, colour in ((window.error, theme.error), (window.notice, theme.notice)):
+    def _messages(self) -> list[tuple[list[str], Colour, int]]:
+        """Return what went wrong and what was just done: in lines, its colour, and how high it is [px]."""
+        window, canvas, theme, size = self._window, self._window.canvas, self._window.theme, self._text_size
+        notice = theme.error if window.notice_failed else theme.notice
+        messages: list[tuple[list[str], Colour, int]] = []
+        for words, colour in ((window.error, theme.error), (window.notice, notice)):
             if words:
                 style = TextStyle(size, colour, bold=True)
-                lines = broken(words, round(0.7 * canvas.size[0]), canvas, style)
+                lines = broken(words, round(_MESSAGE * canvas.size[0]), canvas, style)
                 height = canvas.text_size("Ag", style)[1] * len(lines) + round(0.55 * size)
-                draw_pill(lines, canvas.size[0] // 2, bottom - height, size, colour, canvas, theme)
-                bottom -= height + size // 2
+                messages.append((lines, colour, height))
+        return messages
 
-
-def _figure_lines(world: World, figures: WorldFigures, frame_rate: float) -> list[Line]:
-    energy = figures.energy
-    return [
-        Line(world.title or "PhysicsLab", kind="heading"),
-        Line("Frame rate", f"{frame_rate:.0f} FPS"),
-        Line("Time", f"{world.time:.2f} s"),
-        Line("Bodies", f"{figures.bodies}"),
-        Line("Candidate pairs", f"{figures.candidate_pairs}"),
-        Line("Contacts", f"{figures.contacts}"),
-        Line("Kinetic energy", quantity(energy.kinetic, "J")),
-        Line("linear", quantity(energy.kinetic_linear, "J"), "detail"),
-        Line("rotational", quantity(energy.kinetic_angular, "J"), "detail"),
-        Line("Total momentum", quantity(figures.momentum, "kg m/s")),
-        Line("Gravity", _gravity(world)),
-    ]
-
-
-def _gravity(world: World) -> str:
-    physics = world.physics
-    if physics.gravity_mode == "none" or (physics.gravity_mode == "linear" and not physics.gravity):
-        return "off"
-    if physics.gravity_mode == "planet":
-        return f"G = {physics.G:.4g} N m²/kg²"
-    if physics.gravity.x == 0.0:
-        return f"{abs(physics.gravity.y):.4g} m/s² {'down' if physics.gravity.y < 0.0 else 'up'}"
-    return f"({physics.gravity.x:.3g}, {physics.gravity.y:.3g}) m/s²"
-
-
-def _method_lines(world: World) -> list[Line]:
-    simulation = world.simulation
-    parts = "substep" if simulation.substeps == 1 else "substeps"
-    return [
-        Line(kind="gap"),
-        Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
-        Line(world.integrator.title, kind="remark"),
-        Line(f"because: {world.integrator_reason}", kind="remark"),
-    ]
-
-
-def _plain(name: str) -> str:
-    return name.removesuffix("System")
-
-
-def _cost_lines(world: World, meter: FrameMeter) -> list[Line]:
-    running = [system.name for system in world.schedule.running]
-    costs = {name: meter.cost.get(name, 0.0) for name in running}
-    lines = [Line("Running", "time per frame", "heading")]
-    lines += [Line(_plain(name), f"{cost:.2f} ms") for name, cost in costs.items()]
-    return [*lines, Line("Together", f"{sum(costs.values()):.2f} ms")]
-
-
-def _left_out_lines(world: World) -> list[Line]:
-    if not world.schedule.left_out:
-        return []
-    lines = [Line(kind="gap"), Line("Left out", kind="heading")]
-    lines += [Line(f"{_plain(out.name)}: {out.reason}", kind="remark") for out in world.schedule.left_out]
-    return lines
+    def _draw_messages(self) -> list[Rect]:
+        """Say above the hint what there is to say, and return where [px]."""
+        canvas, theme, size = self._window.canvas, self._window.theme, self._text_size
+        bottom, middle = self._hint.top - size // 2, canvas.size[0] // 2
+        taken: list[Rect] = []
+        for lines, colour, height in self._messages():
+            taken.append(draw_pill(lines, middle, bottom - height, size, colour, canvas, theme))
+            bottom -= height + size // 2
+        return taken

@@ -9,7 +9,7 @@ import pygame
 
 from physicslab.schedule import Stage, System, at
 from physicslab.view import actions
-from physicslab.view.controls import KEYS
+from physicslab.view.controls import KEYS, RELEASES
 
 if TYPE_CHECKING:
     from physicslab.view.window import Window
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["InputSystem"]
 
-_OTHER_USE = pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META
+_OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
 """With these keys held, another key is meant for the desktop: Alt+Tab is no slow motion."""
 
 
@@ -38,6 +38,7 @@ class InputSystem(System):
         self._panning = False
         self._handlers: dict[int, Callable[[World, pygame.Event], None]] = {
             pygame.KEYDOWN: self._key,
+            pygame.KEYUP: self._key_up,
             pygame.MOUSEBUTTONDOWN: self._press,
             pygame.MOUSEBUTTONUP: self._release,
             pygame.MOUSEMOTION: self._motion,
@@ -62,12 +63,22 @@ class InputSystem(System):
         window.hand.lead(world, window.coming(world), window.pace.paused)
 
     def _key(self, world: World, event: pygame.Event) -> None:
-        action = KEYS.get(pygame.key.name(event.key).lower())
-        if action is not None and not getattr(event, "mod", 0) & _OTHER_USE:
+        mod = getattr(event, "mod", 0)
+        ctrl = "ctrl+" if mod & pygame.KMOD_CTRL else ""
+        action = KEYS.get(ctrl + pygame.key.name(event.key).lower())
+        if action is not None and not mod & _OTHER_USE:
+            action(world, self._window)
+
+    def _key_up(self, world: World, event: pygame.Event) -> None:
+        action = RELEASES.get(pygame.key.name(event.key).lower())
+        if action is not None:  # whatever else is held by now: what was begun must end
             action(world, self._window)
 
     def _press(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
+        if self._window.help:  # it lies over the world: nothing is to happen behind it
+            self._window.help = False
+            return
         if event.button == pygame.BUTTON_LEFT:
             actions.press(world, self._window)
         elif event.button == pygame.BUTTON_RIGHT:
@@ -100,4 +111,5 @@ class InputSystem(System):
     def _leave(self, world: World, event: pygame.Event) -> None:
         """Hold nothing while the user is elsewhere."""
         self._window.hand.drop(world)
+        self._window.spring_tool.cancel()
         self._panning = False

@@ -30,4 +30,5 @@ class RenderSystem(System):
     def draw(self, world: World, elapsed: float) -> None:
         """Draw the world."""
         window = self._window
-        draw_world(world, window.camera, window.theme, window.canvas)
+        draw_world(world, window.camera, window.theme, window.canvas, grid=window.grid)
+        window.spring_tool.draw(world, window.camera, window.pointer, window.theme, window.canvas)

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 from physicslab.config import PhysicsConfig
+from physicslab.fields import InvalidValue
 from physicslab.prefabs import box, circle, pendulum
+from physicslab.scene import SceneError, load_scene, save_scene
 from physicslab.view.picking import body_at
+from physicslab.view.scene_files import new_scene_path, newest_scene
 from physicslab.view.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "ask_screenshot", "clear", "close", "fit", "go_home", "press", "release",
+    "ask_screenshot", "begin_spring", "clear", "close", "end_spring", "faster", "fit", "go_home", "leave",
+    "press", "release", "remove", "reopen", "save", "slower",
     "spawn_box", "spawn_circle", "spawn_pendulum", "step",
-    "toggle_gravity", "toggle_pause", "toggle_planets", "toggle_slow_motion", "zoom",
+    "toggle_gravity", "toggle_grid", "toggle_help", "toggle_pause", "toggle_planets", "toggle_slow_motion",
+    "zoom",
 ]  # fmt: skip
 
 _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
@@ -76,14 +82,83 @@ def toggle_slow_motion(world: World, window: Window) -> None:
     window.pace.slow_motion = not window.pace.slow_motion
 
 
+def slower(world: World, window: Window) -> None:
+    """Let time run at half the speed."""
+    window.pace.choose(0.5)
+
+
+def faster(world: World, window: Window) -> None:
+    """Let time run at twice the speed."""
+    window.pace.choose(2.0)
+
+
 def step(world: World, window: Window) -> None:
     """Pause, and make one step."""
     window.pace.ask_step()
 
 
+def remove(world: World, window: Window) -> None:
+    """Remove the body under the cursor; its springs go with it."""
+    entity = body_at(world, window.camera, window.pointer)
+    if entity is None:
+        window.notify("Nothing to remove: put the cursor on a body")
+        return
+    if window.hand.entity == entity:
+        window.hand.drop(world)
+    world.remove(entity)
+
+
+def begin_spring(world: World, window: Window) -> None:
+    """Begin a spring at the body under the cursor."""
+    entity = body_at(world, window.camera, window.pointer)
+    if entity is None:
+        window.notify(
+            "A spring begins on a body: put the cursor on one, hold S, and drag to where it shall end"
+        )
+    else:
+        window.spring_tool.begin(world, entity, window.place)
+
+
+def end_spring(world: World, window: Window) -> None:
+    """End the spring at the body under the cursor, or at that point of the world."""
+    target = body_at(world, window.camera, window.pointer)
+    refused = window.spring_tool.end(world, target, window.place)
+    if refused:
+        window.notify(refused)
+
+
+def save(world: World, window: Window) -> None:
+    """Save the world to a new scene file where the program was started."""
+    try:
+        path = new_scene_path(Path.cwd(), world.name)
+        save_scene(world, path)
+    except (SceneError, OSError) as error:
+        window.notify(f"The scene could not be saved: {error}", 6.0, failed=True)
+    else:
+        window.scene_file = path
+        window.notify(f"Saved {path}")
+
+
+def reopen(world: World, window: Window) -> None:
+    """Open the scene file last saved or opened, or else the newest; where that fails, all stays as it is."""
+    try:
+        path = window.scene_file or newest_scene(Path.cwd())
+        if path is None:
+            window.notify(f"There is no scene file in {Path.cwd()}: Ctrl+S saves one", failed=True)
+            return
+        opened = load_scene(path)
+        opened.synchronise()
+    except (SceneError, InvalidValue, OSError) as error:
+        window.notify(f"Not opened: {error}", 8.0, failed=True)
+    else:
+        window.scene_file, window.next_world = path, opened
+        window.notify(f"Opened {path}")
+
+
 def clear(world: World, window: Window) -> None:
     """Remove everything."""
     window.hand.drop(world)
+    window.spring_tool.cancel()
     world.clear()
     window.error = ""
 
@@ -124,6 +199,24 @@ def go_home(world: World, window: Window) -> None:
 def ask_screenshot(world: World, window: Window) -> None:
     """Ask for a picture of the window as soon as this frame is drawn."""
     window.wants_screenshot = True
+
+
+def toggle_grid(world: World, window: Window) -> None:
+    """Show the grid, or hide it."""
+    window.grid = not window.grid
+
+
+def toggle_help(world: World, window: Window) -> None:
+    """Show all keys, or the world and its figures again."""
+    window.help = not window.help
+
+
+def leave(world: World, window: Window) -> None:
+    """Leave the help if it is shown, else the window."""
+    if window.help:
+        window.help = False
+    else:
+        close(world, window)
 
 
 def close(world: World, window: Window) -> None:

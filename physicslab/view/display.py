@@ -57,6 +57,16 @@ class Display:
         finally:
             pygame.quit()
 
+    @property
+    def title(self) -> str:
+        """What the window is called."""
+        return pygame.display.get_caption()[0]
+
+    @title.setter
+    def title(self, title: str) -> None:
+        if title != self.title:
+            pygame.display.set_caption(title)
+
     def show(self) -> float:
         """Show what was drawn, wait until the next frame is due, and return the time since the last [s].
 

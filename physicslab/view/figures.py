@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from physicslab.diagnostics import Energy, measure_energy, measure_momentum
+from physicslab.components import Held
+from physicslab.diagnostics import Drift, Energy, Momentum, measure_momentum
 from physicslab.view.bodies import body_rows
 from physicslab.world import World
 
-__all__ = ["FrameMeter", "WorldFigures", "measure_world"]
+__all__ = ["EnergyWatch", "FrameMeter", "WorldFigures", "measure_world"]
 
 _SMOOTHING = 0.5
 """Time [s] over which frame rate and costs are averaged."""
@@ -25,24 +26,71 @@ class WorldFigures:
         How many bodies there are, pairs that are near each other, and pairs that touch.
     energy : Energy
         Kinetic and potential [J].
-    momentum : float
-        Magnitude of the total linear momentum [kg m/s].
+    drift : Drift
+        How far the energy [J] departed from what it was at the last edit.
+    since : float
+        Time of the world [s] at the last edit.
+    momentum : Momentum
+        Linear [kg m/s], and angular about the origin [kg m^2/s].
     """
 
     bodies: int
     candidate_pairs: int
     contacts: int
     energy: Energy
-    momentum: float
+    drift: Drift
+    since: float
+    momentum: Momentum
 
 
-def measure_world(world: World) -> WorldFigures:
+def measure_world(world: World, watch: EnergyWatch) -> WorldFigures:
     """Measure a world as it is now."""
-    energy, momentum = measure_energy(world), measure_momentum(world)
+    drift = watch.sample(world)
     contacts = world.contacts
     return WorldFigures(
-        len(body_rows(world)), contacts.candidate_pairs, contacts.count, energy, momentum.linear.magnitude
-    )
+        len(body_rows(world)), contacts.candidate_pairs, contacts.count,
+        drift.latest, drift, watch.since, measure_momentum(world),
+    )  # fmt: skip
+
+
+class EnergyWatch:
+    """Watches the energy of a world from one edit to the next.
+
+    Whatever changes the structure or the laws of the world is an edit, and so is taking a body and letting it
+    go: the energy that these bring in or take out is no error of the simulation.
+
+    Attributes
+    ----------
+    since : float
+        Time of the world [s] at the last edit.
+    """
+
+    def __init__(self) -> None:
+        self.since = 0.0
+        self._drift: Drift | None = None
+        self._seen: tuple[World, int] | None = None
+
+    def follow(self, world: World) -> None:
+        """Start anew if the world was edited; to be called in every frame, so that nothing is missed."""
+        if self._drift is None or self._seen != (world, world.revision):
+            self.restart(world)
+
+    def restart(self, world: World) -> Drift:
+        """Start anew from the energy as it is now."""
+        self._drift = Drift(world)
+        self._seen, self.since = (world, world.revision), world.time
+        return self._drift
+
+    def sample(self, world: World) -> Drift:
+        """Measure the energy as it is now.
+
+        While a body is held the hand does work all the time, and there is nothing to compare with.
+        """
+        self.follow(world)
+        if self._drift is None or len(world.batch(Held)):
+            return self.restart(world)
+        self._drift.sample(world)
+        return self._drift
 
 
 class FrameMeter:

@@ -27,6 +27,8 @@ class Hint:
     ----------
     top : int
         Where it begins [px from the top].
+    rect : Rect
+        What it takes up [px].
     """
 
     def __init__(self, controls: Sequence[Control], size: int, canvas: Canvas, theme: Theme) -> None:
@@ -44,7 +46,7 @@ class Hint:
         self._middle = width // 2
         widest = max(map(self._width, self._rows)) + 4 * self._pad
         self.top = height - len(self._rows) * self._row - 2 * self._pad
-        self._rect = (self._middle - widest // 2, self.top, widest, height - self.top - self._pad // 2)
+        self.rect = (self._middle - widest // 2, self.top, widest, height - self.top - self._pad // 2)
 
     def _width(self, row: Sequence[Control]) -> int:
         return sum(self._widths[control] for control in row) + 2 * self._pad * (len(row) - 1)
@@ -69,7 +71,7 @@ class Hint:
     def draw(self, canvas: Canvas) -> None:
         """Draw it, each row in the middle."""
         theme, pad = self._theme, self._pad
-        canvas.panel(self._rect, theme.panel, theme.outline, theme.panel_opacity)
+        canvas.panel(self.rect, theme.panel, theme.outline, theme.panel_opacity)
         height = self._row - pad // 2
         cap_drop = (height - canvas.text_size("Ag", self._cap)[1]) // 2
         words_drop = (height - canvas.text_size("Ag", self._words)[1]) // 2

@@ -13,11 +13,12 @@ from physicslab.world import World
 __all__ = ["draw_world"]
 
 
-def draw_world(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> None:
-    """Draw a world as it is now. Nothing of the world is changed."""
+def draw_world(world: World, camera: Camera, theme: Theme, canvas: Canvas, *, grid: bool = True) -> None:
+    """Draw a world as it is now, with or without the grid. Nothing of the world is changed."""
     world.synchronise()
     canvas.clear(theme.background)
-    draw_grid(camera, theme, canvas)
+    if grid:
+        draw_grid(camera, theme, canvas)
     draw_bounds(world.physics.bounds, camera, theme, canvas)
     draw_bodies(world, camera, theme, canvas)
     draw_springs(world, camera, theme, canvas)

@@ -117,14 +117,15 @@ def lay_out(
 
 def draw_pill(
     words: Sequence[str], middle: int, top: int, size: int, colour: Colour, canvas: Canvas, theme: Theme
-) -> int:
-    """Draw lines of words in a box around ``middle``, and return its height [px]."""
+) -> Rect:
+    """Draw lines of words in a box around ``middle``, and return where it is [px]."""
     style = TextStyle(size, colour, bold=True)
     pad = round(0.55 * size)
     widths = [canvas.text_size(line, style)[0] for line in words]
     line_height = canvas.text_size("Ag", style)[1]
     width, height = max(widths) + 4 * pad, line_height * len(words) + pad
-    canvas.panel((middle - width // 2, top, width, height), theme.panel, colour, 0.95)
+    rect = (middle - width // 2, top, width, height)
+    canvas.panel(rect, theme.panel, colour, 0.95)
     for n, line in enumerate(words):
         canvas.text(line, (middle, top + pad // 2 + n * line_height), style, "centre")
-    return height
+    return rect

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["quantity"]
+from physicslab.vector import Vector2
+
+__all__ = ["length_of", "percentage", "quantity", "vector_quantity"]
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -28,3 +30,54 @@ def quantity(value: float, unit: str) -> str:
         return f"{value:.{min(max(3 - power, 0), 4)}f} {unit}"
     digits, _, exponent = f"{value:.3e}".partition("e")
     return f"{digits}·10{str(int(exponent)).translate(_RAISED)} {unit}"
+
+
+def vector_quantity(value: Vector2, unit: str) -> str:
+    """Return a vector to three figures of its larger component, and its SI unit.
+
+    >>> vector_quantity(Vector2(9.0, -0.25), "kg m/s")
+    '(9.00, -0.25) kg m/s'
+    >>> vector_quantity(Vector2(1.5e-9, 0.0), "kg m/s")
+    '(1.50, 0.00)·10⁻⁹ kg m/s'
+    """
+    largest = max(abs(value.x), abs(value.y))
+    if not math.isfinite(largest):
+        return f"not finite, {unit}"
+    if largest == 0.0:
+        return f"(0, 0) {unit}"
+    power = math.floor(math.log10(largest))
+    plain = -2 <= power <= 3
+    scale, decimals = (1.0, min(max(2 - power, 0), 4)) if plain else (10.0**power, 2)
+    x, y = (f"{component / scale + 0.0:.{decimals}f}" for component in value)
+    factor = "" if plain else f"·10{str(power).translate(_RAISED)}"
+    return f"({x}, {y}){factor} {unit}"
+
+
+def percentage(share: float) -> str:
+    """Return a share to three figures, in percent.
+
+    >>> percentage(0.01234), percentage(2.5e-13), percentage(0.0)
+    ('1.23 %', '2.50·10⁻¹¹ %', '0 %')
+    """
+    if not math.isfinite(share):
+        return "not finite"
+    if share == 0.0:
+        return "0 %"
+    percent = 100.0 * share
+    power = math.floor(math.log10(abs(percent)))
+    if -3 <= power <= 4:
+        return f"{percent:.{min(max(2 - power, 0), 5)}f} %"
+    digits, _, exponent = f"{percent:.2e}".partition("e")
+    return f"{digits}·10{str(int(exponent)).translate(_RAISED)} %"
+
+
+def length_of(metres: float) -> str:
+    """Return a round length.
+
+    >>> length_of(0.5), length_of(2000.0), length_of(5e-6)
+    ('0.5 m', '2000 m', '5·10⁻⁶ m')
+    """
+    if 1e-3 <= metres < 1e5:
+        return f"{metres:g} m"
+    digits, _, exponent = f"{metres:.0e}".partition("e")
+    return f"{digits}·10{str(int(exponent)).translate(_RAISED)} m"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from physicslab.config import WindowConfig
 from physicslab.pace import Pace
 from physicslab.vector import Vector2
@@ -9,6 +11,7 @@ from physicslab.view.camera import Camera
 from physicslab.view.canvas import Canvas
 from physicslab.view.extent import extent_of
 from physicslab.view.hand import Hand
+from physicslab.view.spring_tool import SpringTool
 from physicslab.view.theme import DARK, Theme
 from physicslab.world import World
 
@@ -49,6 +52,16 @@ class Window:
         Whether the window is to be closed.
     error : str
         Why the world stopped; empty while all is well.
+    help, grid : bool
+        Whether all keys are shown, and the grid.
+    spring_tool : SpringTool
+        The spring that is being drawn with the mouse.
+    scene_file : path, optional
+        The scene file that was last saved or opened.
+    next_world : World, optional
+        The world that is to be shown in place of the present one from the next frame on.
+    notice_failed : bool
+        Whether the notice is of something that could not be done.
     """
 
     def __init__(self, canvas: Canvas, config: WindowConfig | None = None, theme: Theme = DARK) -> None:
@@ -65,6 +78,12 @@ class Window:
         self.wants_screenshot = False
         self.closing = False
         self.error = ""
+        self.help = False
+        self.grid = True
+        self.spring_tool = SpringTool()
+        self.scene_file: Path | None = None
+        self.next_world: World | None = None
+        self.notice_failed = False
         self._notice, self._notice_until = "", 0.0
         self._shown: tuple[Vector2, float, float] | None = None
 
@@ -78,14 +97,15 @@ class Window:
         """What is to be said for a few seconds; empty when there is nothing."""
         return self._notice if self.now < self._notice_until else ""
 
-    def notify(self, words: str, seconds: float = 3.0) -> None:
-        """Say something for a while."""
+    def notify(self, words: str, seconds: float = 3.0, *, failed: bool = False) -> None:
+        """Say something for a while; ``failed`` marks what could not be done."""
+        self.notice_failed = failed
         self._notice, self._notice_until = words, self.now + seconds
 
     def coming(self, world: World) -> float:
         """Return the time [s] that is about to be simulated in this frame."""
         dt = world.simulation.dt
-        return self.pace.due(dt) * dt * self.pace.speed
+        return self.pace.due(dt) * dt * self.pace.shortening
 
     def follow_size(self, world: World) -> None:
         """Let the camera follow the size of the canvas; an untouched view still shows all of the world."""

@@ -1,0 +1,44 @@
+"""Where the window saves scenes, and which of them it opens."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+__all__ = ["new_scene_path", "newest_scene"]
+
+_MARK = b"physicslab-scene/"
+"""What the format of a scene file begins with."""
+
+
+def new_scene_path(directory: Path, name: str) -> Path:
+    """Return a path that no file has yet: the scene's name, as far as a file may bear it, and a number.
+
+    A number at the end of the name is taken for one that was given here.
+    """
+    stem = re.sub(r"[^\w.-]+", "-", re.sub(r"-\d+$", "", name)).strip("-.") or "scene"
+    number = 1
+    while (path := directory / f"{stem}-{number}.json").exists():
+        number += 1
+    return path
+
+
+def newest_scene(directory: Path) -> Path | None:
+    """Return the scene file that was written last, or ``None`` if there is none.
+
+    Where no file says that it is a scene, the newest JSON file is meant: what is wrong with it can be told.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be read.
+    """
+    files = sorted(filter(Path.is_file, directory.glob("*.json")), key=lambda path: path.stat().st_mtime_ns)
+    scenes = [path for path in files if _says_scene(path)]
+    candidates = scenes or files
+    return candidates[-1] if candidates else None
+
+
+def _says_scene(path: Path) -> bool:
+    with path.open("rb") as file:
+        return _MARK in file.read(4096)

@@ -1,0 +1,189 @@
+"""Energies, momenta and the drift of the energy since the last edit, as the HUD shows them."""
+
+from collections.abc import Callable
+
+import pytest
+from desk import FRAME, Desk, empty_world
+from test_hud import frame, recorded, row
+
+from physicslab.components import Transform
+from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.prefabs import circle, pendulum
+from physicslab.scene import load_scene
+from physicslab.vector import Vector2
+from physicslab.view.canvas import RecordingCanvas
+from physicslab.view.figures import EnergyWatch
+from physicslab.view.quantities import length_of, percentage, quantity, vector_quantity
+from physicslab.view.scale_bar import draw_scale_bar
+
+
+def test_every_energy_stands_beside_its_name() -> None:
+    world = empty_world()
+    pendulum(world, (0, 2), length=1.5, stiffness=50.0)
+    circle(world, (3, 1), mass=2.0, velocity=(1, 2), angular_velocity=3.0)
+    desk, canvas = recorded(world)
+    desk.frames(30)
+    desk.key("space")
+    frame(desk, canvas)
+    energy = measure_energy(world)
+    assert set(energy.potential) == {"gravity", "spring"}
+    for name, stored in energy.potential.items():
+        assert row(canvas, name) == quantity(stored, "J")
+    assert row(canvas, "Kinetic energy") == quantity(energy.kinetic, "J")
+    assert row(canvas, "Potential energy") == quantity(sum(energy.potential.values()), "J")
+    assert row(canvas, "Total energy") == quantity(energy.total, "J")
+
+
+def test_momentum_is_a_vector_and_has_a_magnitude() -> None:
+    world = empty_world(gravity=(0, 0))
+    circle(world, (0, 2), mass=2.0, velocity=(3, -4))
+    desk, canvas = recorded(world)
+    desk.key("space")
+    frame(desk, canvas)
+    assert row(canvas, "Total momentum") == "10.00 kg m/s"
+    assert row(canvas, "as a vector") == "(6.00, -8.00) kg m/s"
+    assert row(canvas, "Angular momentum") == quantity(measure_momentum(world).angular, "kg m²/s")
+    assert row(canvas, "Angular momentum") == "-12.00 kg m²/s"
+
+
+def test_the_drift_is_what_was_lost_since_the_start() -> None:
+    world = load_scene("drop")
+    desk, canvas = recorded(world)
+    desk.frames()
+    before = measure_energy(world).total
+    desk.frames(180)
+    desk.key("space")
+    frame(desk, canvas)
+    change = measure_energy(world).total - before
+    assert change < -0.1
+    assert row(canvas, "Energy drift") == quantity(change, "J")
+    assert row(canvas, "largest so far") == f"{quantity(-change, 'J')}, {percentage(change / -before)}"
+
+
+EDITS: dict[str, Callable[[Desk], None]] = {
+    "a body is made": lambda desk: desk.press(3, 3),
+    "gravity is turned off": lambda desk: desk.key("g"),
+    "planets": lambda desk: desk.key("o"),
+    "everything is cleared": lambda desk: desk.key("r"),
+    "a body is removed": lambda desk: desk.key("delete"),
+}
+
+
+@pytest.mark.parametrize("edit", EDITS)
+def test_every_edit_starts_the_drift_anew(edit: str) -> None:
+    world = empty_world()
+    circle(world, (0, 0), mass=1.0)
+    circle(world, (20, 0), mass=1.0)
+    desk, canvas = recorded(world)
+    frame(desk, canvas)
+    desk.frames(51)
+    frame(desk, canvas)
+    assert row(canvas, "since the last edit") == f"at {FRAME:.2f} s"
+    desk.move(*world.component(world.entities()[0], Transform).position)
+    time = world.time
+    EDITS[edit](desk)
+    desk.key("space")
+    frame(desk, canvas)
+    assert row(canvas, "since the last edit") == f"at {time:.2f} s"
+    assert row(canvas, "Energy drift") == "0 J"
+
+
+def test_the_work_of_the_hand_is_no_drift() -> None:
+    world = empty_world(gravity=(0, 0))
+    circle(world, (0, 0), mass=1.0)
+    desk, canvas = recorded(world)
+    desk.drag((0, 0), (3.0, 0.0), frames=20)
+    desk.frames(30)
+    desk.key("space")
+    frame(desk, canvas)
+    assert measure_energy(world).kinetic > 4.0
+    assert row(canvas, "Energy drift") == "0 J"
+
+
+def test_a_watch_tells_worlds_apart() -> None:
+    watch = EnergyWatch()
+    for mass in (1.0, 5.0):
+        world = empty_world()
+        circle(world, (0, 1), mass=mass)
+        assert watch.sample(world).initial.total == pytest.approx(9.81 * mass)
+
+
+def test_the_revision_counts_edits_and_not_steps() -> None:
+    world = empty_world()
+    circle(world, (0, 0))
+    world.run(steps=5)
+    before = world.revision
+    world.run(steps=5)
+    assert world.revision == before
+    circle(world, (1, 0))
+    world.synchronise()
+    assert world.revision > before
+
+
+@pytest.mark.parametrize(
+    ("scale", "words"), [(100.0, "0.5 m"), (37.0, "2 m"), (0.02, "5000 m"), (30.0, "2 m")]
+)
+def test_the_scale_bar_is_as_long_as_it_says(scale: float, words: str) -> None:
+    canvas = RecordingCanvas((1280, 720))
+    desk = Desk(empty_world(), canvas)
+    desk.window.camera.scale = scale
+    canvas.calls.clear()
+    draw_scale_bar(desk.window.camera, 600, 14, canvas, desk.window.theme)
+    assert canvas.words == [words]
+    (lines,) = canvas.called("lines")
+    assert lines["end"][0][0] - lines["start"][0][0] == pytest.approx(float(words[:-2]) * scale)
+
+
+def test_h_hides_the_grid_and_shows_it() -> None:
+    desk, canvas = recorded(empty_world())
+    grids = []
+    for _ in range(3):
+        canvas.calls.clear()
+        desk.frames()
+        grids.append(any(call["colour"] == desk.window.theme.grid for call in canvas.called("lines")))
+        desk.key("h")
+    assert grids == [True, False, True]
+
+
+def test_bodies_out_of_sight_are_pointed_at_and_counted() -> None:
+    world = empty_world(gravity=(0, 0))
+    circle(world, (0, 0), velocity=(1, 0))
+    desk, canvas = recorded(world)
+    frame(desk, canvas)
+    theme = desk.window.theme
+
+    def arrows() -> list[str]:
+        texts = canvas.called("text")
+        return [t["words"] for t in texts if t["style"].colour == theme.accent]
+
+    assert not arrows()
+    for place in ((30, 0), (40, 3), (0, -50), (-7, 0)):
+        circle(world, place)
+    frame(desk, canvas)
+    assert arrows() == ["1", "2", "1"], "left, right, and below"
+    heads = [call for call in canvas.called("lines") if call["colour"] == theme.accent]
+    ways = [call["end"][0] - call["start"][0] for call in heads]
+    assert ways[0][0] < 0 and ways[1][0] > 0 and ways[2][1] > 0
+    desk.key("f")
+    frame(desk, canvas)
+    assert not arrows()
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (Vector2(0, 0), "(0, 0) N"),
+        (Vector2(-1234.5, 0.4), "(-1234, 0) N"),
+        (Vector2(2.5e7, -1e6), "(2.50, -0.10)·10⁷ N"),
+        (Vector2(0.012, -0.001), "(0.0120, -0.0010) N"),
+        (Vector2(float("nan"), 0), "not finite, N"),
+    ],
+)
+def test_vectors(value: Vector2, words: str) -> None:
+    assert vector_quantity(value, "N") == words
+
+
+def test_shares_and_lengths_that_are_out_of_the_ordinary() -> None:
+    assert percentage(float("inf")) == "not finite"
+    assert percentage(-1.5) == "-150 %"
+    assert length_of(2e9) == "2·10⁹ m"

@@ -1,0 +1,181 @@
+"""Removing bodies, drawing springs with the mouse, and the help panel."""
+
+import math
+from typing import Any
+
+import pygame
+import pytest
+from desk import Desk, empty_world
+from test_hud import SIZES, MeasuringCanvas, frame, recorded
+
+from physicslab.components import Spring, Transform
+from physicslab.prefabs import box, circle, pendulum
+from physicslab.vector import Vector2
+from physicslab.view.controls import CONTROLS
+
+
+def springs(desk: Desk) -> list[Spring]:
+    world = desk.world
+    return [world.component(e, Spring) for e in world.entities() if world.has(e, Spring)]
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk(empty_world(gravity=(0, 0)))
+
+
+@pytest.mark.parametrize("key", ["delete", "backspace"])
+def test_delete_removes_the_body_under_the_cursor_and_its_springs(desk: Desk, key: str) -> None:
+    ball, other = circle(desk.world, (0, 0)), circle(desk.world, (2, 0))
+    pendulum(desk.world, (-3, 1))
+    desk.world.spawn(Spring(a=ball, b=other))
+    desk.move(0.1, 0)
+    desk.key(key)
+    desk.frames(2)
+    assert not desk.world.has(ball, Transform) and desk.world.has(other, Transform)
+    assert len(springs(desk)) == 1
+    desk.move(5, 3)
+    desk.key(key)
+    desk.frames()
+    assert len(desk.world.entities()) == 2 and "Nothing to remove" in desk.window.notice
+
+
+def test_a_static_body_and_one_in_the_hand_can_be_removed(desk: Desk) -> None:
+    box(desk.world, (0, 0), static=True)
+    circle(desk.world, (3, 0))
+    desk.move(0, 0)
+    desk.key("delete")
+    desk.press(3, 0)
+    desk.frames()
+    desk.key("delete")
+    desk.frames()
+    desk.release(3, 0)
+    desk.frames()
+    assert desk.world.entities() == [] and desk.window.hand.entity is None
+
+
+def draw_spring(desk: Desk, start: tuple[float, float], end: tuple[float, float]) -> None:
+    desk.move(*start)
+    desk.key("s")
+    desk.frames()
+    desk.move(*end)
+    desk.frames()
+    desk.key_up("s")
+    desk.frames()
+
+
+def test_s_from_one_body_to_another_is_a_spring_at_rest(desk: Desk) -> None:
+    a, b = circle(desk.world, (-1, 0), mass=1.0), circle(desk.world, (2, 0), mass=3.0)
+    draw_spring(desk, (-1, 0), (2, 0))
+    (spring,) = springs(desk)
+    assert (spring.a, spring.b) == (a, b)
+    assert spring.rest_length == pytest.approx(3.0)
+    reduced = 1.0 * 3.0 / 4.0
+    assert math.sqrt(spring.stiffness / reduced) / (2 * math.pi) == pytest.approx(2.0), "2 Hz"
+    desk.frames(30)
+    assert desk.world.component(a, Transform).position.x == pytest.approx(-1.0)
+
+
+def test_springs_hold_where_they_were_put(desk: Desk) -> None:
+    block = box(desk.world, (0, 0), width=1.0, height=0.4)
+    desk.world.component(block, Transform).angle = math.pi / 2
+    draw_spring(desk, (0.1, 0.4), (3, 2))
+    (spring,) = springs(desk)
+    assert spring.b is None
+    assert (spring.anchor_a - Vector2(0.4, -0.1)).magnitude < 1e-9
+    assert (spring.anchor_b - Vector2(3, 2)).magnitude < 1e-9
+    assert spring.rest_length == pytest.approx(math.hypot(2.9, 1.6))
+
+
+def test_a_spring_to_a_wall_moves_and_one_between_walls_is_refused(desk: Desk) -> None:
+    box(desk.world, (0, 0), static=True)
+    box(desk.world, (3, 0), static=True)
+    circle(desk.world, (0, 2), mass=1.0)
+    draw_spring(desk, (0, 0), (3, 0))
+    assert not springs(desk) and "neither of its ends" in desk.window.notice
+    draw_spring(desk, (0, 0), (0, 2))
+    (spring,) = springs(desk)
+    assert 0.0 < spring.stiffness < 1e4
+    desk.frames(10)
+
+
+def test_a_spring_needs_two_ends(desk: Desk) -> None:
+    circle(desk.world, (0, 0))
+    draw_spring(desk, (4, 3), (0, 0))
+    assert not springs(desk) and "begins on a body" in desk.window.notice
+    draw_spring(desk, (0, 0), (0.05, 0))
+    assert not springs(desk)
+
+
+@pytest.mark.parametrize("how", ["clear", "remove", "focus"])
+def test_what_was_begun_is_forgotten(desk: Desk, how: str) -> None:
+    circle(desk.world, (0, 0))
+    desk.move(0, 0)
+    desk.key("s")
+    desk.frames()
+    if how == "focus":
+        pygame.event.post(pygame.Event(pygame.WINDOWFOCUSLOST))
+    else:
+        desk.key("r" if how == "clear" else "delete")
+    desk.move(2, 2)
+    desk.frames()
+    desk.key_up("s")
+    desk.frames(2)
+    assert not springs(desk) and desk.window.spring_tool.entity is None
+
+
+def test_a_dashed_line_shows_where_the_spring_would_be() -> None:
+    world = empty_world(gravity=(0, 0))
+    circle(world, (0, 0))
+    desk, canvas = recorded(world)
+    desk.move(0, 0)
+    desk.key("s")
+    desk.move(2, 1)
+    frame(desk, canvas)
+    (line,) = [call for call in canvas.called("lines") if call["colour"] == desk.window.theme.accent]
+    assert tuple(line["start"][0]) == desk.pixel(0, 0)
+    assert tuple(line["end"][-1]) == desk.pixel(2, 1)
+    desk.key_up("s")
+    frame(desk, canvas)
+    assert not [call for call in canvas.called("lines") if call["colour"] == desk.window.theme.accent]
+
+
+def test_f1_shows_every_key_and_escape_leaves_the_help_alone() -> None:
+    desk, canvas = recorded(empty_world())
+    desk.key("f1")
+    frame(desk, canvas)
+    for control in CONTROLS:
+        assert control.does in canvas.words
+        assert any(words.startswith(control.label) for words in canvas.words)
+    assert "Del, Backspace" in canvas.words
+    desk.key("escape")
+    desk.frames()
+    assert not desk.window.help and not desk.window.closing
+    desk.key("f1")
+    desk.key("f1")
+    desk.frames()
+    assert not desk.window.help
+    desk.key("escape")
+    desk.frames()
+    assert desk.window.closing
+
+
+def test_a_click_closes_the_help_and_does_nothing_behind_it(desk: Desk) -> None:
+    desk.key("f1")
+    desk.press(0, 0)
+    desk.frames()
+    assert not desk.window.help and desk.world.entities() == []
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_help_fits_into_the_window(size: tuple[int, int]) -> None:
+    canvas = MeasuringCanvas(size)
+    desk = Desk(empty_world(), canvas)
+    desk.window.help = True
+    desk.frames()
+    screen: Any = pygame.Rect(0, 0, *size)
+    assert canvas.panels and all(screen.contains(panel) for panel in canvas.panels)
+    for n, (words, one) in enumerate(canvas.words):
+        assert any(panel.contains(one) for panel in canvas.panels), words
+        for other, two in canvas.words[n + 1 :]:
+            assert not one.inflate(-2, -2).colliderect(two.inflate(-2, -2)), f"{words!r} lies over {other!r}"
