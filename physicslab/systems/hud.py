@@ -9,7 +9,8 @@ from physicslab.view.canvas import TextStyle
 from physicslab.view.controls import CONTROLS
 from physicslab.view.figures import FrameMeter, WorldFigures, measure_world
 from physicslab.view.hint import Hint
-from physicslab.view.panels import Line, Panel, broken, draw_pill, lay_out
+from physicslab.view.legend import Legend, legend_of
+from physicslab.view.panels import Line, Panel, broken, draw_pill, lay_out, text_size
 from physicslab.view.quantities import quantity
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ class HudSystem(System):
         self._next_reading = 0.0
         self._size = (0, 0)
         self._panels: list[Panel] = []
+        self._legend: Legend | None = None
+        self._overlays = (False, False)
         self._middle = 0
         self._hint: Hint
         self._dropped = 0.0
@@ -58,20 +61,22 @@ class HudSystem(System):
             self._size = canvas.size
             self._hint = Hint(CONTROLS, self._text_size - 1, canvas, theme)
             self._next_reading = window.now
-        if window.now >= self._next_reading:
+        overlays = window.overlays.arrows, window.overlays.impulses
+        if window.now >= self._next_reading or overlays != self._overlays:
+            self._overlays = overlays
             self._next_reading = window.now + _PERIOD
             self._read(world)
         for panel in self._panels:
             panel.draw(canvas, theme)
+        if self._legend is not None:
+            self._legend.draw(canvas, theme)
         self._hint.draw(canvas)
         self._draw_banners(world)
         self._draw_messages()
 
     @property
     def _text_size(self) -> int:
-        """The height of the text [px]: larger in a larger window."""
-        width, height = self._window.canvas.size
-        return min(max(round(min(height / 48, width / 68)), 12), 20)
+        return text_size(self._window.canvas)
 
     def _read(self, world: World) -> None:
         canvas, theme, size = self._window.canvas, self._window.theme, self._text_size
@@ -85,6 +90,27 @@ class HudSystem(System):
         else:
             right = canvas.size[0]
         self._middle = (margin + width + right) // 2
+        self._place_legend()
+
+    def _place_legend(self) -> None:
+        """Put the legend below the figures or the costs, or where the costs are if there is no room."""
+        window, size, panels = self._window, self._text_size, self._panels
+        width, gap = panels[0].rect[2], round(0.5 * size)
+        legend = legend_of(window.overlays, width, size, window.canvas, window.theme)
+        if legend is not None:
+            foot = self._hint.top - gap - legend.panel.rect[3]
+            below = [panel for panel in panels if panel.rect[1] + panel.rect[3] + gap <= foot]
+            if not below:
+                legend = legend.moved(panels[-1].rect[0], panels[-1].rect[1])
+                self._panels = panels[:-1]
+            else:
+                legend = legend.moved(below[0].rect[0], foot)
+        self._legend = legend
+        window.overlays.covered = [
+            *(panel.rect for panel in self._panels),
+            *([legend.panel.rect] if legend is not None else []),
+            (0, self._hint.top, *window.canvas.size),
+        ]
 
     def _draw_banners(self, world: World) -> None:
         """Say at the top what is not as usual."""
