@@ -53,6 +53,7 @@ class Sandbox:
         world.install(*self._systems)
         window = self.window
         window.spring_tool.cancel()
+        window.overlays.forget()
         window.error, window.next_world = "", None
         window.go_home(world)
 

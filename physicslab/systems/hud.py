@@ -11,9 +11,10 @@ from physicslab.view.edge_arrows import draw_edge_arrows
 from physicslab.view.figures import EnergyWatch, FrameMeter, measure_world
 from physicslab.view.help import Help
 from physicslab.view.hint import Hint
-from physicslab.view.panels import Panel, broken, draw_pill, lay_out
+from physicslab.view.legend import Legend, legend_of
+from physicslab.view.panels import Panel, broken, draw_pill, lay_out, text_size
 from physicslab.view.readings import cost_lines, figure_lines, left_out_lines, method_lines
-from physicslab.view.scale_bar import draw_scale_bar
+from physicslab.view.scale_bar import draw_scale_bar, scale_bar_height
 
 if TYPE_CHECKING:
     from physicslab.view.canvas import Rect
@@ -50,6 +51,8 @@ class HudSystem(System):
         self._size = (0, 0)
         self._world: World | None = None
         self._panels: list[Panel] = []
+        self._legend: Legend | None = None
+        self._overlays = (False, False)
         self._middle = 0
         self._hint: Hint
         self._help: Help
@@ -70,8 +73,10 @@ class HudSystem(System):
             self._help = Help(CONTROLS, self._text_size, canvas, theme)
             self._next_reading = window.now
         self._watch.follow(world)
-        if window.now >= self._next_reading or world is not self._world:
-            self._next_reading, self._world = window.now + _PERIOD, world
+        overlays = window.overlays.arrows, window.overlays.impulses
+        changed = world is not self._world or overlays != self._overlays
+        if window.now >= self._next_reading or changed:
+            self._next_reading, self._world, self._overlays = window.now + _PERIOD, world, overlays
             self._read(world)
         if window.help:
             self._help.draw(canvas)
@@ -83,8 +88,12 @@ class HudSystem(System):
         canvas, theme, size = window.canvas, window.theme, self._text_size
         for panel in self._panels:
             panel.draw(canvas, theme)
+        if self._legend is not None:
+            self._legend.draw(canvas, theme)
         self._hint.draw(canvas)
         taken = [*(panel.rect for panel in self._panels), self._hint.rect]
+        if self._legend is not None:
+            taken.append(self._legend.panel.rect)
         taken.append(draw_scale_bar(window.camera, self._hint.top - size // 2, size, canvas, theme))
         taken += self._draw_banners(world)
         taken += self._draw_messages()
@@ -92,9 +101,7 @@ class HudSystem(System):
 
     @property
     def _text_size(self) -> int:
-        """The height of the text [px]: larger in a larger window."""
-        width, height = self._window.canvas.size
-        return min(max(round(min(height / 48, width / 68)), 12), 20)
+        return text_size(self._window.canvas)
 
     def _read(self, world: World) -> None:
         canvas, theme, size = self._window.canvas, self._window.theme, self._text_size
@@ -115,6 +122,34 @@ class HudSystem(System):
         else:
             right = canvas.size[0]
         self._middle = (margin + width + right) // 2
+        self._place_legend()
+
+    def _place_legend(self) -> None:
+        """Put the legend below the figures or the costs, or where the costs are if there is no room."""
+        window, size, panels = self._window, self._text_size, self._panels
+        width, gap = panels[0].rect[2], round(0.5 * size)
+        legend = legend_of(window.overlays, width, size, window.canvas, window.theme)
+        if legend is not None:
+            foot = self._hint.top - gap - legend.panel.rect[3]
+            # The scale bar is at the foot of the right side.
+            bar = size // 2 + scale_bar_height(size, window.canvas, window.theme)
+            feet = [foot, *(foot - bar for _ in panels[1:])]
+            below = [
+                (panel, foot)
+                for panel, foot in zip(panels, feet, strict=True)
+                if panel.rect[1] + panel.rect[3] + gap <= foot
+            ]
+            if not below:
+                legend = legend.moved(panels[-1].rect[0], panels[-1].rect[1])
+                self._panels = panels[:-1]
+            else:
+                legend = legend.moved(below[0][0].rect[0], below[0][1])
+        self._legend = legend
+        window.overlays.covered = [
+            *(panel.rect for panel in self._panels),
+            *([legend.panel.rect] if legend is not None else []),
+            (0, self._hint.top, *window.canvas.size),
+        ]
 
     def _draw_banners(self, world: World) -> list[Rect]:
         """Say at the top what is not as usual, and return where [px]."""

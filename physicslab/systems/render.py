@@ -5,7 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from physicslab.schedule import Stage, System, at
+from physicslab.view.impulses import draw_impulses
 from physicslab.view.painting import draw_world
+from physicslab.view.panels import text_size
+from physicslab.view.vectors import draw_vectors
 
 if TYPE_CHECKING:
     from physicslab.view.window import Window
@@ -26,9 +29,21 @@ class RenderSystem(System):
     def __init__(self, window: Window) -> None:
         self._window = window
 
+    @at(Stage.IMPACT)
+    def note_impacts(self, world: World, h: float) -> None:
+        """Remember what has just struck, for it is over long before the picture is drawn."""
+        overlays = self._window.overlays
+        if overlays.impulses:
+            overlays.impacts.note(world)
+
     @at(Stage.RENDER)
     def draw(self, world: World, elapsed: float) -> None:
-        """Draw the world."""
+        """Draw the world, and the overlays that are on."""
         window = self._window
-        draw_world(world, window.camera, window.theme, window.canvas, grid=window.grid)
-        window.spring_tool.draw(world, window.camera, window.pointer, window.theme, window.canvas)
+        camera, theme, canvas, overlays = window.camera, window.theme, window.canvas, window.overlays
+        draw_world(world, camera, theme, canvas, grid=window.grid)
+        if overlays.arrows:
+            draw_vectors(world, overlays, camera, theme, canvas)
+        if overlays.impulses:
+            draw_impulses(world, overlays, camera, theme, canvas, text_size(canvas) - 2)
+        window.spring_tool.draw(world, camera, window.pointer, theme, canvas)

@@ -19,8 +19,8 @@ __all__ = [
     "ask_screenshot", "begin_spring", "clear", "close", "end_spring", "faster", "fit", "go_home", "leave",
     "press", "release", "remove", "reopen", "save", "slower",
     "spawn_box", "spawn_circle", "spawn_pendulum", "step",
-    "toggle_gravity", "toggle_grid", "toggle_help", "toggle_pause", "toggle_planets", "toggle_slow_motion",
-    "zoom",
+    "toggle_arrows", "toggle_gravity", "toggle_grid", "toggle_help", "toggle_impulses", "toggle_pause",
+    "toggle_planets", "toggle_slow_motion", "zoom",
 ]  # fmt: skip
 
 _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
@@ -160,6 +160,7 @@ def clear(world: World, window: Window) -> None:
     window.hand.drop(world)
     window.spring_tool.cancel()
     world.clear()
+    window.overlays.forget()
     window.error = ""
 
 
@@ -179,6 +180,16 @@ def toggle_planets(world: World, window: Window) -> None:
     else:
         window.gravity_before = world.physics.gravity_mode
         world.physics = replace(world.physics, gravity_mode="planet")
+
+
+def toggle_arrows(world: World, window: Window) -> None:
+    """Show or hide the arrows of velocities, forces and contact normals."""
+    window.overlays.toggle_arrows(world, window.camera)
+
+
+def toggle_impulses(world: World, window: Window) -> None:
+    """Show or hide what contacts do: impulses, friction cones and their numbers."""
+    window.overlays.toggle_impulses(world, window.camera)
 
 
 def zoom(window: Window, notches: float) -> None:

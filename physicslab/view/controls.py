@@ -56,6 +56,8 @@ CONTROLS: tuple[Control, ...] = (
     Control("]", "twice the speed", "]", actions.faster, minor=True),
     Control("G", "gravity", "g", actions.toggle_gravity),
     Control("O", "planets", "o", actions.toggle_planets),
+    Control("V", "arrows", "v", actions.toggle_arrows),
+    Control("E", "impulses", "e", actions.toggle_impulses),
     Control("R", "clear all", "r", actions.clear),
     Control("Wheel", "zoom"),
     Control("Middle", "pan"),

@@ -9,7 +9,7 @@ from typing import Literal
 from physicslab.view.canvas import Canvas, Rect, TextStyle
 from physicslab.view.theme import Colour, Theme
 
-__all__ = ["Line", "Panel", "broken", "draw_pill", "lay_out"]
+__all__ = ["Line", "Panel", "broken", "draw_pill", "lay_out", "text_size"]
 
 type Kind = Literal["heading", "figure", "detail", "remark", "gap"]
 
@@ -52,6 +52,12 @@ class Panel:
         canvas.panel(self.rect, theme.panel, theme.outline, theme.panel_opacity)
         for words, place, style, side in self.texts:
             canvas.text(words, place, style, side)
+
+
+def text_size(canvas: Canvas) -> int:
+    """Return the height of text [px]: larger in a larger window."""
+    width, height = canvas.size
+    return min(max(round(min(height / 48, width / 68)), 12), 20)
 
 
 def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str]:

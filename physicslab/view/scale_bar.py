@@ -10,7 +10,12 @@ from physicslab.view.canvas import Canvas, Rect, TextStyle
 from physicslab.view.quantities import length_of
 from physicslab.view.theme import Theme
 
-__all__ = ["draw_scale_bar"]
+__all__ = ["draw_scale_bar", "scale_bar_height"]
+
+
+def scale_bar_height(size: int, canvas: Canvas, theme: Theme) -> int:
+    """Return how high the bar's panel is, for text of a given height [px]."""
+    return canvas.text_size("0", TextStyle(size, theme.text))[1] + size + round(0.7 * size) // 2
 
 
 def draw_scale_bar(camera: Camera, bottom: int, size: int, canvas: Canvas, theme: Theme) -> Rect:
@@ -27,10 +32,10 @@ def draw_scale_bar(camera: Camera, bottom: int, size: int, canvas: Canvas, theme
     bar = length * camera.scale
     style = TextStyle(size, theme.text)
     words = length_of(length)
-    width, height = canvas.text_size(words, style)
+    width = canvas.text_size(words, style)[0]
     pad, tick = round(0.7 * size), 4.0
     panel_width = round(max(bar, width)) + 2 * pad
-    panel_height = height + size + pad // 2
+    panel_height = scale_bar_height(size, canvas, theme)
     left, top = canvas.size[0] - round(0.8 * size) - panel_width, bottom - panel_height
     rect = (left, top, panel_width, panel_height)
     canvas.panel(rect, theme.panel, theme.outline, theme.panel_opacity)

@@ -40,6 +40,10 @@ class Theme:
         What text stands on.
     text, faint, accent, heading : Colour
         Figures; what is said beside them; a number worth seeing; titles.
+    velocity, force, contact_normal : Colour
+        Arrows of what moves, what is pulled, and where bodies touch.
+    normal_impulse, friction_impulse, friction_cone : Colour
+        What contacts did, and how much friction there could be.
     key, key_rim : Colour
         The caps of the keys in the controls hint.
     paused, slow, planet, warning, error, notice : Colour
@@ -64,6 +68,12 @@ class Theme:
     faint: Colour
     accent: Colour
     heading: Colour
+    velocity: Colour
+    force: Colour
+    contact_normal: Colour
+    normal_impulse: Colour
+    friction_impulse: Colour
+    friction_cone: Colour
     key: Colour
     key_rim: Colour
     paused: Colour
@@ -105,6 +115,12 @@ DARK = Theme(
     faint=(139, 147, 165),
     accent=(110, 200, 255),
     heading=(245, 247, 250),
+    velocity=(80, 215, 255),
+    force=(255, 200, 70),
+    contact_normal=(235, 238, 245),
+    normal_impulse=(130, 235, 130),
+    friction_impulse=(255, 125, 165),
+    friction_cone=(180, 186, 205),
     key=(38, 43, 57),
     key_rim=(72, 80, 101),
     paused=(240, 190, 70),

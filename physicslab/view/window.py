@@ -11,6 +11,7 @@ from physicslab.view.camera import Camera
 from physicslab.view.canvas import Canvas
 from physicslab.view.extent import extent_of
 from physicslab.view.hand import Hand
+from physicslab.view.overlays import Overlays
 from physicslab.view.spring_tool import SpringTool
 from physicslab.view.theme import DARK, Theme
 from physicslab.world import World
@@ -38,6 +39,8 @@ class Window:
         Whether time runs, and how fast.
     hand : Hand
         What is held.
+    overlays : Overlays
+        Which arrows are shown.
     now : float
         Time [s] that the window has been open; it runs while the world is paused.
     pointer : tuple of two floats
@@ -71,6 +74,7 @@ class Window:
         self.camera = Camera(canvas.size, scale=self.config.pixels_per_metre)
         self.pace = Pace(self.config.max_dt)
         self.hand = Hand(self.config)
+        self.overlays = Overlays()
         self.now = 0.0
         self.pointer: tuple[float, float] = (0.5 * canvas.size[0], 0.5 * canvas.size[1])
         self.gravity_before = "linear"

@@ -1,0 +1,192 @@
+"""Velocities, forces and normals as arrows, and the legend that explains them."""
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+import pygame
+import pytest
+from desk import Desk, bits, empty_world
+from test_hud import MeasuringCanvas
+
+from physicslab.components import Velocity
+from physicslab.prefabs import box, circle
+from physicslab.scene import load_scene
+from physicslab.view.arrows import (
+    CONTACT_NORMAL,
+    FORCE,
+    FRICTION_IMPULSE,
+    NORMAL_IMPULSE,
+    SHORTEST,
+    VELOCITY,
+    dashes,
+    draw_arrows,
+    longest,
+)
+from physicslab.view.canvas import RecordingCanvas
+from physicslab.view.gauge import Gauge
+from physicslab.view.theme import DARK, Colour
+from physicslab.view.vectors import NORMAL_LENGTH
+from physicslab.world import World
+
+KINDS = (VELOCITY, FORCE, CONTACT_NORMAL, NORMAL_IMPULSE, FRICTION_IMPULSE)
+
+
+def lines_in(canvas: RecordingCanvas, colour: Colour) -> list[dict[str, Any]]:
+    """Return the lines of a colour; of arrows, first their shafts, then their heads."""
+    return [call for call in canvas.called("lines") if call["colour"] == colour]
+
+
+def shown(world: World, *keys: str, frames: int = 1, paused: bool = True) -> tuple[Desk, RecordingCanvas]:
+    """Press keys, let frames go by, and keep what the last one drew in the middle of the picture."""
+    canvas = RecordingCanvas((1280, 720))
+    desk = Desk(world, canvas)
+    for key in (*keys, *(["space"] if paused else [])):
+        desk.key(key)
+    desk.frames(frames)
+    canvas.calls.clear()
+    desk.frames()
+    return desk, canvas
+
+
+def test_kinds_differ_in_head_and_in_colour() -> None:
+    assert len({kind.head for kind in KINDS}) == len(KINDS)
+    assert len({kind.colour(DARK) for kind in KINDS}) == len(KINDS)
+
+
+def test_nothing_is_shown_unasked() -> None:
+    world = empty_world()
+    circle(world, (0, 0), velocity=(3, 0))
+    _, canvas = shown(world)
+    assert not any(lines_in(canvas, kind.colour(DARK)) for kind in KINDS)
+    assert "Velocity" not in canvas.words
+
+
+def test_velocity_arrows_are_as_long_as_the_legend_says() -> None:
+    world = empty_world(gravity=(0, 0))
+    circle(world, (0, 0), velocity=(1.5, 2.0))
+    circle(world, (1, 1))
+    desk, canvas = shown(world, "v")
+    scale = desk.window.overlays.velocity.per_metre
+    shafts, heads, _, _ = lines_in(canvas, DARK.velocity)  # of the body, and of the legend's sample
+    assert shafts["start"] == pytest.approx(np.array([[640.0, 360.0]]))
+    expected = np.array([[640.0 + 150.0 / scale, 360.0 - 200.0 / scale]])
+    assert shafts["end"] == pytest.approx(expected)
+    assert (heads["start"] == pytest.approx(expected[0])) or expected[0] in heads["start"]
+    assert {"Velocity", f"1 m = {scale:g} m/s"} <= set(canvas.words)
+
+
+def test_a_zoom_leaves_the_scale_as_it_was() -> None:
+    world = empty_world(gravity=(0, 0))
+    circle(world, (0, 0), velocity=(2.0, 0.0))
+    desk, canvas = shown(world, "v")
+    before = desk.window.overlays.velocity.per_metre
+    desk.window.camera.scale = 50.0
+    canvas.calls.clear()
+    desk.frames(8)
+    assert desk.window.overlays.velocity.per_metre == before
+    shaft = lines_in(canvas, DARK.velocity)[0]
+    assert shaft["end"][0, 0] - shaft["start"][0, 0] == pytest.approx(2.0 / before * 50.0)
+
+
+def test_forces_are_those_of_the_last_substep() -> None:
+    world = load_scene("spring_chain")
+    desk, canvas = shown(world, "v", frames=30, paused=False)
+    rows = world.batch(Velocity).rows
+    rows = rows[world.bodies.inverse_mass[rows] > 0.0]
+    force = world.bodies.force[rows] * (1.0, -1.0) * desk.window.camera.scale
+    force /= desk.window.overlays.force.per_metre
+    length = np.hypot(force[:, 0], force[:, 1])
+    drawn = (length >= SHORTEST) & (length <= longest(canvas))
+    shafts = lines_in(canvas, DARK.force)[0]
+    spans = shafts["end"] - shafts["start"]
+    for span in force[drawn]:
+        assert np.isclose(spans, span, atol=1e-9).all(axis=1).any()
+
+
+def test_normals_stand_on_contacts_and_point_into_the_body() -> None:
+    world = empty_world()
+    box(world, (0, -0.5), width=10, height=1, static=True)
+    circle(world, (1, 0.25), radius=0.25)
+    _, canvas = shown(world, "v", frames=30, paused=False)
+    shaft = lines_in(canvas, DARK.contact_normal)[0]
+    ((x, y),) = shaft["start"]
+    assert (x, y) == pytest.approx((740.0, 360.0), abs=0.3)
+    assert shaft["end"] - shaft["start"] == pytest.approx(np.array([[0.0, -NORMAL_LENGTH]]), abs=1e-6)
+    assert "direction only" in canvas.words
+
+
+def test_short_arrows_are_left_out_and_long_ones_marked() -> None:
+    canvas = RecordingCanvas((1280, 720))
+    limit = longest(canvas)
+    span = np.array(
+        [(SHORTEST * 0.9, 0.0), (50.0, 0.0), (0.0, 3.0 * limit), (math.nan, 0.0), (math.inf, 0.0)]
+    )
+    draw_arrows(np.full((5, 2), 300.0), span, VELOCITY, canvas, DARK)
+    shafts, heads = lines_in(canvas, DARK.velocity)
+    assert shafts["end"].tolist() == [[350.0, 300.0], [300.0, 300.0 + limit]]
+    assert len(heads["start"]) == 2 * 3 + 2
+    canvas.calls.clear()
+    draw_arrows(np.full((1, 2), 300.0), span[1:2], VELOCITY, canvas, DARK)
+    assert len(lines_in(canvas, DARK.velocity)[1]["start"]) == 3
+
+
+def test_a_crowd_is_drawn_finer() -> None:
+    canvas = RecordingCanvas((1280, 720))
+    for count in (10, 400):
+        draw_arrows(np.full((count, 2), 300.0), np.full((count, 2), 20.0), VELOCITY, canvas, DARK)
+    few, _, many, _ = lines_in(canvas, DARK.velocity)
+    assert few["width"] > many["width"] and len(many["start"]) == 400
+
+
+def test_a_broken_line_ends_where_the_line_does() -> None:
+    start, end = np.array([(0.0, 0.0), (0.0, 0.0)]), np.array([(30.0, 0.0), (0.0, 2.0)])
+    froms, tos = dashes(start, end)
+    assert np.hypot(*(tos - froms).T).max() <= 5.0 + 1e-9
+    assert {(30.0, 0.0), (0.0, 2.0)} <= {tuple(to) for to in tos.tolist()}
+
+
+def test_a_gauge_is_round_and_does_not_flicker() -> None:
+    gauge = Gauge("m/s")
+    scales = []
+    for n in range(300):
+        gauge.follow(np.array([4.0 + 0.9 * math.sin(0.3 * n)]), reach=1.0, time=n / 60)
+        scales.append(gauge.per_metre)
+    assert set(scales) == {5.0}
+    gauge.follow(np.array([math.inf, math.nan]), reach=1.0, time=5.0)
+    assert gauge.per_metre == 5.0
+    gauge.follow(np.array([0.01]), reach=1.0, time=60.0)
+    assert gauge.per_metre == 0.01
+
+
+def test_rendering_with_overlays_changes_nothing() -> None:
+    states = []
+    for keys in ((), ("v", "e")):
+        world = load_scene("pile")
+        desk = Desk(world, RecordingCanvas((1280, 720)))
+        for key in keys:
+            desk.key(key)
+        desk.frames(300)
+        states.append(bits(world))
+    assert states[0] == states[1]
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (800, 600), (1920, 1080)])
+@pytest.mark.parametrize("keys", ["v", "e", "ve"])
+def test_the_legend_lies_over_nothing(size: tuple[int, int], keys: str) -> None:
+    canvas = MeasuringCanvas(size)
+    desk = Desk(load_scene("bounces"), canvas)
+    for key in keys:
+        desk.key(key)
+    desk.frames(70)
+    canvas.words.clear()
+    canvas.panels.clear()
+    desk.frames()
+    screen = pygame.Rect(0, 0, *size)
+    for words, rect in canvas.words:
+        assert screen.contains(rect), f"{words!r} at {rect} leaves {size}"
+    for (a, one), (b, two) in itertools.combinations(canvas.words, 2):
+        assert not one.inflate(-2, -2).colliderect(two.inflate(-2, -2)), f"{a!r} lies over {b!r} at {size}"
+    for one, two in itertools.combinations(canvas.panels, 2):
+        assert not one.colliderect(two) or one.contains(two) or two.contains(one)

@@ -1,0 +1,171 @@
+"""The educational overlay: its numbers are the resolver's."""
+
+import math
+
+import numpy as np
+import pytest
+from desk import Desk, bits, empty_world
+from test_arrows import lines_in, shown
+
+from physicslab.components import Mass, Velocity
+from physicslab.prefabs import box, circle
+from physicslab.vector import Vector2
+from physicslab.view.canvas import RecordingCanvas
+from physicslab.view.impacts import SHOWN
+from physicslab.view.impulses import LABELLED
+from physicslab.view.labels import Label, Labels
+from physicslab.view.quantities import quantity
+from physicslab.view.theme import DARK
+from physicslab.world import World
+
+
+def momentum(world: World, entity: int) -> Vector2:
+    return world.component(entity, Velocity).linear * world.component(entity, Mass).mass
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.2], ids=["head-on", "oblique"])
+def test_the_impulses_shown_change_the_momenta_exactly(offset: float) -> None:
+    world = empty_world(gravity=(0, 0))
+    a = circle(world, (-1, 0), radius=0.25, mass=2.0, velocity=(4, 0), restitution=0.8, friction=0.5)
+    b = circle(world, (1, offset), radius=0.25, mass=1.0, velocity=(-2, 0), restitution=0.8, friction=0.5)
+    before = momentum(world, a), momentum(world, b)
+    canvas = RecordingCanvas((1280, 720))
+    desk = Desk(world, canvas)
+    desk.key("e")
+    desk.frames(25)
+    overlays = desk.window.overlays
+    (touch,) = overlays.impacts.recent(world.time)
+    normal = Vector2(*touch["direction"].tolist())
+    shown_impulse = float(touch["normal"]) * normal + float(touch["tangent"]) * normal.perpendicular
+    for change in (momentum(world, b) - before[1], before[0] - momentum(world, a)):
+        assert change.x == pytest.approx(shown_impulse.x, abs=1e-9)
+        assert change.y == pytest.approx(shown_impulse.y, abs=1e-9)
+    assert touch["speed"] == pytest.approx(-Vector2(-6, 0).dot(normal), abs=1e-9)
+    words = set(canvas.words)
+    assert f"impact at {quantity(float(touch['speed']), 'm/s')}" in words
+    assert f"normal {quantity(float(touch['normal']), 'N s')}" in words
+    assert f"friction {quantity(abs(float(touch['tangent'])), 'N s')}" in words
+    # And the arrow is as long as the legend says.
+    canvas.calls.clear()
+    desk.frames()
+    shaft = lines_in(canvas, DARK.normal_impulse)[0]
+    span = shaft["end"][0] - shaft["start"][0]
+    scale = desk.window.camera.scale / overlays.impact.per_metre
+    assert span == pytest.approx(np.array((normal.x, -normal.y)) * float(touch["normal"]) * scale)
+
+
+@pytest.mark.parametrize("static_first", [True, False])
+def test_impulses_act_on_what_can_move(static_first: bool) -> None:
+    world = empty_world(gravity=(0, 0))
+    if static_first:
+        box(world, (0, -0.5), width=10, height=1, static=True, restitution=1)
+    circle(world, (0, 0.5), velocity=(0, -4), radius=0.25, mass=1, restitution=1)
+    if not static_first:
+        box(world, (0, -0.5), width=10, height=1, static=True, restitution=1)
+    desk, _ = shown(world, "e", frames=8, paused=False)
+    (touch,) = desk.window.overlays.impacts.recent(world.time)
+    assert touch["direction"].tolist() == pytest.approx([0.0, 1.0])
+    assert touch["normal"] == pytest.approx(8.0) and touch["speed"] == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize(
+    ("friction", "word"), [(0.9, "sticks, μ = 0.9"), (0.1, "slips, μ = 0.1"), (0.0, "μ = 0")]
+)
+def test_slip_stick_and_the_cone(friction: float, word: str) -> None:
+    world = empty_world(gravity=(3.0, -9.0))
+    box(world, (0, -0.5), width=10, height=1, static=True, friction=friction)
+    box(world, (0, 0.25), width=0.5, height=0.5, friction=friction)
+    _, canvas = shown(world, "e", frames=20, paused=False)
+    assert word in canvas.words
+    cones = lines_in(canvas, DARK.friction_cone)[:-2]  # without the legend's
+    if not friction:
+        assert not cones
+        return
+    if friction == 0.9:
+        (cone,) = cones
+        span = cone["end"] - cone["start"]
+        angle = np.degrees(np.arctan2(np.abs(span[:, 0]), -span[:, 1]))
+        assert angle == pytest.approx(math.degrees(math.atan(friction)))
+    rub = lines_in(canvas, DARK.friction_impulse)[0]
+    assert (rub["end"][:, 0] < rub["start"][:, 0]).all()  # against the pull to the right
+
+
+def test_impacts_fade_within_a_second_and_not_while_paused() -> None:
+    world = empty_world(gravity=(0, 0))
+    circle(world, (-0.3, 0), radius=0.25, velocity=(1, 0), restitution=1)
+    circle(world, (0.3, 0), radius=0.25, velocity=(-1, 0), restitution=1)
+    canvas = RecordingCanvas((1280, 720))
+    desk = Desk(world, canvas)
+    desk.key("e")
+    desk.frames(15)
+
+    def opacity() -> float:
+        canvas.calls.clear()
+        desk.frames()
+        calls = lines_in(canvas, DARK.normal_impulse)[:-4]  # without the legend's
+        return float(calls[0]["opacity"]) if calls else 0.0
+
+    fresh = opacity()
+    desk.key("space")
+    desk.frames(120)
+    assert opacity() == fresh == 1.0
+    desk.key("space")
+    desk.frames(30)
+    assert 0.0 < opacity() < fresh
+    desk.frames(math.ceil(SHOWN * 60))
+    assert opacity() == 0.0
+
+
+def test_only_the_strongest_have_their_numbers() -> None:
+    world = empty_world()
+    box(world, (0, -0.5), width=14, height=1, static=True)
+    for n in range(20):
+        circle(world, (0.6 * n - 5.7, 0.2), radius=0.2, mass=10.0 + n)
+    desk, canvas = shown(world, "e", frames=30, paused=False)
+    numbers = [words for words in canvas.words if words.startswith("normal ") and words.endswith(" N s")]
+    assert 1 <= len(numbers) <= LABELLED
+    assert len(lines_in(canvas, DARK.normal_impulse)[0]["start"]) == 20
+    assert desk.window.overlays.covered
+
+
+def test_labels_lie_apart_and_stay_where_they_are() -> None:
+    labels = Labels()
+    crowd = [Label((n,), (300.0 + 3 * n, 300.0), ["one", "a longer line"]) for n in range(10)]
+    covered = [(0, 0, 280, 600)]
+    places = []
+    for order in (crowd, crowd[::-1]):
+        canvas = RecordingCanvas((800, 600))
+        labels.draw(order, covered, 12, canvas, DARK)
+        rects = sorted(call["rect"] for call in canvas.called("panel"))
+        places.append(rects)
+        every = [*rects, *covered]
+        for n, (x, y, w, h) in enumerate(every):
+            for x2, y2, w2, h2 in every[n + 1 :]:
+                assert x + w <= x2 or x2 + w2 <= x or y + h <= y2 or y2 + h2 <= y
+    assert len(places[0]) == 10 and places[0] == places[1]
+
+
+def test_clearing_forgets_impacts() -> None:
+    world = empty_world(gravity=(0, 0))
+    circle(world, (-0.3, 0), radius=0.25, velocity=(1, 0), restitution=1)
+    circle(world, (0.3, 0), radius=0.25, velocity=(-1, 0), restitution=1)
+    desk, _ = shown(world, "e", frames=12, paused=False)
+    assert len(desk.window.overlays.impacts.kept)
+    desk.key("r")
+    desk.frames()
+    assert not len(desk.window.overlays.impacts.kept)
+
+
+def test_overlays_do_nothing_to_a_collision() -> None:
+    states = []
+    for keys in ("", "ve"):
+        world = empty_world()
+        box(world, (0, -0.5), width=10, height=1, static=True, restitution=0.6, friction=0.4)
+        for n in range(5):
+            circle(world, (0.1 * n, 1.0 + n), restitution=0.6, friction=0.4)
+        desk = Desk(world, RecordingCanvas((1280, 720)))
+        for key in keys:
+            desk.key(key)
+        desk.frames(300)
+        states.append(bits(world))
+    assert states[0] == states[1]
