@@ -68,6 +68,7 @@ class Sandbox:
         try:
             while made < due and (made == 0 or self._clock() < deadline):
                 world.step(dt * pace.speed)
+                self.window.sparks.advance(world, dt * pace.speed, self.window.camera.scale)
                 made += 1
         except Diverged as error:
             pace.halt()

@@ -31,3 +31,4 @@ class RenderSystem(System):
         """Draw the world."""
         window = self._window
         draw_world(world, window.camera, window.theme, window.canvas)
+        window.sparks.draw(window.camera, window.theme, window.canvas)

@@ -14,7 +14,7 @@ from physicslab.world import World
 __all__ = [
     "ask_screenshot", "clear", "close", "fit", "go_home", "press", "release",
     "spawn_box", "spawn_circle", "spawn_pendulum", "step",
-    "toggle_gravity", "toggle_pause", "toggle_planets", "toggle_slow_motion", "zoom",
+    "toggle_gravity", "toggle_pause", "toggle_planets", "toggle_slow_motion", "toggle_trails", "zoom",
 ]  # fmt: skip
 
 _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
@@ -85,6 +85,7 @@ def clear(world: World, window: Window) -> None:
     """Remove everything."""
     window.hand.drop(world)
     world.clear()
+    window.sparks.clear()
     window.error = ""
 
 
@@ -104,6 +105,11 @@ def toggle_planets(world: World, window: Window) -> None:
     else:
         window.gravity_before = world.physics.gravity_mode
         world.physics = replace(world.physics, gravity_mode="planet")
+
+
+def toggle_trails(world: World, window: Window) -> None:
+    """Show where moving bodies have been, or no longer."""
+    window.trails.toggle(world)
 
 
 def zoom(window: Window, notches: float) -> None:

@@ -45,6 +45,7 @@ CONTROLS: tuple[Control, ...] = (
     Control("Tab", "slow motion", "tab", actions.toggle_slow_motion),
     Control("G", "gravity", "g", actions.toggle_gravity),
     Control("O", "planets", "o", actions.toggle_planets),
+    Control("T", "trails", "t", actions.toggle_trails),
     Control("R", "clear all", "r", actions.clear),
     Control("Wheel", "zoom"),
     Control("Middle", "pan"),

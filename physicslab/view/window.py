@@ -9,7 +9,9 @@ from physicslab.view.camera import Camera
 from physicslab.view.canvas import Canvas
 from physicslab.view.extent import extent_of
 from physicslab.view.hand import Hand
+from physicslab.view.sparks import Sparks
 from physicslab.view.theme import DARK, Theme
+from physicslab.view.trails import TrailSwitch
 from physicslab.world import World
 
 __all__ = ["Window"]
@@ -35,6 +37,10 @@ class Window:
         Whether time runs, and how fast.
     hand : Hand
         What is held.
+    sparks : Sparks
+        Those in flight.
+    trails : TrailSwitch
+        Whether moving bodies leave trails.
     now : float
         Time [s] that the window has been open; it runs while the world is paused.
     pointer : tuple of two floats
@@ -58,6 +64,8 @@ class Window:
         self.camera = Camera(canvas.size, scale=self.config.pixels_per_metre)
         self.pace = Pace(self.config.max_dt)
         self.hand = Hand(self.config)
+        self.sparks = Sparks()
+        self.trails = TrailSwitch()
         self.now = 0.0
         self.pointer: tuple[float, float] = (0.5 * canvas.size[0], 0.5 * canvas.size[1])
         self.gravity_before = "linear"
