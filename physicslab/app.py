@@ -54,6 +54,7 @@ class Sandbox:
         window = self.window
         window.spring_tool.cancel()
         window.overlays.forget()
+        window.sparks.clear()
         window.error, window.next_world = "", None
         window.go_home(world)
 
@@ -80,6 +81,7 @@ class Sandbox:
         try:
             while made < due and (made == 0 or self._clock() < deadline):
                 world.step(dt * pace.shortening)
+                self.window.sparks.advance(world, dt * pace.shortening, self.window.camera.scale)
                 made += 1
         except Diverged as error:
             pace.halt()

@@ -70,7 +70,7 @@ def test_what_a_scene_does_not_need_is_left_out() -> None:
     }
     pendulum = load_scene("pendulum")
     pendulum.run(steps=1)
-    assert {"BroadPhaseSystem", "ContactSystem", "ResolveSystem"} == {
+    assert {"BroadPhaseSystem", "ContactSystem", "ResolveSystem", "TrailSystem"} == {
         left.name for left in pendulum.schedule.left_out
     }
 

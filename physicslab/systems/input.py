@@ -59,6 +59,7 @@ class InputSystem(System):
             if handler is not None:
                 handler(world, event)
         window.follow_size(world)
+        window.trails.follow(world)
         window.hand.move(window.place, window.now)
         window.hand.lead(world, window.coming(world), window.pace.paused)
 

@@ -42,6 +42,7 @@ class RenderSystem(System):
         window = self._window
         camera, theme, canvas, overlays = window.camera, window.theme, window.canvas, window.overlays
         draw_world(world, camera, theme, canvas, grid=window.grid)
+        window.sparks.draw(camera, theme, canvas)
         if overlays.arrows:
             draw_vectors(world, overlays, camera, theme, canvas)
         if overlays.impulses:

@@ -9,6 +9,7 @@ from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.spring import SpringSystem
+from physicslab.systems.trail import TrailSystem
 
 __all__ = ["PHYSICS_SYSTEMS", "standard_systems"]
 
@@ -19,6 +20,7 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     BroadPhaseSystem,
     ContactSystem,
     ResolveSystem,
+    TrailSystem,
 )
 
 

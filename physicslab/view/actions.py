@@ -20,7 +20,7 @@ __all__ = [
     "press", "release", "remove", "reopen", "save", "slower",
     "spawn_box", "spawn_circle", "spawn_pendulum", "step",
     "toggle_arrows", "toggle_gravity", "toggle_grid", "toggle_help", "toggle_impulses", "toggle_pause",
-    "toggle_planets", "toggle_slow_motion", "zoom",
+    "toggle_planets", "toggle_slow_motion", "toggle_trails", "zoom",
 ]  # fmt: skip
 
 _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
@@ -161,6 +161,7 @@ def clear(world: World, window: Window) -> None:
     window.spring_tool.cancel()
     world.clear()
     window.overlays.forget()
+    window.sparks.clear()
     window.error = ""
 
 
@@ -190,6 +191,11 @@ def toggle_arrows(world: World, window: Window) -> None:
 def toggle_impulses(world: World, window: Window) -> None:
     """Show or hide what contacts do: impulses, friction cones and their numbers."""
     window.overlays.toggle_impulses(world, window.camera)
+
+
+def toggle_trails(world: World, window: Window) -> None:
+    """Show where moving bodies have been, or no longer."""
+    window.trails.toggle(world)
 
 
 def zoom(window: Window, notches: float) -> None:

@@ -15,7 +15,7 @@ from physicslab.view.canvas import Canvas, Look
 from physicslab.view.theme import Theme
 from physicslab.world import World
 
-__all__ = ["POINT_RADIUS", "BodyRows", "body_rows", "draw_bodies"]
+__all__ = ["POINT_RADIUS", "BodyRows", "body_rows", "draw_bodies", "own_colour"]
 
 type Rows = NDArray[np.int64]
 
@@ -63,10 +63,15 @@ def _palette(theme: Theme) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
 _STATIC, _KINEMATIC, _HELD, _OWN = range(4)
 
 
+def own_colour(world: World, theme: Theme, rows: Rows) -> Rows:
+    """Return which of ``theme.bodies`` each body has."""
+    return world.roster.entities[rows] % len(theme.bodies)
+
+
 def _look(world: World, theme: Theme, rows: Rows) -> Look:
     rims, fills = _palette(theme)
     moves, held = world.table(Velocity).present[rows], world.table(Held).present[rows]
-    own = _OWN + world.roster.entities[rows] % len(theme.bodies)
+    own = _OWN + own_colour(world, theme, rows)
     fill = np.where(moves, np.where(world.table(Mass).present[rows], own, _KINEMATIC), _STATIC)
     return Look(fills[fill], rims[np.where(held, _HELD, fill)], ~moves)
 
@@ -74,7 +79,7 @@ def _look(world: World, theme: Theme, rows: Rows) -> Look:
 def _marker_look(world: World, theme: Theme, rows: Rows) -> Look:
     """Return the look of points: one colour throughout, and each its own, for a fixed sun is no wall."""
     rims, _ = _palette(theme)
-    own = _OWN + world.roster.entities[rows] % len(theme.bodies)
+    own = _OWN + own_colour(world, theme, rows)
     colour = rims[np.where(world.table(Held).present[rows], _HELD, own)]
     return Look(colour, colour, np.zeros(len(rows), np.bool_))
 

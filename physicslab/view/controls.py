@@ -57,6 +57,7 @@ CONTROLS: tuple[Control, ...] = (
     Control("G", "gravity", "g", actions.toggle_gravity),
     Control("O", "planets", "o", actions.toggle_planets),
     Control("V", "arrows", "v", actions.toggle_arrows),
+    Control("T", "trails", "t", actions.toggle_trails),
     Control("E", "impulses", "e", actions.toggle_impulses),
     Control("R", "clear all", "r", actions.clear),
     Control("Wheel", "zoom"),

@@ -8,6 +8,7 @@ from physicslab.view.camera import Camera
 from physicslab.view.canvas import Canvas
 from physicslab.view.springs import draw_springs
 from physicslab.view.theme import Theme
+from physicslab.view.trails import draw_trails
 from physicslab.world import World
 
 __all__ = ["draw_world"]
@@ -20,5 +21,6 @@ def draw_world(world: World, camera: Camera, theme: Theme, canvas: Canvas, *, gr
     if grid:
         draw_grid(camera, theme, canvas)
     draw_bounds(world.physics.bounds, camera, theme, canvas)
+    draw_trails(world, camera, theme, canvas)
     draw_bodies(world, camera, theme, canvas)
     draw_springs(world, camera, theme, canvas)

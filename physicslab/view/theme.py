@@ -36,6 +36,8 @@ class Theme:
         The rims of what never moves, of what moves whatever pushes it, and of what is in the hand.
     spring, pin, bounds : Colour
         Springs, the fixed points they hang from, the walls of the world.
+    spark : Colour
+        What flies where bodies strike each other.
     panel, panel_opacity, outline : Colour, float, Colour
         What text stands on.
     text, faint, accent, heading : Colour
@@ -61,6 +63,7 @@ class Theme:
     spring: Colour
     pin: Colour
     bounds: Colour
+    spark: Colour
     panel: Colour
     panel_opacity: float
     outline: Colour
@@ -108,6 +111,7 @@ DARK = Theme(
     spring=(160, 168, 186),
     pin=(214, 219, 230),
     bounds=(98, 108, 130),
+    spark=(255, 220, 150),
     panel=(22, 25, 34),
     panel_opacity=0.88,
     outline=(47, 53, 69),

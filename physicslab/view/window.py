@@ -12,8 +12,10 @@ from physicslab.view.canvas import Canvas
 from physicslab.view.extent import extent_of
 from physicslab.view.hand import Hand
 from physicslab.view.overlays import Overlays
+from physicslab.view.sparks import Sparks
 from physicslab.view.spring_tool import SpringTool
 from physicslab.view.theme import DARK, Theme
+from physicslab.view.trails import TrailSwitch
 from physicslab.world import World
 
 __all__ = ["Window"]
@@ -41,6 +43,10 @@ class Window:
         What is held.
     overlays : Overlays
         Which arrows are shown.
+    sparks : Sparks
+        Those in flight.
+    trails : TrailSwitch
+        Whether moving bodies leave trails.
     now : float
         Time [s] that the window has been open; it runs while the world is paused.
     pointer : tuple of two floats
@@ -75,6 +81,8 @@ class Window:
         self.pace = Pace(self.config.max_dt)
         self.hand = Hand(self.config)
         self.overlays = Overlays()
+        self.sparks = Sparks()
+        self.trails = TrailSwitch()
         self.now = 0.0
         self.pointer: tuple[float, float] = (0.5 * canvas.size[0], 0.5 * canvas.size[1])
         self.gravity_before = "linear"

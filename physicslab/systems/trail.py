@@ -1,0 +1,112 @@
+"""Where bodies have been."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Trail, Transform
+from physicslab.schedule import Stage, System, at
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["TrailSystem"]
+
+SAMPLES = 128
+"""Places kept of each body."""
+
+
+class TrailSystem(System):
+    """Records where each body with a Trail has been, as far back as its Trail asks for.
+
+    It reads positions and writes to nothing but its own record. A body has a ring of ``SAMPLES`` places, at
+    least ``length / (SAMPLES - 2)`` seconds apart, so memory and cost do not hang on how long a trail is. The
+    newest place is always that of now. The record goes with the body, or with its Trail.
+
+    Attributes
+    ----------
+    entities : int64 array (n,)
+        The bodies on record, ascending.
+    """
+
+    needs = (Trail, Transform)
+
+    def __init__(self) -> None:
+        self.entities: NDArray[np.int64] = np.zeros(0, np.int64)
+        self._place = np.zeros((0, SAMPLES, 2))
+        self._time = np.zeros((0, SAMPLES))  # NaN where nothing was recorded yet
+        self._head: NDArray[np.int64] = np.zeros(0, np.int64)
+        self._rows: NDArray[np.int64] = np.zeros(0, np.int64)
+        self._length = np.zeros(0)
+        self._now = 0.0
+
+    def attach(self, world: World) -> None:
+        """Drop the records of bodies that are gone, and begin those of new ones where they are now."""
+        batch = world.batch(*self.needs)
+        known = np.isin(batch.entities, self.entities)
+        old = np.searchsorted(self.entities, batch.entities[known])
+        place, time = np.zeros((len(batch), SAMPLES, 2)), np.full((len(batch), SAMPLES), np.nan)
+        head = np.zeros(len(batch), np.int64)
+        place[known], time[known], head[known] = self._place[old], self._time[old], self._head[old]
+        place[~known, 0] = world.table(Transform)["position"][batch.rows[~known]]
+        time[~known, 0] = world.time
+        self.entities, self._rows = batch.entities, batch.rows
+        self._place, self._time, self._head = place, time, head
+        self._length = world.table(Trail)["length"][batch.rows]
+
+    @at(Stage.FINISH)
+    def record(self, world: World, h: float) -> None:
+        """Note where the bodies are at the end of the step."""
+        now = world.time + h
+        if now <= self._now:  # the clock was set back: what was recorded lies in the future
+            self._time[:] = np.nan
+        self._now = now
+        self._length = world.table(Trail)["length"][self._rows]
+        every = np.arange(len(self._rows))
+        newest, before = self._time[every, self._head], self._time[every, self._head - 1]
+        gap = (1.0 - 1e-9) * self._length / (SAMPLES - 2)
+        due = (newest - before >= gap) | (np.isfinite(newest) & np.isnan(before))
+        self._head[due] = (self._head[due] + 1) % SAMPLES
+        self._place[every, self._head] = world.table(Transform)["position"][self._rows]
+        self._time[every, self._head] = now
+
+    def paths(self, every: int = 1) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return every path, in the order of ``entities``, and how old each part of it is.
+
+        Parameters
+        ----------
+        every : int
+            Take only one of so many places, a divisor of ``SAMPLES``; always the same ones, and that of now.
+
+        Returns
+        -------
+        positions : float64 array (n, SAMPLES // every + 1, 2)
+            Places in the order of time [m]; the last is that of now.
+        ages : float64 array (n, SAMPLES // every + 1)
+            Time since then, as a share of the Trail's length; NaN or above 1 where there is no such place.
+        """
+        slots = (self._head[:, None] // every + np.arange(1, SAMPLES // every + 1)) * every % SAMPLES
+        slots = np.append(slots, self._head[:, None], axis=1)
+        own = np.arange(len(slots))[:, None]
+        times = self._time[own, slots]
+        return self._place[own, slots], (times[:, -1:] - times) / self._length[:, None]
+
+    def path(self, entity: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return where a body has been (k, 2) [m] and when (k,) [s], in the order of time.
+
+        Raises
+        ------
+        KeyError
+            If the body has no record.
+        """
+        found = np.flatnonzero(self.entities == entity)
+        if not len(found):
+            raise KeyError(f"entity {entity} has no trail on record")
+        i = int(found[0])
+        order = (self._head[i] + np.arange(1, SAMPLES + 1)) % SAMPLES
+        times = self._time[i, order]
+        kept = times[-1] - times <= self._length[i] * (1.0 + 1e-12)
+        return self._place[i, order][kept], times[kept]

@@ -1,0 +1,145 @@
+"""Trails in the window: key T, and what is drawn."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from desk import FRAME, Desk, bits, empty_world
+
+from physicslab.components import Trail, Velocity
+from physicslab.prefabs import box, circle
+from physicslab.scene import load_scene
+from physicslab.schedule import Stage
+from physicslab.systems.render import RenderSystem
+from physicslab.systems.trail import TrailSystem
+from physicslab.view.canvas import RecordingCanvas
+from physicslab.view.theme import DARK, mixed
+from physicslab.view.window import Window
+from physicslab.world import World
+
+
+def worn(world: World) -> list[int]:
+    return [entity for entity in world.entities() if world.has(entity, Trail)]
+
+
+def trail_lines(world: World) -> list[dict[str, Any]]:
+    """Return the lines drawn between the grid and the first body."""
+    canvas = RecordingCanvas((1280, 720))
+    window = Window(canvas)
+    world.install(RenderSystem(window))
+    world.frame(Stage.RENDER, FRAME)
+    fixed = (DARK.grid, DARK.axis, DARK.bounds)
+    return [call for call in canvas.called("lines") if call["colour"] not in fixed]
+
+
+def test_t_gives_moving_bodies_trails_and_takes_them_away() -> None:
+    world = empty_world(gravity=(0, 0))
+    ball = circle(world, (0, 0))
+    box(world, (0, -3), width=8, height=1, static=True)
+    desk = Desk(world)
+    desk.frames(2)
+    assert worn(world) == []
+    desk.key("t")
+    desk.frames(2)
+    assert worn(world) == [ball]
+    desk.key("t")
+    desk.frames(2)
+    assert worn(world) == []
+
+
+def test_what_is_spawned_meanwhile_gets_a_trail_too() -> None:
+    world = empty_world()
+    desk = Desk(world)
+    desk.key("t")
+    desk.frames()
+    desk.press(1, 1)
+    desk.release(1, 1)
+    desk.press(-1, 1, "right")
+    desk.frames(3)
+    assert len(worn(world)) == 2
+    desk.key("r")
+    desk.frames()
+    desk.press(0, 0)
+    desk.frames(3)
+    assert len(worn(world)) == 1
+    system = world.schedule.find(TrailSystem)
+    assert isinstance(system, TrailSystem) and len(system.entities) == 1
+
+
+def test_trails_of_the_scene_come_back_as_long_as_they_were() -> None:
+    world = load_scene("two_planets")
+    lengths = {entity: world.component(entity, Trail).length for entity in worn(world)}
+    desk = Desk(world)
+    desk.key("t")
+    desk.frames(2)
+    assert lengths and not worn(world)
+    desk.key("t")
+    desk.frames(2)
+    assert {entity: world.component(entity, Trail).length for entity in worn(world)} == lengths
+
+
+def test_a_trail_is_drawn_from_where_the_body_was_and_fades() -> None:
+    world = empty_world(gravity=(0, 0))
+    ball = circle(world, (-3, 0), radius=0.2)
+    world.component(ball, Velocity).linear = (3, 0)
+    world.add(ball, Trail(1.0))
+    world.run(seconds=2.0)
+    lines = trail_lines(world)
+    rim = DARK.bodies[ball % len(DARK.bodies)]
+    starts = np.concatenate([call["start"] for call in lines])
+    ends = np.concatenate([call["end"] for call in lines])
+    assert np.allclose(starts[0], (640, 360), atol=6.0) and np.allclose(ends[-1], (940, 360), atol=1e-6)
+    assert np.allclose(starts[1:], ends[:-1])
+    far = [sum(abs(a - b) for a, b in zip(c["colour"], DARK.background, strict=True)) for c in lines]
+    assert far == sorted(far) and far[0] < 0.1 * far[-1]
+    assert lines[-1]["width"] > lines[0]["width"] >= 1.0
+    assert lines[-1]["colour"] == mixed(DARK.background, rim, 0.85 * (1 - 0.5 / 16))
+
+
+def test_trails_lie_behind_bodies() -> None:
+    world = load_scene("two_planets")
+    world.run(seconds=1.0)
+    canvas = RecordingCanvas((1280, 720))
+    world.install(RenderSystem(Window(canvas)))
+    world.frame(Stage.RENDER, FRAME)
+    names = [name for name, _ in canvas.calls]
+    assert names.count("lines") > 4 and names[-1] == "discs"
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_thousand_trails_are_drawn_in_few_pieces() -> None:
+    world = empty_world(gravity=(0, 0))
+    for n in range(1000):
+        ball = circle(world, (0.1 * (n % 40) - 2, 0.1 * (n // 40) - 2), radius=0.01)
+        world.component(ball, Velocity).linear = (np.cos(n), np.sin(n))
+        world.add(ball, Trail())
+    world.run(seconds=2.0)
+    lines = trail_lines(world)
+    assert len(lines) <= 16 * len(DARK.bodies)
+    assert 5_000 < sum(len(call["start"]) for call in lines) < 18_000
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_body_that_is_lost_or_at_rest_draws_nothing_odd() -> None:
+    world = empty_world(gravity=(0, 0))
+    still, lost = circle(world, (0, 0)), circle(world, (1, 1))
+    world.add(still, Trail())
+    world.add(lost, Trail())
+    world.component(lost, Velocity).linear = (1e12, 0)
+    world.run(steps=10)
+    for call in trail_lines(world):
+        assert np.isfinite(call["start"]).all() and np.abs(call["end"]).max() < 1e7
+
+
+@pytest.mark.parametrize("name", ["bounces", "billiards", "pyramid"])
+def test_trails_and_sparks_change_no_bit_of_the_world(name: str) -> None:
+    alone, watched = load_scene(name), load_scene(name)
+    desk = Desk(watched)
+    desk.key("t")
+    for n in range(300):
+        alone.step()
+        desk.frames()
+        if n % 40 == 20:
+            desk.key("t")
+    assert watched.steps == alone.steps == 300
+    assert bits(watched) == bits(alone)
