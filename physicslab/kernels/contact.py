@@ -94,7 +94,6 @@ def find_contacts(
             two.approach_speed = two.impact_normal = two.impact_tangent = 0.0
         dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
         ux, uy = (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h
-        manifold.offset_x, manifold.offset_y = dx, dy
         a_box, b_box = kind[a] == 2, kind[b] == 2
         had_points = manifold.count > 0
         if not (a_box or b_box or had_points or manifold.wall >= 0):
@@ -102,6 +101,7 @@ def find_contacts(
             reach = 1.02 * (radius[a] + radius[b]) + abs(ux) + abs(uy) + fall
             if dx * dx + dy * dy > reach * reach:
                 continue
+        manifold.offset_x, manifold.offset_y = dx, dy
         if (a_box and b_box) or (manifold.wall >= 0 and b_box):
             size = min(width[b], height[b])
             sizes = width[b] + 2.0 * height[b]

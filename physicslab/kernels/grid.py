@@ -137,14 +137,15 @@ def _level(
     cells = np.empty((count, 2), np.int64)
     smalls, large_count = 0, 0
     low_x, low_y, high_x, high_y = 0, 0, -1, -1
+    half_per_cell = 0.5 / cell
     for k in range(count):
         i = members[k]
         if max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1]) > cell:
             larges[large_count] = i
             large_count += 1
             continue
-        ix = math.floor(0.5 * (boxes[i, 0] + boxes[i, 2]) / cell)
-        iy = math.floor(0.5 * (boxes[i, 1] + boxes[i, 3]) / cell)
+        ix = math.floor(half_per_cell * (boxes[i, 0] + boxes[i, 2]))
+        iy = math.floor(half_per_cell * (boxes[i, 1] + boxes[i, 3]))
         if smalls == 0:
             low_x, high_x, low_y, high_y = ix, ix, iy, iy
         low_x, high_x, low_y, high_y = min(low_x, ix), max(high_x, ix), min(low_y, iy), max(high_y, iy)
