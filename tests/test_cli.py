@@ -405,3 +405,11 @@ def test_the_package_exports_the_names_of_the_contract_and_no_more() -> None:
     ]  # fmt: skip
     for name in physicslab.__all__:
         assert getattr(physicslab, name).__doc__
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_full_disk_is_told_of_the_file_that_did_not_fit(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["run", "drop", "--seconds", "5", "--csv", "/dev/full"]) == 1
+    message = capsys.readouterr().err
+    assert "--csv /dev/full: cannot be written: No space left on device" in message
+    assert message.count("\n") == 1

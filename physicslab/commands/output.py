@@ -84,8 +84,13 @@ class Output:
             file = open(self.path, "w", encoding="utf-8", newline="")  # noqa: SIM115
         except OSError as error:
             raise CommandError(f"{self._label}: cannot be written: {_reason(error)}") from error
-        with file:
-            yield file
+        try:
+            with file:
+                yield file
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            raise CommandError(f"{self._label}: cannot be written: {_reason(error)}", FAILED) from error
 
 
 def _stdout() -> BinaryIO:
