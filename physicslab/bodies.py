@@ -33,6 +33,7 @@ class Bodies(System):
     """
 
     kernels = (motion.clear, motion.kick, motion.find_not_finite)
+    observes = False  # what is not finite does not become so again
 
     def __init__(self) -> None:
         self._resize(0)

@@ -129,6 +129,8 @@ class SimulationConfig:
         Whether settled bodies may stop being simulated.
     collisions : str
         ``"step"`` (found and resolved within steps), ``"exact"`` (contact times located) or ``"auto"``.
+    tolerance : float
+        Error a step that an adaptive method accepts, as a share of the largest coordinate and speed.
     """
 
     dt: float = 1.0 / 60.0
@@ -137,6 +139,7 @@ class SimulationConfig:
     integrator: str = "auto"
     sleeping: bool = True
     collisions: str = "auto"
+    tolerance: float = 1e-16
 
     section: ClassVar[str] = "simulation"
     FIELDS: ClassVar[tuple[Field, ...]] = (
@@ -146,6 +149,7 @@ class SimulationConfig:
         Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),
         Field("sleeping", "flag", meaning="whether settled bodies may stop being simulated"),
         Field("collisions", "choice", choices=COLLISIONS, meaning="how contacts are found"),
+        Field("tolerance", "number", minimum=1e-20, maximum=1e-2, meaning="error a step of adaptive methods"),
     )
 
     def __post_init__(self) -> None:

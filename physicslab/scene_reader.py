@@ -85,11 +85,7 @@ def read_scene(document: object, source: str = "scene") -> World:
     """
     draft = check_scene(document, source)
     before = esper.current_world
-    try:
-        world = World(*standard_systems(), physics=draft.physics, simulation=draft.simulation)
-    except LookupError as error:
-        name = shown(draft.simulation.integrator)
-        raise SceneError(f"{source}: simulation.integrator = {name}: {error.args[0]}") from error
+    world = World(*standard_systems(), physics=draft.physics, simulation=draft.simulation)
     world.name, world.title, world.description = draft.name, draft.title, draft.description
     world.time = draft.time
     for number, (id_, components) in enumerate(draft.entities, start=1):

@@ -8,9 +8,13 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from physicslab.kernels import compile_kernels
 
 if TYPE_CHECKING:
+    from physicslab.equations import PackedForce, Slots
     from physicslab.world import World
 
 __all__ = ["ForceSystem", "LeftOut", "Schedule", "Stage", "System", "Timing", "at"]
@@ -77,10 +81,13 @@ class System:
         An entity must have all of them for the system to have work.
     kernels : tuple of kernels
         What the system calls; compiled before the system first runs.
+    observes : bool
+        Whether what it does at ``PREPARE`` and ``FINISH`` must happen at every step of a run.
     """
 
     needs: ClassVar[tuple[type[Any], ...]] = ()
     kernels: ClassVar[tuple[Any, ...]] = ()
+    observes: ClassVar[bool] = True
 
     @property
     def name(self) -> str:
@@ -93,8 +100,8 @@ class System:
     def why_left_out(self, world: World) -> str | None:
         """Return why this scene does not need the system, or ``None`` if it does."""
         if self.needs and not len(world.batch(*self.needs)):
-            names = " and ".join(needed.__name__ for needed in self.needs)
-            return f"no {names} in the scene"
+            absent = [needed for needed in self.needs if not len(world.batch(needed))] or self.needs
+            return f"no {' and '.join(needed.__name__ for needed in absent)} in the scene"
         return None
 
     @classmethod
@@ -132,6 +139,32 @@ class ForceSystem(System):
     def strongest_rate(self, world: World) -> float:
         """Return the fastest angular frequency [rad/s] that this force gives any body; 0 if it gives none."""
         return 0.0
+
+    def sees_velocity(self, world: World) -> bool:
+        """Return whether the force hangs on velocities, as drag does; a method is chosen by that."""
+        return False
+
+    def couples(self, world: World) -> NDArray[np.int64] | None:
+        """Return the pairs of rows (n, 2) whose motions the force couples; ``None``: any with any."""
+        return None
+
+    def packed(self, world: World, slots: Slots) -> PackedForce | None:
+        """Return the force as compiled integrators call it, with the world's numbers as they are now.
+
+        ``None`` where there is no such kernel: the method at ``Stage.FORCE`` is called instead, from Python.
+        """
+        return None
+
+    @classmethod
+    def packs(cls) -> bool:
+        """Whether :meth:`packed` speaks for this class's force, and not for one that it overrides."""
+        method = next(name for stage, name in cls.marked().items() if stage is Stage.FORCE)
+        for base in cls.__mro__:
+            if base is ForceSystem:
+                return False
+            if "packed" in vars(base) or method in vars(base):
+                return "packed" in vars(base)
+        return False
 
 
 @dataclass(slots=True)
@@ -219,6 +252,12 @@ class Schedule:
         """Whether any system has work at ``stage``."""
         return bool(self._calls.get(stage))
 
+    @property
+    def observed(self) -> bool:
+        """Whether a system looks at every step, apart from the check that all is finite."""
+        looks = {Stage.PREPARE, Stage.FINISH}
+        return any(not looks.isdisjoint(self._marked[system]) for system in self.running if system.observes)
+
     def run(self, stage: Stage, world: World, h: float) -> None:
         """Call every running system of ``stage``, in order, and note what each cost."""
         for call, timing in self._calls.get(stage, ()):
@@ -226,6 +265,12 @@ class Schedule:
             call(world, h)
             timing.nanoseconds += time.perf_counter_ns() - start
             timing.calls += 1
+
+    def note(self, name: str, calls: int, nanoseconds: int) -> None:
+        """Note what a system has cost that was not called by :meth:`run`."""
+        timing = self.timings.setdefault(name, Timing())
+        timing.calls += calls
+        timing.nanoseconds += nanoseconds
 
     def find(self, kind: type[System]) -> System | None:
         """Return the running system of a type, if there is one."""

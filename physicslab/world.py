@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import time
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,18 +12,23 @@ from typing import Any
 
 import esper
 
-from physicslab.bodies import Bodies
+from physicslab.bodies import Bodies, Diverged
+from physicslab.closed_form import NoClosedForm
 from physicslab.columns import Batch, Table
 from physicslab.components import Name
 from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.contacts import Contacts
-from physicslab.integrators import Integrator, choose
+from physicslab.equations import Equations
+from physicslab.integrators import StepTooSmall
+from physicslab.integrators.choice import choose, provisional
 from physicslab.roster import Roster
 from physicslab.schedule import ForceSystem, Schedule, Stage, System
 
 __all__ = ["World"]
 
 _numbers = itertools.count(1)
+_MOST = 2**62
+"""More steps than there can be."""
 
 
 class World:
@@ -37,6 +43,8 @@ class World:
 
     Attributes
     ----------
+    method : Choice
+        How the bodies are moved, and why so.
     revision : int
         How often its structure or its configuration changed: what was measured before is another world's.
 
@@ -75,12 +83,11 @@ class World:
         self.roster = Roster()
         self.schedule = Schedule((self.bodies, *systems))
         self.has_forces = False
-        self.integrator: Integrator
-        self.integrator_reason = ""
+        self._equations: Equations | None = None
         self._stale = True
         self._stepping = False
+        self.method = provisional(self._simulation)
         self.context = f"physicslab-{next(_numbers)}"
-        self._choose_integrator()
         esper.switch_world(self.context)
         weakref.finalize(self, _forget, self.context)
 
@@ -225,17 +232,14 @@ class World:
 
     @simulation.setter
     def simulation(self, simulation: SimulationConfig) -> None:
-        before, self._simulation = self._simulation, simulation
-        try:
-            self._choose_integrator()
-        except LookupError:
-            self._simulation = before
-            raise
+        self.method = provisional(simulation)
+        self._simulation = simulation
         self._stale = True
 
-    def _choose_integrator(self) -> None:
-        can_touch = self.schedule.runs(Stage.CONTACT)
-        self.integrator, self.integrator_reason = choose(self._simulation.integrator, can_touch=can_touch)
+    @property
+    def interpreted(self) -> tuple[str, ...]:
+        """The forces that Python computes, step for step, where a compiled loop could run."""
+        return self._equations.interpreted if self._equations is not None else ()
 
     # ---- time ----------------------------------------------------------------------------------------------
 
@@ -259,7 +263,8 @@ class World:
             self.bodies.derive(self)
             self.schedule.remake(self)
             self.has_forces = any(isinstance(system, ForceSystem) for system in self.schedule.running)
-            self._choose_integrator()
+            self.method = choose(self)
+            self._equations = Equations(self) if self.method.smooth else None
             self.revision += 1
             self._stale = False
 
@@ -274,44 +279,121 @@ class World:
             self.synchronise()
             self._stepping = True
             try:
-                run, h = self.schedule.run, dt / self._simulation.substeps
-                run(Stage.PREPARE, self, dt)
-                for _ in range(self._simulation.substeps):
-                    for stage, share in self.integrator.substep:
-                        run(stage, self, share * h)
-                run(Stage.FINISH, self, dt)
+                self.schedule.run(Stage.PREPARE, self, dt)
+                if self._equations is not None:
+                    self._flow(self._equations, dt, 1)
+                else:
+                    self._substeps(dt / self._simulation.substeps)
+                self.schedule.run(Stage.FINISH, self, dt)
             finally:
                 self._stepping = False
         self.time += dt
         self.steps += 1
 
+    def _substeps(self, h: float) -> None:
+        """Go through the stages of a step, substep by substep."""
+        run = self.schedule.run
+        for _ in range(self._simulation.substeps):
+            for stage, share in self.method.integrator.substep:
+                run(stage, self, share * h)
+
+    def _flow(self, equations: Equations, dt: float, steps: int) -> None:
+        """Advance by ``steps`` steps of ``dt`` in one compiled loop; nothing but forces acts."""
+        method = self.method
+        self.schedule.compile(method.integrator.kernels)
+        equations.gather(self)
+        parts = 1 if method.integrator.chooses_steps else method.substeps
+        h, count = (dt * steps, 1) if method.integrator.chooses_steps else (dt / parts, parts * steps)
+        start = time.perf_counter_ns()
+        try:
+            made = method.integrator.flow(self, equations, h, count)
+        except StepTooSmall as error:
+            raise Diverged(f"{error} (after t = {self.time:.9g} s)") from error
+        except NoClosedForm:  # somebody gave a body another velocity, or another spring
+            self.method = choose(self)
+            self._flow(equations, dt, steps)
+            return
+        equations.scatter(self, dt * steps)
+        self.schedule.note("IntegrateSystem", steps, time.perf_counter_ns() - start)
+        for name in equations.forces:
+            self.schedule.note(name, made, 0)  # their time is within the loop's
+        self.force_evaluations += made
+
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.
 
         ``world.time`` grows by exactly ``seconds``: the last step is shortened where they are no multiple of
-        dt.
+        dt. Where nothing but compiled forces acts and no system looks at each step, all of it is one compiled
+        loop.
         """
-        for _ in self.stepping(seconds=seconds, steps=steps):
+        for _ in self.stepping(seconds=seconds, steps=steps, stride=_MOST):
             pass
 
-    def stepping(self, *, seconds: float | None = None, steps: int | None = None) -> Iterator[int]:
-        """Advance like :meth:`run`, yielding the number of steps done after each."""
+    def add_up_forces(self) -> None:
+        """See to it that ``bodies.force`` and ``.torque`` hold the forces that act.
+
+        The stages of a step leave them there; a compiled loop does not, and they are added up at the present
+        state. Nothing that moves is changed.
+        """
+        if self._equations is None:
+            return
+        with self.active():
+            for system in (self.bodies, *self.schedule.running):
+                if system is self.bodies or isinstance(system, ForceSystem):
+                    getattr(system, system.marked()[Stage.FORCE])(self, 0.0)
+            self.force_evaluations -= self.has_forces  # looking at them is no work of the method
+
+    def _leap(self, dt: float, parts: int, steps: int) -> None:
+        """Advance by ``parts`` times ``dt``, which nobody looks at and which count as ``steps``."""
+        with self.active():
+            assert self._equations is not None
+            self._stepping = True
+            try:
+                self._flow(self._equations, dt, parts)
+                self.schedule.run(Stage.FINISH, self, dt * parts)
+            finally:
+                self._stepping = False
+        self.time += dt * parts
+        self.steps += steps
+
+    def stepping(
+        self, *, seconds: float | None = None, steps: int | None = None, stride: int = 1
+    ) -> Iterator[int]:
+        """Advance like :meth:`run`, yielding the number of steps done after every ``stride`` steps.
+
+        What lies between is one compiled loop where it can be.
+        """
+        seconds, whole, rest = self._plan(seconds, steps)
+        dt, start, done = self._simulation.dt, self.time, 0
+        last = whole + 1 if rest else whole
+        while done < last:
+            self.synchronise()
+            if self._equations is None or self.schedule.observed:
+                self.step(dt if done < whole else rest)
+                done += 1
+            elif self.method.integrator.chooses_steps and stride >= last - done:
+                self._leap(seconds - done * dt, 1, last - done)
+                done = last
+            else:
+                count = min(stride, whole - done) or 1
+                self._leap(dt if done < whole else rest, count, count)
+                done += count
+            self.time = start + (done * dt if done < last else seconds)
+            if done % stride == 0 or done == last:
+                yield done
+
+    def _plan(self, seconds: float | None, steps: int | None) -> tuple[float, int, float]:
+        """Return how long a run takes [s], of how many whole steps, and the length of one more, or 0."""
         if (seconds is None) == (steps is None):
             raise TypeError("give either seconds or steps")
         dt = self._simulation.dt
         if seconds is None:
             if not isinstance(steps, int) or isinstance(steps, bool) or steps < 0:
                 raise ValueError(f"steps = {steps!r}: must be a whole number >= 0")
-            whole, rest, seconds = steps, 0.0, steps * dt
-        else:
-            if not (math.isfinite(seconds) and seconds >= 0.0):
-                raise ValueError(f"seconds = {seconds!r}: must be a finite number >= 0 s")
-            whole, rest = _whole_steps(seconds, dt)
-        start, last = self.time, whole + 1 if rest else whole
-        for done in range(1, last + 1):
-            self.step(dt if done <= whole else rest)
-            self.time = start + (done * dt if done < last else seconds)
-            yield done
+            return steps * dt, steps, 0.0
+        if not (math.isfinite(seconds) and seconds >= 0.0):
+            raise ValueError(f"seconds = {seconds!r}: must be a finite number >= 0 s")
+        return seconds, *_whole_steps(seconds, dt)
 
     def install(self, *systems: System) -> None:
         """Let further systems act on this world, behind those of the same stage that do already.

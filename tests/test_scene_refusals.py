@@ -11,8 +11,6 @@ import pytest
 from physicslab import SceneError, World, load_scene
 from physicslab.columns import COMPONENTS
 from physicslab.components import Mass, Material, Shape, Spring, Trail, Transform, Velocity
-from physicslab.config import INTEGRATORS as KNOWN_METHODS
-from physicslab.integrators import INTEGRATORS
 from physicslab.scene import read_scene
 
 BALL: dict[str, Any] = {"id": "ball", "Transform": {}, "Velocity": {}, "Mass": {}}
@@ -207,12 +205,6 @@ def test_values_that_no_file_holds_are_refused_too() -> None:
     for value in (10**5000, deep, object(), 1j):
         with pytest.raises(SceneError, match=r"Mass\.mass = .*: must be a finite number > 0 kg"):
             read_scene(with_ball(Mass={"mass": value}))
-
-
-def test_a_method_that_is_not_there_yet_is_refused_with_those_that_are(tmp_path: Path) -> None:
-    for name in set(KNOWN_METHODS) - set(INTEGRATORS) - {"auto"}:
-        line = refused(scene(simulation={"integrator": name}), tmp_path)
-        assert line.startswith(f'simulation.integrator = "{name}": ') and '"leapfrog"' in line
 
 
 def test_every_field_of_every_component_refuses_a_wrong_type(tmp_path: Path) -> None:

@@ -28,6 +28,7 @@ def springs() -> World:
 def pull_on(world: World, *entities: int) -> list[tuple[list[float], float]]:
     """Return force and torque on each body, as things are now."""
     world.step(1e-12)
+    world.add_up_forces()
     rows = [world.roster.row_of[entity] for entity in entities]
     return [(world.bodies.force[row].tolist(), float(world.bodies.torque[row])) for row in rows]
 

@@ -1,5 +1,6 @@
 """The components of a body, one file each. Presence decides what an entity is."""
 
+from physicslab.components.drag import Drag
 from physicslab.components.held import Held
 from physicslab.components.mass import Mass
 from physicslab.components.material import Material
@@ -10,4 +11,4 @@ from physicslab.components.trail import Trail
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 
-__all__ = ["Held", "Mass", "Material", "Name", "Shape", "Spring", "Trail", "Transform", "Velocity"]
+__all__ = ["Drag", "Held", "Mass", "Material", "Name", "Shape", "Spring", "Trail", "Transform", "Velocity"]

@@ -2,45 +2,73 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
+from physicslab.equations import Equations
 from physicslab.schedule import Stage
 
-__all__ = ["Integrator"]
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["Flow", "Integrator", "StepTooSmall"]
+
+type Flow = Callable[[World, Equations, float, int], int]
+"""Advances the equations of a world by so many steps of so many seconds; returns the force evaluations."""
+
+
+class StepTooSmall(ArithmeticError):
+    """No step is short enough for the accuracy asked for: the motion is singular."""
 
 
 @dataclass(frozen=True, slots=True)
 class Integrator:
-    """One method: its plan of a substep, and its properties as data for reports.
+    """One method: how it advances, and its properties as data for reports.
+
+    To add one, write its file, and name it in the list of :mod:`physicslab.integrators`. Its tests hold it to
+    what it states here.
 
     Attributes
     ----------
     name, title : str
         For files, and for people.
     order : int
-        The error after a fixed time falls with the ``order``-th power of the step, for smooth forces that
-        depend on positions. (Dampers of springs see the velocity of the substep's start, and are first
-        order.)
+        The error after a fixed time falls with the ``order``-th power of the step, for smooth forces (that
+        hang on positions alone, where ``positions_only``).
     evaluations : int
-        Force evaluations a substep.
+        Force evaluations a step.
     stability_limit : float
         Largest omega h at which an undamped oscillation stays bounded.
     symplectic : bool
         Whether phase-space area, and so energy over long times, is kept.
     source : str
         Where the method is described.
+    flow : callable
+        How it advances a world in which nothing but forces acts, compiled.
+    kernels : tuple of kernels
+        What ``flow`` calls.
     substep : tuple of (Stage, float)
-        The stages of one substep in order, each with the share of the substep's time that it stands for.
+        How it advances a world in which more than forces acts: the stages of one substep in order, each with
+        the share of the substep's time that it stands for. Empty for a method that cannot.
     window : tuple of two floats
         When the substep begins and ends, seen from the moment at which impacts are resolved, in substeps.
+    positions_only : bool
+        Whether the order holds only for forces that do not hang on velocities.
+    chooses_steps : bool
+        Whether it divides the time that it is given by itself.
     """
 
     name: str
     title: str
-    order: int
+    order: float
     evaluations: int
     stability_limit: float
     symplectic: bool
     source: str
-    substep: tuple[tuple[Stage, float], ...]
-    window: tuple[float, float]
+    flow: Flow
+    kernels: tuple[Any, ...]
+    substep: tuple[tuple[Stage, float], ...] = ()
+    window: tuple[float, float] = (0.0, 1.0)
+    positions_only: bool = False
+    chooses_steps: bool = False

@@ -1,6 +1,8 @@
 """Leapfrog in its drift-kick-drift form."""
 
 from physicslab.integrators.integrator import Integrator
+from physicslab.integrators.splitting import splitting
+from physicslab.kernels.splitting import split
 from physicslab.schedule import Stage
 
 __all__ = ["LEAPFROG"]
@@ -16,6 +18,9 @@ LEAPFROG = Integrator(
     stability_limit=2.0,
     symplectic=True,
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, I.1.4",
+    flow=splitting(drifts=(0.5, 0.5), kicks=(0.0, 1.0, 0.0)),
+    kernels=(split,),
+    positions_only=True,
     substep=(
         (Stage.DRIFT, 0.5),
         (Stage.FORCE, 1.0),

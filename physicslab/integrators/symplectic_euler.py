@@ -1,6 +1,8 @@
 """Semi-implicit Euler."""
 
 from physicslab.integrators.integrator import Integrator
+from physicslab.integrators.splitting import splitting
+from physicslab.kernels.splitting import split
 from physicslab.schedule import Stage
 
 __all__ = ["SYMPLECTIC_EULER"]
@@ -13,6 +15,8 @@ SYMPLECTIC_EULER = Integrator(
     stability_limit=2.0,
     symplectic=True,
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, I.1.2",
+    flow=splitting(drifts=(1.0,), kicks=(1.0, 0.0)),
+    kernels=(split,),
     substep=(
         (Stage.FORCE, 1.0),
         (Stage.KICK, 1.0),

@@ -13,7 +13,8 @@ import os
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, cast, get_args, get_origin, get_type_hints
 
@@ -24,8 +25,8 @@ from numba import boolean, float64, int64, void
 from numpy.typing import NDArray
 
 __all__ = [
-    "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
-    "cache_directory", "compile_kernels", "inlined", "kernel",
+    "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
+    "cache_directory", "cached", "compile_kernels", "inlined", "inlined_exactly", "kernel",
 ]  # fmt: skip
 
 Numbers = Annotated[NDArray[np.float64], float64[::1]]
@@ -41,7 +42,7 @@ KERNELS: list[Any] = []
 """Every kernel of the modules imported so far, in the order of definition."""
 
 # NaN must survive ("nnan" and "ninf" are left out), so that a diverging run is seen.
-_FASTMATH = {"contract", "nsz", "arcp", "reassoc"}
+FASTMATH = {"contract", "nsz", "arcp", "reassoc"}
 
 
 def cache_directory() -> Path:
@@ -77,20 +78,31 @@ def _user_cache() -> Path:
 _CACHE = str(cache_directory())
 
 
-def _jit[F: Callable[..., Any]](function: F) -> F:
+@contextmanager
+def cached() -> Iterator[None]:
+    """Let what numba is given within a ``with`` block keep its code in the cache."""
     settings: Any = numba.core.config
     before = settings.CACHE_DIR
-    settings.CACHE_DIR = _CACHE  # read by numba when the function is decorated
+    settings.CACHE_DIR = _CACHE  # read by numba when a function is decorated
     try:
-        jitted = numba.njit(cache=True, error_model="numpy", fastmath=_FASTMATH)(function)
+        yield
     finally:
         settings.CACHE_DIR = before
-    return cast(F, jitted)
+
+
+def _jit[F: Callable[..., Any]](function: F, fastmath: Any = FASTMATH) -> F:
+    with cached():
+        return cast(F, numba.njit(cache=True, error_model="numpy", fastmath=fastmath)(function))
 
 
 def inlined[F: Callable[..., Any]](function: F) -> F:
     """Make a function that kernels call and LLVM inlines."""
     return _jit(function)
+
+
+def inlined_exactly[F: Callable[..., Any]](function: F) -> F:
+    """Make a function that kernels call, in which sums are made in the order in which they are written."""
+    return _jit(function, fastmath=False)
 
 
 def kernel[F: Callable[..., Any]](function: F) -> F:

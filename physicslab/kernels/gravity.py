@@ -4,7 +4,10 @@ import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 
-__all__ = ["planet_gravity", "planet_potential", "uniform_gravity", "uniform_potential"]
+__all__ = [
+    "fastest_fall", "inverse_cube", "planet_gravity", "planet_potential",
+    "uniform_gravity", "uniform_potential",
+]  # fmt: skip
 
 
 @kernel
@@ -27,7 +30,7 @@ def uniform_potential(position: Vectors, mass: Numbers, inverse_mass: Numbers, g
 
 
 @inlined
-def _inverse_cube(r2: float, softening2: float, plummer: bool) -> float:
+def inverse_cube(r2: float, softening2: float, plummer: bool) -> float:
     """Return the factor that turns G m_a m_b (x_b - x_a) into the force on a.
 
     Plummer: 1 / (r^2 + s^2)^(3/2). Clamp: the magnitude is 1 / max(r, s)^2, so the factor is 1 / (max(r, s)^2
@@ -55,7 +58,7 @@ def planet_gravity(
             j = rows[q]
             dx = position[j, 0] - position[i, 0]
             dy = position[j, 1] - position[i, 1]
-            f = G * mass[i] * mass[j] * _inverse_cube(dx * dx + dy * dy, softening2, plummer)
+            f = G * mass[i] * mass[j] * inverse_cube(dx * dx + dy * dy, softening2, plummer)
             fx += f * dx
             fy += f * dy
             force[j, 0] -= f * dx
@@ -90,3 +93,21 @@ def planet_potential(
                 depth = (2.0 * softening - r) / (softening * softening)
             total -= G * mass[i] * mass[j] * depth
     return total
+
+
+@kernel
+def fastest_fall(
+    position: Vectors, mass: Numbers, rows: Rows, G: float, softening: float, plummer: bool
+) -> float:
+    """Return the largest sqrt(|G| (m_a + m_b) / d^3) of any pair [rad/s], 0 where no two attract."""
+    fastest = 0.0
+    softening2 = softening * softening
+    for p in range(len(rows)):
+        i = rows[p]
+        for q in range(p + 1, len(rows)):
+            j = rows[q]
+            dx = position[j, 0] - position[i, 0]
+            dy = position[j, 1] - position[i, 1]
+            pull = inverse_cube(dx * dx + dy * dy, softening2, plummer)
+            fastest = max(fastest, abs(G) * (mass[i] + mass[j]) * pull)
+    return math.sqrt(fastest)

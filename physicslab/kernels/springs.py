@@ -4,14 +4,31 @@ import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 
-__all__ = ["spring_forces", "spring_potential"]
+__all__ = ["spring_forces", "spring_potential", "spring_pull", "turned"]
 
 
 @inlined
-def _arm(angle: float, anchor_x: float, anchor_y: float) -> tuple[float, float]:
+def turned(angle: float, anchor_x: float, anchor_y: float) -> tuple[float, float]:
     """Return a local anchor [m] turned into the directions of the world."""
     c, s = math.cos(angle), math.sin(angle)
     return c * anchor_x - s * anchor_y, s * anchor_x + c * anchor_y
+
+
+@inlined
+def spring_pull(
+    dx: float, dy: float, vx: float, vy: float, rest_length: float, stiffness: float, damping: float
+) -> tuple[float, float]:
+    """Return the force on A [N], k (length - rest_length) + c (rate of lengthening) along A to B.
+
+    (dx, dy) leads from A to B [m] and changes at (vx, vy) [m/s]. Ends that coincide have no line between
+    them; only then there is no force.
+    """
+    length = math.sqrt(dx * dx + dy * dy)
+    if length == 0.0:
+        return 0.0, 0.0
+    nx, ny = dx / length, dy / length
+    pull = stiffness * (length - rest_length) + damping * (nx * vx + ny * vy)
+    return pull * nx, pull * ny
 
 
 @kernel
@@ -20,26 +37,24 @@ def spring_forces(
     springs: Rows, row_a: Rows, row_b: Rows, anchor_a: Vectors, anchor_b: Vectors,
     rest_length: Numbers, stiffness: Numbers, damping: Numbers,
 ) -> None:  # fmt: skip
-    """Add F = k (length - rest_length) + c (rate of lengthening), along A to B, to both ends.
+    """Add the pull of every spring to both ends.
 
     ``springs`` are the rows of the springs, ``row_a`` and ``row_b`` those of the bodies at their ends (0: the
-    world). Ends that coincide have no line between them; only then there is no force.
+    world).
     """
     for s in range(len(springs)):
         k = springs[s]
         a, b = row_a[s], row_b[s]
-        ax, ay = _arm(angle[a], anchor_a[k, 0], anchor_a[k, 1])
-        bx, by = _arm(angle[b], anchor_b[k, 0], anchor_b[k, 1])
+        ax, ay = turned(angle[a], anchor_a[k, 0], anchor_a[k, 1])
+        bx, by = turned(angle[b], anchor_b[k, 0], anchor_b[k, 1])
         dx = position[b, 0] + bx - position[a, 0] - ax
         dy = position[b, 1] + by - position[a, 1] - ay
-        length = math.sqrt(dx * dx + dy * dy)
-        if length == 0.0:
-            continue
-        nx, ny = dx / length, dy / length
-        rate = nx * (linear[b, 0] - angular[b] * by - linear[a, 0] + angular[a] * ay)
-        rate += ny * (linear[b, 1] + angular[b] * bx - linear[a, 1] - angular[a] * ax)
-        pull = stiffness[k] * (length - rest_length[k]) + damping[k] * rate
-        fx, fy = pull * nx, pull * ny
+        fx, fy = spring_pull(
+            dx, dy,
+            linear[b, 0] - angular[b] * by - linear[a, 0] + angular[a] * ay,
+            linear[b, 1] + angular[b] * bx - linear[a, 1] - angular[a] * ax,
+            rest_length[k], stiffness[k], damping[k],
+        )  # fmt: skip
         force[a, 0] += fx
         force[a, 1] += fy
         torque[a] += ax * fy - ay * fx
@@ -58,8 +73,8 @@ def spring_potential(
     for s in range(len(springs)):
         k = springs[s]
         a, b = row_a[s], row_b[s]
-        ax, ay = _arm(angle[a], anchor_a[k, 0], anchor_a[k, 1])
-        bx, by = _arm(angle[b], anchor_b[k, 0], anchor_b[k, 1])
+        ax, ay = turned(angle[a], anchor_a[k, 0], anchor_a[k, 1])
+        bx, by = turned(angle[b], anchor_b[k, 0], anchor_b[k, 1])
         dx = position[b, 0] + bx - position[a, 0] - ax
         dy = position[b, 1] + by - position[a, 1] - ay
         extension = math.sqrt(dx * dx + dy * dy) - rest_length[k]

@@ -53,7 +53,7 @@ class ContactSystem(System):
             shape["kind"], shape["radius"], shape["width"], shape["height"],
             material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
             self._bounds, physics.bounds_restitution, physics.bounds_friction, self._first, h,
-            world.integrator.window[0],
+            world.method.integrator.window[0],
             0.5 * physics.gravity.magnitude * h * h if physics.gravity_mode == "linear" else 0.0,
         )  # fmt: skip
         self._first = False

@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Transform, Velocity
-from physicslab.kernels import gravity
+from physicslab.equations import PackedForce
+from physicslab.kernels import gravity, packed_forces
 from physicslab.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
+    from physicslab.equations import Slots
     from physicslab.world import World
 
 __all__ = ["GravitySystem"]
@@ -28,6 +30,7 @@ class GravitySystem(ForceSystem):
         gravity.uniform_potential,
         gravity.planet_gravity,
         gravity.planet_potential,
+        gravity.fastest_fall,
     )
     potential = "gravity"
 
@@ -66,6 +69,38 @@ class GravitySystem(ForceSystem):
                 bodies.force, world.table(Transform)["position"], mass, self._attracting,
                 physics.G, physics.softening, physics.softening_law == "plummer",
             )  # fmt: skip
+
+    def packed(self, world: World, slots: Slots) -> PackedForce:
+        """Return the pull for compiled integrators."""
+        physics, mass = world.physics, world.table(Mass)["mass"]
+        if physics.gravity_mode == "linear":
+            rows = np.flatnonzero(world.bodies.inverse_mass > 0.0)
+            whole = np.concatenate(([len(rows)], slots.place[rows]))
+            numbers = np.concatenate(((physics.gravity.x, physics.gravity.y), mass[rows]))
+            return PackedForce(packed_forces.uniform_gravity, numbers, whole)
+        rows = self._attracting
+        whole = np.concatenate(([len(rows), physics.softening_law == "plummer"], slots.place[rows]))
+        numbers = np.concatenate(((physics.G, physics.softening * physics.softening), mass[rows]))
+        return PackedForce(packed_forces.planet_gravity, numbers, whole)
+
+    def strongest_rate(self, world: World) -> float:
+        """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair as they stand; 0 for uniform gravity."""
+        physics = world.physics
+        if physics.gravity_mode == "linear":
+            return 0.0
+        return gravity.fastest_fall(
+            world.table(Transform)["position"], world.table(Mass)["mass"], self._attracting,
+            physics.G, physics.softening, physics.softening_law == "plummer",
+        )  # fmt: skip
+
+    def couples(self, world: World) -> NDArray[np.int64] | None:
+        """Uniform gravity couples nothing, that of planets every body with every other."""
+        return np.zeros((0, 2), np.int64) if world.physics.gravity_mode == "linear" else None
+
+    @property
+    def attractors(self) -> int:
+        """How many bodies attract each other."""
+        return len(self._attracting)
 
     def potential_energy(self, world: World) -> float:
         """Return the sum of -m g . x [J], zero at the origin, or the pairs' energy, zero at infinity."""

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from physicslab.columns import InvalidValue
 from physicslab.components import Name, Spring, Transform, Velocity
-from physicslab.kernels import springs
+from physicslab.equations import PackedForce, spring_ends
+from physicslab.kernels import packed_forces, springs
 from physicslab.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
+    from physicslab.equations import Slots
     from physicslab.world import World
 
 __all__ = ["SpringSystem"]
@@ -37,7 +39,7 @@ class SpringSystem(ForceSystem):
         InvalidValue
             If an end never was an entity, or is one without a Transform.
         """
-        self._rows, self._a, self._b = rows, a, b = self.ends(world)
+        self._rows, self._a, self._b = rows, a, b = spring_ends(world)
         placed = world.table(Transform).present
         lost_a, lost_b = (a < 0) | ~placed[a], (b < 0) | ~(placed[b] | (b == 0))
         spring, entities = world.table(Spring), world.batch(Spring).entities
@@ -51,13 +53,6 @@ class SpringSystem(ForceSystem):
             if all(isinstance(component, Name) for component in left):
                 esper.delete_entity(entity, immediate=True)
 
-    @staticmethod
-    def ends(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-        """Return the rows of the springs, of the bodies at their ends A, and at B (0 for the world)."""
-        batch, spring, rows_of = world.batch(Spring), world.table(Spring), world.roster.rows_of
-        a = spring["a"][batch.rows]
-        return batch.rows, rows_of(np.where(a == 0, batch.entities, a)), rows_of(spring["b"][batch.rows])
-
     @at(Stage.FORCE)
     def pull(self, world: World, h: float) -> None:
         """Add the springs' pull to the forces."""
@@ -69,6 +64,47 @@ class SpringSystem(ForceSystem):
             self._rows, self._a, self._b, spring["anchor_a"], spring["anchor_b"],
             spring["rest_length"], spring["stiffness"], spring["damping"],
         )  # fmt: skip
+
+    def packed(self, world: World, slots: Slots) -> PackedForce:
+        """Return the pull for compiled integrators."""
+        spring, angle = world.table(Spring), world.table(Transform)["angle"]
+        rows, ends = self._rows, (self._a, self._b)
+        places = [part for end in ends for part in (slots.place[end], slots.turn[end])]
+        whole = np.concatenate(([len(rows)], np.stack(places, axis=1).ravel()))
+        numbers = np.empty((len(rows), 7))
+        for column, end, anchors in ((0, ends[0], "anchor_a"), (2, ends[1], "anchor_b")):
+            steady = np.where(slots.turn[end] < 0, angle[end], 0.0)
+            cosine, sine, anchor = np.cos(steady), np.sin(steady), spring[anchors][rows]
+            numbers[:, column] = cosine * anchor[:, 0] - sine * anchor[:, 1]
+            numbers[:, column + 1] = sine * anchor[:, 0] + cosine * anchor[:, 1]
+        for column, name in enumerate(("rest_length", "stiffness", "damping"), 4):
+            numbers[:, column] = spring[name][rows]
+        return PackedForce(packed_forces.springs, numbers.ravel(), whole)
+
+    def strongest_rate(self, world: World) -> float:
+        """Return a bound on the fastest oscillation or decay [rad/s].
+
+        Of a body's springs the stiffnesses add up, weighed with the masses at both ends; no eigenvalue of the
+        whole lies outside these sums (Gershgorin).
+        """
+        spring, bodies = world.table(Spring), world.bodies
+        stiff, damped = (np.zeros(len(bodies.inverse_mass)) for _ in range(2))
+        for end, anchors in ((self._a, "anchor_a"), (self._b, "anchor_b")):
+            arm2 = np.square(spring[anchors][self._rows]).sum(axis=1)
+            give = bodies.inverse_mass[end] + arm2 * bodies.inverse_inertia[end]
+            np.add.at(stiff, end, 2.0 * spring["stiffness"][self._rows] * give)
+            np.add.at(damped, end, 2.0 * spring["damping"][self._rows] * give)
+        fixed = (bodies.inverse_mass[self._a] == 0.0) | (bodies.inverse_mass[self._b] == 0.0)
+        share = 0.5 if fixed.all() else 1.0  # no pair of bodies moves against each other
+        return max(float(np.sqrt(share * stiff.max())), float(share * damped.max()))
+
+    def couples(self, world: World) -> NDArray[np.int64]:
+        """Return the bodies at both ends of every spring."""
+        return np.stack((self._a, self._b), axis=1)
+
+    def sees_velocity(self, world: World) -> bool:
+        """Whether a spring has a damper."""
+        return bool((world.table(Spring)["damping"][self._rows] > 0.0).any())
 
     def potential_energy(self, world: World) -> float:
         """Return the sum of k (length - rest_length)^2 / 2 [J]."""

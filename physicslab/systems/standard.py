@@ -5,6 +5,7 @@ from __future__ import annotations
 from physicslab.schedule import System
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
+from physicslab.systems.drag import DragSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
@@ -16,6 +17,7 @@ __all__ = ["PHYSICS_SYSTEMS", "standard_systems"]
 PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     GravitySystem,
     SpringSystem,
+    DragSystem,
     IntegrateSystem,
     BroadPhaseSystem,
     ContactSystem,

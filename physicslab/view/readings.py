@@ -65,8 +65,8 @@ def method_lines(world: World) -> list[Line]:
     return [
         Line(kind="gap"),
         Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
-        Line(world.integrator.title, kind="remark"),
-        Line(f"because: {world.integrator_reason}", kind="remark"),
+        Line(world.method.integrator.title, kind="remark"),
+        Line(f"because: {world.method.reason}", kind="remark"),
     ]
 
 

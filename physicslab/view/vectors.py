@@ -24,6 +24,7 @@ def draw_vectors(world: World, overlays: Overlays, camera: Camera, theme: Theme,
 
     Forces are those added up by force systems (gravity, springs); what contacts do are impulses.
     """
+    world.add_up_forces()
     rows = world.batch(Transform, Velocity).rows
     position = world.table(Transform)["position"][rows]
     linear = world.table(Velocity)["linear"][rows]

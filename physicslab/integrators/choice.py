@@ -1,0 +1,115 @@
+"""Which method moves a world, and why."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from physicslab.closed_form import NoClosedForm, closed_form
+from physicslab.equations import why_not_smooth
+from physicslab.integrators import INTEGRATORS, Integrator
+from physicslab.integrators.blanes_moan import BLANES_MOAN
+from physicslab.integrators.dop853 import DOP853
+from physicslab.integrators.exact import EXACT
+from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
+from physicslab.integrators.leapfrog import LEAPFROG
+from physicslab.schedule import ForceSystem
+
+if TYPE_CHECKING:
+    from physicslab.config import SimulationConfig
+    from physicslab.world import World
+
+__all__ = ["Choice", "choose", "provisional"]
+
+_MANY = 30
+"""From so many attracting bodies on, sampling their forces costs more than accuracy is worth."""
+_WELL_RESOLVED = 0.5
+"""omega h that blanes_moan is given: beyond about 1 its order does not show."""
+_MOST_STEPS = 1000
+"""Into how many steps a step of the world may be divided of the method's own accord."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A method, and why it.
+
+    Attributes
+    ----------
+    integrator : Integrator
+        The method.
+    reason : str
+        Why, for people.
+    substeps : int
+        Steps of the method a step of the world; 1 for one that chooses its steps itself.
+    smooth : bool
+        Whether nothing but forces acts, so that the method's flow advances the world.
+    refused : str
+        Why it is not the one that was asked for; empty if it is.
+    """
+
+    integrator: Integrator
+    reason: str
+    substeps: int
+    smooth: bool
+    refused: str = ""
+
+
+def provisional(simulation: SimulationConfig) -> Choice:
+    """Return the choice for a world of which nothing is known yet."""
+    name = simulation.integrator
+    if name == "auto":
+        return Choice(LEAPFROG, "nothing moves", simulation.substeps, smooth=False)
+    return Choice(INTEGRATORS[name], "asked for", simulation.substeps, smooth=False)
+
+
+def choose(world: World) -> Choice:
+    """Return the method for what a world holds, or the one that its configuration asks for if it can."""
+    simulation = world.simulation
+    obstacle = why_not_smooth(world)
+    if simulation.integrator == "auto":
+        if obstacle is not None:
+            return Choice(LEAPFROG, obstacle, simulation.substeps, smooth=False)
+        return _best(world)
+    choice = provisional(simulation)
+    method = choice.integrator
+    if obstacle is not None:
+        if method.substep:
+            return choice
+        reason = f"{method.name} was asked for, which advances bodies under forces alone, and {obstacle}"
+        return Choice(LEAPFROG, reason, simulation.substeps, smooth=False, refused=reason)
+    if method is EXACT:
+        try:
+            closed_form(world)
+        except NoClosedForm as error:
+            reason = f"exact was asked for, and there is no closed form: {error}"
+            return replace(_best(world), reason=reason, refused=reason)
+    return replace(choice, substeps=1 if method.chooses_steps else simulation.substeps, smooth=True)
+
+
+def _best(world: World) -> Choice:
+    """Return the method for a world in which nothing but forces acts."""
+    substeps, h = world.simulation.substeps, world.simulation.dt
+    forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
+    python = [system.name for system in forces if not type(system).packs()]
+    if python:
+        return Choice(LEAPFROG, f"the force of {python[0]} is written in Python", substeps, smooth=True)
+    try:
+        return Choice(EXACT, f"{closed_form(world).what}: solved in closed form", 1, smooth=True)
+    except NoClosedForm as error:
+        why = str(error)
+    attractors = max((getattr(system, "attractors", 0) for system in forces), default=0)
+    planets = world.physics.gravity_mode == "planet" and attractors > 1
+    if planets and attractors >= _MANY and world.physics.softening > 0.0:
+        return Choice(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
+    if planets:
+        return Choice(DOP853, "planets may come close: the step follows them", 1, smooth=True)
+    rate = max((system.strongest_rate(world) for system in forces), default=0.0)
+    needed = max(1, math.ceil(rate * h / _WELL_RESOLVED))
+    if needed > _MOST_STEPS:
+        reason = f"{rate:.3g} rad/s is too fast to be followed: what it does between steps is not shown"
+        return Choice(IMPLICIT_MIDPOINT, reason, substeps, smooth=True)
+    if world.physics.linear_damping or any(system.sees_velocity(world) for system in forces):
+        return Choice(DOP853, f"forces hang on velocities, and {why}", 1, smooth=True)
+    reason = f"conservative and smooth; {needed} steps of omega h = {rate * h / needed:.2g}"
+    return Choice(BLANES_MOAN, reason, needed, smooth=True)

@@ -1,0 +1,39 @@
+"""Dormand and Prince's adaptive method of order 8."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from physicslab.equations import Equations
+from physicslab.integrators.integrator import Integrator, StepTooSmall
+from physicslab.kernels.dop853 import dop853
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["DOP853"]
+
+
+def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
+    eq, tolerance = equations, world.simulation.tolerance
+    made = dop853(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, steps * h, tolerance)
+    if made < 0:
+        raise StepTooSmall(
+            f"no step is short enough for a tolerance of {tolerance:g}: bodies meet in one point; "
+            f"physics.softening > 0 keeps the force finite"
+        )
+    return made
+
+
+DOP853 = Integrator(
+    name="dop853",
+    title="Dormand-Prince 8(5,3), adaptive",
+    order=8,
+    evaluations=12,
+    stability_limit=float("inf"),
+    symplectic=False,
+    source="Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 1993, II.5 (DOP853)",
+    flow=_flow,
+    kernels=(dop853,),
+    chooses_steps=True,
+)

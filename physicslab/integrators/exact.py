@@ -1,0 +1,38 @@
+"""The solution in closed form, where there is one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from physicslab.closed_form import closed_form
+from physicslab.equations import Equations
+from physicslab.integrators.integrator import Integrator
+from physicslab.kernels.propagate import propagate
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["EXACT"]
+
+
+def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
+    position, velocity = closed_form(world).advanced(world, steps * h)
+    n = 2 * len(equations.slots.moving)
+    equations.q[:n], equations.v[:n] = position.ravel(), velocity.ravel()
+    turning = slice(n, equations.slots.moving_count)
+    equations.q[turning] += steps * h * equations.v[turning]
+    return 0
+
+
+EXACT = Integrator(
+    name="exact",
+    title="Closed form",
+    order=float("inf"),
+    evaluations=0,
+    stability_limit=float("inf"),
+    symplectic=True,
+    source="Landau & Lifshitz, Mechanics, 1976, sections 5, 21, 25",
+    flow=_flow,
+    kernels=(propagate,),
+    chooses_steps=True,
+)

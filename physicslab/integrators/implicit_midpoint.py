@@ -1,0 +1,84 @@
+"""The implicit midpoint rule: bounded however stiff the springs are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.equations import Equations, Slots
+from physicslab.integrators.integrator import Integrator, StepTooSmall
+from physicslab.kernels.implicit import implicit_midpoint
+from physicslab.schedule import ForceSystem
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["IMPLICIT_MIDPOINT"]
+
+
+def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
+    eq = equations
+    order, band = _banded(world, eq.slots)
+    made = implicit_midpoint(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, order, band, h, steps)
+    if made < 0:
+        raise StepTooSmall(f"the implicit step of {h:.3g} s has no solution; more substeps may help")
+    return made
+
+
+def _banded(world: World, slots: Slots) -> tuple[NDArray[np.int64], int]:
+    """Return an order of the coordinates in which those that forces couple are near, and how near."""
+    pairs = [system.couples(world) for system in world.schedule.running if isinstance(system, ForceSystem)]
+    bodies = slots.moving.tolist()
+    if any(found is None for found in pairs):
+        return np.arange(slots.moving_count), max(slots.moving_count - 1, 0)
+    neighbours: dict[int, set[int]] = {row: set() for row in bodies}
+    for found in pairs:
+        for a, b in [] if found is None else found.tolist():
+            if a in neighbours and b in neighbours:
+                neighbours[a].add(b)
+                neighbours[b].add(a)
+    chain = _cuthill_mckee(neighbours)
+    parts = [[slots.place[row], slots.place[row] + 1, slots.turn[row]] for row in chain]
+    order = [int(part) for body in parts for part in body if part >= 0]
+    number = {row: n for n, row in enumerate(chain)}
+    reach = max((abs(number[a] - number[b]) for a in chain for b in neighbours[a]), default=0)
+    width = 3 if len(slots.turning) else 2
+    return np.array(order, np.int64), min((reach + 1) * width - 1, max(len(order) - 1, 0))
+
+
+def _cuthill_mckee(neighbours: dict[int, set[int]]) -> list[int]:
+    """Return the nodes in breadth-first order from a node of few neighbours.
+
+    Cuthill & McKee, Proc. 24th National Conference of the ACM, 1969, 157.
+    """
+    chain: list[int] = []
+    seen: set[int] = set()
+    for start in sorted(neighbours, key=lambda node: (len(neighbours[node]), node)):
+        if start in seen:
+            continue
+        seen.add(start)
+        layer = [start]
+        while layer:
+            chain += layer
+            following: list[int] = []
+            for node in layer:
+                fresh = neighbours[node] - seen
+                following += sorted(fresh, key=lambda other: (len(neighbours[other]), other))
+                seen |= fresh
+            layer = following
+    return chain
+
+
+IMPLICIT_MIDPOINT = Integrator(
+    name="implicit_midpoint",
+    title="Implicit midpoint (Newton)",
+    order=2,
+    evaluations=3,
+    stability_limit=float("inf"),
+    symplectic=True,
+    source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, II.1.1 and VIII.6",
+    flow=_flow,
+    kernels=(implicit_midpoint,),
+)

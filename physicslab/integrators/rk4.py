@@ -1,0 +1,32 @@
+"""The classical Runge-Kutta method."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from physicslab.equations import Equations
+from physicslab.integrators.integrator import Integrator
+from physicslab.kernels.classical import rk4
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["RK4"]
+
+
+def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
+    eq = equations
+    return rk4(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, h, steps)
+
+
+RK4 = Integrator(
+    name="rk4",
+    title="Runge-Kutta 4 (classical)",
+    order=4,
+    evaluations=4,
+    stability_limit=8.0**0.5,
+    symplectic=False,
+    source="Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 1993, II.1",
+    flow=_flow,
+    kernels=(rk4,),
+)

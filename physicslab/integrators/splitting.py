@@ -1,0 +1,27 @@
+"""Methods that move and push in turn."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from physicslab.equations import Equations
+from physicslab.integrators.integrator import Flow
+from physicslab.kernels.splitting import split
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["splitting"]
+
+
+def splitting(*, drifts: tuple[float, ...], kicks: tuple[float, ...]) -> Flow:
+    """Return the flow of the method kick, drift, kick, ..., drift, kick with these shares of the step."""
+    drift_shares, kick_shares = np.array(drifts), np.array(kicks)
+
+    def flow(world: World, equations: Equations, h: float, steps: int) -> int:
+        eq = equations
+        return split(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, drift_shares, kick_shares, h, steps)
+
+    return flow

@@ -1,0 +1,169 @@
+"""Dormand and Prince's method of order 8, which chooses its own steps."""
+
+import math
+
+import numpy as np
+
+from physicslab.kernels import Numbers, Vectors, inlined, inlined_exactly, kernel
+from physicslab.kernels.compensated import add
+from physicslab.kernels.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, LAST_LOW, WEIGHTS
+from physicslab.kernels.force_calls import Calls, accelerate
+
+__all__ = ["dop853", "first_step", "largest", "make_stages", "step_error", "total"]
+
+_SAFETY, _MOST, _LEAST = 0.9, 6.0, 0.2
+"""How far a step keeps below what the estimate allows, and how much it may grow or shrink at once."""
+
+
+@inlined
+def largest(values: Numbers, n: int) -> float:
+    """Return the largest magnitude among the first ``n``."""
+    found = 0.0
+    for i in range(n):
+        found = max(found, abs(values[i]))
+    return found
+
+
+@inlined
+def make_stages(
+    q: Numbers, v: Numbers, stage_q: Numbers, stage_v: Numbers, acceleration: Numbers, rates: Vectors,
+    pushes: Vectors, inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float, first: int, end: int,
+) -> None:  # fmt: skip
+    """Work out stages ``first`` to ``end - 1`` of a step from (q, v).
+
+    ``rates`` and ``pushes`` (n, 16) take q' and v' of each stage; those of the stages before ``first`` are
+    there. ``stage_q`` and ``stage_v`` are left at the last stage.
+    """
+    n = len(inverse_mass)
+    for stage in range(first, end):
+        for i in range(n):
+            moved, pushed = 0.0, 0.0
+            for other in range(stage):
+                moved += WEIGHTS[stage, other] * rates[i, other]
+                pushed += WEIGHTS[stage, other] * pushes[i, other]
+            stage_q[i] = q[i] + h * moved
+            stage_v[i] = v[i] + h * pushed
+        accelerate(stage_q, stage_v, acceleration, inverse_mass, damping, calls)
+        for i in range(n):
+            rates[i, stage] = stage_v[i]
+            pushes[i, stage] = acceleration[i]
+
+
+@inlined_exactly
+def total(values: Numbers) -> tuple[float, float]:
+    """Return the weighted sum of the stages, and what rounding leaves out of it."""
+    whole, low = 0.0, 0.0
+    for stage in range(LAST):
+        whole, low = add(whole, low + LAST_LOW[stage] * values[stage], WEIGHTS[LAST, stage] * values[stage])
+    return whole, low
+
+
+@inlined
+def step_error(
+    rates: Vectors, pushes: Vectors, h: float, q_scale: float, v_scale: float, tolerance: float
+) -> float:
+    """Return the estimated error of a step, 1 where it is just tolerated.
+
+    It is measured against the largest coordinate and the largest speed of all.
+    """
+    fifth, third = 0.0, 0.0
+    n = len(rates)
+    for i in range(n):
+        for values, scale in ((rates, q_scale), (pushes, v_scale)):
+            high, low = 0.0, 0.0
+            for stage in range(LAST):
+                high += ESTIMATE_5[stage] * values[i, stage]
+                low += ESTIMATE_3[stage] * values[i, stage]
+            if scale > 0.0:
+                fifth += (high / scale) ** 2
+                third += (low / scale) ** 2
+    if fifth == 0.0 and third == 0.0:
+        return 0.0
+    return abs(h) * fifth / math.sqrt((fifth + 0.01 * third) * 2 * n) / tolerance
+
+
+@inlined
+def first_step(pushes: Vectors, q_scale: float, v_scale: float, span: float, tolerance: float) -> float:
+    """Return a careful guess at a first step [s] from the state and its acceleration (stage 0)."""
+    push = 0.0
+    for i in range(len(pushes)):
+        push = max(push, abs(pushes[i, 0]))
+    guess = math.inf
+    if q_scale > 0.0:
+        if v_scale > 0.0:
+            guess = min(guess, q_scale / v_scale)
+        if push > 0.0:
+            guess = min(guess, math.sqrt(q_scale / push))
+    elif v_scale > 0.0 and push > 0.0:
+        guess = min(guess, v_scale / push)
+    return min(guess * math.pow(tolerance, 0.125), span)
+
+
+@kernel
+def dop853(
+    q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
+    span: float, tolerance: float,
+) -> int:  # fmt: skip
+    """Advance by ``span`` seconds; return the number of force evaluations, or -1 if no step is short enough.
+
+    A step is made again, shorter, where its error is estimated to be more than ``tolerance`` of the largest
+    coordinate or speed. Sums are compensated.
+    """
+    n = len(inverse_mass)
+    stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
+    rates, pushes = np.zeros((n, 16)), np.zeros((n, 16))
+    q_low, v_low = np.zeros(n), np.zeros(n)
+    q_scale, v_scale = largest(q, n), largest(v, n)
+    make_stages(q, v, stage_q, stage_v, acceleration, rates, pushes, inverse_mass, damping, calls, 0.0, 0, 1)
+    evaluations, done, done_low = 1, 0.0, 0.0
+    h = first_step(pushes, q_scale, v_scale, span, tolerance)
+    grow = _MOST
+    while True:
+        left = (span - done) - done_low
+        if left <= 0.0:
+            return evaluations
+        last = h >= left
+        taken = left if last else min(h, 0.5 * left) if h > 0.9 * left else h
+        if done + taken == done and not last:
+            return -1
+        make_stages(
+            q,
+            v,
+            stage_q,
+            stage_v,
+            acceleration,
+            rates,
+            pushes,
+            inverse_mass,
+            damping,
+            calls,
+            taken,
+            1,
+            LAST + 1,
+        )
+        evaluations += LAST
+        q_reach, v_reach = max(q_scale, largest(stage_q, n)), max(v_scale, largest(stage_v, n))
+        error = step_error(rates, pushes, taken, q_reach, v_reach, tolerance)
+        if not math.isfinite(error):
+            h, grow = _LEAST * taken, 1.0
+            if h < 1e-300:
+                return -1
+            continue
+        factor = min(max(_SAFETY * math.pow(error, -0.125), _LEAST), grow) if error > 0.0 else grow
+        h = factor * taken
+        if error > 1.0:
+            grow = 1.0
+            continue
+        grow = _MOST
+        for i in range(n):
+            moved, moved_low = total(rates[i])
+            pushed, pushed_low = total(pushes[i])
+            q_low[i] += taken * moved_low
+            v_low[i] += taken * pushed_low
+            q[i], q_low[i] = add(q[i], q_low[i], taken * moved)
+            v[i], v_low[i] = add(v[i], v_low[i], taken * pushed)
+            rates[i, 0], pushes[i, 0] = rates[i, LAST], pushes[i, LAST]
+        done, done_low = add(done, done_low, taken)
+        if last:
+            return evaluations
+        q_scale, v_scale = q_reach, v_reach

@@ -1,0 +1,57 @@
+"""Drag: resistance that grows with speed or with its square."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Drag, Mass, Velocity
+from physicslab.equations import PackedForce
+from physicslab.kernels import drag, packed_forces
+from physicslab.schedule import ForceSystem, Stage, at
+
+if TYPE_CHECKING:
+    from physicslab.equations import Slots
+    from physicslab.world import World
+
+__all__ = ["DragSystem"]
+
+
+class DragSystem(ForceSystem):
+    """Slows every body that has Drag. It stores no energy: what it takes is gone."""
+
+    needs = (Drag, Velocity, Mass)
+    kernels = (drag.drag_forces,)
+
+    @at(Stage.FORCE)
+    def slow(self, world: World, h: float) -> None:
+        """Add the drag to the forces."""
+        table, rows = world.table(Drag), world.batch(*self.needs).rows
+        drag.drag_forces(
+            world.bodies.force, world.table(Velocity)["linear"], rows, table["linear"], table["quadratic"]
+        )
+
+    def packed(self, world: World, slots: Slots) -> PackedForce:
+        """Return the drag for compiled integrators."""
+        table, rows = world.table(Drag), world.batch(*self.needs).rows
+        numbers = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
+        return PackedForce(packed_forces.drag, numbers, np.concatenate(([len(rows)], slots.place[rows])))
+
+    def strongest_rate(self, world: World) -> float:
+        """Return the fastest rate of slowing down at the present speeds [1/s]."""
+        table, rows = world.table(Drag), world.batch(*self.needs).rows
+        speed = np.hypot(*world.table(Velocity)["linear"][rows].T)
+        rates = (table["linear"][rows] + 2.0 * table["quadratic"][rows] * speed) * world.bodies.inverse_mass[
+            rows
+        ]
+        return float(rates.max())
+
+    def couples(self, world: World) -> NDArray[np.int64]:
+        """Drag couples nothing."""
+        return np.zeros((0, 2), np.int64)
+
+    def sees_velocity(self, world: World) -> bool:
+        """Drag is nothing else."""
+        return True

@@ -1,0 +1,126 @@
+"""Which method moves a world, and what is said of it."""
+
+import pytest
+
+from physicslab import config
+from physicslab.components import Drag, Mass, Shape, Spring, Transform, Velocity
+from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.integrators import INTEGRATORS
+from physicslab.schedule import ForceSystem, Stage, at
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.standard import standard_systems
+from physicslab.world import World
+
+
+def world_of(*bodies: tuple[object, ...], integrator: str = "auto", **physics: object) -> World:
+    settings = PhysicsConfig(**physics)  # type: ignore[arg-type]
+    world = World(*standard_systems(), physics=settings, simulation=SimulationConfig(integrator=integrator))
+    for body in bodies:
+        world.spawn(*body)
+    world.synchronise()
+    return world
+
+
+def ball(x: float = 0.0, *more: object) -> tuple[object, ...]:
+    return (Transform((x, 1)), Velocity(), Mass(1), *more)
+
+
+def planets(count: int, softening: float) -> World:
+    bodies = [ball(float(n)) for n in range(count)]
+    return world_of(*bodies, gravity_mode="planet", softening=softening)
+
+
+@pytest.mark.parametrize(
+    ("world", "name", "reason"),
+    [
+        (world_of(ball()), "exact", "uniform gravity alone: solved in closed form"),
+        (world_of(ball(0, Spring(rest_length=0))), "exact", "springs to fixed points"),
+        (world_of(ball(0, Drag(linear=1))), "exact", "linear drag"),
+        (world_of(ball(2, Spring(rest_length=0.5))), "blanes_moan", "conservative and smooth"),
+        (world_of(ball(2, Spring(rest_length=0.5, damping=1))), "dop853", "velocities"),
+        (world_of(ball(0, Drag(quadratic=1))), "dop853", "velocities"),
+        (world_of(ball(2, Spring(rest_length=0.5, stiffness=1e12))), "implicit_midpoint", "too fast"),
+        (planets(3, 0.0), "dop853", "planets may come close"),
+        (planets(40, 0.1), "leapfrog", "40 bodies attract each other, softened"),
+        (planets(40, 0.0), "dop853", "planets may come close"),
+        (world_of(ball(0, Shape.circle(1)), ball(9, Shape.circle(1))), "leapfrog", "bodies can touch"),
+    ],
+)
+def test_auto_chooses_by_what_there_is_and_says_why(world: World, name: str, reason: str) -> None:
+    assert world.method.integrator.name == name
+    assert reason in world.method.reason
+
+
+def test_auto_thinks_again_when_the_content_changes() -> None:
+    world = world_of(ball())
+    spring = world.spawn(*ball(2, Spring(rest_length=0.5)))
+    world.synchronise()
+    assert world.method.integrator.name == "blanes_moan"
+    world.remove(spring)
+    world.synchronise()
+    assert world.method.integrator.name == "exact"
+
+
+def test_what_was_asked_for_and_cannot_be_is_refused_in_words() -> None:
+    touching = world_of(ball(0, Shape.circle(1)), ball(9, Shape.circle(1)), integrator="rk4")
+    assert touching.method.integrator.name == "leapfrog"
+    assert touching.method.refused == touching.method.reason
+    assert "rk4 was asked for" in touching.method.reason
+    planets = world_of(ball(0), ball(1), integrator="exact", gravity_mode="planet")
+    assert "planets attract each other" in planets.method.refused
+
+
+def test_every_name_of_the_contract_is_a_method() -> None:
+    assert {"auto", *INTEGRATORS} == set(config.INTEGRATORS)
+    for name, method in INTEGRATORS.items():
+        assert method.name == name
+
+
+class Wind(ForceSystem):
+    """Blows to the right, from Python."""
+
+    @at(Stage.FORCE)
+    def blow(self, world: World, h: float) -> None:
+        world.bodies.force[world.batch(Velocity, Mass).rows, 0] += 3.0
+
+
+@pytest.mark.parametrize("name", ["rk4", "blanes_moan", "dop853", "implicit_midpoint", "leapfrog"])
+def test_a_force_written_in_python_works_with_every_method_and_is_named(name: str) -> None:
+    world = World(Wind(), IntegrateSystem(), simulation=SimulationConfig(integrator=name))
+    body = world.spawn(Transform(), Velocity((0, 2)), Mass(2))
+    world.run(seconds=2.0)
+    assert tuple(world.component(body, Transform).position) == pytest.approx((3.0, 4.0), abs=1e-9)
+    assert world.interpreted == ("Wind",)
+
+
+def test_auto_keeps_to_one_evaluation_where_a_force_is_written_in_python() -> None:
+    world = World(Wind(), IntegrateSystem())
+    world.spawn(Transform(), Velocity(), Mass())
+    world.step()
+    assert world.method.reason == "the force of Wind is written in Python"
+
+
+def test_what_a_force_raises_reaches_the_caller() -> None:
+    class Broken(Wind):
+        @at(Stage.FORCE)
+        def blow(self, world: World, h: float) -> None:
+            raise ZeroDivisionError("no wind today")
+
+    world = World(Broken(), IntegrateSystem())
+    world.spawn(Transform(), Velocity(), Mass())
+    with pytest.raises(ZeroDivisionError, match="no wind today"):
+        world.run(seconds=1.0)
+
+
+def test_a_force_that_overrides_a_compiled_one_is_the_one_that_acts() -> None:
+    from physicslab.systems.gravity import GravitySystem
+
+    class Levity(GravitySystem):
+        @at(Stage.FORCE)
+        def pull(self, world: World, h: float) -> None:
+            world.bodies.force[world.batch(Velocity, Mass).rows, 1] += 1.0
+
+    world = World(Levity(), IntegrateSystem())
+    body = world.spawn(Transform(), Velocity(), Mass(1))
+    world.run(seconds=1.0)
+    assert world.component(body, Velocity).linear.y == pytest.approx(1.0)
