@@ -78,6 +78,11 @@ class Canvas(Protocol):
     ) -> None:
         """Draw straight lines of one kind, with round ends."""
 
+    def strokes(
+        self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers, opacity: Numbers
+    ) -> None:
+        """Draw straight lines with round ends, each of its own colour (n, 3), width and opacity."""
+
     def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
         """Draw a rectangle with rounded corners and a thin outline."""
 
@@ -139,6 +144,13 @@ class RecordingCanvas:
         """Note the lines."""
         given = {"start": start, "end": end, "colour": colour, "width": width, "opacity": opacity}
         self.calls.append(("lines", given))
+
+    def strokes(
+        self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers, opacity: Numbers
+    ) -> None:
+        """Note the lines."""
+        given = {"start": start, "end": end, "colour": colour, "width": width, "opacity": opacity}
+        self.calls.append(("strokes", given))
 
     def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
         """Note the rectangle."""

@@ -100,6 +100,14 @@ class PygameCanvas:
         packed = int(self._packed(np.array([colour], np.uint8))[0])
         raster.paint_lines(self._pixels(), _plain(start), _plain(end), width, packed, opacity)
 
+    def strokes(
+        self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers, opacity: Numbers
+    ) -> None:
+        """Draw straight lines with round ends, each of its own colour (n, 3), width and opacity."""
+        compile_kernels((raster.paint_strokes,))
+        paint, width, opacity = self._packed(colour), _plain(width), _plain(opacity)
+        raster.paint_strokes(self._pixels(), _plain(start), _plain(end), width, paint, opacity)
+
     def _keep(self, key: tuple[object, ...], make: Callable[[], pygame.Surface]) -> pygame.Surface:
         surface = self._kept.get(key)
         if surface is None:
