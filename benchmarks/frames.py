@@ -1,6 +1,6 @@
 """Time whole frames of the window: simulation, drawing and HUD, with every overlay on.
 
-``uv run python benchmarks/frames.py [--frames N] [--keys vte]`` prints the median and the 99th percentile [ms]
+``uv run python benchmarks/frames.py [--frames N] [--keys vte]`` prints the median and 99th percentile [ms]
 of each part. No screen is needed: SDL's dummy driver takes the picture, 1280 x 720 pixels. A frame of 60 Hz
 has 16.7 ms. Each step of a frame is 1/60 s of the world, so "total" is what a frame costs that keeps up.
 """

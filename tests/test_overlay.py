@@ -103,12 +103,12 @@ def test_impacts_fade_within_a_second_and_not_while_paused() -> None:
         canvas.calls.clear()
         desk.frames()
         calls = lines_in(canvas, DARK.normal_impulse)[:-4]  # without the legend's
-        return float(calls[0]["opacity"]) if calls else 0.0
+        return float(calls[0]["opacity"].max()) if calls else 0.0
 
     fresh = opacity()
     desk.key("space")
     desk.frames(120)
-    assert opacity() == fresh == 1.0
+    assert opacity() == fresh > 0.7
     desk.key("space")
     desk.frames(30)
     assert 0.0 < opacity() < fresh

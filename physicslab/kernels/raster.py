@@ -230,18 +230,16 @@ def paint_boxes(
 
 @kernel
 def paint_lines(
-    pixels: Pixels, start: Vectors, end: Vectors, line_width: float, colour: int, opacity: float
+    pixels: Pixels, start: Vectors, end: Vectors, line_width: float, colour: int, opacity: Numbers
 ) -> None:
-    """Paint straight lines with round ends; ends and width in px, opacity 0..1."""
+    """Paint straight lines with round ends; ends and width in px, opacity of each 0..1."""
     for i in range(len(start)):
-        _stroke(pixels, start[i, 0], start[i, 1], end[i, 0], end[i, 1], 0.5 * line_width, colour, opacity)
+        _stroke(pixels, start[i, 0], start[i, 1], end[i, 0], end[i, 1], 0.5 * line_width, colour, opacity[i])
 
 
 @kernel
-def paint_strokes(
-    pixels: Pixels, start: Vectors, end: Vectors, line_width: Numbers, colour: Colours, opacity: Numbers
-) -> None:
-    """Paint straight lines with round ends, each of its own width [px], colour and opacity, in their order."""
+def paint_strokes(pixels: Pixels, start: Vectors, end: Vectors, line_width: Numbers, colour: Colours) -> None:
+    """Paint straight lines with round ends, each of its own width [px] and colour, in their order."""
     for i in range(len(start)):
         half, paint = 0.5 * line_width[i], int(colour[i])
-        _stroke(pixels, start[i, 0], start[i, 1], end[i, 0], end[i, 1], half, paint, opacity[i])
+        _stroke(pixels, start[i, 0], start[i, 1], end[i, 0], end[i, 1], half, paint, 1.0)

@@ -24,7 +24,7 @@ _BRIGHTEST = 0.85
 _WIDEST, _NARROWEST = 2.6, 1.0
 """Width of a trail's newest and oldest part [px]."""
 _INK = 0.15
-"""Trails longer together than this share of the picture's pixels are finer: something is seen between them."""
+"""Trails longer together than this share of the picture's pixels are finer: something shows between them."""
 _CLOSEST = 3.0
 """The least distance along a trail of the places it is drawn through [px]."""
 _MOST = 12_000
@@ -101,7 +101,7 @@ def draw_trails(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> N
     room = _INK * camera.size[0] * camera.size[1] / max(total, 1.0)
     width = np.maximum(_NARROWEST + (_WIDEST - _NARROWEST) * young * min(room, 1.0), _NARROWEST)
     tint = _tints(theme)[shade, colour]
-    canvas.strokes(points[first], points[second], tint, width, np.ones(len(width)))
+    canvas.strokes(points[first], points[second], tint, width)
 
 
 @lru_cache(maxsize=8)
