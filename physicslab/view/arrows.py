@@ -113,12 +113,13 @@ def draw_arrows(
     limit = longest(canvas)
     with np.errstate(invalid="ignore", over="ignore"):
         length = np.hypot(span[:, 0], span[:, 1])
-        near = (start > -limit) & (start < np.array(canvas.size) + limit)
-        seen = (length >= SHORTEST) & np.isfinite(length) & near[:, 0] & near[:, 1]
+        seen = (length >= SHORTEST) & np.isfinite(length)
+        for place, side in zip(start.T, canvas.size, strict=True):
+            seen &= (place > -limit) & (place < side + limit)
     if not seen.any():
         return
     start, span, length = start[seen], span[seen], length[seen]
-    share = np.broadcast_to(opacity, len(seen))[seen]
+    share = np.full(len(length), opacity) if isinstance(opacity, float) else opacity[seen]
     unit = span / length[:, None]
     cut = length > limit
     length = np.minimum(length, limit)

@@ -105,7 +105,7 @@ def _draw_cones(
     height = np.minimum(touches["normal"] * scale, longest(canvas))
     shown = (touches["friction"] > 0.0) & (height >= 8.0)
     slips = sliding(touches)
-    share = np.broadcast_to(0.75 * np.float64(opacity), len(touches))
+    share = np.full(len(touches), 0.75) * opacity
     for chosen, broken in ((shown & ~slips, False), (shown & slips, True)):
         if not chosen.any():
             continue

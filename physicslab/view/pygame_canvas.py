@@ -100,7 +100,7 @@ class PygameCanvas:
         """Draw straight lines of one kind, with round ends; each may have an opacity of its own."""
         compile_kernels((raster.paint_lines,))
         packed = int(self._packed(np.array([colour], np.uint8))[0])
-        shares = np.array(np.broadcast_to(opacity, len(start)), np.float64)
+        shares = np.full(len(start), opacity) if isinstance(opacity, float) else _plain(opacity)
         raster.paint_lines(self._pixels(), _plain(start), _plain(end), width, packed, shares)
 
     def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:

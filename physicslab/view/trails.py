@@ -140,7 +140,7 @@ def _pieces(
 
 def _on_screen(start: Points, end: Points, size: tuple[int, int]) -> NDArray[np.bool_]:
     """Whether each piece can be seen."""
-    low, high = np.minimum(start, end), np.maximum(start, end)
-    inside = (high > -_WIDEST) & (low < np.array(size) + _WIDEST)
-    seen: NDArray[np.bool_] = inside[:, 0] & inside[:, 1]
+    seen = np.ones(len(start), np.bool_)
+    for a, b, side in zip(start.T, end.T, size, strict=True):
+        seen &= (np.maximum(a, b) > -_WIDEST) & (np.minimum(a, b) < side + _WIDEST)
     return seen
