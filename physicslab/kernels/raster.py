@@ -71,19 +71,20 @@ def _stroke(
     # Along a row, the band around the endless line is so wide; a line along the row has no such limit.
     slant = dx / dy if abs(dy) > 1e-9 else 0.0
     aside = reach / abs(uy) if abs(uy) > 1e-9 else 1e9
-    low, high = min(xa, xb) - reach, max(xa, xb) + reach
+    low, high = max(min(xa, xb) - reach, 0.0), float(width)
+    limit = int(_pixel(max(xa, xb) + reach, width))
+    # As many pixels in each row, though some may not be covered: the processor foresees where a row ends.
+    count = int(min(2.0 * aside, high)) + 2
     for row in range(_pixel(min(ya, yb) - reach, height), _pixel(max(ya, yb) + reach, height)):
         py = row + 0.5 - ya
-        middle = xa + py * slant
-        for column in range(
-            _pixel(max(low, middle - aside), width), _pixel(min(high, middle + aside), width)
-        ):
-            px = column + 0.5 - xa
-            along = px * ux + py * uy
+        first = int(min(max(xa + py * slant - aside, low), high) + 0.5)
+        px = first + 0.5 - xa
+        along, away = px * ux + py * uy, px * uy - py * ux
+        for column in range(first, min(first + count, limit)):
             past = max(-along, along - length, 0.0)
-            away = px * uy - py * ux
             cover = _unit(reach - math.sqrt(away * away + past * past)) * opacity
-            pixels[row, column] = _mixed(int(pixels[row, column]), colour, cover)
+            pixels[row, np.uint64(column)] = _mixed(int(pixels[row, np.uint64(column)]), colour, cover)
+            along, away = along + ux, away + uy
 
 
 @inlined

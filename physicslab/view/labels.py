@@ -95,8 +95,7 @@ class Labels:
             taken.append(rect)
             placed.append((label, rect))
         self._slot = slots
-        for label, rect in placed:
-            _draw_leader(label.at, rect, canvas, theme)
+        _draw_leaders(placed, canvas, theme)
         for label, rect in placed:
             _draw(label, rect, style, line_height, canvas, theme)
 
@@ -136,8 +135,9 @@ def _draw(label: Label, rect: Rect, style: TextStyle, line_height: int, canvas: 
         canvas.text(line, (left + _PAD, top + _PAD + n * line_height - 1), style)
 
 
-def _draw_leader(at: tuple[float, float], rect: Rect, canvas: Canvas, theme: Theme) -> None:
-    """Draw the thin line from a place to its label."""
-    left, top, width, height = rect
-    end = min(max(at[0], left), left + width), min(max(at[1], top), top + height)
-    canvas.lines(np.array([at]), np.array([end]), theme.faint, 1.0, 0.8)
+def _draw_leaders(placed: Sequence[tuple[Label, Rect]], canvas: Canvas, theme: Theme) -> None:
+    """Draw the thin lines from places to their labels."""
+    if placed:
+        start = np.array([label.at for label, _ in placed])
+        corner, extent = np.split(np.array([rect for _, rect in placed], np.float64), 2, axis=1)
+        canvas.lines(start, np.clip(start, corner, corner + extent), theme.faint, 1.0, 0.8)

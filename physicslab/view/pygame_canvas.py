@@ -58,6 +58,7 @@ class PygameCanvas:
         self._shifts = np.array((red, green, blue), np.uint32)
         self._kept: OrderedDict[tuple[object, ...], pygame.Surface] = OrderedDict()
         self._fonts: dict[tuple[int, bool], pygame.font.Font] = {}
+        self._colours: dict[Colour, int] = {}
         self._sizes: dict[tuple[str, TextStyle], tuple[int, int]] = {}
 
     @property
@@ -99,7 +100,9 @@ class PygameCanvas:
     ) -> None:
         """Draw straight lines of one kind, with round ends; each may have an opacity of its own."""
         compile_kernels((raster.paint_lines,))
-        packed = int(self._packed(np.array([colour], np.uint8))[0])
+        packed = self._colours.get(colour)
+        if packed is None:
+            packed = self._colours[colour] = int(self._packed(np.array([colour], np.uint8))[0])
         shares = np.full(len(start), opacity) if isinstance(opacity, float) else _plain(opacity)
         raster.paint_lines(self._pixels(), _plain(start), _plain(end), width, packed, shares)
 
