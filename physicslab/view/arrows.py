@@ -24,7 +24,7 @@ _HEAD = 10.0
 """Length of a head [px]; half of a short arrow at the most."""
 _DASH, _GAP = 5.0, 4.0
 """The strokes of a broken shaft, and the spaces between them [px]."""
-_CROWD = 150
+_CROWD = 256
 """More arrows than this of one kind are drawn finer, so that something is seen between them."""
 
 type Strokes = tuple[tuple[tuple[float, float], tuple[float, float]], ...]

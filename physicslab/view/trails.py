@@ -23,7 +23,7 @@ _BRIGHTEST = 0.85
 """Share of a body's colour in the newest part of its trail, the rest being background."""
 _WIDEST, _NARROWEST = 2.6, 1.0
 """Width of a trail's newest and oldest part [px]."""
-_INK = 0.15
+_INK = 0.08
 """Trails longer together than this share of the picture's pixels are finer: something shows between them."""
 _CLOSEST = 3.0
 """The least distance along a trail of the places it is drawn through [px]."""
