@@ -142,8 +142,9 @@ def test_a_crowd_is_drawn_finer() -> None:
 
 def test_a_broken_line_ends_where_the_line_does() -> None:
     start, end = np.array([(0.0, 0.0), (0.0, 0.0)]), np.array([(30.0, 0.0), (0.0, 2.0)])
-    froms, tos = dashes(start, end)
+    froms, tos, whose = dashes(start, end)
     assert np.hypot(*(tos - froms).T).max() <= 5.0 + 1e-9
+    assert whose.tolist() == [0, 0, 0, 0, 1]
     assert {(30.0, 0.0), (0.0, 2.0)} <= {tuple(to) for to in tos.tolist()}
 
 

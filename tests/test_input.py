@@ -1,11 +1,10 @@
-"""InputSystem: SDL's events in, actions on the world and the window out."""
+"""InputSystem: SDL's events in, actions on the world and the window out; its table is in test_features."""
 
 import pygame
 import pytest
-from desk import FRAME, Desk, empty_world
+from desk import Desk, empty_world
 
-from physicslab.components import Held, Shape, Spring, Transform, Velocity
-from physicslab.config import WindowConfig
+from physicslab.components import Held, Shape, Transform, Velocity
 from physicslab.prefabs import box, circle
 from physicslab.vector import Vector2
 from physicslab.view.controls import CONTROLS, KEYS, RELEASES
@@ -16,24 +15,6 @@ def desk() -> Desk:
     return Desk(empty_world(gravity=(0, 0)))
 
 
-def test_left_click_on_empty_space_spawns_a_circle_there(desk: Desk) -> None:
-    desk.press(1.5, -0.5)
-    desk.release(1.5, -0.5)
-    desk.frames()
-    (ball,) = desk.world.entities()
-    assert desk.world.component(ball, Shape).kind == "circle"
-    assert desk.world.component(ball, Transform).position == Vector2(1.5, -0.5)
-
-
-def test_right_click_spawns_a_rectangle(desk: Desk) -> None:
-    desk.press(-2, 1, "right")
-    desk.release(-2, 1, "right")
-    desk.frames()
-    (block,) = desk.world.entities()
-    assert desk.world.component(block, Shape).kind == "box"
-    assert desk.world.component(block, Transform).position == Vector2(-2, 1)
-
-
 def test_spawned_bodies_vary(desk: Desk) -> None:
     for n in range(4):
         desk.press(n, 2)
@@ -42,51 +23,6 @@ def test_spawned_bodies_vary(desk: Desk) -> None:
     shapes = [desk.world.component(entity, Shape) for entity in desk.world.entities()]
     assert len({shape.radius for shape in shapes if shape.kind == "circle"}) > 2
     assert len({shape.width for shape in shapes if shape.kind == "box"}) > 2
-
-
-def test_p_hangs_a_pendulum_from_the_cursor() -> None:
-    desk = Desk(empty_world())
-    desk.move(0.5, 2.0)
-    desk.key("p")
-    desk.frames()
-    (bob,) = desk.world.entities()
-    spring = desk.world.component(bob, Spring)
-    assert spring.anchor_b == Vector2(0.5, 2.0)
-    assert desk.world.component(bob, Transform).position.y < 2.0
-    before = desk.world.component(bob, Transform).position
-    desk.frames(20)
-    assert (desk.world.component(bob, Transform).position - before).magnitude > 0.1
-
-
-def test_drag_makes_a_body_kinematic_and_takes_it_along(desk: Desk) -> None:
-    ball = circle(desk.world, (0, 0))
-    desk.press(0.1, 0.1)
-    desk.frames()
-    assert desk.world.has(ball, Held)
-    desk.move(2.1, 1.1)
-    desk.frames()
-    assert (desk.world.component(ball, Transform).position - Vector2(2, 1)).magnitude < 1e-9
-    desk.release(2.1, 1.1)
-    desk.frames()
-    assert not desk.world.has(ball, Held)
-    assert len(desk.world.entities()) == 1
-
-
-@pytest.mark.parametrize("velocity", [(3.0, 0.0), (-2.0, 1.5), (6.0, -4.0)])
-def test_throw_velocity_within_two_percent(desk: Desk, velocity: tuple[float, float]) -> None:
-    ball = circle(desk.world, (0, 0))
-    desk.drag((0, 0), velocity, frames=24)
-    desk.frames()
-    thrown = desk.world.component(ball, Velocity).linear
-    assert (thrown - Vector2(*velocity)).magnitude < 0.02 * Vector2(*velocity).magnitude
-
-
-def test_throw_speed_is_capped() -> None:
-    desk = Desk(empty_world(gravity=(0, 0)), config=WindowConfig(max_throw_speed=5.0))
-    ball = circle(desk.world, (-6, 0))
-    desk.drag((-6, 0), (40.0, 0.0), frames=15)
-    desk.frames()
-    assert desk.world.component(ball, Velocity).linear.magnitude == pytest.approx(5.0)
 
 
 def test_drag_works_while_paused(desk: Desk) -> None:
@@ -114,19 +50,6 @@ def test_a_held_body_follows_in_slow_motion(desk: Desk) -> None:
     assert (desk.world.component(ball, Transform).position - Vector2(1, 1)).magnitude < 1e-9
 
 
-@pytest.mark.parametrize("event", [pygame.WINDOWFOCUSLOST, pygame.WINDOWMINIMIZED, pygame.WINDOWHIDDEN])
-def test_leaving_the_window_leaves_nothing_held(desk: Desk, event: int) -> None:
-    ball = circle(desk.world, (0, 0))
-    desk.press(0, 0)
-    desk.frames()
-    desk.move(0.5, 0)
-    desk.frames(3)
-    pygame.event.post(pygame.Event(event))
-    desk.frames()
-    assert not desk.world.has(ball, Held)
-    assert desk.world.component(ball, Velocity).linear == Vector2(0, 0)
-
-
 def test_a_button_let_go_unseen_leaves_nothing_held(desk: Desk) -> None:
     ball = circle(desk.world, (0, 0))
     desk.press(0, 0)
@@ -142,16 +65,6 @@ def test_walls_stay_where_they_are_and_the_user_is_told(desk: Desk) -> None:
     desk.frames()
     assert desk.world.entities() == [wall]
     assert "floor is static" in desk.window.notice
-
-
-def test_space_pauses_and_resumes(desk: Desk) -> None:
-    circle(desk.world, (0, 0), velocity=(1, 0))
-    desk.key("space")
-    desk.frames(10)
-    assert desk.world.time == 0.0
-    desk.key("space")
-    desk.frames(10)
-    assert desk.world.time == pytest.approx(10 * FRAME)
 
 
 def test_full_stop_makes_single_steps(desk: Desk) -> None:
@@ -179,19 +92,6 @@ def test_r_clears_everything(desk: Desk) -> None:
     desk.release(0, 0)
     desk.frames()
     assert desk.world.entities() == []
-
-
-def test_g_turns_gravity_off_and_on() -> None:
-    desk = Desk(empty_world())
-    ball = circle(desk.world, (0, 0))
-    desk.key("g")
-    desk.frames(3)
-    assert desk.world.physics.gravity_mode == "none"
-    assert desk.world.component(ball, Velocity).linear == Vector2(0, 0)
-    desk.key("g")
-    desk.frames(6)
-    assert desk.world.physics.gravity_mode == "linear"
-    assert desk.world.component(ball, Velocity).linear.y == pytest.approx(-9.81 * 6 * FRAME)
 
 
 def test_g_brings_the_earths_gravity_where_the_scene_has_none(desk: Desk) -> None:

@@ -9,13 +9,14 @@ from test_arrows import lines_in, shown
 
 from physicslab.components import Mass, Velocity
 from physicslab.prefabs import box, circle
+from physicslab.scene import load_scene
 from physicslab.vector import Vector2
 from physicslab.view.canvas import RecordingCanvas
 from physicslab.view.impacts import SHOWN
 from physicslab.view.impulses import LABELLED
 from physicslab.view.labels import Label, Labels
 from physicslab.view.quantities import quantity
-from physicslab.view.theme import DARK
+from physicslab.view.theme import DARK, Colour
 from physicslab.world import World
 
 
@@ -45,13 +46,35 @@ def test_the_impulses_shown_change_the_momenta_exactly(offset: float) -> None:
     assert f"impact at {quantity(float(touch['speed']), 'm/s')}" in words
     assert f"normal {quantity(float(touch['normal']), 'N s')}" in words
     assert f"friction {quantity(abs(float(touch['tangent'])), 'N s')}" in words
-    # And the arrow is as long as the legend says.
-    canvas.calls.clear()
-    desk.frames()
-    shaft = lines_in(canvas, DARK.normal_impulse)[0]
-    span = shaft["end"][0] - shaft["start"][0]
-    scale = desk.window.camera.scale / overlays.impact.per_metre
-    assert span == pytest.approx(np.array((normal.x, -normal.y)) * float(touch["normal"]) * scale)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.2], ids=["head-on", "oblique"])
+def test_the_arrows_drawn_change_the_momenta_exactly(offset: float) -> None:
+    world = empty_world(gravity=(0, 0))
+    a = circle(world, (-1, 0), radius=0.25, mass=2.0, velocity=(4, 0), restitution=0.8, friction=0.5)
+    b = circle(world, (1, offset), radius=0.25, mass=1.0, velocity=(-2, 0), restitution=0.8, friction=0.5)
+    before = momentum(world, a), momentum(world, b)
+    desk, canvas = shown(world, "e", frames=25, paused=False)
+    metre = desk.window.camera.scale / desk.window.overlays.impact.per_metre
+    foot = lines_in(canvas, DARK.normal_impulse)[0]["start"][0]
+
+    def impulse(colour: Colour) -> Vector2:
+        """Return what the arrow at the contact stands for, by the legend's scale [N s]."""
+        calls = lines_in(canvas, colour)[:-4]  # without the legend's
+        if not calls:
+            return Vector2()
+        dx, dy = calls[0]["end"][0] - foot  # of a broken shaft, the stroke at the tip comes first
+        return Vector2(float(dx), -float(dy)) / metre
+
+    normal, friction = impulse(DARK.normal_impulse), impulse(DARK.friction_impulse)
+    total = normal + friction
+    assert abs(normal.cross(friction)) == pytest.approx(normal.magnitude * friction.magnitude)
+    assert (friction.magnitude > 0.1) == (offset > 0.0)
+    for change in (momentum(world, b) - before[1], before[0] - momentum(world, a)):
+        assert change.x == pytest.approx(total.x, abs=1e-9)
+        assert change.y == pytest.approx(total.y, abs=1e-9)
+    assert f"normal {quantity(normal.magnitude, 'N s')}" in canvas.words
+    assert f"friction {quantity(friction.magnitude, 'N s')}" in canvas.words
 
 
 @pytest.mark.parametrize("static_first", [True, False])
@@ -103,12 +126,12 @@ def test_impacts_fade_within_a_second_and_not_while_paused() -> None:
         canvas.calls.clear()
         desk.frames()
         calls = lines_in(canvas, DARK.normal_impulse)[:-4]  # without the legend's
-        return float(calls[0]["opacity"]) if calls else 0.0
+        return float(calls[0]["opacity"].max()) if calls else 0.0
 
     fresh = opacity()
     desk.key("space")
     desk.frames(120)
-    assert opacity() == fresh == 1.0
+    assert opacity() == fresh > 0.7
     desk.key("space")
     desk.frames(30)
     assert 0.0 < opacity() < fresh
@@ -156,16 +179,17 @@ def test_clearing_forgets_impacts() -> None:
     assert not len(desk.window.overlays.impacts.kept)
 
 
-def test_overlays_do_nothing_to_a_collision() -> None:
-    states = []
-    for keys in ("", "ve"):
-        world = empty_world()
-        box(world, (0, -0.5), width=10, height=1, static=True, restitution=0.6, friction=0.4)
-        for n in range(5):
-            circle(world, (0.1 * n, 1.0 + n), restitution=0.6, friction=0.4)
-        desk = Desk(world, RecordingCanvas((1280, 720)))
-        for key in keys:
-            desk.key(key)
-        desk.frames(300)
-        states.append(bits(world))
-    assert states[0] == states[1]
+@pytest.mark.parametrize("name", ["pyramid", "spring_chain", "solar_system", "bounces"])
+def test_neither_the_window_nor_its_overlays_change_a_bit_of_600_frames(name: str) -> None:
+    alone = load_scene(name)
+    for _ in range(600):
+        alone.step()
+    for keys in ((), ("v", "t", "e", "f1")):
+        desk = Desk(load_scene(name), RecordingCanvas((1280, 720)))
+        for half in range(2):
+            for key in keys:  # off again half-way, but for the sparks
+                desk.key(key)
+            desk.frames(300)
+            assert desk.world.steps == 300 * (half + 1)
+            desk.window.canvas.calls.clear()  # type: ignore[attr-defined]
+        assert bits(desk.world) == bits(alone), keys

@@ -109,4 +109,4 @@ def test_they_are_drawn_in_the_colour_of_the_theme(zoom: float) -> None:
     canvas.calls.clear()
     desk.frames()
     drawn = [call for call in canvas.called("lines") if call["colour"] == DARK.spark]
-    assert drawn and all(0.0 < call["opacity"] <= 1.0 for call in drawn)
+    assert drawn and all(((call["opacity"] > 0.0) & (call["opacity"] <= 1.0)).all() for call in drawn)

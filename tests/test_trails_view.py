@@ -22,14 +22,14 @@ def worn(world: World) -> list[int]:
     return [entity for entity in world.entities() if world.has(entity, Trail)]
 
 
-def trail_lines(world: World) -> list[dict[str, Any]]:
-    """Return the lines drawn between the grid and the first body."""
+def drawn_trails(world: World) -> dict[str, Any]:
+    """Return the pieces of all trails, which are drawn at once."""
     canvas = RecordingCanvas((1280, 720))
     window = Window(canvas)
     world.install(RenderSystem(window))
     world.frame(Stage.RENDER, FRAME)
-    fixed = (DARK.grid, DARK.axis, DARK.bounds)
-    return [call for call in canvas.called("lines") if call["colour"] not in fixed]
+    (trails,) = canvas.called("strokes")
+    return trails
 
 
 def test_t_gives_moving_bodies_trails_and_takes_them_away() -> None:
@@ -84,16 +84,15 @@ def test_a_trail_is_drawn_from_where_the_body_was_and_fades() -> None:
     world.component(ball, Velocity).linear = (3, 0)
     world.add(ball, Trail(1.0))
     world.run(seconds=2.0)
-    lines = trail_lines(world)
+    trails = drawn_trails(world)
     rim = DARK.bodies[ball % len(DARK.bodies)]
-    starts = np.concatenate([call["start"] for call in lines])
-    ends = np.concatenate([call["end"] for call in lines])
+    starts, ends = trails["start"], trails["end"]
     assert np.allclose(starts[0], (640, 360), atol=6.0) and np.allclose(ends[-1], (940, 360), atol=1e-6)
     assert np.allclose(starts[1:], ends[:-1])
-    far = [sum(abs(a - b) for a, b in zip(c["colour"], DARK.background, strict=True)) for c in lines]
+    far = np.abs(trails["colour"].astype(int) - DARK.background).sum(axis=1).tolist()
     assert far == sorted(far) and far[0] < 0.1 * far[-1]
-    assert lines[-1]["width"] > lines[0]["width"] >= 1.0
-    assert lines[-1]["colour"] == mixed(DARK.background, rim, 0.85 * (1 - 0.5 / 16))
+    assert trails["width"][-1] > trails["width"][0] >= 1.0
+    assert tuple(trails["colour"][-1]) == mixed(DARK.background, rim, 0.85 * (1 - 0.5 / 16))
 
 
 def test_trails_lie_behind_bodies() -> None:
@@ -103,7 +102,7 @@ def test_trails_lie_behind_bodies() -> None:
     world.install(RenderSystem(Window(canvas)))
     world.frame(Stage.RENDER, FRAME)
     names = [name for name, _ in canvas.calls]
-    assert names.count("lines") > 4 and names[-1] == "discs"
+    assert names.count("strokes") == 1 and names[-1] == "discs"
 
 
 @pytest.mark.filterwarnings("error")
@@ -114,9 +113,7 @@ def test_a_thousand_trails_are_drawn_in_few_pieces() -> None:
         world.component(ball, Velocity).linear = (np.cos(n), np.sin(n))
         world.add(ball, Trail())
     world.run(seconds=2.0)
-    lines = trail_lines(world)
-    assert len(lines) <= 16 * len(DARK.bodies)
-    assert 5_000 < sum(len(call["start"]) for call in lines) < 18_000
+    assert 5_000 < len(drawn_trails(world)["start"]) < 18_000
 
 
 @pytest.mark.filterwarnings("error")
@@ -127,8 +124,8 @@ def test_a_body_that_is_lost_or_at_rest_draws_nothing_odd() -> None:
     world.add(lost, Trail())
     world.component(lost, Velocity).linear = (1e12, 0)
     world.run(steps=10)
-    for call in trail_lines(world):
-        assert np.isfinite(call["start"]).all() and np.abs(call["end"]).max() < 1e7
+    trails = drawn_trails(world)
+    assert np.isfinite(trails["start"]).all() and np.abs(trails["end"]).max(initial=0.0) < 1e7
 
 
 @pytest.mark.parametrize("name", ["bounces", "billiards", "pyramid"])

@@ -90,9 +90,10 @@ class TrailSystem(System):
         """
         slots = (self._head[:, None] // every + np.arange(1, SAMPLES // every + 1)) * every % SAMPLES
         slots = np.append(slots, self._head[:, None], axis=1)
-        own = np.arange(len(slots))[:, None]
-        times = self._time[own, slots]
-        return self._place[own, slots], (times[:, -1:] - times) / self._length[:, None]
+        slots += SAMPLES * np.arange(len(slots))[:, None]
+        times = self._time.reshape(-1)[slots]
+        ages = (times[:, -1:] - times) / self._length[:, None]
+        return np.take(self._place.reshape(-1, 2), slots, axis=0), ages
 
     def path(self, entity: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return where a body has been (k, 2) [m] and when (k,) [s], in the order of time.

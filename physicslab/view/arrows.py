@@ -8,7 +8,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.canvas import Canvas, Points
+from physicslab.view.canvas import Canvas, Numbers, Points
 from physicslab.view.theme import Colour, Theme
 
 __all__ = [
@@ -24,7 +24,7 @@ _HEAD = 10.0
 """Length of a head [px]; half of a short arrow at the most."""
 _DASH, _GAP = 5.0, 4.0
 """The strokes of a broken shaft, and the spaces between them [px]."""
-_CROWD = 150
+_CROWD = 256
 """More arrows than this of one kind are drawn finer, so that something is seen between them."""
 
 type Strokes = tuple[tuple[tuple[float, float], tuple[float, float]], ...]
@@ -101,22 +101,25 @@ def draw_arrows(
     canvas: Canvas,
     theme: Theme,
     *,
-    opacity: float = 1.0,
+    opacity: float | Numbers = 1.0,
     width: float | None = None,
 ) -> None:
     """Draw arrows of one kind from ``start``, each ``span`` long.
 
     Shafts are one call of :meth:`Canvas.lines`, heads a second one; arrows that are cut have two strokes
     across the middle. What is shorter than ``SHORTEST``, not finite, or out of the picture is left out.
+    Each arrow may have an opacity of its own.
     """
     limit = longest(canvas)
     with np.errstate(invalid="ignore", over="ignore"):
         length = np.hypot(span[:, 0], span[:, 1])
-        near = (start > -limit) & (start < np.array(canvas.size) + limit)
-        seen = (length >= SHORTEST) & np.isfinite(length) & near.all(axis=1)
+        seen = (length >= SHORTEST) & np.isfinite(length)
+        for place, side in zip(start.T, canvas.size, strict=True):
+            seen &= (place > -limit) & (place < side + limit)
     if not seen.any():
         return
     start, span, length = start[seen], span[seen], length[seen]
+    share = np.full(len(length), opacity) if isinstance(opacity, float) else opacity[seen]
     unit = span / length[:, None]
     cut = length > limit
     length = np.minimum(length, limit)
@@ -124,32 +127,35 @@ def draw_arrows(
     colour, width = kind.colour(theme), kind.width if width is None else width
     head = _HEAD + width
     if len(length) > _CROWD:
-        width, head, opacity = 1.0, 0.6 * _HEAD, 0.6 * opacity
+        width, head, share = max(0.5 * width, 1.0), 0.6 * _HEAD, 0.6 * share
     if kind.dashed:
-        canvas.lines(*dashes(start, end), colour, width, opacity)
+        froms, tos, whose = dashes(start, end)
+        canvas.lines(froms, tos, colour, width, share[whose])
     else:
-        canvas.lines(start, end, colour, width, opacity)
+        canvas.lines(start, end, colour, width, share)
     size = np.minimum(head, 0.5 * length)
     froms, tos = _placed(kind.head.value, end, unit, size)
+    shares = np.tile(share, len(kind.head.value))
     if cut.any():
         middle = 0.5 * (start[cut] + end[cut])
         marks = _placed(_CUT, middle, unit[cut], np.full(int(cut.sum()), _HEAD))
         froms, tos = np.concatenate((froms, marks[0])), np.concatenate((tos, marks[1]))
-    canvas.lines(froms, tos, colour, width, opacity)
+        shares = np.concatenate((shares, np.tile(share[cut], len(_CUT))))
+    canvas.lines(froms, tos, colour, width, shares)
 
 
 def _placed(strokes: Strokes, tip: Points, unit: Points, size: NDArray[np.float64]) -> tuple[Points, Points]:
-    """Return the starts and ends of strokes, placed at every tip."""
-    across = np.stack((-unit[:, 1], unit[:, 0]), axis=1)
-    corners = np.array(strokes)[None] * size[:, None, None, None]
-    placed = (
-        tip[:, None, None] + corners[..., :1] * unit[:, None, None] + corners[..., 1:] * across[:, None, None]
-    )
-    return placed[:, :, 0].reshape(-1, 2), placed[:, :, 1].reshape(-1, 2)
+    """Return the starts and ends of strokes, placed at every tip: the first of each, then the second."""
+    along = unit * size[:, None]
+    across = np.stack((-along[:, 1], along[:, 0]), axis=1)
+    axes = np.concatenate((along.reshape(1, -1), across.reshape(1, -1)))
+    corners = np.array(strokes)  # (stroke, start or end, along and across)
+    froms, tos = ((corners[:, side] @ axes).reshape(len(strokes), -1, 2) + tip for side in (0, 1))
+    return froms.reshape(-1, 2), tos.reshape(-1, 2)
 
 
-def dashes(start: Points, end: Points) -> tuple[Points, Points]:
-    """Return the strokes of broken lines; the last one of each ends where the line does."""
+def dashes(start: Points, end: Points) -> tuple[Points, Points, NDArray[np.int64]]:
+    """Return the strokes of broken lines, and of which line each is; the last of each ends where it does."""
     span = end - start
     length = np.hypot(span[:, 0], span[:, 1])
     count = np.maximum(np.ceil(length / (_DASH + _GAP)), 1.0).astype(np.int64)
@@ -158,4 +164,5 @@ def dashes(start: Points, end: Points) -> tuple[Points, Points]:
     unit = span / np.maximum(length, 1e-9)[:, None]
     high = length[line] - place * (_DASH + _GAP)
     low = np.maximum(high - _DASH, 0.0)
-    return start[line] + low[:, None] * unit[line], start[line] + high[:, None] * unit[line]
+    start, unit = start[line], unit[line]
+    return start + low[:, None] * unit, start + high[:, None] * unit, line

@@ -61,8 +61,11 @@ class Camera:
     def project(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return where points of the world, an array (n, 2) [m], are on the screen [px]."""
         # The centre is taken off first: far from the origin nothing else leaves any digits for the screen.
-        offsets = points - (self.centre.x, self.centre.y)
-        return offsets * (self.scale, -self.scale) + (0.5 * self.size[0], 0.5 * self.size[1])
+        # A column at a time: numpy is three times slower where the last axis is as short as two.
+        pixels = np.empty(points.shape)
+        pixels[:, 0] = (points[:, 0] - self.centre.x) * self.scale + 0.5 * self.size[0]
+        pixels[:, 1] = (points[:, 1] - self.centre.y) * -self.scale + 0.5 * self.size[1]
+        return pixels
 
     def to_world(self, pixel: tuple[float, float]) -> Vector2:
         """Return which point of the world [m] a place on the screen [px] shows."""

@@ -74,9 +74,12 @@ class Canvas(Protocol):
         """Draw boxes of the given widths and heights, each with a rim and a notch, or hatched."""
 
     def lines(
-        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float = 1.0
+        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
     ) -> None:
-        """Draw straight lines of one kind, with round ends."""
+        """Draw straight lines of one kind, with round ends; each may have an opacity of its own."""
+
+    def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
+        """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
 
     def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
         """Draw a rectangle with rounded corners and a thin outline."""
@@ -134,11 +137,15 @@ class RecordingCanvas:
         self.calls.append(("boxes", given))
 
     def lines(
-        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float = 1.0
+        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
     ) -> None:
         """Note the lines."""
         given = {"start": start, "end": end, "colour": colour, "width": width, "opacity": opacity}
         self.calls.append(("lines", given))
+
+    def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
+        """Note the lines."""
+        self.calls.append(("strokes", {"start": start, "end": end, "colour": colour, "width": width}))
 
     def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
         """Note the rectangle."""

@@ -37,13 +37,20 @@ class Impacts:
         new = impacts_of(world)
         if not len(new):
             return
+        new = new[np.argsort(-new["normal"], kind="stable")[:_MOST]]
+        old = self.recent(world.time)
+        same_pair = _same(new, old, "a") & _same(new, old, "b")
         # What this step has told already stays as it was told first.
-        every = np.concatenate((self.recent(world.time), new))
-        _, told = np.unique(every[["a", "b", "time", "normal", "tangent"]], return_index=True)
-        every = every[np.sort(told)]
-        every = every[np.argsort(-every["normal"] * self.freshness(every, world.time), kind="stable")]
-        _, first = np.unique(every[["a", "b", "point"]], return_index=True)
-        self.kept = every[np.sort(first)[:_MOST]]
+        told = same_pair & _same(new, old, "time") & _same(new, old, "normal") & _same(new, old, "tangent")
+        fresh = ~told.any(axis=1)
+        new, same_point = new[fresh], (same_pair & _same(new, old, "point"))[fresh]
+        before, now = old["normal"] * self.freshness(old, world.time), new["normal"]
+        weaker = before < now[:, None]
+        every = np.concatenate((
+            old[~(same_point & weaker).any(axis=0)], new[~(same_point & ~weaker).any(axis=1)]
+        ))  # fmt: skip
+        strength = every["normal"] * self.freshness(every, world.time)
+        self.kept = every[np.argsort(-strength, kind="stable")[:_MOST]]
 
     def recent(self, time: float) -> Touches:
         """Return those that are still to be seen at a time [s]."""
@@ -55,3 +62,9 @@ class Impacts:
         """Return how far each has faded at a time [s]: 1 is new, 0 is gone."""
         fresh: NDArray[np.float64] = np.clip(1.0 - (time - touches["time"]) / SHOWN, 0.0, 1.0)
         return fresh
+
+
+def _same(new: Touches, old: Touches, column: str) -> NDArray[np.bool_]:
+    """Return whether a column is the same, an array (new, old)."""
+    same: NDArray[np.bool_] = new[column][:, None] == old[column]
+    return same

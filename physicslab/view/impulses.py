@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.view.arrows import FRICTION_IMPULSE, NORMAL_IMPULSE, dashes, draw_arrows, longest
 from physicslab.view.camera import Camera
-from physicslab.view.canvas import Canvas, Points, Rect
+from physicslab.view.canvas import Canvas, Numbers, Points, Rect
 from physicslab.view.gauge import Gauge
 from physicslab.view.impacts import Impacts
 from physicslab.view.labels import Key, Label
@@ -25,8 +26,6 @@ LABELLED = 12
 """How many contacts have their numbers written beside them: the strongest."""
 IMPACT_WIDTH, REST_WIDTH = 3.0, 1.6
 """How thick arrows are drawn [px]: an impact's, and those of resting contact."""
-_SHADES = 4
-"""In how many steps impacts fade."""
 _LOYALTY = 1.5
 """So much stronger must another contact be to take the place of one whose numbers are shown."""
 
@@ -39,23 +38,22 @@ def draw_impulses(
 ) -> None:
     """Draw the impulses of the impacts of the last second, and of what rests, with cones and numbers."""
     impacts = overlays.impacts.recent(world.time)
+    impacts = impacts[np.argsort(impacts["time"], kind="stable")]  # the newest on top
     resting = _without(resting_of(world), impacts)
     resting = resting[resting["normal"] > 0.0]
     fresh = Impacts.freshness(impacts, world.time)
     overlays.impact.follow(impacts["normal"], overlays.reach, world.time)
     overlays.rest.follow(resting["normal"], overlays.reach, world.time)
     _draw_touches(resting, overlays.rest, REST_WIDTH, 0.9, camera, theme, canvas)
-    shade = np.ceil(fresh * _SHADES).astype(np.int64)
-    for n in range(1, _SHADES + 1):
-        faded = impacts[shade == n]
-        _draw_touches(faded, overlays.impact, IMPACT_WIDTH, n / _SHADES, camera, theme, canvas)
-    labels = [
-        *_labels(impacts, fresh, overlays.impact, True, camera),
-        *_labels(resting, np.ones(len(resting)), overlays.rest, False, camera),
+    _draw_touches(impacts, overlays.impact, IMPACT_WIDTH, fresh, camera, theme, canvas)
+    worth_saying = [
+        *_strongest(impacts, fresh, overlays.impact, True, camera),
+        *_strongest(resting, np.ones(len(resting)), overlays.rest, False, camera),
     ]
-    labels.sort(key=lambda pair: -pair[0] * (_LOYALTY if overlays.labels.known(pair[1].key) else 1.0))
-    chosen = [label for _, label in labels if not _under(label.at, overlays.covered)][:LABELLED]
-    overlays.labels.draw(chosen, overlays.covered, text_size, canvas, theme)
+    worth_saying.sort(key=lambda one: -one.weight * (_LOYALTY if overlays.labels.known(one.key) else 1.0))
+    chosen = [one for one in worth_saying if not _under(one.at, overlays.covered)][:LABELLED]
+    labels = [Label(one.key, one.at, said_of(one.touch, one.struck, one.slips)) for one in chosen]
+    overlays.labels.draw(labels, overlays.covered, text_size, canvas, theme)
 
 
 def _under(at: tuple[float, float], covered: Sequence[Rect]) -> bool:
@@ -71,7 +69,13 @@ def _without(touches: Touches, others: Touches) -> Touches:
 
 
 def _draw_touches(
-    touches: Touches, gauge: Gauge, width: float, opacity: float, camera: Camera, theme: Theme, canvas: Canvas
+    touches: Touches,
+    gauge: Gauge,
+    width: float,
+    opacity: float | Numbers,
+    camera: Camera,
+    theme: Theme,
+    canvas: Canvas,
 ) -> None:
     """Draw cones, then friction, then normal impulses, all from the points of contact."""
     if not len(touches) or not gauge.per_metre:
@@ -93,7 +97,7 @@ def _draw_cones(
     tangent: Points,
     touches: Touches,
     scale: float,
-    opacity: float,
+    opacity: float | Numbers,
     theme: Theme,
     canvas: Canvas,
 ) -> None:
@@ -101,6 +105,7 @@ def _draw_cones(
     height = np.minimum(touches["normal"] * scale, longest(canvas))
     shown = (touches["friction"] > 0.0) & (height >= 8.0)
     slips = sliding(touches)
+    share = np.full(len(touches), 0.75) * opacity
     for chosen, broken in ((shown & ~slips, False), (shown & slips, True)):
         if not chosen.any():
             continue
@@ -109,29 +114,42 @@ def _draw_cones(
         froms = np.concatenate((start[chosen], start[chosen]))
         sides = normal[chosen] + aside, normal[chosen] - aside
         tos = froms + np.concatenate([side * reach for side in sides])
+        shares = np.tile(share[chosen], 2)
         if broken:
-            froms, tos = dashes(froms, tos)
-        canvas.lines(froms, tos, theme.friction_cone, 1.2, 0.75 * opacity)
+            froms, tos, whose = dashes(froms, tos)
+            shares = shares[whose]
+        canvas.lines(froms, tos, theme.friction_cone, 1.2, shares)
 
 
-def _labels(
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    """A touch whose numbers may be written: how much it stands out, where it is [px], what it is."""
+
+    weight: float
+    key: Key
+    at: tuple[float, float]
+    touch: np.void
+    struck: bool
+    slips: bool
+
+
+def _strongest(
     touches: Touches, fresh: NDArray[np.float64], gauge: Gauge, struck: bool, camera: Camera
-) -> list[tuple[float, Label]]:
-    """Return the labels of the strongest touches in the picture, each with how much it stands out."""
+) -> list[_Candidate]:
+    """Return the touches in the picture that stand out most."""
+    if not len(touches):
+        return []
     with np.errstate(invalid="ignore"):
         at = camera.project(touches["place"])
-        seen = ((at >= 0.0) & (at < np.array(camera.size))).all(axis=1)
-    weight = np.where(seen, touches["normal"] * fresh / (gauge.per_metre or 1.0), 0.0)
-    strongest = np.argsort(-weight, kind="stable")[: 2 * LABELLED]
-    slips = sliding(touches)
-    labels = []
-    for n in strongest[weight[strongest] > 0.0].tolist():
-        touch = touches[n]
-        key: Key = (int(touch["a"]), int(touch["b"]), int(touch["point"]))
-        place = float(at[n, 0]), float(at[n, 1])
-        lines = said_of(touch, struck, bool(slips[n]))
-        labels.append((float(weight[n]), Label(key, place, lines)))
-    return labels
+        inside = (at >= 0.0) & (at < np.array(camera.size))
+    weight = np.where(inside[:, 0] & inside[:, 1], touches["normal"] * fresh / (gauge.per_metre or 1.0), 0.0)
+    chosen = np.argsort(-weight, kind="stable")[: 2 * LABELLED]
+    chosen = chosen[weight[chosen] > 0.0]
+    touches, slips = touches[chosen], sliding(touches[chosen]).tolist()
+    keys = zip(touches["a"].tolist(), touches["b"].tolist(), touches["point"].tolist(), strict=True)
+    places = ((x, y) for x, y in at[chosen].tolist())
+    every = zip(weight[chosen].tolist(), keys, places, touches, slips, strict=True)
+    return [_Candidate(much, key, place, touch, struck, slip) for much, key, place, touch, slip in every]
 
 
 def said_of(touch: np.void, struck: bool, slips: bool) -> list[str]:

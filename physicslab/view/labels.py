@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.view.canvas import Canvas, Rect, TextStyle
 from physicslab.view.theme import Theme
@@ -94,44 +95,37 @@ class Labels:
             taken.append(rect)
             placed.append((label, rect))
         self._slot = slots
-        for label, rect in placed:
-            _draw_leader(label.at, rect, canvas, theme)
+        _draw_leaders(placed, canvas, theme)
         for label, rect in placed:
             _draw(label, rect, style, line_height, canvas, theme)
 
     def _find(
         self, label: Label, extent: tuple[int, int], taken: Sequence[Rect], screen: tuple[int, int]
     ) -> tuple[int, Rect] | None:
-        before = self._slot.get(label.key)
-        found: tuple[int, Rect] | None = None
-        for slot in [*range(len(_SLOTS)), *([] if before is None else [before])]:
-            if found is not None and slot != before:
-                continue
-            rect = _beside(label.at, extent, slot)
-            left, top, width, height = rect
-            inside = left >= 0 and top >= 0 and left + width <= screen[0] and top + height <= screen[1]
-            if not inside or any(_overlap(rect, other) for other in taken):
-                continue
-            if found is None or _cost(_SLOTS[slot]) < _cost(_SLOTS[found[0]]) + _BETTER:
-                found = slot, rect
-        return found
+        """Return the nearest slot that is free; the one of the last frame if it is about as near."""
+        rects = _beside(label.at, extent)
+        low, high = rects, rects + extent
+        free = ((low >= 0) & (high <= screen)).all(axis=1)
+        other = np.array(taken)
+        apart = (low[:, None] >= other[:, :2] + other[:, 2:] + _CLEAR) | (
+            other[:, :2] >= high[:, None] + _CLEAR
+        )
+        free &= apart.any(axis=2).all(axis=1)
+        if not free.any():
+            return None
+        slot, before = int(free.argmax()), self._slot.get(label.key)
+        if before is not None and free[before] and _cost(_SLOTS[before]) < _cost(_SLOTS[slot]) + _BETTER:
+            slot = before
+        left, top = rects[slot].tolist()
+        return slot, (left, top, *extent)
 
 
-def _beside(at: tuple[float, float], extent: tuple[int, int], slot: int) -> Rect:
-    """Return the rectangle in one of the slots around ``at``."""
-    side, column, row = _SLOTS[slot]
+def _beside(at: tuple[float, float], extent: tuple[int, int]) -> NDArray[np.int64]:
+    """Return the left top corners (n, 2) of a rectangle in each of the slots around ``at`` [px]."""
+    side, column, row = np.array(_SLOTS).T
     x = at[0] + side * (_OFF + (column + 0.5) * (extent[0] + _CLEAR)) - 0.5 * extent[0]
     y = at[1] + row * (extent[1] + _CLEAR) - 0.5 * extent[1]
-    return round(x), round(y), *extent
-
-
-def _overlap(one: Rect, two: Rect) -> bool:
-    return (
-        one[0] < two[0] + two[2] + _CLEAR
-        and two[0] < one[0] + one[2] + _CLEAR
-        and one[1] < two[1] + two[3] + _CLEAR
-        and two[1] < one[1] + one[3] + _CLEAR
-    )
+    return np.rint(np.stack((x, y), axis=1)).astype(np.int64)
 
 
 def _draw(label: Label, rect: Rect, style: TextStyle, line_height: int, canvas: Canvas, theme: Theme) -> None:
@@ -141,8 +135,9 @@ def _draw(label: Label, rect: Rect, style: TextStyle, line_height: int, canvas: 
         canvas.text(line, (left + _PAD, top + _PAD + n * line_height - 1), style)
 
 
-def _draw_leader(at: tuple[float, float], rect: Rect, canvas: Canvas, theme: Theme) -> None:
-    """Draw the thin line from a place to its label."""
-    left, top, width, height = rect
-    end = min(max(at[0], left), left + width), min(max(at[1], top), top + height)
-    canvas.lines(np.array([at]), np.array([end]), theme.faint, 1.0, 0.8)
+def _draw_leaders(placed: Sequence[tuple[Label, Rect]], canvas: Canvas, theme: Theme) -> None:
+    """Draw the thin lines from places to their labels."""
+    if placed:
+        start = np.array([label.at for label, _ in placed])
+        corner, extent = np.split(np.array([rect for _, rect in placed], np.float64), 2, axis=1)
+        canvas.lines(start, np.clip(start, corner, corner + extent), theme.faint, 1.0, 0.8)

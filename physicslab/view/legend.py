@@ -67,7 +67,8 @@ class Legend:
             if sample.kind is not None:
                 draw_arrows(start, span, sample.kind, canvas, theme, width=sample.width)
             elif sample.dashed:
-                canvas.lines(*dashes(start, start + span), theme.friction_cone, 1.2)
+                froms, tos, _ = dashes(start, start + span)
+                canvas.lines(froms, tos, theme.friction_cone, 1.2)
             else:
                 canvas.lines(start, start + span, theme.friction_cone, 1.2)
 

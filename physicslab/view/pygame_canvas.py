@@ -18,6 +18,7 @@ from physicslab.view.theme import Colour
 __all__ = ["PygameCanvas"]
 
 _KEPT_SURFACES = 512
+_KEPT_SIZES = 4096
 _RIM = 1.6
 """Width of the rims [px]."""
 _CORNER = 8
@@ -57,6 +58,8 @@ class PygameCanvas:
         self._shifts = np.array((red, green, blue), np.uint32)
         self._kept: OrderedDict[tuple[object, ...], pygame.Surface] = OrderedDict()
         self._fonts: dict[tuple[int, bool], pygame.font.Font] = {}
+        self._colours: dict[Colour, int] = {}
+        self._sizes: dict[tuple[str, TextStyle], tuple[int, int]] = {}
 
     @property
     def size(self) -> tuple[int, int]:
@@ -93,12 +96,21 @@ class PygameCanvas:
         raster.paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.hatched, _RIM)
 
     def lines(
-        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float = 1.0
+        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
     ) -> None:
-        """Draw straight lines of one kind, with round ends."""
+        """Draw straight lines of one kind, with round ends; each may have an opacity of its own."""
         compile_kernels((raster.paint_lines,))
-        packed = int(self._packed(np.array([colour], np.uint8))[0])
-        raster.paint_lines(self._pixels(), _plain(start), _plain(end), width, packed, opacity)
+        packed = self._colours.get(colour)
+        if packed is None:
+            packed = self._colours[colour] = int(self._packed(np.array([colour], np.uint8))[0])
+        shares = np.full(len(start), opacity) if isinstance(opacity, float) else _plain(opacity)
+        raster.paint_lines(self._pixels(), _plain(start), _plain(end), width, packed, shares)
+
+    def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
+        """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
+        compile_kernels((raster.paint_strokes,))
+        paint = self._packed(colour)
+        raster.paint_strokes(self._pixels(), _plain(start), _plain(end), _plain(width), paint)
 
     def _keep(self, key: tuple[object, ...], make: Callable[[], pygame.Surface]) -> pygame.Surface:
         surface = self._kept.get(key)
@@ -127,7 +139,13 @@ class PygameCanvas:
 
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return the width and height of one line [px]."""
-        return self._font(style).size(words)
+        key = words, style
+        size = self._sizes.get(key)
+        if size is None:
+            if len(self._sizes) >= _KEPT_SIZES:
+                self._sizes.clear()
+            size = self._sizes[key] = self._font(style).size(words)
+        return size
 
     def _font(self, style: TextStyle) -> pygame.font.Font:
         key = (style.size, style.bold)

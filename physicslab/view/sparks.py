@@ -31,8 +31,6 @@ _DRAG = 4.5
 """Rate at which sparks slow down [1/s]."""
 _TAIL = 0.035
 """Time of flight that is seen as a streak [s]."""
-_SHADES = 8
-"""Steps in which a spark fades."""
 
 
 class Sparks:
@@ -123,15 +121,12 @@ class Sparks:
         flown = np.minimum(self.age, _TAIL)[:, None]
         start = camera.project(self.place - flown * self.velocity)
         end = camera.project(self.place)
-        shade = np.minimum(_SHADES * self.age / self.life, _SHADES - 1).astype(np.int64)
-        bold = (self.strength > 0.5).astype(np.int64)
-        inside = ((end > 0.0) & (end < camera.size)).all(axis=1)
-        for old in range(_SHADES - 1, -1, -1):
-            for width in (0, 1):
-                part = (shade == old) & (bold == width) & inside
-                if part.any():
-                    opacity = 1.0 - old / _SHADES
-                    canvas.lines(start[part], end[part], theme.spark, 1.6 + 0.8 * width, opacity)
+        fresh = np.clip(1.0 - self.age / self.life, 0.0, 1.0)
+        inside = ((end > 0.0) & (end < camera.size)).all(axis=1) & (fresh > 0.0)
+        bold = self.strength > 0.5
+        for part, width in ((inside & ~bold, 1.6), (inside & bold, 2.4)):
+            if part.any():
+                canvas.lines(start[part], end[part], theme.spark, width, fresh[part])
 
 
 def _seeds(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,8 @@ _BRIGHTEST = 0.85
 """Share of a body's colour in the newest part of its trail, the rest being background."""
 _WIDEST, _NARROWEST = 2.6, 1.0
 """Width of a trail's newest and oldest part [px]."""
+_INK = 0.08
+"""Trails longer together than this share of the picture's pixels are finer: something shows between them."""
 _CLOSEST = 3.0
 """The least distance along a trail of the places it is drawn through [px]."""
 _MOST = 12_000
@@ -85,50 +89,58 @@ def draw_trails(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> N
     every = next(n for n in _COARSENESS if n >= coarse or n == _COARSENESS[-1])
     places, ages = system.paths(every)
     places = camera.project(places.reshape(-1, 2)).reshape(places.shape)
-    first, second = _pieces(places, ages)
+    first, second, total = _pieces(places, ages)
     points, age = places.reshape(-1, 2), ages.ravel()
-    start, end = points[first], points[second]
-    seen = _on_screen(start, end, camera.size)
-    start, end, first, second = start[seen], end[seen], first[seen], second[seen]
-    shade = np.clip(_SHADES * 0.5 * (age[first] + age[second]), 0, _SHADES - 1).astype(np.int64)
-    rows = world.roster.rows_of(system.entities)
-    colour = own_colour(world, theme, rows)[first // ages.shape[1]]
-    # Oldest first, so that what is brighter lies on top.
-    kind = (_SHADES - 1 - shade) * len(theme.bodies) + colour
-    order = np.argsort(kind, kind="stable")
-    begins = np.flatnonzero(np.diff(kind[order], prepend=-1))
-    for part in np.split(order, begins[1:]):
-        if len(part):
-            young = 1.0 - (shade[part[0]] + 0.5) / _SHADES
-            tint = mixed(theme.background, theme.bodies[colour[part[0]]], _BRIGHTEST * young)
-            canvas.lines(start[part], end[part], tint, _NARROWEST + (_WIDEST - _NARROWEST) * young)
+    seen = _on_screen(points[first], points[second], camera.size)
+    first, second = first[seen], second[seen]
+    shade = np.clip(_SHADES * 0.5 * (age[first] + age[second]), 0, _SHADES - 1).astype(np.int8)
+    order = np.argsort(-shade, kind="stable")  # oldest first, so that what is brighter lies on top
+    first, second, shade = first[order], second[order], shade[order]
+    colour = own_colour(world, theme, world.roster.rows_of(system.entities))[first // ages.shape[1]]
+    young = 1.0 - (shade + 0.5) / _SHADES
+    room = _INK * camera.size[0] * camera.size[1] / max(total, 1.0)
+    width = np.maximum(_NARROWEST + (_WIDEST - _NARROWEST) * young * min(room, 1.0), _NARROWEST)
+    tint = _tints(theme)[shade, colour]
+    canvas.strokes(points[first], points[second], tint, width)
+
+
+@lru_cache(maxsize=8)
+def _tints(theme: Theme) -> NDArray[np.uint8]:
+    """Return the colours (``_SHADES``, bodies, 3) of trails, newest first."""
+    shares = [_BRIGHTEST * (1.0 - (shade + 0.5) / _SHADES) for shade in range(_SHADES)]
+    return np.array(
+        [[mixed(theme.background, body, share) for body in theme.bodies] for share in shares], np.uint8
+    )
 
 
 def _pieces(
     places: NDArray[np.float64], ages: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[NDArray[np.int64], NDArray[np.int64], float]:
     """Return the two ends of every piece to draw, as numbers into the flattened ``places`` (n, k, 2) [px].
 
-    Places that lie closer together than can be told apart are passed over; the newest never is.
+    Places that lie closer together than can be told apart are passed over; the newest never is. The third
+    value is how long all trails are together [px].
     """
     with np.errstate(invalid="ignore", over="ignore"):
-        shown = (ages <= 1.0) & (np.abs(places) < _FARTHEST).all(axis=2)
-        step = np.hypot(*np.moveaxis(np.diff(places, axis=1), 2, 0))
+        across, down = places[..., 0], places[..., 1]
+        shown = (ages <= 1.0) & (np.abs(across) < _FARTHEST) & (np.abs(down) < _FARTHEST)
+        step = np.hypot(np.diff(across, axis=1), np.diff(down, axis=1))
         step = np.where(shown[:, 1:] & shown[:, :-1], step, 0.0)
     # Told from the newest end, so that the drawn places do not creep while old ones fall away.
     left = np.zeros(shown.shape)
     left[:, :-1] = np.cumsum(step[:, ::-1], axis=1)[:, ::-1]
-    spacing = max(_CLOSEST, float(left[:, 0].sum()) / _MOST)
-    mark = np.floor(left / spacing)
+    total = float(left[:, 0].sum())
+    mark = np.floor(left / max(_CLOSEST, total / _MOST))
     apart = np.ones(shown.shape, np.bool_)
     apart[:, :-1] = mark[:, :-1] != mark[:, 1:]
     kept = np.flatnonzero(shown & apart)
     same = kept[1:] // shown.shape[1] == kept[:-1] // shown.shape[1]
-    return kept[:-1][same], kept[1:][same]
+    return kept[:-1][same], kept[1:][same], total
 
 
 def _on_screen(start: Points, end: Points, size: tuple[int, int]) -> NDArray[np.bool_]:
     """Whether each piece can be seen."""
-    low, high = np.minimum(start, end), np.maximum(start, end)
-    seen: NDArray[np.bool_] = ((high > -_WIDEST) & (low < np.array(size) + _WIDEST)).all(axis=1)
+    seen = np.ones(len(start), np.bool_)
+    for a, b, side in zip(start.T, end.T, size, strict=True):
+        seen &= (np.maximum(a, b) > -_WIDEST) & (np.minimum(a, b) < side + _WIDEST)
     return seen
