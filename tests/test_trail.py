@@ -84,7 +84,7 @@ def test_it_is_left_out_without_a_trail() -> None:
     ball = circle(world, (0, 0))
     world.synchronise()
     assert {out.name: out.reason for out in world.schedule.left_out}["TrailSystem"] == (
-        "no Trail and Transform in the scene"
+        "no Trail in the scene"
     )
     world.add(ball, Trail())
     world.synchronise()

@@ -46,6 +46,7 @@ class ForceKernel:
             function.__doc__,
         )
         self.overloads: dict[Any, Any] = {}
+        self.compiled = False
 
     def compile(self, signature: Any) -> None:
         """Compile it, or load it from the cache."""
