@@ -222,7 +222,7 @@ _WITHIN = {Stage.FORCE, Stage.KICK, Stage.DRIFT}
 def why_not_smooth(world: World) -> str | None:
     """Return what else than forces acts on bodies within a step, or ``None``."""
     schedule = world.schedule
-    if schedule.runs(Stage.CONTACT):
+    if schedule.runs(Stage.BROAD_PHASE) or schedule.runs(Stage.CONTACT):
         return "bodies can touch"
     if not any(system.name == "IntegrateSystem" for system in schedule.running):
         return "nothing moves the bodies"
