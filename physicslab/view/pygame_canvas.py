@@ -12,7 +12,7 @@ import pygame
 from numpy.typing import NDArray
 
 from physicslab.kernels import compile_kernels, raster
-from physicslab.view.canvas import Align, Look, Numbers, Points, Rect, TextStyle
+from physicslab.view.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle
 from physicslab.view.theme import Colour
 
 __all__ = ["PygameCanvas"]
@@ -128,6 +128,10 @@ class PygameCanvas:
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return the width and height of one line [px]."""
         return self._font(style).size(words)
+
+    def paint(self, painter: Painter) -> None:
+        """Let something else draw on the picture."""
+        painter(self.surface)
 
     def _font(self, style: TextStyle) -> pygame.font.Font:
         key = (style.size, style.bold)
