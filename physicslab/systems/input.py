@@ -13,8 +13,8 @@ from physicslab.view.controls import KEYS, RELEASES
 from physicslab.view.spawning import spawn_box
 
 if TYPE_CHECKING:
-    from physicslab.view.tools import Tool
     from physicslab.view.toolbar import Toolbar
+    from physicslab.view.tools import Tool
     from physicslab.view.window import Window
     from physicslab.world import World
 

@@ -1,4 +1,4 @@
-"""The controls in one table: what the input system obeys, and what the hint, the help and the toolbar show."""
+"""The controls in one table: what input obeys, and what the hint, the help and the toolbar show."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import pygame
@@ -73,7 +74,7 @@ ICONS = {
     "binary": "ring 6,15,3.4; ring 18,9,3.4; line 3.5,8.5 5.5,5.5 9,4 12.5,4.2; line 20.5,15.5 18.5,18.5"
     " 15,20 11.5,19.8",
 }  # fmt: skip
-"""Strokes by name: ``line`` through points, ``bar`` (a thick line), ``fill`` (a polygon), ``ring``, ``disc`` and
+"""Strokes by name: ``line`` through points, ``bar`` (thick), ``fill`` (a polygon), ``ring``, ``disc`` and
 ``half`` (of a disc, the right one) by centre and radius."""
 
 
@@ -105,7 +106,7 @@ def _draw_stroke(
     width = _STROKE * scale * (2.0 if kind == "bar" else 1.0)
     match kind:
         case "line" | "bar":
-            for start, end in zip(places, places[1:], strict=False):
+            for start, end in itertools.pairwise(places):
                 _draw_line(large, start, end, width, colour)
         case "fill":
             pygame.draw.polygon(large, colour, places)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import pygame
@@ -68,7 +69,7 @@ class Toolbar:
 
     @property
     def places(self) -> dict[str, Rect]:
-        """Where the button of each control is, by its label [px]; those behind the last button are left out."""
+        """Where the button of each control is, by its label [px], but for those in the last one's menu."""
         return {
             control.label: (button.rect.left, button.rect.top, button.rect.width, button.rect.height)
             for control, button in self._buttons.items()
@@ -118,7 +119,7 @@ class Toolbar:
         return self._text_size // 2 + (4 if self._window.canvas.size[0] > 1100 else 0)
 
     def _width(self, shown: list[Control], side: int) -> int:
-        groups = sum(a.group != b.group for a, b in zip(shown, shown[1:], strict=False))
+        groups = sum(a.group != b.group for a, b in itertools.pairwise(shown))
         return len(shown) * (side + 1) + groups * self._gap
 
     def take(self, world: World, event: pygame.Event) -> bool:

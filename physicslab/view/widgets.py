@@ -51,7 +51,8 @@ class Button(pygame_gui.elements.UIButton):
 
     def _set_inactive(self) -> None:
         """Go back to the state from before the press: a marked button stays marked."""
-        self.drawable_shape.set_active_state(self._get_appropriate_state_name())
+        if self.drawable_shape is not None:
+            self.drawable_shape.set_active_state(self._get_appropriate_state_name())
 
     def put(self, rect: Rect) -> None:
         """Show it at a place [px]."""
@@ -142,7 +143,8 @@ class Widgets:
         """Make a button, hidden until it is put somewhere; ``row`` is one of a menu."""
         name = ObjectID(class_id="@row" if row else "@tool")
         button = Button(
-            _NOWHERE.copy(), "", self._manager, object_id=name, starting_height=_MENU + 1 if row else _BAR + 1,
+            _NOWHERE.copy(), "", self._manager,
+            object_id=name, starting_height=(_MENU if row else _BAR) + 1,
             command={pygame_gui.UI_BUTTON_PRESSED: command, pygame_gui.UI_BUTTON_START_PRESS: lambda: None},
             visible=0,
         )  # fmt: skip
