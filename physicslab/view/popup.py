@@ -89,7 +89,7 @@ class Popup:
                 continue
             column, line = divmod(n, each)
             row.put((left + pad + column * width, room[1] + pad + line * height, width, height))
-            row.say(("✓ " if shown[n].on else "") + _cut(shown[n].title))
+            row.say(("• " if shown[n].on else "") + _cut(shown[n].title))
             row.allow(shown[n].choose is not None or shown[n] is self._turning)
             row.mark(shown[n].on)
 

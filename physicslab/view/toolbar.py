@@ -96,10 +96,12 @@ class Toolbar:
         self._widgets.restyle(window.theme, self._text_size)
         side, pad = self._side, max(self._text_size // 4, 2)
         shown = [control for control in self._buttons if control is not _MORE]
-        while len(shown) > 1 and self._width(shown, side) > size[0] - 2 * pad:
-            shown.remove(next((c for c in reversed(shown) if c.minor), shown[-1]))
-            if _MORE not in shown:
-                shown.append(_MORE)
+        room = size[0] - 2 * pad
+        if self._width(shown, side) > room:
+            kept = list(shown)
+            while kept and self._width([*kept, _MORE], side) > room:
+                kept.remove(next((c for c in reversed(kept) if c.minor and not c.menu), kept[-1]))
+            shown = [*kept, _MORE]
         self._hidden = [control for control in self._buttons if control not in shown and control is not _MORE]
         self.height = side + 2 * pad
         self._plate.put((0, 0, max(size[0], 2), self.height))

@@ -15,7 +15,7 @@ from physicslab.view.theme import Colour, Theme
 
 __all__ = ["Button", "Plate", "Widgets"]
 
-_SETTLING = 3
+_SETTLING = 20
 """Frames that widgets are kept up to date for after something happened to them; then they cost nothing."""
 _NOWHERE = pygame.Rect(0, 0, 2, 2)
 _BAR, _MENU = 1, 10
@@ -59,9 +59,15 @@ class Button(pygame_gui.elements.UIButton):
         if tuple(self.rect) != rect:
             self.set_relative_position(rect[:2])
             self.set_dimensions(rect[2:])
-            if self.icon:
-                self.rebuild_from_changed_theme_data()
+            self.remake()
         self.reveal(True)
+
+    def remake(self) -> None:
+        """Draw it anew at once; by itself it would wait until its size is the same for a while."""
+        self._set_any_images_from_theme()
+        self.rebuild()
+        self._set_inactive()
+        self.widgets.stir()
 
     def reveal(self, shown: bool) -> None:
         """Show it, or hide it."""
@@ -79,8 +85,7 @@ class Button(pygame_gui.elements.UIButton):
         """Draw another icon on it."""
         if icon != self.icon:
             self.icon = icon
-            self.widgets.stir()
-            self.rebuild_from_changed_theme_data()
+            self.remake()
 
     def mark(self, on: bool) -> None:
         """Mark it as on, or not; with an icon that is a bar below, not a colour alone."""
@@ -105,6 +110,7 @@ class Plate(pygame_gui.elements.UIPanel):
         if tuple(self.rect) != rect:
             self.set_relative_position(rect[:2])
             self.set_dimensions(rect[2:])
+            self.rebuild()
         if not self.visible:
             self.show()
         self.widgets.stir()
@@ -191,7 +197,8 @@ class Widgets:
         self._icons.clear()
         style = self._manager.create_new_theme(_style(theme, text_size))
         self._manager.set_ui_theme(style, update_all_sprites=True)
-        self.stir()
+        for button in self._buttons:
+            button.remake()
 
     def covers(self, place: tuple[float, float]) -> bool:
         """Whether a widget is at a place [px]."""
