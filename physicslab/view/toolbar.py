@@ -52,7 +52,7 @@ class Toolbar:
         self._buttons: dict[Control, Button] = {
             control: self._button(control) for control in (*CONTROLS, _MORE) if control.icon
         }
-        self._popup = Popup(self._widgets, self._asked.append)
+        self._popup = Popup(self._widgets, lambda choice: self._asked.append(choice))
         self._laid_out: tuple[object, ...] = ()
         self._hidden: list[Control] = []
         self._look_at = 0.0
