@@ -174,7 +174,7 @@ class HudSystem(System):
             feet = [foot, *(foot - bar for _ in panels[1:])]
             below = [
                 (panel, foot)
-                for panel, foot in zip(panels, feet, strict=True)
+                for panel, foot in zip(panels, feet[: len(panels)], strict=True)
                 if panel.rect[1] + panel.rect[3] + gap <= foot
             ]
             if not panels:

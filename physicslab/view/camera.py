@@ -99,7 +99,7 @@ class Camera:
             0.5 * (extent[1] + extent[3]) - (0.5 * (self.size[1] - height) - top) / self.scale,
         )
 
-    def fitting_scale(self, extent: Extent, room: Rect | None = None, margin: float = 0.04) -> float:
+    def fitting_scale(self, extent: Extent, room: Rect | None = None, margin: float = 0.07) -> float:
         """Return the scale [px/m] at which a part of the world fills the screen but for a share as margin.
 
         ``room`` is the part of the screen to be filled [px], all of it by default.

@@ -56,6 +56,7 @@ class Toolbar:
         self._laid_out: tuple[object, ...] = ()
         self._hidden: list[Control] = []
         self._look_at = 0.0
+        self._menu = ""
         self._resting: tuple[Button | None, float] = (None, 0.0)
         self.height = 0
         self.lay_out()
@@ -141,6 +142,8 @@ class Toolbar:
             self._follow_menu(world)
             return True
         self._obey(world)
+        if taken:
+            self._look_at = 0.0
         return taken
 
     def _obey(self, world: World) -> None:
@@ -167,7 +170,8 @@ class Toolbar:
         button = self._widgets.over(window.pointer)
         if button is not self._resting[0]:
             self._resting = button, window.now
-        if window.now >= self._look_at:
+        if window.now >= self._look_at or window.menu != self._menu:
+            self._menu = window.menu
             self._look_at = window.now + _PERIOD
             for control, shown in self._buttons.items():
                 shown.mark(control.on(world, window))

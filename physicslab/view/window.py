@@ -22,6 +22,9 @@ from physicslab.world import World
 
 __all__ = ["Window"]
 
+_AROUND = 0.04
+"""Room left around the world, as a share of what the panels leave."""
+
 
 class Window:
     """The state of the sandbox's window; the world knows nothing of it.
@@ -154,5 +157,6 @@ class Window:
         if extent is None:
             self.camera.look_at((0.0, 0.0, 0.0, 0.0), self.config.pixels_per_metre, room)
         else:
-            self.camera.look_at(extent, min(self.camera.fitting_scale(extent, room), largest_scale), room)
+            scale = min(self.camera.fitting_scale(extent, room, _AROUND), largest_scale)
+            self.camera.look_at(extent, scale, room)
         self._shown = (self.camera.centre, self.camera.scale, largest_scale)
