@@ -35,6 +35,8 @@ _BANNER = 16
 """Room that the banners need, in heights of the text."""
 _MESSAGE = 0.56
 """How wide a message may be, as a share of the window: the scale bar stands beside it."""
+_DROP_WORTH_SAYING = 0.005
+"""Less time [s] than this, dropped within a few seconds, nobody sees."""
 _DROP_SHOWN = 3.0
 """How long [s] the HUD speaks of time that was dropped."""
 
@@ -82,6 +84,7 @@ class HudSystem(System):
             self._read(world)
         if window.help:
             self._help.draw(window.canvas)
+            window.overlays.covered = [(0, 0, *window.canvas.size)]  # or labels would look out below it
         else:
             self._draw_all(world)
             self._toolbar.draw()
@@ -134,6 +137,8 @@ class HudSystem(System):
         taken += self._draw_banners(world)
         taken += self._draw_messages()
         draw_edge_arrows(world, window.camera, taken, size, canvas, theme)
+        below = self._hint.top
+        window.overlays.covered = [*taken, (0, below, canvas.size[0], canvas.size[1] - below)]
 
     @property
     def _text_size(self) -> int:
@@ -185,12 +190,6 @@ class HudSystem(System):
             else:
                 legend = legend.moved(below[0][0].rect[0], below[0][1])
         self._legend = legend
-        window.overlays.covered = [
-            *(panel.rect for panel in self._panels),
-            *([legend.panel.rect] if legend is not None else []),
-            (0, self._hint.top, *window.canvas.size),
-            (0, 0, window.canvas.size[0], self._toolbar.height),
-        ]
 
     def _draw_banners(self, world: World) -> list[Rect]:
         """Say at the top what is not as usual, and return where [px]."""
@@ -219,7 +218,7 @@ class HudSystem(System):
             self._dropped_now += window.pace.dropped - self._dropped
             self._dropped = window.pace.dropped
             self._drop_until = window.now + _DROP_SHOWN
-        if window.now < self._drop_until:
+        if window.now < self._drop_until and self._dropped_now >= _DROP_WORTH_SAYING:
             banners.append((f"{self._dropped_now:.2f} s DROPPED", theme.warning))
         return banners
 
