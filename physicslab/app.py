@@ -19,6 +19,7 @@ from physicslab.systems.render import RenderSystem
 from physicslab.view.display import Display
 from physicslab.view.progress import draw_progress
 from physicslab.view.theme import DARK
+from physicslab.view.toolbar import Toolbar
 from physicslab.view.window import Window
 from physicslab.world import World
 
@@ -39,12 +40,22 @@ class Sandbox:
         Where it is shown.
     clock : callable
         Returns the time [s]; it limits how long the steps of a frame may take.
+
+    Attributes
+    ----------
+    world : World
+        The world that is shown.
+    toolbar : Toolbar
+        The buttons over it.
     """
 
     def __init__(self, world: World, window: Window, clock: Callable[[], float] = time.perf_counter) -> None:
         self.window = window
         self._clock = clock
-        self._systems = InputSystem(window), RenderSystem(window), HudSystem(window)
+        self.toolbar = Toolbar(window)
+        hud = HudSystem(window, self.toolbar)
+        window.room = hud.room
+        self._systems = InputSystem(window, self.toolbar), RenderSystem(window), hud
         self.show(world)
 
     def show(self, world: World) -> None:
@@ -55,7 +66,7 @@ class Sandbox:
         window.spring_tool.cancel()
         window.overlays.forget()
         window.sparks.clear()
-        window.error, window.next_world = "", None
+        window.error, window.menu, window.next_world = "", "", None
         window.go_home(world)
 
     def frame(self, elapsed: float) -> None:

@@ -164,6 +164,8 @@ class WindowConfig:
     ----------
     size : tuple of two ints
         Width and height at the start [px].
+    least_size : tuple of two ints
+        Width and height that the window is made no smaller than [px].
     fps : int
         Cap on the frame rate [1/s].
     pixels_per_metre : float
@@ -177,6 +179,7 @@ class WindowConfig:
     """
 
     size: tuple[int, int] = (1280, 720)
+    least_size: tuple[int, int] = (640, 480)
     fps: int = 60
     pixels_per_metre: float = 100.0
     max_dt: float = 0.1

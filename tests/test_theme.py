@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 
 import physicslab
-from physicslab.view.theme import DARK, Colour, Theme
+from physicslab.view.arrows import (
+    CONTACT_NORMAL,
+    FORCE,
+    FRICTION_IMPULSE,
+    NORMAL_IMPULSE,
+    VELOCITY,
+)
+from physicslab.view.theme import DARK, THEMES, Colour, Theme
 
 # What the three common kinds of colour blindness make of linear RGB (Machado, Oliveira & Fernandes, 2009).
 SEEN_BY = {
@@ -57,21 +64,42 @@ def test_no_colour_is_written_anywhere_else() -> None:
     assert not found
 
 
-@pytest.mark.parametrize("name", ["text", "faint", "heading", "paused", "slow", "planet", "warning", "error"])
-def test_words_can_be_read_on_a_panel(name: str) -> None:
-    assert contrast(getattr(DARK, name), DARK.panel) >= 4.5  # WCAG 2 AA
+every_theme = pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
+WORDS = ["text", "faint", "heading", "accent", "paused", "slow", "planet", "warning", "error", "notice"]
+ARROWS = (VELOCITY, FORCE, CONTACT_NORMAL, NORMAL_IMPULSE, FRICTION_IMPULSE)
 
 
+@every_theme
+@pytest.mark.parametrize("name", WORDS)
+def test_words_can_be_read_on_a_panel(name: str, theme: Theme) -> None:
+    assert contrast(getattr(theme, name), theme.panel) >= 4.5  # WCAG 2 AA
+
+
+@every_theme
+def test_words_can_be_read_on_keys_and_buttons(theme: Theme) -> None:
+    for words in (theme.text, theme.heading, theme.accent):
+        assert contrast(words, theme.key) >= 4.5
+
+
+@every_theme
 @pytest.mark.parametrize("eyes", SEEN_BY)
-def test_bodies_differ_for_all_eyes(eyes: str) -> None:
-    seen = [np.asarray(SEEN_BY[eyes]) @ np.array(rim) for rim in DARK.bodies]
+def test_bodies_differ_for_all_eyes(eyes: str, theme: Theme) -> None:
+    seen = [np.asarray(SEEN_BY[eyes]) @ np.array(rim) for rim in theme.bodies]
     for a, b in itertools.combinations(seen, 2):
         assert np.linalg.norm(a - b) > 25.0
 
 
-def test_bodies_stand_out_from_the_background() -> None:
-    for rim in (*DARK.bodies, DARK.static, DARK.kinematic, DARK.held, DARK.spring, DARK.bounds):
-        assert contrast(rim, DARK.background) >= 3.0
+@every_theme
+def test_bodies_and_arrows_stand_out_from_the_background(theme: Theme) -> None:
+    for rim in (*theme.bodies, theme.static, theme.kinematic, theme.held, theme.spring, theme.bounds):
+        assert contrast(rim, theme.background) >= 3.0
+    for kind in ARROWS:
+        assert contrast(kind.colour(theme), theme.background) >= 3.0
+    assert contrast(theme.friction_cone, theme.background) >= 3.0
+
+
+def test_no_two_arrows_are_told_apart_by_colour_alone() -> None:
+    assert len({kind.head for kind in ARROWS}) == len(ARROWS)
 
 
 def test_another_theme_is_one_record_away() -> None:

@@ -130,6 +130,23 @@ def test_a_user_spawns_drags_throws_and_quits(screen: Screen) -> None:
         path = (slice(None), slice(380, 620))
         screen.until(differs(path, first, 5_000), "a throw going on by itself")
 
+        screen.do("key", "r")
+        screen.do("mousemove", 640, 300)
+        before = screen.picture()
+        screen.do("key", "p")
+        pendulum = (slice(640, 800), slice(300, 460))
+        hung = screen.until(differs(pendulum, before, 5_000), "a pendulum that hangs from the cursor")
+        screen.do("key", "o")
+        banner = (slice(540, 740), slice(40, 90))
+        planets = screen.until(differs(banner, hung, 2_000), "the banner of planet mode")
+        screen.do("key", "v")
+        legend = (slice(980, 1260), slice(380, 640))
+        screen.until(differs(legend, planets, 20_000), "the legend of the arrows")
+        paused = screen.picture()
+        screen.do("mousemove", 361, 18)  # the toolbar's button for pause
+        screen.do("click", 1)
+        screen.until(differs((slice(540, 740), slice(80, 130)), paused, 2_000), "the banner of a pause")
+
         screen.do("key", "F12")
         screen.until(lambda _: any(screen.folder.glob("physicslab-*.png")), "a screenshot in the folder")
         time.sleep(0.5)

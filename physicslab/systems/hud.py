@@ -18,7 +18,8 @@ from physicslab.view.scale_bar import draw_scale_bar, scale_bar_height
 
 if TYPE_CHECKING:
     from physicslab.view.canvas import Rect
-    from physicslab.view.theme import Colour
+    from physicslab.view.theme import Colour, Theme
+    from physicslab.view.toolbar import Toolbar
     from physicslab.view.window import Window
     from physicslab.world import World
 
@@ -26,10 +27,16 @@ __all__ = ["HudSystem"]
 
 _PERIOD = 0.1
 """Time [s] between two readings: figures that change faster cannot be read."""
+_PANEL, _MARGIN = 19.5, 0.8
+"""Width of the panels, and the room around them, in heights of the text."""
+_LEAST = 0.45
+"""The least share of the window's width between the panels that a world is fitted into."""
 _BANNER = 16
 """Room that the banners need, in heights of the text."""
 _MESSAGE = 0.56
 """How wide a message may be, as a share of the window: the scale bar stands beside it."""
+_DROP_WORTH_SAYING = 0.005
+"""Less time [s] than this, dropped within a few seconds, nobody sees."""
 _DROP_SHOWN = 3.0
 """How long [s] the HUD speaks of time that was dropped."""
 
@@ -41,18 +48,21 @@ class HudSystem(System):
     ----------
     window : Window
         The canvas, the theme, and the state of the clock.
+    toolbar : Toolbar
+        What lies at the top; the rest keeps below it.
     """
 
-    def __init__(self, window: Window) -> None:
+    def __init__(self, window: Window, toolbar: Toolbar) -> None:
         self._window = window
+        self._toolbar = toolbar
         self._meter = FrameMeter()
         self._watch = EnergyWatch()
         self._next_reading = 0.0
-        self._size = (0, 0)
+        self._laid_out: tuple[tuple[int, int], Theme] | None = None
         self._world: World | None = None
         self._panels: list[Panel] = []
         self._legend: Legend | None = None
-        self._overlays = (False, False)
+        self._overlays = (False, False, True)
         self._middle = 0
         self._hint: Hint
         self._help: Help
@@ -64,24 +74,52 @@ class HudSystem(System):
     def draw(self, world: World, elapsed: float) -> None:
         """Draw everything that lies over the world."""
         window = self._window
-        canvas, theme = window.canvas, window.theme
         self._meter.note(world, elapsed)
-        if canvas.size != self._size:
-            self._size = canvas.size
-            hinted = [control for control in CONTROLS if not control.minor]
-            self._hint = Hint(hinted, self._text_size - 1, canvas, theme)
-            self._help = Help(CONTROLS, self._text_size, canvas, theme)
-            self._next_reading = window.now
+        self._lay_out()
         self._watch.follow(world)
-        overlays = window.overlays.arrows, window.overlays.impulses
+        overlays = window.overlays.arrows, window.overlays.impulses, window.figures
         changed = world is not self._world or overlays != self._overlays
         if window.now >= self._next_reading or changed:
             self._next_reading, self._world, self._overlays = window.now + _PERIOD, world, overlays
             self._read(world)
         if window.help:
-            self._help.draw(canvas)
+            self._help.draw(window.canvas)
+            window.overlays.covered = [(0, 0, *window.canvas.size)]  # or labels would look out below it
         else:
             self._draw_all(world)
+            self._toolbar.draw()
+
+    def _lay_out(self) -> None:
+        """Make what hangs on the size and the colours of the window anew where they are others."""
+        window = self._window
+        canvas, theme = window.canvas, window.theme
+        if (canvas.size, theme) != self._laid_out:
+            self._laid_out = canvas.size, theme
+            self._toolbar.lay_out()
+            hinted = [control for control in CONTROLS if not control.minor]
+            self._hint = Hint(hinted, self._text_size - 1, canvas, theme)
+            self._help = Help(CONTROLS, self._text_size, canvas, theme)
+            self._next_reading = window.now
+
+    def room(self) -> Rect:
+        """Return what is left for the world [px]: below the toolbar, above the hint, between the panels.
+
+        In a window where little would be left between the panels, they may lie over the world.
+        """
+        self._lay_out()
+        canvas = self._window.canvas
+        sides = self._sides() if self._window.figures else (0, canvas.size[0])
+        left, right = sides if sides[1] - sides[0] >= _LEAST * canvas.size[0] else (0, canvas.size[0])
+        top = self._toolbar.height
+        return left, top, max(right - left, 1), max(self._hint.top - top, 1)
+
+    def _sides(self) -> tuple[int, int]:
+        """Return where the left panel ends and the right one begins, or the window ends [px]."""
+        size, across = self._text_size, self._window.canvas.size[0]
+        panel = round(_PANEL * size) + round(_MARGIN * size)
+        right = across - panel
+        # Else the banners would have no room between them.
+        return panel, right if right - panel >= _BANNER * size else across
 
     def _draw_all(self, world: World) -> None:
         window = self._window
@@ -92,42 +130,47 @@ class HudSystem(System):
             self._legend.draw(canvas, theme)
         self._hint.draw(canvas)
         taken = [*(panel.rect for panel in self._panels), self._hint.rect]
+        taken.append((0, 0, canvas.size[0], self._toolbar.height))
         if self._legend is not None:
             taken.append(self._legend.panel.rect)
         taken.append(draw_scale_bar(window.camera, self._hint.top - size // 2, size, canvas, theme))
         taken += self._draw_banners(world)
         taken += self._draw_messages()
         draw_edge_arrows(world, window.camera, taken, size, canvas, theme)
+        below = self._hint.top
+        window.overlays.covered = [*taken, (0, below, canvas.size[0], canvas.size[1] - below)]
 
     @property
     def _text_size(self) -> int:
         return text_size(self._window.canvas)
 
     def _read(self, world: World) -> None:
-        canvas, theme, size = self._window.canvas, self._window.theme, self._text_size
-        width, margin = round(19.5 * size), round(0.8 * size)
+        window, size = self._window, self._text_size
+        canvas, theme = window.canvas, window.theme
+        width, margin = round(_PANEL * size), round(_MARGIN * size)
+        top = self._toolbar.height + margin
         measured = measure_world(world, self._watch)
         figures = figure_lines(world, measured, self._meter.frame_rate)
         costs = [*cost_lines(world, self._meter), *left_out_lines(world)]
         plain = [line for line in figures if line.kind != "detail"]
         bottom = self._hint.top - size - sum(height + size // 2 for _, _, height in self._messages())
         for lines in ([*figures, *method_lines(world)], figures, plain):
-            left = lay_out(lines, margin, margin, width, size, canvas, theme)
-            if margin + left.rect[3] <= bottom:
+            left = lay_out(lines, margin, top, width, size, canvas, theme)
+            if top + left.rect[3] <= bottom:
                 break  # else less is said, so that no message lies over it
         self._panels = [left]
-        right = canvas.size[0] - width - margin
-        if right - (margin + width) >= _BANNER * size:  # or the banners would have no room between them
-            self._panels.append(lay_out(costs, right, margin, width, size, canvas, theme))
-        else:
-            right = canvas.size[0]
+        across, right = canvas.size[0], self._sides()[1]
+        if right < across:
+            self._panels.append(lay_out(costs, right, top, width, size, canvas, theme))
         self._middle = (margin + width + right) // 2
+        if not window.figures:
+            self._panels, self._middle = [], across // 2
         self._place_legend()
 
     def _place_legend(self) -> None:
         """Put the legend below the figures or the costs, or where the costs are if there is no room."""
         window, size, panels = self._window, self._text_size, self._panels
-        width, gap = panels[0].rect[2], round(0.5 * size)
+        width, gap = round(_PANEL * size), round(0.5 * size)
         legend = legend_of(window.overlays, width, size, window.canvas, window.theme)
         if legend is not None:
             foot = self._hint.top - gap - legend.panel.rect[3]
@@ -136,26 +179,23 @@ class HudSystem(System):
             feet = [foot, *(foot - bar for _ in panels[1:])]
             below = [
                 (panel, foot)
-                for panel, foot in zip(panels, feet, strict=True)
+                for panel, foot in zip(panels, feet[: len(panels)], strict=True)
                 if panel.rect[1] + panel.rect[3] + gap <= foot
             ]
-            if not below:
+            if not panels:
+                legend = legend.moved(round(_MARGIN * size), self._toolbar.height + round(_MARGIN * size))
+            elif not below:
                 legend = legend.moved(panels[-1].rect[0], panels[-1].rect[1])
                 self._panels = panels[:-1]
             else:
                 legend = legend.moved(below[0][0].rect[0], below[0][1])
         self._legend = legend
-        window.overlays.covered = [
-            *(panel.rect for panel in self._panels),
-            *([legend.panel.rect] if legend is not None else []),
-            (0, self._hint.top, *window.canvas.size),
-        ]
 
     def _draw_banners(self, world: World) -> list[Rect]:
         """Say at the top what is not as usual, and return where [px]."""
         window = self._window
         size = self._text_size
-        top = round(0.8 * size)
+        top = self._toolbar.height + round(_MARGIN * size)
         taken: list[Rect] = []
         for words, colour in self._banners(world):
             taken.append(draw_pill([words], self._middle, top, size + 2, colour, window.canvas, window.theme))
@@ -178,7 +218,7 @@ class HudSystem(System):
             self._dropped_now += window.pace.dropped - self._dropped
             self._dropped = window.pace.dropped
             self._drop_until = window.now + _DROP_SHOWN
-        if window.now < self._drop_until:
+        if window.now < self._drop_until and self._dropped_now >= _DROP_WORTH_SAYING:
             banners.append((f"{self._dropped_now:.2f} s DROPPED", theme.warning))
         return banners
 

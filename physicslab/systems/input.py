@@ -10,12 +10,18 @@ import pygame
 from physicslab.schedule import Stage, System, at
 from physicslab.view import actions
 from physicslab.view.controls import KEYS, RELEASES
+from physicslab.view.spawning import spawn_box
 
 if TYPE_CHECKING:
+    from physicslab.view.toolbar import Toolbar
+    from physicslab.view.tools import Tool
     from physicslab.view.window import Window
     from physicslab.world import World
 
 __all__ = ["InputSystem"]
+
+_OF_THE_MOUSE = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL)
+"""What is offered to the toolbar first."""
 
 _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
 """With these keys held, another key is meant for the desktop: Alt+Tab is no slow motion."""
@@ -31,11 +37,15 @@ class InputSystem(System):
     ----------
     window : Window
         Where the cursor is, and what is held.
+    toolbar : Toolbar
+        What lies over the world; clicks on it are its own.
     """
 
-    def __init__(self, window: Window) -> None:
+    def __init__(self, window: Window, toolbar: Toolbar) -> None:
         self._window = window
-        self._panning = False
+        self._toolbar = toolbar
+        self._panning = 0  # the button that drags the picture
+        self._tool: Tool | None = None  # what the left button was pressed with
         self._handlers: dict[int, Callable[[World, pygame.Event], None]] = {
             pygame.KEYDOWN: self._key,
             pygame.KEYUP: self._key_up,
@@ -56,12 +66,17 @@ class InputSystem(System):
         window.now += elapsed
         for event in pygame.event.get():
             handler = self._handlers.get(event.type)
-            if handler is not None:
+            if handler is None:
+                continue
+            if event.type in _OF_THE_MOUSE and self._toolbar.take(world, event):
+                window.pointer = getattr(event, "pos", window.pointer)
+            else:
                 handler(world, event)
         window.follow_size(world)
         window.trails.follow(world)
         window.hand.move(window.place, window.now)
         window.hand.lead(world, window.coming(world), window.pace.paused)
+        self._toolbar.follow(world, elapsed)
 
     def _key(self, world: World, event: pygame.Event) -> None:
         mod = getattr(event, "mod", 0)
@@ -81,25 +96,30 @@ class InputSystem(System):
             self._window.help = False
             return
         if event.button == pygame.BUTTON_LEFT:
-            actions.press(world, self._window)
+            self._tool = self._window.tool
+            self._tool.press(world, self._window)
         elif event.button == pygame.BUTTON_RIGHT:
-            actions.spawn_box(world, self._window)
-        elif event.button == pygame.BUTTON_MIDDLE:
-            self._panning = True
+            spawn_box(world, self._window)
+        if event.button == pygame.BUTTON_MIDDLE or (self._tool is not None and self._tool.pans):
+            self._panning = event.button
 
     def _release(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
-        if event.button == pygame.BUTTON_LEFT:
-            actions.release(world, self._window)
-        elif event.button == pygame.BUTTON_MIDDLE:
-            self._panning = False
+        if event.button == pygame.BUTTON_LEFT and self._tool is not None:
+            self._tool.release(world, self._window)
+            self._tool = None
+        if event.button == self._panning:
+            self._panning = 0
 
     def _motion(self, world: World, event: pygame.Event) -> None:
         window = self._window
-        left, middle, _ = event.buttons
-        if not left:  # let go where no report came from, as over another window
+        if not event.buttons[0]:  # let go where no report came from, as over another window
             window.hand.drop(world)
-        self._panning = self._panning and bool(middle)
+            if self._tool is not None:
+                window.spring_tool.cancel()
+                self._tool = None
+        if self._panning and not event.buttons[self._panning - 1]:
+            self._panning = 0
         if self._panning:
             dx, dy = event.pos[0] - window.pointer[0], event.pos[1] - window.pointer[1]
             window.camera.pan(dx, dy)
@@ -113,4 +133,4 @@ class InputSystem(System):
         """Hold nothing while the user is elsewhere."""
         self._window.hand.drop(world)
         self._window.spring_tool.cancel()
-        self._panning = False
+        self._panning, self._tool = 0, None

@@ -2,72 +2,40 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from pathlib import Path
 
 from physicslab.config import PhysicsConfig
 from physicslab.fields import InvalidValue
-from physicslab.prefabs import box, circle, pendulum
 from physicslab.scene import SceneError, load_scene, save_scene
-from physicslab.view.picking import body_at
 from physicslab.view.scene_files import new_scene_path, newest_scene
+from physicslab.view.theme import THEMES
+from physicslab.view.tools import HAND, Tool
 from physicslab.view.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "ask_screenshot", "begin_spring", "clear", "close", "end_spring", "faster", "fit", "go_home", "leave",
-    "press", "release", "remove", "reopen", "save", "slower",
-    "spawn_box", "spawn_circle", "spawn_pendulum", "step",
-    "toggle_arrows", "toggle_gravity", "toggle_grid", "toggle_help", "toggle_impulses", "toggle_pause",
-    "toggle_planets", "toggle_slow_motion", "toggle_trails", "zoom",
+    "ask_screenshot", "choose_tool", "clear", "close", "enlarge", "faster", "fit", "go_home", "leave",
+    "next_theme", "open_scene", "reduce", "reopen", "save", "slower", "step",
+    "toggle_arrows", "toggle_figures", "toggle_gravity", "toggle_grid", "toggle_help", "toggle_impulses",
+    "toggle_menu", "toggle_pause", "toggle_planets", "toggle_slow_motion", "toggle_trails",
+    "zoom", "zoom_in", "zoom_out",
 ]  # fmt: skip
 
-_RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
-_SIZES = ((0.5, 0.5), (0.8, 0.4), (0.4, 0.7), (0.6, 0.6), (1.0, 0.3))
-"""The sizes of what is spawned, in turn [m]."""
-_DENSITY = 5.0
-"""Mass of what is spawned per area [kg/m^2]."""
-_RESTITUTION = 0.4
+_ZOOM_STEP = 3.0
+"""How many notches of the wheel a key or a button zooms by."""
 
 
-def press(world: World, window: Window) -> None:
-    """Take hold of the body under the cursor, or spawn a circle where there is none."""
-    entity = body_at(world, window.camera, window.pointer)
-    if entity is None:
-        spawn_circle(world, window)
-    elif not window.hand.take(world, entity, window.place, window.now):
-        window.notify(f"{world.label(entity)} is static: it stays where it is")
+def choose_tool(window: Window, tool: Tool) -> None:
+    """Let the left mouse button do something else."""
+    window.spring_tool.cancel()
+    window.tool = tool
+    window.notify(tool.tells, 5.0)
 
 
-def release(world: World, window: Window) -> None:
-    """Let go of what is held."""
-    window.hand.release(world, window.place, window.now, window.pace.paused)
-
-
-def _next_size[T](window: Window, sizes: tuple[T, ...]) -> T:
-    window.spawned += 1
-    return sizes[window.spawned % len(sizes)]
-
-
-def spawn_circle(world: World, window: Window) -> None:
-    """Make a circle at the cursor."""
-    radius = _next_size(window, _RADII)
-    mass = _DENSITY * math.pi * radius * radius
-    circle(world, window.place, radius=radius, mass=mass, restitution=_RESTITUTION)
-
-
-def spawn_box(world: World, window: Window) -> None:
-    """Make a rectangle at the cursor."""
-    width, height = _next_size(window, _SIZES)
-    mass = _DENSITY * width * height
-    box(world, window.place, width=width, height=height, mass=mass, restitution=_RESTITUTION)
-
-
-def spawn_pendulum(world: World, window: Window) -> None:
-    """Hang a pendulum from the cursor."""
-    window.spawned += 1
-    pendulum(world, window.place, length=1.5, angle=0.7)
+def toggle_menu(window: Window, name: str) -> None:
+    """Open a menu, or close it."""
+    window.menu = "" if window.menu == name else name
 
 
 def toggle_pause(world: World, window: Window) -> None:
@@ -97,36 +65,6 @@ def step(world: World, window: Window) -> None:
     window.pace.ask_step()
 
 
-def remove(world: World, window: Window) -> None:
-    """Remove the body under the cursor; its springs go with it."""
-    entity = body_at(world, window.camera, window.pointer)
-    if entity is None:
-        window.notify("Nothing to remove: put the cursor on a body")
-        return
-    if window.hand.entity == entity:
-        window.hand.drop(world)
-    world.remove(entity)
-
-
-def begin_spring(world: World, window: Window) -> None:
-    """Begin a spring at the body under the cursor."""
-    entity = body_at(world, window.camera, window.pointer)
-    if entity is None:
-        window.notify(
-            "A spring begins on a body: put the cursor on one, hold S, and drag to where it shall end"
-        )
-    else:
-        window.spring_tool.begin(world, entity, window.place)
-
-
-def end_spring(world: World, window: Window) -> None:
-    """End the spring at the body under the cursor, or at that point of the world."""
-    target = body_at(world, window.camera, window.pointer)
-    refused = window.spring_tool.end(world, target, window.place)
-    if refused:
-        window.notify(refused)
-
-
 def save(world: World, window: Window) -> None:
     """Save the world to a new scene file where the program was started."""
     try:
@@ -143,16 +81,27 @@ def reopen(world: World, window: Window) -> None:
     """Open the scene file last saved or opened, or else the newest; where that fails, all stays as it is."""
     try:
         path = window.scene_file or newest_scene(Path.cwd())
-        if path is None:
-            window.notify(f"There is no scene file in {Path.cwd()}: Ctrl+S saves one", failed=True)
-            return
-        opened = load_scene(path)
+    except OSError as error:
+        window.notify(f"Not opened: {error}", 8.0, failed=True)
+        return
+    if path is None:
+        window.notify(f"There is no scene file in {Path.cwd()}: Ctrl+S saves one", failed=True)
+    else:
+        open_scene(window, path)
+
+
+def open_scene(window: Window, source: str | Path) -> None:
+    """Open a built-in scene by name, or a file; where that fails, all stays as it is."""
+    try:
+        opened = load_scene(source)
         opened.synchronise()
     except (SceneError, InvalidValue, OSError) as error:
         window.notify(f"Not opened: {error}", 8.0, failed=True)
-    else:
-        window.scene_file, window.next_world = path, opened
-        window.notify(f"Opened {path}")
+        return
+    window.next_world = opened
+    if isinstance(source, Path):
+        window.scene_file = source
+    window.notify(f"Opened {source if isinstance(source, Path) else opened.title}")
 
 
 def clear(world: World, window: Window) -> None:
@@ -203,6 +152,37 @@ def zoom(window: Window, notches: float) -> None:
     window.camera.zoom(1.15**notches, window.pointer)
 
 
+def zoom_in(world: World, window: Window) -> None:
+    """Enlarge the picture around the cursor."""
+    zoom(window, _ZOOM_STEP)
+
+
+def zoom_out(world: World, window: Window) -> None:
+    """Reduce the picture around the cursor."""
+    zoom(window, -_ZOOM_STEP)
+
+
+def enlarge(world: World, window: Window) -> None:
+    """Enlarge the picture around its middle: the cursor is on a button."""
+    window.camera.zoom(1.15**_ZOOM_STEP, window.middle)
+
+
+def reduce(world: World, window: Window) -> None:
+    """Reduce the picture around its middle: the cursor is on a button."""
+    window.camera.zoom(1.15**-_ZOOM_STEP, window.middle)
+
+
+def next_theme(world: World, window: Window) -> None:
+    """Show everything in the colours of the next theme."""
+    window.theme = THEMES[(THEMES.index(window.theme) + 1) % len(THEMES)]
+    window.notify(f"Colours: {window.theme.name}")
+
+
+def toggle_figures(world: World, window: Window) -> None:
+    """Show the figures and costs, or leave all of the window to the world."""
+    window.figures = not window.figures
+
+
 def fit(world: World, window: Window) -> None:
     """Show all of the world."""
     window.fit(world)
@@ -229,9 +209,13 @@ def toggle_help(world: World, window: Window) -> None:
 
 
 def leave(world: World, window: Window) -> None:
-    """Leave the help if it is shown, else the window."""
+    """Leave the help, the menu or the tool if there is one, else the window."""
     if window.help:
         window.help = False
+    elif window.menu:
+        window.menu = ""
+    elif window.tool is not HAND:
+        choose_tool(window, HAND)
     else:
         close(world, window)
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.vector import Vector2
+from physicslab.view.canvas import Rect
 
 __all__ = ["Camera", "Extent"]
 
@@ -89,15 +90,27 @@ class Camera:
         after = self.to_world(at)
         self.centre = self.centre + before - after
 
-    def look_at(self, extent: Extent, scale: float) -> None:
-        """Put the middle of a part of the world in the middle of the screen, at a scale of ``scale`` px/m."""
-        self.centre = Vector2(0.5 * (extent[0] + extent[2]), 0.5 * (extent[1] + extent[3]))
-        self.scale = min(max(scale, _SMALLEST), _LARGEST)
+    def look_at(self, extent: Extent, scale: float, room: Rect | None = None) -> None:
+        """Put the middle of a part of the world in the middle of the screen, at a scale of ``scale`` px/m.
 
-    def fitting_scale(self, extent: Extent, margin: float = 0.07) -> float:
-        """Return the scale [px/m] at which a part of the world fills the screen but for a share as margin."""
-        room = 1.0 - 2.0 * margin
+        ``room`` is the part of the screen that it is put in the middle of [px], all of it by default.
+        """
+        left, top, width, height = room or (0, 0, *self.size)
+        self.scale = min(max(scale, _SMALLEST), _LARGEST)
+        self.centre = Vector2(
+            0.5 * (extent[0] + extent[2]) + (0.5 * (self.size[0] - width) - left) / self.scale,
+            0.5 * (extent[1] + extent[3]) - (0.5 * (self.size[1] - height) - top) / self.scale,
+        )
+
+    def fitting_scale(self, extent: Extent, room: Rect | None = None, margin: float = 0.07) -> float:
+        """Return the scale [px/m] at which a part of the world fills the screen but for a share as margin.
+
+        ``room`` is the part of the screen to be filled [px], all of it by default.
+        """
+        share = 1.0 - 2.0 * margin
+        _, _, across, up = room or (0, 0, *self.size)
         width, height = extent[2] - extent[0], extent[3] - extent[1]
-        across = self.size[0] * room / width if width > 0.0 else _LARGEST
-        up = self.size[1] * room / height if height > 0.0 else _LARGEST
-        return min(across, up)
+        return min(
+            across * share / width if width > 0.0 else _LARGEST,
+            up * share / height if height > 0.0 else _LARGEST,
+        )

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.view.theme import Colour
 
-__all__ = ["Align", "Canvas", "Look", "Numbers", "Points", "RecordingCanvas", "Rect", "TextStyle"]
+if TYPE_CHECKING:
+    import pygame
+
+__all__ = ["Align", "Canvas", "Look", "Numbers", "Painter", "Points", "RecordingCanvas", "Rect", "TextStyle"]
 
 type Numbers = NDArray[np.float64]
 """A float64 array (n,)."""
@@ -18,6 +22,8 @@ type Points = NDArray[np.float64]
 """A float64 array (n, 2): right and down from the top left corner [px]."""
 type Rect = tuple[int, int, int, int]
 """Left, top, width, height [px]."""
+type Painter = Callable[[pygame.Surface], None]
+"""Draws on a surface."""
 type Align = Literal["left", "centre", "right"]
 
 
@@ -90,6 +96,9 @@ class Canvas(Protocol):
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return the width and height of one line [px]."""
 
+    def paint(self, painter: Painter) -> None:
+        """Let something else draw on the picture: widgets do that by themselves."""
+
 
 @dataclass(slots=True)
 class RecordingCanvas:
@@ -159,3 +168,7 @@ class RecordingCanvas:
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return a guess: letters a little over half as wide as high."""
         return round(0.55 * style.size * len(words)), round(1.36 * style.size)
+
+    def paint(self, painter: Painter) -> None:
+        """Note that something was to be drawn."""
+        self.calls.append(("paint", {"painter": painter}))

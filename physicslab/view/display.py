@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import datetime
@@ -51,6 +53,7 @@ class Display:
             raise OSError(f"no window can be opened: {error}") from error
         try:
             pygame.display.set_caption(title)
+            _limit(config.least_size)
             surface.fill(theme.background)
             pygame.display.flip()  # at once, so that no black rectangle greets the user
             yield cls(PygameCanvas(surface), config.fps)
@@ -91,6 +94,16 @@ class Display:
         with path.open("wb") as stream:
             pygame.image.save(self.canvas.surface, stream, path.name)
         return path
+
+
+def _limit(size: tuple[int, int]) -> None:
+    """Let the window be made no smaller than this [px], where SDL can be asked for it.
+
+    pygame-ce has no other way to a window made by ``set_mode``, and warns that this one will go.
+    """
+    with warnings.catch_warnings(), contextlib.suppress(AttributeError, pygame.error):
+        warnings.simplefilter("ignore", DeprecationWarning)
+        pygame.Window.from_display_module().minimum_size = size
 
 
 def _icon(theme: Theme) -> pygame.Surface:

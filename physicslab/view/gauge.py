@@ -7,6 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.view.quantities import round_quantity
+
 __all__ = ["Gauge"]
 
 _MEMORY = 4.0
@@ -58,4 +60,4 @@ class Gauge:
     @property
     def words(self) -> str:
         """The scale, as the legend says it."""
-        return f"1 m = {self.per_metre:.3g} {self.unit}" if self.per_metre else "none yet"
+        return f"1 m = {round_quantity(self.per_metre, self.unit)}" if self.per_metre else "none yet"

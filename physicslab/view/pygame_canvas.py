@@ -12,7 +12,7 @@ import pygame
 from numpy.typing import NDArray
 
 from physicslab.kernels import compile_kernels, raster
-from physicslab.view.canvas import Align, Look, Numbers, Points, Rect, TextStyle
+from physicslab.view.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle
 from physicslab.view.theme import Colour
 
 __all__ = ["PygameCanvas"]
@@ -146,6 +146,10 @@ class PygameCanvas:
                 self._sizes.clear()
             size = self._sizes[key] = self._font(style).size(words)
         return size
+
+    def paint(self, painter: Painter) -> None:
+        """Let something else draw on the picture."""
+        painter(self.surface)
 
     def _font(self, style: TextStyle) -> pygame.font.Font:
         key = (style.size, style.bold)

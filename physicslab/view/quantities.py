@@ -6,7 +6,7 @@ import math
 
 from physicslab.vector import Vector2
 
-__all__ = ["length_of", "percentage", "quantity", "vector_quantity"]
+__all__ = ["length_of", "percentage", "quantity", "round_quantity", "vector_quantity"]
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -30,6 +30,20 @@ def quantity(value: float, unit: str) -> str:
         return f"{value:.{min(max(3 - power, 0), 4)}f} {unit}"
     digits, _, exponent = f"{value:.3e}".partition("e")
     return f"{digits}·10{str(int(exponent)).translate(_RAISED)} {unit}"
+
+
+def round_quantity(value: float, unit: str) -> str:
+    """Return a number of one or two figures, as scales have, and its SI unit.
+
+    >>> round_quantity(0.2, "N s")
+    '0.2 N s'
+    >>> round_quantity(5e-5, "N s")
+    '5·10⁻⁵ N s'
+    """
+    power = math.floor(math.log10(abs(value) * (1.0 + 1e-12)))
+    if -3 <= power <= 5:
+        return f"{value:.{max(-power, 0)}f} {unit}"
+    return f"{value / 10.0**power:.0f}·10{str(power).translate(_RAISED)} {unit}"
 
 
 def vector_quantity(value: Vector2, unit: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-__all__ = ["new_scene_path", "newest_scene"]
+__all__ = ["new_scene_path", "newest_scene", "scene_files"]
 
 _MARK = b"physicslab-scene/"
 """What the format of a scene file begins with."""
@@ -23,6 +23,21 @@ def new_scene_path(directory: Path, name: str) -> Path:
     return path
 
 
+def scene_files(directory: Path) -> list[Path]:
+    """Return every file that says it is a scene, the one that was written last first.
+
+    One that cannot be read is among them: who opens it is told why.
+    """
+
+    def offered(path: Path) -> bool:
+        try:
+            return _says_scene(path)
+        except OSError:
+            return True
+
+    return [path for path in reversed(_by_age(directory)) if offered(path)]
+
+
 def newest_scene(directory: Path) -> Path | None:
     """Return the scene file that was written last, or ``None`` if there is none.
 
@@ -33,10 +48,14 @@ def newest_scene(directory: Path) -> Path | None:
     OSError
         If a file cannot be read.
     """
-    files = sorted(filter(Path.is_file, directory.glob("*.json")), key=lambda path: path.stat().st_mtime_ns)
+    files = _by_age(directory)
     scenes = [path for path in files if _says_scene(path)]
     candidates = scenes or files
     return candidates[-1] if candidates else None
+
+
+def _by_age(directory: Path) -> list[Path]:
+    return sorted(filter(Path.is_file, directory.glob("*.json")), key=lambda path: path.stat().st_mtime_ns)
 
 
 def _says_scene(path: Path) -> bool:

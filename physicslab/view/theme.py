@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["DARK", "Colour", "Theme", "mixed"]
+__all__ = ["DARK", "HIGH_CONTRAST", "PROJECTOR", "THEMES", "Colour", "Theme", "mixed"]
 
 type Colour = tuple[int, int, int]
 """Red, green and blue, 0 to 255."""
@@ -26,6 +26,8 @@ class Theme:
 
     Attributes
     ----------
+    name : str
+        What it is called.
     background, grid, axis : Colour
         Empty space, a line each metre or so, and the lines through the origin.
     bodies : tuple of Colour
@@ -52,6 +54,7 @@ class Theme:
         The banners.
     """
 
+    name: str
     background: Colour
     grid: Colour
     axis: Colour
@@ -92,6 +95,7 @@ class Theme:
 
 
 DARK = Theme(
+    name="dark",
     background=(15, 17, 23),
     grid=(25, 28, 37),
     axis=(41, 46, 60),
@@ -134,4 +138,99 @@ DARK = Theme(
     error=(255, 105, 100),
     notice=(90, 205, 160),
 )
-"""The theme there is: dark."""
+"""The theme at the start."""
+
+HIGH_CONTRAST = Theme(
+    name="high contrast",
+    background=(0, 0, 0),
+    grid=(38, 38, 38),
+    axis=(84, 84, 84),
+    bodies=(
+        (110, 205, 255),
+        (255, 175, 0),
+        (0, 225, 165),
+        (255, 245, 80),
+        (255, 125, 60),
+        (255, 150, 215),
+        (130, 155, 255),
+    ),
+    fill_share=0.38,
+    static=(190, 190, 190),
+    kinematic=(230, 230, 230),
+    held=(255, 255, 255),
+    spring=(225, 225, 225),
+    pin=(255, 255, 255),
+    bounds=(175, 175, 175),
+    spark=(255, 240, 170),
+    panel=(0, 0, 0),
+    panel_opacity=1.0,
+    outline=(200, 200, 200),
+    text=(255, 255, 255),
+    faint=(215, 215, 215),
+    accent=(255, 235, 60),
+    heading=(255, 255, 255),
+    velocity=(60, 230, 255),
+    force=(255, 210, 40),
+    contact_normal=(255, 255, 255),
+    normal_impulse=(120, 255, 120),
+    friction_impulse=(255, 140, 185),
+    friction_cone=(210, 215, 235),
+    key=(48, 48, 48),
+    key_rim=(235, 235, 235),
+    paused=(255, 210, 60),
+    slow=(120, 220, 255),
+    planet=(215, 180, 255),
+    warning=(255, 175, 90),
+    error=(255, 135, 125),
+    notice=(110, 240, 180),
+)
+"""For eyes or screens that lose faint things: black, white and strong colours."""
+
+PROJECTOR = Theme(
+    name="projector",
+    background=(255, 255, 255),
+    grid=(233, 235, 239),
+    axis=(200, 204, 212),
+    bodies=(
+        (3, 106, 186),
+        (177, 121, 13),
+        (6, 155, 88),
+        (73, 56, 24),
+        (191, 67, 6),
+        (165, 58, 120),
+        (44, 52, 197),
+    ),
+    fill_share=0.32,
+    static=(92, 99, 114),
+    kinematic=(58, 63, 76),
+    held=(10, 12, 18),
+    spring=(88, 95, 112),
+    pin=(40, 44, 54),
+    bounds=(105, 113, 132),
+    spark=(205, 95, 0),
+    panel=(247, 248, 250),
+    panel_opacity=0.94,
+    outline=(196, 201, 211),
+    text=(22, 25, 33),
+    faint=(84, 91, 107),
+    accent=(0, 92, 175),
+    heading=(5, 7, 12),
+    velocity=(0, 110, 190),
+    force=(165, 95, 0),
+    contact_normal=(40, 44, 56),
+    normal_impulse=(10, 125, 40),
+    friction_impulse=(200, 30, 100),
+    friction_cone=(88, 94, 114),
+    key=(224, 228, 235),
+    key_rim=(160, 167, 181),
+    paused=(140, 85, 0),
+    slow=(0, 92, 175),
+    planet=(105, 55, 185),
+    warning=(165, 70, 0),
+    error=(185, 20, 25),
+    notice=(0, 110, 70),
+)
+"""For a bright room: dark on white."""
+
+THEMES = (DARK, HIGH_CONTRAST, PROJECTOR)
+"""Every theme, in the order in which they follow each other."""

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from physicslab.config import WindowConfig
 from physicslab.pace import Pace
 from physicslab.vector import Vector2
 from physicslab.view.camera import Camera
-from physicslab.view.canvas import Canvas
+from physicslab.view.canvas import Canvas, Rect
 from physicslab.view.extent import extent_of
 from physicslab.view.hand import Hand
 from physicslab.view.overlays import Overlays
 from physicslab.view.sparks import Sparks
 from physicslab.view.spring_tool import SpringTool
 from physicslab.view.theme import DARK, Theme
+from physicslab.view.tools import HAND, Tool
 from physicslab.view.trails import TrailSwitch
 from physicslab.world import World
 
 __all__ = ["Window"]
 
-_FOOT = 0.06
-"""Room left below the world for the controls hint, as a share of its height."""
+_AROUND = 0.04
+"""Room left around the world, as a share of what the panels leave."""
 
 
 class Window:
@@ -61,8 +63,14 @@ class Window:
         Whether the window is to be closed.
     error : str
         Why the world stopped; empty while all is well.
-    help, grid : bool
-        Whether all keys are shown, and the grid.
+    help, grid, figures : bool
+        Whether all keys are shown, the grid, and the panels of figures and costs.
+    tool : Tool
+        What the left mouse button does.
+    menu : str
+        Which menu is open; empty where none is.
+    room : callable
+        Returns which part of the canvas is left for the world [px].
     spring_tool : SpringTool
         The spring that is being drawn with the mouse.
     scene_file : path, optional
@@ -91,13 +99,22 @@ class Window:
         self.closing = False
         self.error = ""
         self.help = False
-        self.grid = True
+        self.grid = self.figures = True
+        self.tool: Tool = HAND
+        self.menu = ""
+        self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
         self.spring_tool = SpringTool()
         self.scene_file: Path | None = None
         self.next_world: World | None = None
         self.notice_failed = False
         self._notice, self._notice_until = "", 0.0
         self._shown: tuple[Vector2, float, float] | None = None
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """The middle of what is left for the world [px]."""
+        left, top, width, height = self.room()
+        return left + 0.5 * width, top + 0.5 * height
 
     @property
     def place(self) -> Vector2:
@@ -136,11 +153,10 @@ class Window:
         self._show(world, float("inf"))
 
     def _show(self, world: World, largest_scale: float) -> None:
-        extent = extent_of(world)
+        extent, room = extent_of(world), self.room()
         if extent is None:
-            self.camera.look_at((0.0, 0.0, 0.0, 0.0), self.config.pixels_per_metre)
+            self.camera.look_at((0.0, 0.0, 0.0, 0.0), self.config.pixels_per_metre, room)
         else:
-            xmin, ymin, xmax, ymax = extent
-            extent = (xmin, ymin - _FOOT * (ymax - ymin), xmax, ymax)
-            self.camera.look_at(extent, min(self.camera.fitting_scale(extent), largest_scale))
+            scale = min(self.camera.fitting_scale(extent, room, _AROUND), largest_scale)
+            self.camera.look_at(extent, scale, room)
         self._shown = (self.camera.centre, self.camera.scale, largest_scale)
