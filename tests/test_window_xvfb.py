@@ -118,12 +118,12 @@ def test_a_user_spawns_drags_throws_and_quits(screen: Screen) -> None:
 
         screen.do("key", "r")
         screen.until(lambda picture: not differs(left, empty, 2_000)(picture), "an empty world again")
-        screen.do("mousemove", 300, 500)
+        screen.do("mousemove", 400, 500)
         screen.do("click", 3)
-        screen.until(differs((slice(270, 330), slice(470, 530)), empty, 5_000), "a box")
+        screen.until(differs((slice(370, 430), slice(470, 530)), empty, 5_000), "a box")
         screen.do("mousedown", 1)
         words: list[object] = []
-        for x in range(300, 900, 12):
+        for x in range(400, 900, 12):
             words += ["mousemove", x, 500, "sleep", 0.01]
         screen.do(*words, "mouseup", 1)
         first = screen.picture()
