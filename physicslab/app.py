@@ -126,13 +126,16 @@ def open_window(scene: str | None) -> int:
         sandbox.frame(0.0)
         display.show()  # the time that the first frame took, with all that it loads, is not made up for
         elapsed = 0.0
-        while not window.closing:
-            sandbox.frame(elapsed)
-            display.title = _title(sandbox.world)
-            if window.wants_screenshot:
-                window.wants_screenshot = False
-                window.notify(_keep_screenshot(display))
-            elapsed = display.show()
+        try:
+            while not window.closing:
+                sandbox.frame(elapsed)
+                display.title = _title(sandbox.world)
+                if window.wants_screenshot:
+                    window.wants_screenshot = False
+                    window.notify(_keep_screenshot(display))
+                elapsed = display.show()
+        finally:
+            window.error_study.stop()
     return 0
 
 

@@ -90,6 +90,7 @@ def test_no_click_on_a_button_reaches_the_world(desk: Desk, button: int) -> None
     for label in [label for label in desk.sandbox.toolbar.places if label not in left_out]:
         press(desk, label, button)
         desk.window.help = False
+        desk.window.error_study.stop()
     assert desk.world.entities() == []
     assert not desk.window.closing
 

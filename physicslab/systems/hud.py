@@ -15,6 +15,7 @@ from physicslab.view.legend import Legend, legend_of
 from physicslab.view.panels import Panel, broken, draw_pill, lay_out, text_size
 from physicslab.view.readings import cost_lines, figure_lines, left_out_lines, method_lines
 from physicslab.view.scale_bar import draw_scale_bar, scale_bar_height
+from physicslab.view.work_precision import draw_work_precision
 
 if TYPE_CHECKING:
     from physicslab.view.canvas import Rect
@@ -82,7 +83,12 @@ class HudSystem(System):
         if window.now >= self._next_reading or changed:
             self._next_reading, self._world, self._overlays = window.now + _PERIOD, world, overlays
             self._read(world)
-        if window.help:
+        if window.error_study.poll():
+            self._announce(window.error_study.failure)
+        if window.error_study.shown and not window.help:
+            draw_work_precision(window.error_study, window.canvas, window.theme)
+            window.overlays.covered = [(0, 0, *window.canvas.size)]
+        elif window.help:
             self._help.draw(window.canvas)
             window.overlays.covered = [(0, 0, *window.canvas.size)]  # or labels would look out below it
         else:
@@ -120,6 +126,11 @@ class HudSystem(System):
         right = across - panel
         # Else the banners would have no room between them.
         return panel, right if right - panel >= _BANNER * size else across
+
+    def _announce(self, failure: str) -> None:
+        """Say how measuring the error ended."""
+        words = f"Error against run time could not be measured: {failure}" if failure else ""
+        self._window.notify(words, 6.0 if failure else 0.0, failed=bool(failure))
 
     def _draw_all(self, world: World) -> None:
         window = self._window

@@ -92,8 +92,10 @@ class InputSystem(System):
 
     def _press(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
-        if self._window.help:  # it lies over the world: nothing is to happen behind it
-            self._window.help = False
+        if (
+            self._window.help or self._window.error_study.shown
+        ):  # nothing is to happen behind what lies over all
+            self._window.help = self._window.error_study.shown = False
             return
         if event.button == pygame.BUTTON_LEFT:
             self._tool = self._window.tool

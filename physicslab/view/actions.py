@@ -16,7 +16,7 @@ from physicslab.world import World
 
 __all__ = [
     "ask_screenshot", "choose_tool", "clear", "close", "enlarge", "faster", "fit", "go_home", "leave",
-    "next_theme", "open_scene", "reduce", "reopen", "save", "slower", "step",
+    "next_theme", "open_scene", "reduce", "reopen", "save", "slower", "step", "study_error",
     "toggle_arrows", "toggle_figures", "toggle_gravity", "toggle_grid", "toggle_help", "toggle_impulses",
     "toggle_menu", "toggle_pause", "toggle_planets", "toggle_slow_motion", "toggle_trails",
     "zoom", "zoom_in", "zoom_out",
@@ -208,10 +208,26 @@ def toggle_help(world: World, window: Window) -> None:
     window.help = not window.help
 
 
+def study_error(world: World, window: Window) -> None:
+    """Measure error against run time of the scene as it is now; show it when that is done."""
+    if window.error_study.running:
+        window.error_study.stop()
+        window.notify("Measuring error against run time: stopped")
+        return
+    try:
+        window.error_study.start(world)
+    except (OSError, SceneError) as error:
+        window.notify(f"Error against run time could not be measured: {error}", failed=True)
+    else:
+        window.notify("Measuring error against run time of this scene; F5 stops it", 600.0)
+
+
 def leave(world: World, window: Window) -> None:
-    """Leave the help, the menu or the tool if there is one, else the window."""
+    """Leave the help, the plot, the menu or the tool if there is one, else the window."""
     if window.help:
         window.help = False
+    elif window.error_study.shown:
+        window.error_study.shown = False
     elif window.menu:
         window.menu = ""
     elif window.tool is not HAND:

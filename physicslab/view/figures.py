@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from physicslab.components import Held
 from physicslab.diagnostics import Drift, Energy, Momentum, measure_momentum
+from physicslab.known_motion import KnownMotion, known_motion
 from physicslab.view.bodies import body_rows
 from physicslab.world import World
 
@@ -32,6 +33,10 @@ class WorldFigures:
         Time of the world [s] at the last edit.
     momentum : Momentum
         Linear [kg m/s], and angular about the origin [kg m^2/s].
+    known : KnownMotion, optional
+        The exact solution since the last edit, where there is one.
+    error : float
+        How far the body that is furthest off is from that [m].
     """
 
     bodies: int
@@ -41,20 +46,23 @@ class WorldFigures:
     drift: Drift
     since: float
     momentum: Momentum
+    known: KnownMotion | None
+    error: float
 
 
 def measure_world(world: World, watch: EnergyWatch) -> WorldFigures:
     """Measure a world as it is now."""
     drift = watch.sample(world)
-    contacts = world.contacts
+    contacts, known = world.contacts, watch.known
     return WorldFigures(
         len(body_rows(world)), contacts.candidate_pairs, contacts.count,
         drift.latest, drift, watch.since, measure_momentum(world),
+        known, known.error(world) if known is not None else 0.0,
     )  # fmt: skip
 
 
 class EnergyWatch:
-    """Watches the energy of a world from one edit to the next.
+    """Watches the energy of a world from one edit to the next, and its motion where that is known exactly.
 
     Whatever changes the structure or the laws of the world is an edit, and so is taking a body and letting it
     go: the energy that these bring in or take out is no error of the simulation.
@@ -63,10 +71,13 @@ class EnergyWatch:
     ----------
     since : float
         Time of the world [s] at the last edit.
+    known : KnownMotion, optional
+        The exact solution since then, where there is one.
     """
 
     def __init__(self) -> None:
         self.since = 0.0
+        self.known: KnownMotion | None = None
         self._drift: Drift | None = None
         self._seen: tuple[World, int] | None = None
 
@@ -78,6 +89,7 @@ class EnergyWatch:
     def restart(self, world: World) -> Drift:
         """Start anew from the energy as it is now."""
         self._drift = Drift(world)
+        self.known = known_motion(world)
         self._seen, self.since = (world, world.revision), world.time
         return self._drift
 

@@ -6,9 +6,18 @@ import math
 
 from physicslab.vector import Vector2
 
-__all__ = ["length_of", "percentage", "quantity", "round_quantity", "vector_quantity"]
+__all__ = ["length_of", "percentage", "power_of_ten", "quantity", "round_quantity", "vector_quantity"]
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def power_of_ten(power: int) -> str:
+    """Return a power of ten as people write it.
+
+    >>> power_of_ten(-2), power_of_ten(-12)
+    ('0.01', '10⁻¹²')
+    """
+    return f"{10.0**power:g}" if -2 <= power <= 3 else f"10{str(power).translate(_RAISED)}"
 
 
 def quantity(value: float, unit: str) -> str:

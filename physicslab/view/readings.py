@@ -20,6 +20,7 @@ def figure_lines(world: World, figures: WorldFigures, frame_rate: float) -> list
         Line("Candidate pairs", f"{figures.candidate_pairs}"),
         Line("Contacts", f"{figures.contacts}"),
         *_energy_lines(world, figures),
+        *_error_lines(figures),
         Line("Total momentum", quantity(figures.momentum.linear.magnitude, "kg m/s")),
         Line("as a vector", vector_quantity(figures.momentum.linear, "kg m/s"), "detail"),
         Line("Angular momentum", quantity(figures.momentum.angular, "kg m²/s")),
@@ -44,6 +45,15 @@ def _energy_lines(world: World, figures: WorldFigures) -> list[Line]:
         Line("Energy drift", quantity(change, "J")),
         Line("largest so far", f"{quantity(drift.largest, 'J')}, {percentage(drift.relative)}", "detail"),
         Line("since the last edit", f"at {figures.since:.2f} s", "detail"),
+    ]
+
+
+def _error_lines(figures: WorldFigures) -> list[Line]:
+    if figures.known is None:
+        return []
+    return [
+        Line("Position error", quantity(figures.error, "m")),
+        Line(f"against {figures.known.what}", kind="detail"),
     ]
 
 

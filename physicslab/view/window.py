@@ -10,6 +10,7 @@ from physicslab.pace import Pace
 from physicslab.vector import Vector2
 from physicslab.view.camera import Camera
 from physicslab.view.canvas import Canvas, Rect
+from physicslab.view.error_study import ErrorStudy
 from physicslab.view.extent import extent_of
 from physicslab.view.hand import Hand
 from physicslab.view.overlays import Overlays
@@ -73,6 +74,8 @@ class Window:
         Returns which part of the canvas is left for the world [px].
     spring_tool : SpringTool
         The spring that is being drawn with the mouse.
+    error_study : ErrorStudy
+        Error against run time of the scene, when asked for.
     scene_file : path, optional
         The scene file that was last saved or opened.
     next_world : World, optional
@@ -103,6 +106,7 @@ class Window:
         self.tool: Tool = HAND
         self.menu = ""
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
+        self.error_study = ErrorStudy()
         self.spring_tool = SpringTool()
         self.scene_file: Path | None = None
         self.next_world: World | None = None

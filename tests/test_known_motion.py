@@ -1,0 +1,104 @@
+"""Motions that are known exactly, against references of twenty digits and against the engine."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from physicslab import load_scene
+from physicslab.components import Mass, Shape, Spring, Transform, Velocity
+from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.kepler import propagate_kepler
+from physicslab.known_motion import known_motion
+from physicslab.systems.standard import standard_systems
+from physicslab.world import World
+
+AFTER_200_PI_PLUS_1 = {
+    0.0: (0.5403023058681397174009, 0.8414709848078965066525),
+    0.5: (-0.4279672455611135512613, 0.8637757010451036723824),
+    0.9: (-1.187188466345863385846, 0.4175276387397642323308),
+    0.99: (-1.339314318191828685311, 0.1321809070607890006155),
+}
+
+
+@pytest.mark.parametrize("e", AFTER_200_PI_PLUS_1)
+def test_kepler_orbits_against_the_reference(e: float) -> None:
+    start, speed = np.array((1.0 - e, 0.0)), np.array((0.0, math.sqrt((1 + e) / (1 - e))))
+    place, _ = propagate_kepler(start, speed, 1.0, 1.0)
+    assert place == pytest.approx(AFTER_200_PI_PLUS_1[e], abs=1e-14 / (1.0 - e))
+
+
+orbit = st.floats(-3, 3).filter(lambda x: abs(x) > 0.05)
+
+
+@given(orbit, orbit, st.floats(-3, 3), st.floats(-3, 3), st.floats(-20, 20))
+def test_kepler_orbits_keep_energy_and_lead_back(x: float, y: float, u: float, v: float, t: float) -> None:
+    place, speed = np.array((x, y)), np.array((u, v))
+    if abs(x * v - y * u) < 0.05:
+        return  # nearly through the middle, where every digit is lost
+    energy = 0.5 * speed @ speed - 1 / np.hypot(*place)
+    there, then = propagate_kepler(place, speed, 1.0, t)
+    assert 0.5 * then @ then - 1 / np.hypot(*there) == pytest.approx(energy, abs=1e-9 * (1 + abs(energy)))
+    assert there[0] * then[1] - there[1] * then[0] == pytest.approx(x * v - y * u, rel=1e-9)
+    back, _ = propagate_kepler(there, then, 1.0, -t)
+    assert back == pytest.approx(place, abs=1e-5)
+
+
+def world_of(*bodies: tuple[object, ...], integrator: str, **physics: object) -> World:
+    settings = PhysicsConfig(**physics)  # type: ignore[arg-type]
+    world = World(*standard_systems(), physics=settings, simulation=SimulationConfig(integrator=integrator))
+    for body in bodies:
+        world.spawn(*body)
+    return world
+
+
+def test_two_bodies_that_both_move_are_followed_and_the_error_falls_with_the_method() -> None:
+    errors = {}
+    for name in ("symplectic_euler", "leapfrog", "rk4", "dop853"):
+        world = world_of(
+            (Transform((1, 0)), Velocity((0.3, 0.4)), Mass(1)),
+            (Transform((-1, 0)), Velocity((0.1, -0.3)), Mass(2)),
+            integrator=name, gravity_mode="planet",
+        )  # fmt: skip
+        known = known_motion(world)
+        assert known is not None and known.what == "two bodies on Kepler orbits"
+        assert known.error(world) == 0.0
+        world.run(seconds=3.0)
+        errors[name] = known.error(world)
+    assert errors["symplectic_euler"] > 10 * errors["leapfrog"] > 1000 * errors["rk4"]
+    assert errors["dop853"] < 1e-12
+
+
+def test_a_fixed_star_pulls_by_its_mass_alone() -> None:
+    world = world_of(
+        (Transform((0, 0)), Mass(2)), (Transform((1, 0)), Velocity((0, 1.2)), Mass(5)),
+        integrator="dop853", gravity_mode="planet",
+    )  # fmt: skip
+    known = known_motion(world)
+    assert known is not None
+    world.run(seconds=5.0)
+    assert known.error(world) < 1e-12
+
+
+def test_a_spring_in_line_and_a_thrown_ball_are_known() -> None:
+    spring = Spring(rest_length=1, stiffness=40, damping=0.5)
+    for body in (
+        (Transform((1.2, 0)), Velocity(), Mass(1), spring),
+        (Transform(), Velocity((3, 4)), Mass(1)),
+    ):
+        world = world_of(body, integrator="rk4", gravity_mode="none")
+        known = known_motion(world)
+        assert known is not None
+        world.run(seconds=2.0)
+        assert 0.0 <= known.error(world) < 1e-6
+
+
+def test_what_has_no_solution_has_none() -> None:
+    swinging = (Transform((2, 0)), Velocity(), Mass(1), Spring(rest_length=1))
+    assert known_motion(world_of(swinging, integrator="auto")) is None
+    assert known_motion(load_scene("solar_system")) is None
+    touching = [(Transform((x, 0)), Velocity(), Mass(1), Shape.circle(1)) for x in (2, 9)]
+    assert known_motion(world_of(*touching, integrator="auto")) is None
+    assert known_motion(World()) is None
