@@ -175,14 +175,18 @@ def _hang_in_line(
     lengths = np.hypot(reach[:, 0], reach[:, 1])
     line = reach[int(lengths.argmax())] / (lengths.max() or 1.0)
     if not lengths.max() > 0.0:
-        speed = float(np.hypot(*velocity))
-        line = velocity / speed if speed > 0.0 else np.array((1.0, 0.0))
+        along = next((v for v in (velocity, form.acceleration[i]) if v.any()), np.array((1.0, 0.0)))
+        line = along / np.hypot(*along)
     normal = np.array((-line[1], line[0]))
-    for vector in (velocity, form.acceleration[i], *reach):
-        if abs(float(normal @ vector)) > _IN_LINE * float(np.hypot(*vector)):
-            raise NoClosedForm(f"{label} does not stay on the line of its springs")
     rest, stiffness, damping = numbers.T
     inverse = world.bodies.inverse_mass[row]
+    rate = float(np.sqrt(stiffness.sum() * inverse))
+    speed = float(np.hypot(*velocity)) + rate * float(lengths.max())  # what rounding is measured against
+    for vector, scale in ((velocity, speed), (form.acceleration[i], float(np.hypot(*form.acceleration[i])))):
+        if abs(float(normal @ vector)) > _IN_LINE * scale:
+            raise NoClosedForm(f"{label} does not stay on the line of its springs")
+    if (np.abs(reach @ normal) > _IN_LINE * lengths.max()).any():
+        raise NoClosedForm(f"{label} does not stay on the line of its springs")
     side = np.sign(reach @ line)
     rate2, drag = float(stiffness.sum() * inverse), float(damping.sum() * inverse) + form.drag[i, 0]
     acceleration = float(form.acceleration[i] @ line)

@@ -149,8 +149,11 @@ def test_symplectic_methods_keep_areas_and_the_others_do_not(name: str) -> None:
 
 
 def test_leapfrog_runs_backwards_to_where_it_came_from() -> None:
-    physics = PhysicsConfig(gravity_mode="planet", softening=0.1)
-    world = World(GravitySystem(), SpringSystem(), IntegrateSystem(), physics=physics)
+    physics, simulation = (
+        PhysicsConfig(gravity_mode="planet", softening=0.1),
+        SimulationConfig(integrator="leapfrog"),
+    )
+    world = World(GravitySystem(), SpringSystem(), IntegrateSystem(), physics=physics, simulation=simulation)
     random = np.random.default_rng(2)
     places = random.normal(size=(4, 2))
     for place in places:

@@ -13,6 +13,10 @@ __all__ = ["dop853", "first_step", "largest", "make_stages", "step_error", "tota
 
 _SAFETY, _MOST, _LEAST = 0.9, 6.0, 0.2
 """How far a step keeps below what the estimate allows, and how much it may grow or shrink at once."""
+_SHORTEST = 1e-13
+"""The shortest step, as a share of the time to go: what needs shorter ones has no end."""
+_NOISE = 1e6
+"""An estimate of more than so many times the tolerance is not taken for rounding."""
 
 
 @inlined
@@ -95,7 +99,7 @@ def first_step(pushes: Vectors, q_scale: float, v_scale: float, span: float, tol
         if push > 0.0:
             guess = min(guess, math.sqrt(q_scale / push))
     elif v_scale > 0.0 and push > 0.0:
-        guess = min(guess, v_scale / push)
+        guess = max(v_scale / push, 1e-6 * span)
     return min(guess * math.pow(tolerance, 0.125), span)
 
 
@@ -117,44 +121,36 @@ def dop853(
     make_stages(q, v, stage_q, stage_v, acceleration, rates, pushes, inverse_mass, damping, calls, 0.0, 0, 1)
     evaluations, done, done_low = 1, 0.0, 0.0
     h = first_step(pushes, q_scale, v_scale, span, tolerance)
-    grow = _MOST
+    grow, last_error, last_taken = _MOST, math.inf, 1.0
     while True:
         left = (span - done) - done_low
         if left <= 0.0:
             return evaluations
         last = h >= left
         taken = left if last else min(h, 0.5 * left) if h > 0.9 * left else h
-        if done + taken == done and not last:
+        if taken < _SHORTEST * span and not last:
             return -1
         make_stages(
-            q,
-            v,
-            stage_q,
-            stage_v,
-            acceleration,
-            rates,
-            pushes,
-            inverse_mass,
-            damping,
-            calls,
-            taken,
-            1,
-            LAST + 1,
-        )
+            q, v, stage_q, stage_v, acceleration, rates, pushes,
+            inverse_mass, damping, calls, taken, 1, LAST + 1,
+        )  # fmt: skip
         evaluations += LAST
         q_reach, v_reach = max(q_scale, largest(stage_q, n)), max(v_scale, largest(stage_v, n))
         error = step_error(rates, pushes, taken, q_reach, v_reach, tolerance)
         if not math.isfinite(error):
             h, grow = _LEAST * taken, 1.0
-            if h < 1e-300:
-                return -1
+            last_error = math.inf
             continue
         factor = min(max(_SAFETY * math.pow(error, -0.125), _LEAST), grow) if error > 0.0 else grow
         h = factor * taken
-        if error > 1.0:
-            grow = 1.0
+        # Rounding falls no faster than the step, a kink of the force with its square: no step is better.
+        rounding = error < _NOISE and error > last_error * math.pow(taken / last_taken, 1.5)
+        if error > 1.0 and not rounding:
+            grow, last_error, last_taken = 1.0, error, taken
             continue
-        grow = _MOST
+        if rounding:
+            h = taken
+        grow, last_error = _MOST, math.inf
         for i in range(n):
             moved, moved_low = total(rates[i])
             pushed, pushed_low = total(pushes[i])

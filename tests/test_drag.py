@@ -1,0 +1,73 @@
+"""DragSystem: the closed forms, and that what it takes is gone."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from physicslab.columns import InvalidValue
+from physicslab.components import Drag, Mass, Shape, Transform, Velocity
+from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.diagnostics import measure_energy
+from physicslab.systems.drag import DragSystem
+from physicslab.systems.gravity import GravitySystem
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.standard import standard_systems
+from physicslab.world import World
+
+
+def thrown(
+    drag: Drag, mass: float, velocity: tuple[float, float], integrator: str = "auto"
+) -> tuple[World, int]:
+    simulation = SimulationConfig(integrator=integrator)
+    world = World(GravitySystem(), DragSystem(), IntegrateSystem(), simulation=simulation)
+    return world, world.spawn(Transform(), Velocity(velocity), Mass(mass), drag)
+
+
+def test_linear_drag_against_the_closed_form() -> None:
+    world, ball = thrown(Drag(linear=0.5), 2.0, (10, 15))
+    world.run(seconds=3.0)
+    assert world.method.integrator.name == "exact"
+    place, velocity = world.component(ball, Transform).position, world.component(ball, Velocity).linear
+    assert tuple(place) == pytest.approx((21.10533789035941171448, -3.244647282690550860671), rel=1e-13)
+    assert tuple(velocity) == pytest.approx((4.723665527410147071380, -13.61883817932736228483), rel=1e-13)
+
+
+def test_quadratic_drag_against_the_closed_form() -> None:
+    world, ball = thrown(Drag(quadratic=0.1), 1.0, (0, 0))
+    world.run(seconds=2.0)
+    assert world.method.integrator.name == "dop853"
+    assert world.component(ball, Transform).position.y == pytest.approx(-13.06611417826422700240, rel=1e-13)
+    assert world.component(ball, Velocity).linear.y == pytest.approx(-9.534645904705057135767, rel=1e-13)
+
+
+@pytest.mark.parametrize("name", ["leapfrog", "rk4", "implicit_midpoint", "dop853"])
+def test_every_method_comes_to_the_terminal_speed(name: str) -> None:
+    world, ball = thrown(Drag(linear=1.0, quadratic=0.2), 1.0, (3, 0), name)
+    world.run(seconds=40.0)
+    speed = (math.sqrt(1.0 + 4 * 0.2 * 9.81) - 1.0) / (2 * 0.2)  # c v + k v^2 = m g
+    assert world.component(ball, Velocity).linear.y == pytest.approx(-speed, rel=1e-9)
+
+
+@given(st.floats(0, 10), st.floats(0, 10), st.floats(0.1, 10), st.floats(-30, 30), st.floats(-30, 30))
+def test_it_never_gives_energy(c: float, k: float, mass: float, vx: float, vy: float) -> None:
+    world, _ = thrown(Drag(linear=c, quadratic=k), mass, (vx, vy))
+    before = measure_energy(world).total
+    world.run(seconds=0.5)
+    assert measure_energy(world).total <= before + 1e-9 * (1 + abs(before))
+
+
+def test_it_acts_in_scenes_that_touch_too() -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"))
+    ball = world.spawn(Transform(), Velocity((1, 0)), Mass(1), Shape.circle(0.1), Drag(linear=1.0))
+    world.spawn(Transform((9, 9)), Shape.circle(0.1))
+    world.run(seconds=1.0)
+    assert world.method.integrator.name == "leapfrog"
+    assert world.component(ball, Velocity).linear.x == pytest.approx(math.exp(-1), rel=1e-2)
+
+
+@pytest.mark.parametrize("field", ["linear", "quadratic"])
+def test_what_would_push_is_refused(field: str) -> None:
+    with pytest.raises(InvalidValue, match=rf"Drag\.{field} = -1"):
+        Drag(**{field: -1.0})

@@ -1,0 +1,89 @@
+"""The implicit midpoint rule: bounded however stiff, and the same whatever the order of the coordinates."""
+
+import numpy as np
+import pytest
+
+from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.diagnostics import measure_energy
+from physicslab.equations import Equations
+from physicslab.integrators import implicit_midpoint
+from physicslab.systems.standard import standard_systems
+from physicslab.world import World
+
+MIDPOINT = SimulationConfig(integrator="implicit_midpoint")
+
+
+def net(side: int, stiffness: float, **physics: object) -> World:
+    """Return a square net of springs that hangs from its two upper corners, its bodies in disorder."""
+    world = World(*standard_systems(), physics=PhysicsConfig(**physics), simulation=MIDPOINT)  # type: ignore[arg-type]
+    places = [(x, y) for x in range(side) for y in range(side)]
+    np.random.default_rng(3).shuffle(places)
+    knot = {}
+    for x, y in places:
+        fixed = y == side - 1 and x in (0, side - 1)
+        moves = () if fixed else (Velocity(), Mass(0.1))
+        knot[x, y] = world.spawn(Transform((0.5 * x, 0.5 * y)), *moves)
+    for x, y in knot:
+        for other in ((x + 1, y), (x, y + 1)):
+            if other in knot:
+                spring = Spring(knot[x, y], knot[other], rest_length=0.5, stiffness=stiffness)
+                world.spawn(spring)
+    return world
+
+
+@pytest.mark.parametrize("z", [0.1, 1.0, 1.9, 10.0, 100.0])
+def test_a_spring_of_any_stiffness_keeps_its_energy(z: float) -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"), simulation=MIDPOINT)
+    h = MIDPOINT.dt / MIDPOINT.substeps
+    world.spawn(Transform((1, 0)), Velocity(), Mass(1), Spring(rest_length=0, stiffness=(z / h) ** 2))
+    before = measure_energy(world).total
+    world.run(steps=250)
+    assert measure_energy(world).total == pytest.approx(before, rel=1e-9)
+
+
+def test_a_damper_however_strong_brings_to_rest_and_never_past_it() -> None:
+    for c in (1e3, 1e6, 1e12):
+        world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"), simulation=MIDPOINT)
+        spring = Spring(rest_length=0, stiffness=0, damping=c)
+        body = world.spawn(Transform((1, 0)), Velocity((1, 0)), Mass(1), spring)
+        world.run(seconds=1.0)
+        assert abs(world.component(body, Velocity).linear.x) <= 1.0
+
+
+def test_a_stiff_net_stays_together_and_gains_nothing() -> None:
+    world = net(8, 1e5)
+    before = measure_energy(world).total
+    for _ in world.stepping(seconds=2.0, stride=10):
+        assert measure_energy(world).total <= before + 0.02 * 64 * 0.1 * 9.81
+    assert np.isfinite(world.table(Transform)["position"]).all()
+    assert np.abs(world.table(Transform)["position"]).max() < 6.0
+
+
+def test_the_order_of_the_coordinates_changes_the_work_and_not_the_answer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ends, works = [], []
+    for banded in (True, False):
+        world = net(5, 1e4)
+        if not banded:
+            monkeypatch.setattr(implicit_midpoint, "_banded", lambda world, slots: _whole(slots))
+        world.run(seconds=0.5)
+        ends.append(world.table(Transform)["position"].copy())
+        works.append(world.force_evaluations)
+    assert ends[0] == pytest.approx(ends[1], abs=1e-8)
+    assert works[0] < 0.8 * works[1]
+
+
+def _whole(slots: object) -> tuple[object, int]:
+    count = getattr(slots, "moving_count")  # noqa: B009
+    return np.arange(count), count - 1
+
+
+def test_neighbours_stand_close_together_in_the_order() -> None:
+    world = net(8, 1e4)
+    world.synchronise()
+    equations = Equations(world)
+    order, band = implicit_midpoint._banded(world, equations.slots)
+    assert sorted(order.tolist()) == list(range(equations.slots.moving_count))
+    assert band < 40 < equations.slots.moving_count
