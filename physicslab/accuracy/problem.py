@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.systems.standard import standard_systems
@@ -74,6 +74,8 @@ class Problem:
         What is conserved among ``"energy"``, ``"momentum"`` and ``"angular_momentum"``.
     collisions : int, optional
         How many impacts there are.
+    not_asked : mapping of str to str
+        Methods that are left out although the engine would take them, and why.
     search : callable, optional
         Returns the error where one world does not show it: a threshold that is looked for with many.
     note : str
@@ -97,6 +99,7 @@ class Problem:
     exact_energy: Callable[[float], float] | None = None
     keeps: frozenset[str] = frozenset({"energy"})
     collisions: int | None = None
+    not_asked: Mapping[str, str] = field(default_factory=dict)
     search: Callable[[Callable[[], SimulationConfig]], float] | None = None
     note: str = ""
 

@@ -57,7 +57,9 @@ class Setting:
 
 
 def refusal(problem: Problem, method: Integrator) -> str:
-    """Return why the engine does not use a method on a problem; empty if it does."""
+    """Return why a method is not used on a problem; empty if it is."""
+    if method.name in problem.not_asked:
+        return problem.not_asked[method.name]
     world = problem.build(SimulationConfig(dt=problem.dt, integrator=method.name))
     world.synchronise()
     if world.method.refused:

@@ -18,7 +18,7 @@ from physicslab.integrators import INTEGRATORS, Integrator
 
 __all__ = ["Curve", "Row", "Study", "rounding_floor", "study"]
 
-_LONG_S = 0.4
+_LONG_S = 0.3
 """A ladder ends with the rung that takes longer."""
 
 
@@ -90,14 +90,18 @@ class Study:
         return min((error for error in errors if error is not None), default=None)
 
 
-def study(problem: Problem) -> Iterator[float | Study]:
-    """Compute a problem with every method; yield the share of the work that is done, then the result."""
+def study(problem: Problem, *, sparse: bool = False) -> Iterator[float | Study]:
+    """Compute a problem with every method; yield the share of the work that is done, then the result.
+
+    Where ``sparse``, every second rung of a ladder is left out, the finest not among them.
+    """
     plan = []
     for method in INTEGRATORS.values():
         refused = refusal(problem, method)
         holds = not (method.positions_only and sees_velocity(problem)) and not problem.touches
         curve = Curve(method, refused=refused, holds=holds)
-        plan.append((curve, [] if refused else list(ladder(problem, method))))
+        settings = [] if refused else list(ladder(problem, method))
+        plan.append((curve, settings[1 - len(settings) % 2 :: 2] if sparse else settings))
     whole = 1 + sum(len(settings) for _, settings in plan)
     floor = rounding_floor(problem)
     auto = _row(problem, Setting("auto"), floor)

@@ -28,7 +28,7 @@ __all__ = ["add_arguments", "execute"]
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
-    what = "a problem, a family of them, a built-in scene or a scene file; all problems if none is named"
+    what = "a problem, a family of them, a built-in scene or a scene file; every problem, sparsely, if none"
     parser.add_argument("problems", metavar="PROBLEM", nargs="*", help=what)
     parser.add_argument("--json", metavar="FILE", help="write everything that was measured (- for stdout)")
     parser.add_argument("--plot", metavar="DIR", help="draw a work-precision plot of each problem, as PNG")
@@ -43,7 +43,7 @@ def execute(arguments: Namespace) -> int:
     quiet = output is not None and output.to_stdout
     whole = len(problems) == 1
     jobs: list[Iterator[float | Study] | Iterator[float | SceneStudy]] = [
-        study(problem) for problem in problems
+        study(problem, sparse=not arguments.problems) for problem in problems
     ]
     jobs += [study_scene(name, partial(load_scene, name)) for name in scenes]
     studies: list[Study] = []
