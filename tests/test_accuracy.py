@@ -285,7 +285,8 @@ def auto_verdict(name: str) -> Verdict:
     found = measure(problem, Setting("auto"))
     if found.watched.collisions:
         return Verdict.SHORT
-    return verdict(found.error, problem.good, problem.excellent, floor=rounding_floor(problem))
+    floor = rounding_floor(problem)
+    return verdict(found.error, problem.good, problem.excellent, floor=floor, chaotic=problem.chaotic)
 
 
 @pytest.mark.parametrize("name", [name for name in PROBLEMS if name not in SLOW and name not in SHORT])
@@ -337,7 +338,7 @@ def test_verdicts() -> None:
     assert verdict(1e-12, 1e-6, 1e-10) is Verdict.EXCELLENT
     assert verdict(1e-8, 1e-6, 1e-10) is Verdict.GOOD
     assert verdict(1e-3, 1e-6, 1e-10) is Verdict.SHORT
-    assert verdict(1e-9, 1e-6, 1e-10, floor=1e-10) is Verdict.CHAOS
+    assert verdict(1e-9, 1e-6, 1e-10, floor=1e-10, chaotic=True) is Verdict.CHAOS
     assert verdict(1e-13, 1e-6, 1e-14, floor=1e-13) is Verdict.ROUNDING
 
 

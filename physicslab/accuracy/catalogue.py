@@ -12,7 +12,7 @@ from physicslab.accuracy.problem import LeftOut, Problem
 from physicslab.accuracy.slopes import SLOPES
 from physicslab.accuracy.stiff import STIFF
 
-__all__ = ["LEFT_OUT", "PROBLEMS", "names", "select"]
+__all__ = ["LEFT_OUT", "PROBLEMS", "families", "names", "select"]
 
 PROBLEMS: dict[str, Problem] = {
     problem.name: problem
@@ -30,6 +30,11 @@ LEFT_OUT = (
     LeftOut("galperin_n5", "314,159 collisions, of which only the number is on record"),
 )
 """Reference problems that are not among these, and why."""
+
+
+def families() -> list[str]:
+    """Return the names of problems, those of one family under the name that they share."""
+    return list(dict.fromkeys(problem.source for problem in PROBLEMS.values()))
 
 
 def names() -> list[str]:

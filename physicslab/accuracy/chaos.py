@@ -50,6 +50,7 @@ def _pythagorean_at(t: int) -> Problem:
         excellent=excellent,
         ladder=Ladder(4096 * max(1, t // 5), 7),
         keeps=_ALL,
+        chaotic=True,
         note="chaotic: passages as close as 0.4 mm make each rounding grow",
     )
 

@@ -128,6 +128,7 @@ def _lagrange_problem(t: float, good: float, excellent: float) -> Problem:
         excellent=excellent,
         ladder=Ladder(512, 9),
         keeps=_ALL,
+        chaotic=True,
         note="unstable: what is rounded at the start grows 85 times a period",
     )
 

@@ -74,6 +74,8 @@ class Problem:
         What is conserved among ``"energy"``, ``"momentum"`` and ``"angular_momentum"``.
     collisions : int, optional
         How many impacts there are.
+    chaotic : bool
+        Whether the motion makes each rounding grow exponentially.
     not_asked : mapping of str to str
         Methods that are left out although the engine would take them, and why.
     search : callable, optional
@@ -99,6 +101,7 @@ class Problem:
     exact_energy: Callable[[float], float] | None = None
     keeps: frozenset[str] = frozenset({"energy"})
     collisions: int | None = None
+    chaotic: bool = False
     not_asked: Mapping[str, str] = field(default_factory=dict)
     search: Callable[[Callable[[], SimulationConfig]], float] | None = None
     note: str = ""

@@ -114,7 +114,9 @@ def study(problem: Problem, *, sparse: bool = False) -> Iterator[float | Study]:
             yield done / whole
             if curve.rows[-1].measurement.cpu_s > _LONG_S:
                 break
-        measured = [row.measurement for row in curve.rows]
+        # Located impacts have an error of their own, which no step makes smaller.
+        found = [row.measurement for row in curve.rows]
+        measured = [m for m in found if m.setting.collisions != "exact"]
         # Where steps are chosen, what counts is how many there were.
         efforts = [m.evaluations if curve.integrator.chooses_steps else m.steps for m in measured]
         if curve.rows and curve.integrator.evaluations and problem.search is None:
@@ -125,7 +127,7 @@ def study(problem: Problem, *, sparse: bool = False) -> Iterator[float | Study]:
 
 def _row(problem: Problem, setting: Setting, floor: float | None) -> Row:
     found = measure(problem, setting)
-    worth = verdict(found.error, problem.good, problem.excellent, floor=floor)
+    worth = verdict(found.error, problem.good, problem.excellent, floor=floor, chaotic=problem.chaotic)
     if worth in (Verdict.EXCELLENT, Verdict.GOOD) and found.watched.collisions:
         worth = Verdict.SHORT  # right by chance: collisions are missing, or too many
     return Row(found, worth)

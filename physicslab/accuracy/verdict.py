@@ -24,12 +24,10 @@ class Verdict(StrEnum):
 
 _NEAR = 30.0
 """Up to so many times what one rounding at the start does, an error is put down to rounding."""
-_AMPLIFIED = 1e5
-"""A motion that makes one rounding so many times larger is called chaotic."""
 
 
 def verdict(
-    error: float | None, good: float, excellent: float, *, floor: float | None = None, scale: float = 1.0
+    error: float | None, good: float, excellent: float, *, floor: float | None = None, chaotic: bool = False
 ) -> Verdict:
     """Return what to call an error.
 
@@ -41,14 +39,14 @@ def verdict(
         The largest error of each kind.
     floor : float, optional
         How far apart two runs end whose starts differ by one rounding.
-    scale : float
-        The size of what was rounded.
+    chaotic : bool
+        Whether the motion makes each rounding grow exponentially.
 
     Examples
     --------
     >>> str(verdict(1e-7, 1e-6, 1e-9))
     'good'
-    >>> str(verdict(1e-7, 1e-8, 1e-9, floor=2e-8))
+    >>> str(verdict(1e-7, 1e-8, 1e-9, floor=2e-8, chaotic=True))
     'chaos limit'
     """
     if error is None:
@@ -56,7 +54,6 @@ def verdict(
     if error <= excellent:
         return Verdict.EXCELLENT
     if floor is not None and error <= _NEAR * floor:
-        chaotic = floor > _AMPLIFIED * scale * 2.0**-52
         return Verdict.CHAOS if chaotic else Verdict.ROUNDING
     return Verdict.GOOD if error <= good else Verdict.SHORT
 

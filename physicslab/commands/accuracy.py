@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
-from physicslab.accuracy.catalogue import PROBLEMS, names, select
+from physicslab.accuracy.catalogue import PROBLEMS, families, names, select
 from physicslab.accuracy.document import document
 from physicslab.accuracy.problem import Problem
 from physicslab.accuracy.scene_study import SceneStudy, scene_document, scene_text, study_scene
@@ -87,7 +87,7 @@ def _chosen(wanted: Sequence[str]) -> tuple[list[Problem], list[str]]:
         found = select(name)
         if not found and name not in SCENES and not Path(name).exists():
             likely = suggestion(name, [*names(), *SCENES])
-            there_is = f"the problems are {', '.join(names())}; scenes are taken as well"
+            there_is = f"the problems are {', '.join(families())}; scenes are taken as well"
             raise CommandError(f"{shown(name)}: is no problem, scene or file{likely or '; ' + there_is}")
         problems |= {problem.name: problem for problem in found}
         if not found:
