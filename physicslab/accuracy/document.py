@@ -9,7 +9,6 @@ from typing import Any
 from physicslab.accuracy.catalogue import LEFT_OUT
 from physicslab.accuracy.figures import record
 from physicslab.accuracy.problem import Problem
-from physicslab.accuracy.settings import COLLISIONS
 from physicslab.accuracy.study import Curve, Row, Study
 
 __all__ = ["document", "finite"]
@@ -19,7 +18,6 @@ def document(studies: Sequence[Study], scenes: Sequence[dict[str, Any]] = ()) ->
     """Return everything that was measured."""
     return {
         "format": "physicslab-accuracy/1",
-        "collisions": list(COLLISIONS),
         "problems": [_study(study) for study in studies],
         "scenes": list(scenes),
         "left_out": [{"name": left.name, "reason": left.reason} for left in LEFT_OUT],

@@ -10,10 +10,8 @@ from physicslab.config import SimulationConfig
 from physicslab.integrators import Integrator
 from physicslab.schedule import ForceSystem
 
-__all__ = ["COLLISIONS", "Setting", "ladder", "refusal", "sees_velocity"]
+__all__ = ["Setting", "ladder", "refusal", "sees_velocity"]
 
-COLLISIONS: tuple[str, ...] = ("step",)
-"""How contacts are found where bodies touch. "exact" joins when the engine locates impacts in time."""
 _TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15, 1e-16, 1e-17)
 _SUBSTEPS = 4
 """Parts of a step where bodies touch: those of every scene that says nothing else."""
@@ -81,9 +79,10 @@ def ladder(problem: Problem, method: Integrator) -> Iterator[Setting]:
         for tolerance in _TOLERANCES:
             yield Setting(method.name, tolerance=tolerance)
     else:
-        for collisions in COLLISIONS if problem.touches else ("auto",):
-            for steps in problem.ladder.steps(method.evaluations):
-                yield Setting(method.name, steps, collisions=collisions)
+        # Located impacts have no step: they come with the closed form, or with auto.
+        collisions = "step" if problem.touches else "auto"
+        for steps in problem.ladder.steps(method.evaluations):
+            yield Setting(method.name, steps, collisions=collisions)
 
 
 def sees_velocity(problem: Problem) -> bool:

@@ -114,9 +114,7 @@ def study(problem: Problem, *, sparse: bool = False) -> Iterator[float | Study]:
             yield done / whole
             if curve.rows[-1].measurement.cpu_s > _LONG_S:
                 break
-        # Located impacts have an error of their own, which no step makes smaller.
-        found = [row.measurement for row in curve.rows]
-        measured = [m for m in found if m.setting.collisions != "exact"]
+        measured = [row.measurement for row in curve.rows]
         # Where steps are chosen, what counts is how many there were.
         efforts = [m.evaluations if curve.integrator.chooses_steps else m.steps for m in measured]
         if curve.rows and curve.integrator.evaluations and problem.search is None:

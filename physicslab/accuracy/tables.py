@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from physicslab.accuracy.catalogue import LEFT_OUT
 from physicslab.accuracy.problem import Problem
-from physicslab.accuracy.settings import COLLISIONS
 from physicslab.accuracy.study import Curve, Row, Study
 from physicslab.accuracy.verdict import Verdict
 
@@ -111,8 +110,9 @@ def summary_text(studies: Sequence[Study]) -> str:
         )
     if any(not curve.holds for study in studies for curve in study.curves if curve.rows):
         lines.append("* an order that does not hold for these forces, or where bodies touch")
-    if "exact" not in COLLISIONS and any(study.problem.touches for study in studies):
-        lines.append("where bodies touch, contacts are found within steps: located impacts are not built yet")
+    touching = [study for study in studies if study.problem.touches]
+    if touching and all(study.auto.measurement.integrator != "exact" for study in touching):
+        lines.append("where bodies touch, contacts are found within steps: no impact is located in time")
     return "\n".join(lines)
 
 
