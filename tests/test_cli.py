@@ -210,8 +210,8 @@ USAGE = [
     (["newtons_crade"], 'did you mean "newtons_cradle"?'),
     (["nowhere.json"], "nowhere.json: no such file"),
     (["drop", "--fast"], "unrecognized arguments: --fast"),
-    (["bench"], "the command bench is not there yet; there are run, scenes"),
-    (["accuracy", "kepler"], "the command accuracy is not there yet"),
+    (["bench"], "the command bench is not there yet; there are run, accuracy, scenes"),
+    (["bench", "pile"], "the command bench is not there yet"),
     (["stability"], "the command stability is not there yet"),
 ]
 

@@ -1,0 +1,230 @@
+"""Time PhysicsLab beside REBOUND and SciPy at the same final error, interleaved in one run.
+
+``uv run --group peers python benchmarks/accuracy_peers.py [--repeats N] [--error E]`` gives every method the
+loosest setting of a ladder at which it ends within the error asked for, and then times all of them in turn.
+It prints the median process time of each, the median of its ratios to PhysicsLab's ``auto`` method with the
+tolerance found (above 1, PhysicsLab is faster), and what a force evaluation of two bodies costs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import statistics
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import rebound
+from scipy.integrate import solve_ivp
+
+from physicslab.accuracy.catalogue import PROBLEMS
+from physicslab.accuracy.measure import finish
+from physicslab.accuracy.problem import Problem
+from physicslab.accuracy.settings import Setting
+from physicslab.components import Mass, Transform, Velocity
+from physicslab.world import World
+
+ASKED = ("kepler_e0.5", "kepler_e0.9", "figure_eight")
+
+type Run = Callable[[Problem, float], tuple[float, float]]
+"""Computes a problem with a step or tolerance; returns process seconds and the error."""
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to compute a problem, with its settings from loose to tight."""
+
+    name: str
+    run: Run
+    ladder: tuple[float, ...]
+
+
+def ours(integrator: str) -> Run:
+    """Return how PhysicsLab computes a problem: by tolerance, or by the number of steps."""
+
+    def run(problem: Problem, fineness: float) -> tuple[float, float]:
+        setting = (
+            Setting(integrator, tolerance=fineness)
+            if fineness < 1.0
+            else Setting(integrator, round(fineness))
+        )
+        world = problem.build(setting.simulation(problem))
+        world.synchronise()
+        start = time.process_time()
+        error = finish(problem, world)
+        return time.process_time() - start, error
+
+    return run
+
+
+def state(world: World) -> tuple[list[int], np.ndarray, np.ndarray, np.ndarray]:
+    """Return entities, masses, places and velocities of a world's bodies; what is fixed does not move."""
+    entities = world.batch(Transform, Mass).entities.tolist()
+    rows = world.batch(Transform, Mass).rows
+    return (
+        entities, world.table(Mass)["mass"][rows].copy(), world.table(Transform)["position"][rows].copy(),
+        world.table(Velocity)["linear"][rows].copy(),
+    )  # fmt: skip
+
+
+def put(world: World, entities: list[int], places: np.ndarray) -> None:
+    """Put bodies where another engine has them, so that the problem can compare."""
+    for entity, where in zip(entities, places, strict=True):
+        if world.has(entity, Velocity):
+            world.component(entity, Transform).position = where
+
+
+def fixed_star(problem: Problem) -> bool:
+    """Whether the problem's first body stays where it is."""
+    return problem.source.startswith("kepler")
+
+
+def rebounds(integrator: str) -> Run:
+    """Return how REBOUND computes a problem."""
+
+    def run(problem: Problem, fineness: float) -> tuple[float, float]:
+        world = problem.build(Setting("auto").simulation(problem))
+        world.synchronise()
+        entities, masses, places, speeds = state(world)
+        simulation = rebound.Simulation()
+        simulation.integrator = integrator
+        for i, (mass, where, how) in enumerate(zip(masses, places, speeds, strict=True)):
+            # About a fixed star a body goes as a massless one does about a free star.
+            heavy = mass if i == 0 or not fixed_star(problem) else 0.0
+            simulation.add(m=heavy, x=where[0], y=where[1], vx=how[0], vy=how[1])
+        if integrator == "ias15":
+            set_tolerance(simulation, fineness)
+        else:
+            simulation.dt = problem.seconds / fineness
+        spent, error = 0.0, 0.0
+        for i, t in enumerate(problem.times):
+            start = time.process_time()
+            simulation.integrate(t)
+            spent += time.process_time() - start
+            put(world, entities, np.array([(body.x, body.y) for body in simulation.particles]))
+            error = max(error, problem.error(world, i))
+        return spent, error
+
+    return run
+
+
+def set_tolerance(simulation: rebound.Simulation, tolerance: float) -> None:
+    """Set IAS15's tolerance, which has moved between REBOUND's versions."""
+    if hasattr(simulation, "ri_ias15"):
+        simulation.ri_ias15.epsilon = tolerance
+    else:
+        simulation.integrator.epsilon = tolerance
+
+
+def scipys(problem: Problem, tolerance: float) -> tuple[float, float]:
+    """Compute a problem with SciPy's DOP853 and forces in numpy, as one would write them."""
+    world = problem.build(Setting("auto").simulation(problem))
+    world.synchronise()
+    entities, masses, places, speeds = state(world)
+    n = len(masses)
+    moves = np.array([world.has(entity, Velocity) for entity in entities], float)[:, None]
+    others = ~np.eye(n, dtype=bool)
+
+    def rates(_t: float, y: np.ndarray) -> np.ndarray:
+        q = y[: 2 * n].reshape(n, 2)
+        gap = q[None] - q[:, None]
+        r2 = (gap * gap).sum(-1)
+        pull = np.where(others, masses / np.where(others, r2 * np.sqrt(r2), 1.0), 0.0)
+        return np.concatenate((y[2 * n :], (moves * (pull[:, :, None] * gap).sum(1)).ravel()))
+
+    y = np.concatenate((places.ravel(), speeds.ravel()))
+    spent, error, t0 = 0.0, 0.0, 0.0
+    for i, t in enumerate(problem.times):
+        start = time.process_time()
+        y = solve_ivp(rates, (t0, t), y, "DOP853", rtol=max(tolerance, 2.3e-14), atol=tolerance).y[:, -1]
+        spent += time.process_time() - start
+        put(world, entities, y[: 2 * n].reshape(n, 2))
+        error, t0 = max(error, problem.error(world, i)), t
+    return spent, error
+
+
+def tolerances(first: int, last: int) -> tuple[float, ...]:
+    """Return tolerances from 10^first down to 10^last, in half decades."""
+    return tuple(10.0 ** (first - 0.5 * i) for i in range(2 * (first - last) + 1))
+
+
+METHODS = (
+    Method("PhysicsLab dop853", ours("dop853"), tolerances(-8, -17)),
+    Method("PhysicsLab blanes_moan", ours("blanes_moan"), tuple(2.0 ** (8 + i / 2) for i in range(24))),
+    Method("PhysicsLab leapfrog", ours("leapfrog"), tuple(2.0 ** (14 + i) for i in range(9))),
+    Method("REBOUND ias15", rebounds("ias15"), tolerances(-1, -12)),
+    Method("REBOUND leapfrog", rebounds("leapfrog"), tuple(2.0 ** (14 + i) for i in range(9))),
+    Method("SciPy DOP853", scipys, tolerances(-8, -13)),
+)
+
+
+def enough(method: Method, problem: Problem, error: float) -> tuple[float | None, float]:
+    """Return the loosest setting at which a method ends within an error, or ``None``; and its best error."""
+    best = math.inf
+    for fineness in method.ladder:
+        _, found = method.run(problem, fineness)
+        best = min(best, found)
+        if found <= error:
+            return fineness, best
+    return None, best
+
+
+def compare(problem: Problem, error: float, repeats: int) -> None:
+    """Print a table of the methods on one problem."""
+    settings = {method: enough(method, problem, error) for method in METHODS}
+    times: dict[Method, list[float]] = {method: [] for method in METHODS}
+    errors: dict[Method, float] = {}
+    for _ in range(repeats):
+        for method, (fineness, _) in settings.items():
+            if fineness is not None:
+                spent, errors[method] = method.run(problem, fineness)
+                times[method].append(spent)
+    print(f"{problem.name}: {problem.seconds:.6g} s, final error up to {error:g}")
+    first = METHODS[0]
+    for method, spent_all in times.items():
+        if not spent_all:
+            print(f"  {method.name:<24} not reached: {settings[method][1]:.1e} at best")
+            continue
+        ratio = statistics.median(b / a for a, b in zip(times[first], spent_all, strict=True))
+        print(
+            f"  {method.name:<24} {1e3 * statistics.median(spent_all):9.2f} ms  {ratio:8.2f} x"
+            f"  error {errors[method]:.1e}  at {settings[method][0]:.3g}"
+        )
+
+
+def cost_of_a_force() -> None:
+    """Print what a force evaluation of two bodies costs within a compiled run."""
+    problem = PROBLEMS["kepler_e0.5"]
+    for name, setting in (
+        ("leapfrog", Setting("leapfrog", 2**20)),
+        ("blanes_moan", Setting("blanes_moan", 2**17)),
+        ("dop853", Setting("dop853", tolerance=1e-17)),
+    ):
+        costs = []
+        for _ in range(7):
+            world = problem.build(setting.simulation(problem))
+            world.synchronise()
+            start = time.process_time()
+            world.run(seconds=problem.seconds)
+            costs.append((time.process_time() - start) / world.force_evaluations)
+        print(f"  {name:<24} {1e9 * statistics.median(costs[1:]):9.1f} ns a force evaluation of two bodies")
+
+
+def main() -> None:
+    """Compare on every problem that is asked for."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--repeats", type=int, default=9)
+    parser.add_argument("--error", type=float, default=1e-8)
+    arguments = parser.parse_args()
+    # REBOUND's own, where a ladder begins with steps that are too long for it.
+    warnings.filterwarnings("ignore", message="At least 10 predictor corrector loops")
+    cost_of_a_force()
+    for name in ASKED:
+        compare(PROBLEMS[name], arguments.error, arguments.repeats)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,142 @@
+"""Measure error against run time, for every integrator, on problems with known answers or on a scene."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Sequence
+from functools import partial
+from pathlib import Path
+
+from physicslab.accuracy.catalogue import PROBLEMS, families, names, select
+from physicslab.accuracy.document import document
+from physicslab.accuracy.problem import Problem
+from physicslab.accuracy.scene_study import SceneStudy, scene_document, scene_text, study_scene
+from physicslab.accuracy.study import Study, study
+from physicslab.accuracy.tables import left_out_text, study_text, summary_text
+from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands.output import Output
+from physicslab.commands.progress import Progress
+from physicslab.json_text import json_text
+from physicslab.scene import load_scene
+from physicslab.scene_checks import shown, suggestion
+from physicslab.scenes import SCENES
+
+__all__ = ["add_arguments", "execute"]
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Declare what the command takes."""
+    what = "a problem, a family of them, a built-in scene or a scene file; every problem, sparsely, if none"
+    parser.add_argument("problems", metavar="PROBLEM", nargs="*", help=what)
+    parser.add_argument("--json", metavar="FILE", help="write everything that was measured (- for stdout)")
+    parser.add_argument("--plot", metavar="DIR", help="draw a work-precision plot of each problem, as PNG")
+    parser.epilog = f"problems: {', '.join(names())}"
+
+
+def execute(arguments: Namespace) -> int:
+    """Study what was named, print a table of each, and write what was asked for."""
+    problems, scenes = _chosen(arguments.problems)
+    output = None if arguments.json is None else Output("--json", arguments.json)
+    pictures = None if arguments.plot is None else _directory(arguments.plot)
+    quiet = output is not None and output.to_stdout
+    whole = len(problems) == 1
+    jobs: list[Iterator[float | Study] | Iterator[float | SceneStudy]] = [
+        study(problem, sparse=not arguments.problems) for problem in problems
+    ]
+    jobs += [study_scene(name, partial(load_scene, name)) for name in scenes]
+    studies: list[Study] = []
+    scene_studies: list[SceneStudy] = []
+    for result in _results(jobs):
+        if isinstance(result, Study):
+            studies.append(result)
+            _show(study_text(result, whole=whole), quiet)
+            if pictures is not None:
+                _draw(result, pictures)
+        else:
+            scene_studies.append(result)
+            _show(scene_text(result), quiet)
+    if studies:
+        _show(summary_text(studies), quiet)
+    if not arguments.problems:
+        _show(left_out_text(), quiet)
+    if output is not None:
+        output.write(
+            json_text(document(studies, [scene_document(found) for found in scene_studies])).encode("utf-8")
+        )
+    _check_scenes(scene_studies)
+    return 0
+
+
+def _chosen(wanted: Sequence[str]) -> tuple[list[Problem], list[str]]:
+    """Return the problems and the scenes of these names, each once.
+
+    Raises
+    ------
+    CommandError
+        If there is neither of a name.
+    SceneError
+        If a scene cannot be read.
+    """
+    if not wanted:
+        return list(PROBLEMS.values()), []
+    problems: dict[str, Problem] = {}
+    scenes: dict[str, None] = {}
+    for name in wanted:
+        found = select(name)
+        if not found and name not in SCENES and not Path(name).exists():
+            likely = suggestion(name, [*names(), *SCENES])
+            there_is = f"the problems are {', '.join(families())}; scenes are taken as well"
+            raise CommandError(f"{shown(name)}: is no problem, scene or file{likely or '; ' + there_is}")
+        problems |= {problem.name: problem for problem in found}
+        if not found:
+            load_scene(name)  # a bad scene is refused before work is begun
+            scenes[name] = None
+    return list(problems.values()), list(scenes)
+
+
+def _directory(path: str) -> Path:
+    """Return where pictures go, made if it was not there; refuse it if nothing can draw or write them."""
+    if importlib.util.find_spec("matplotlib") is None:
+        raise CommandError("--plot: needs matplotlib, which is not installed: pip install 'physicslab[plot]'")
+    directory = Path(path)
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise CommandError(f"--plot {shown(path)}: cannot be written: {reason}") from error
+    Output("--plot", str(directory / "accuracy.png"))  # whether files can be written there
+    return directory
+
+
+def _results(jobs: Sequence[Iterator[float | Study | SceneStudy]]) -> Iterator[Study | SceneStudy]:
+    """Yield the result of each job, and keep the terminal told how far all are."""
+    progress = Progress("accuracy", sys.stderr)
+    try:
+        for i, job in enumerate(jobs):
+            for found in job:
+                if not isinstance(found, float):
+                    progress.clear()
+                    yield found
+                else:
+                    progress.show((i + found) / len(jobs))
+    finally:
+        progress.clear()
+
+
+def _show(text: str, quiet: bool) -> None:
+    if not quiet:
+        print(text, flush=True)
+
+
+def _draw(found: Study, directory: Path) -> None:
+    from physicslab.accuracy.plot import work_precision  # matplotlib takes a while, and may not be there
+
+    Output("--plot", str(directory / f"{found.problem.name}.png")).write(work_precision(found))
+
+
+def _check_scenes(studies: Sequence[SceneStudy]) -> None:
+    for found in studies:
+        if found.rows[0].failure:
+            raise CommandError(f"{found.name}: {found.rows[0].failure}", FAILED)
