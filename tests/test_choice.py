@@ -41,7 +41,7 @@ def planets(count: int, softening: float) -> World:
         (world_of(ball(0, Drag(quadratic=1))), "dop853", "velocities"),
         (world_of(ball(2, Spring(rest_length=0.5, stiffness=1e12))), "implicit_midpoint", "too fast"),
         (planets(3, 0.0), "dop853", "planets may come close"),
-        (planets(40, 0.1), "leapfrog", "40 bodies attract each other, softened"),
+        (planets(240, 0.1), "leapfrog", "240 bodies attract each other, softened"),
         (planets(40, 0.0), "dop853", "planets may come close"),
         (world_of(ball(0, Shape.circle(1)), ball(9, Shape.circle(1))), "leapfrog", "bodies can touch"),
     ],

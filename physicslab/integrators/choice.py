@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Choice", "choose", "provisional"]
 
-_MANY = 30
+_MANY = 200
 """From so many attracting bodies on, sampling their forces costs more than accuracy is worth."""
 _WELL_RESOLVED = 0.5
 """omega h that blanes_moan is given: beyond about 1 its order does not show."""

@@ -13,6 +13,8 @@ __all__ = ["dop853", "first_step", "largest", "make_stages", "step_error", "tota
 
 _SAFETY, _MOST, _LEAST = 0.9, 6.0, 0.2
 """How far a step keeps below what the estimate allows, and how much it may grow or shrink at once."""
+_LEADS = 0.1
+"""So large a share of the largest coordinate must be made in a step for the speed itself to be the measure."""
 _SHORTEST = 1e-13
 """The shortest step, as a share of the time to go: what needs shorter ones has no end."""
 _NOISE = 1e6
@@ -136,7 +138,8 @@ def dop853(
         )  # fmt: skip
         evaluations += LAST
         q_reach, v_reach = max(q_scale, largest(stage_q, n)), max(v_scale, largest(stage_v, n))
-        error = step_error(rates, pushes, taken, q_reach, v_reach, tolerance)
+        # Where all is at rest, what counts is how far an error of the speed leads within the step.
+        error = step_error(rates, pushes, taken, q_reach, max(v_reach, _LEADS * q_reach / taken), tolerance)
         if not math.isfinite(error):
             h, grow = _LEAST * taken, 1.0
             last_error = math.inf
