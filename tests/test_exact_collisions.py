@@ -394,6 +394,17 @@ def test_friction_spins_a_disc_by_coulombs_law() -> None:
         assert world.contacts.impacts["tangent_impulse"][0] == pytest.approx(rub, rel=1e-13)
 
 
+def test_what_is_let_go_below_or_beside_a_box_just_falls() -> None:
+    world = laboratory(gravity_mode="linear")
+    box(world, (0, 0), width=4, height=1, static=True, restitution=1)
+    below = circle(world, (0, -2), restitution=1)
+    beside = box(world, (4, 0), fixed_rotation=True, restitution=1)
+    world.run(seconds=1.0)
+    assert world.collisions == world.contacts.logged == 0
+    for entity, start in ((below, -2.0), (beside, 0.0)):
+        assert world.component(entity, Transform).position.y == pytest.approx(start - G / 2, rel=1e-14)
+
+
 # ---- rest --------------------------------------------------------------------------------------------------
 
 

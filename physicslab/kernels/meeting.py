@@ -164,7 +164,9 @@ def meet_circle_circle(
 @inlined_exactly
 def _falling(gap: float, speed: float, pull: float, size: float, least: float) -> float:
     """Return when a line is crossed from outside, or infinity: what lies beyond it does not cross it."""
-    if gap < -_SEAM * size and speed < -least:
+    # It would have to come out before it can come in again.
+    comes_out = speed > 0.0 and pull < 0.0 and speed * speed > 2.0 * pull * gap
+    if gap < -_SEAM * size and not comes_out:
         return math.inf
     return meet_line(gap, speed, pull, least)
 
