@@ -11,7 +11,6 @@ from typing import NoReturn
 
 from physicslab.commands import COMMANDS, NOT_BUILT, CommandError
 from physicslab.commands.command_error import FAILED, USAGE
-from physicslab.commands.run import note_unbuilt
 from physicslab.scene import SceneError, load_scene
 from physicslab.scene_checks import printable
 
@@ -88,7 +87,7 @@ def _open(arguments: list[str]) -> int:
     )
     scene = parser.parse_args(arguments).scene
     if scene is not None:
-        note_unbuilt(load_scene(scene))  # a bad scene is refused before a window flickers up
+        load_scene(scene)  # a bad scene is refused before a window flickers up
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     from physicslab.app import open_window  # no command without a window imports pygame
 

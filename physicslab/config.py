@@ -139,7 +139,7 @@ class SimulationConfig:
     integrator: str = "auto"
     sleeping: bool = True
     collisions: str = "auto"
-    tolerance: float = 1e-16
+    tolerance: float = 1e-17
 
     section: ClassVar[str] = "simulation"
     FIELDS: ClassVar[tuple[Field, ...]] = (

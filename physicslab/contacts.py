@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform
 from physicslab.kernels import compile_kernels, grid, impulse
-from physicslab.kernels.records import MANIFOLD, POINT
+from physicslab.kernels.records import IMPACT, MANIFOLD, POINT
 from physicslab.vector import Vector2
 
 if TYPE_CHECKING:
@@ -99,13 +99,33 @@ class Contacts:
         How many pairs the impacts of this substep have left to the solver.
     stale : bool
         Whether the pairs must be found anew because bodies came, went or changed.
+    log : array of IMPACT
+        The last impacts whose times were located; number n stands at n modulo the length.
+    logged : int
+        How many impacts were ever logged.
     """
+
+    LOGGED = 32_768
+    """How many impacts are kept."""
 
     def __init__(self) -> None:
         self.candidate_pairs = 0
         self.count = self.left = 0
         self.stale = True
+        self.log: NDArray[Any] = np.zeros(self.LOGGED, IMPACT)
+        self.logged = 0
         self._fit(64)
+
+    @property
+    def impacts(self) -> NDArray[Any]:
+        """The last impacts whose times were located, in order: an array of IMPACT.
+
+        They are ``LOGGED`` at the most. Only flying bodies have such impacts (``"collisions": "exact"``);
+        those found within steps are not among them.
+        """
+        if self.logged <= len(self.log):
+            return self.log[: self.logged].copy()
+        return np.roll(self.log, -self.logged % len(self.log))
 
     def _fit(self, capacity: int) -> None:
         self.manifolds: NDArray[Any] = np.zeros(capacity, MANIFOLD)

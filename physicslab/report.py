@@ -61,6 +61,8 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "substeps": world.simulation.substeps,
         "integrator": world.method.integrator.name,
         "integrator_reason": world.method.reason,
+        "collision_method": world.method.collisions,
+        "collision_reason": world.method.collision_reason,
         "force_evaluations": world.force_evaluations,
         "wall_s": record.wall_s,
         "compile_s": world.schedule.compile_s,
@@ -133,6 +135,7 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         f"{report['substeps']} substeps each",
         f"  method      {report['integrator']}: {report['integrator_reason']}; "
         f"{report['force_evaluations']} force evaluations",
+        f"  collisions  {report['collision_method']}: {report['collision_reason']}",
         f"  took        {wall:.3g} s, and {report['compile_s']:.3g} s to compile or load kernels",
         f"  energy      {energy['initial']:.9g} J before, {energy['final']:.9g} J after; "
         f"largest relative drift {energy['max_relative_drift']:.3g}",

@@ -266,6 +266,15 @@ class Schedule:
             timing.nanoseconds += time.perf_counter_ns() - start
             timing.calls += 1
 
+    def run_beside(self, name: str, stage: Stage, world: World, h: float) -> None:
+        """Call every running system of ``stage`` but the one of this name, whose work was done otherwise."""
+        for system in self.running:
+            method = self._marked[system].get(stage)
+            if method is not None and system.name != name:
+                start = time.perf_counter_ns()
+                getattr(system, method)(world, h)
+                self.note(system.name, 1, time.perf_counter_ns() - start)
+
     def note(self, name: str, calls: int, nanoseconds: int) -> None:
         """Note what a system has cost that was not called by :meth:`run`."""
         timing = self.timings.setdefault(name, Timing())

@@ -19,6 +19,7 @@ from physicslab.components import Name
 from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.contacts import Contacts
 from physicslab.equations import Equations
+from physicslab.flights import Flights
 from physicslab.integrators import StepTooSmall
 from physicslab.integrators.choice import choose, provisional
 from physicslab.roster import Roster
@@ -84,6 +85,7 @@ class World:
         self.schedule = Schedule((self.bodies, *systems))
         self.has_forces = False
         self._equations: Equations | None = None
+        self._flights: Flights | None = None
         self._stale = True
         self._stepping = False
         self.method = provisional(self._simulation)
@@ -253,6 +255,8 @@ class World:
             self._follow()
             if not self._stepping:
                 self.bodies.derive(self)
+                if self._flights is not None and not self._flights.holds(self):
+                    self._choose()
 
     def _follow(self) -> None:
         """Follow what changed in the structure of the world since the last call, if anything did."""
@@ -263,10 +267,19 @@ class World:
             self.bodies.derive(self)
             self.schedule.remake(self)
             self.has_forces = any(isinstance(system, ForceSystem) for system in self.schedule.running)
-            self.method = choose(self)
-            self._equations = Equations(self) if self.method.smooth else None
+            self._choose()
             self.revision += 1
             self._stale = False
+
+    def _choose(self) -> None:
+        """Choose the method for what there is, and make ready what it works with."""
+        self.method = choose(self)
+        self._equations = Equations(self) if self.method.smooth else None
+        had_flights, self._flights = self._flights is not None, None
+        if self.method.collisions == "exact":
+            self._flights = Flights(self)
+            self.schedule.compile(self._flights.kernels)
+        self.contacts.stale |= had_flights or self._flights is not None
 
     def step(self, dt: float | None = None) -> None:
         """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps."""
@@ -282,6 +295,8 @@ class World:
                 self.schedule.run(Stage.PREPARE, self, dt)
                 if self._equations is not None:
                     self._flow(self._equations, dt, 1)
+                elif self._flights is not None:
+                    self._flights.step(self, dt)
                 else:
                     self._substeps(dt / self._simulation.substeps)
                 self.schedule.run(Stage.FINISH, self, dt)
@@ -294,7 +309,7 @@ class World:
         """Go through the stages of a step, substep by substep."""
         run = self.schedule.run
         for _ in range(self._simulation.substeps):
-            for stage, share in self.method.integrator.substep:
+            for stage, share in self.method.stages.substep:
                 run(stage, self, share * h)
 
     def _flow(self, equations: Equations, dt: float, steps: int) -> None:
@@ -335,7 +350,7 @@ class World:
         The stages of a step leave them there; a compiled loop does not, and they are added up at the present
         state. Nothing that moves is changed.
         """
-        if self._equations is None:
+        if self._equations is None and self._flights is None:
             return
         with self.active():
             for system in (self.bodies, *self.schedule.running):
@@ -346,10 +361,12 @@ class World:
     def _leap(self, dt: float, parts: int, steps: int) -> None:
         """Advance by ``parts`` times ``dt``, which nobody looks at and which count as ``steps``."""
         with self.active():
-            assert self._equations is not None
             self._stepping = True
             try:
-                self._flow(self._equations, dt, parts)
+                if self._flights is not None:
+                    self._flights.run(self, dt, parts)
+                elif self._equations is not None:
+                    self._flow(self._equations, dt, parts)
                 self.schedule.run(Stage.FINISH, self, dt * parts)
             finally:
                 self._stepping = False
@@ -368,10 +385,11 @@ class World:
         last = whole + 1 if rest else whole
         while done < last:
             self.synchronise()
-            if self._equations is None or self.schedule.observed:
+            by_step = self._equations is None and self._flights is None
+            if by_step or self.schedule.observed:
                 self.step(dt if done < whole else rest)
                 done += 1
-            elif self.method.integrator.chooses_steps and stride >= last - done:
+            elif self._equations and self.method.integrator.chooses_steps and stride >= last - done:
                 self._leap(seconds - done * dt, 1, last - done)
                 done = last
             else:

@@ -258,12 +258,7 @@ def test_orbits_end_where_they_should(name: str, limit: float) -> None:
 
 
 SHORT = {
-    "crowd100": "auto takes leapfrog for a crowd, for its speed",
     "kepler_e0.99": "rounding where the planet is nearest: 14 m/s beside 1 cm",
-    "projectile": "the impact is found within a step: 1.6e-12 s off",
-    "galperin_n2": "impacts crowd within a step",
-    "galperin_n3": "impacts crowd within a step",
-    "galperin_n4": "impacts crowd within a step",
     "bounce_rest": "a ball at rest sinks until the contact's softness holds it",
     "friction_slide": "a block that starts on the floor sinks first, and rubs less meanwhile",
     "slip_to_roll_disc_way": "a disc that starts on the floor sinks first, and rubs less meanwhile",

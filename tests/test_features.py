@@ -306,7 +306,7 @@ def test_t_shows_trails_that_fade_toward_the_background() -> None:
 
 
 def test_e_shows_impulses_with_the_speed_of_approach() -> None:
-    desk, canvas = watched(collision(offset=0.15), "e")
+    desk, canvas = watched(collision(offset=0.2), "e")
     last_frame(desk, canvas)
     (touch,) = desk.window.overlays.impacts.recent(desk.world.time)
     assert len(lines_in(canvas, DARK.normal_impulse)) > 4 and len(lines_in(canvas, DARK.friction_impulse)) > 4

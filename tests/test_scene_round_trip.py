@@ -15,6 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab import SceneError, World, load_scene, save_scene
+from physicslab.bodies import Diverged
 from physicslab.components import Held, Mass, Shape, Spring, Trail, Transform, Velocity
 from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.json_text import json_text
@@ -78,10 +79,18 @@ def test_a_world_written_and_read_is_the_same_world(world: World) -> None:
     assert json_text(write_scene(again)) == json_text(document)
     assert (again.physics, again.simulation, again.time) == (world.physics, world.simulation, world.time)
     assert bits(again) == bits(world)
-    world.run(steps=3)
-    again.run(steps=3)
+    assert outcome(again) == outcome(world)
     assert bits(again) == bits(world)
     assert again.time == world.time
+
+
+def outcome(world: World) -> str:
+    """Run a world a little; return what stops it, as planets in one place do."""
+    try:
+        world.run(steps=3)
+    except Diverged as error:
+        return str(error)
+    return "none"
 
 
 @pytest.mark.parametrize("name", SCENES)

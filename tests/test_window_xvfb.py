@@ -143,7 +143,7 @@ def test_a_user_spawns_drags_throws_and_quits(screen: Screen) -> None:
         legend = (slice(980, 1260), slice(380, 640))
         screen.until(differs(legend, planets, 20_000), "the legend of the arrows")
         paused = screen.picture()
-        screen.do("mousemove", 361, 18)  # the toolbar's button for pause
+        screen.do("mousemove", 345, 18)  # the toolbar's button for pause
         screen.do("click", 1)
         screen.until(differs((slice(540, 740), slice(80, 130)), paused, 2_000), "the banner of a pause")
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from physicslab.accuracy.document import finite
 from physicslab.bodies import Diverged
-from physicslab.components import Transform, Velocity
+from physicslab.components import Trail, Transform, Velocity
 from physicslab.config import SimulationConfig
 from physicslab.diagnostics import Drift
 from physicslab.integrators import INTEGRATORS
@@ -23,7 +23,11 @@ __all__ = ["ESTIMATE", "SceneRow", "SceneStudy", "scene_document", "scene_text",
 
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"
 _SECONDS = 5.0
-_TIGHTEST = 1e-16
+_TIGHTEST = 1e-17
+_FINER = (0.5, 1.0, 2.0, 4.0)
+"""The rungs of a ladder of steps: so many times the scene's own substeps."""
+_TOLERANCES = (1e-6, 1e-9, 1e-12, 1e-15)
+"""The rungs of a ladder of tolerances."""
 
 
 @dataclass(slots=True)
@@ -36,8 +40,8 @@ class SceneRow:
         The method that ran, and why.
     asked : str
         The method that was asked for.
-    dt : float
-        Its step [s].
+    step : str
+        Its step, or its tolerance; empty for one that has neither.
     evaluations : int
         Force evaluations.
     cpu_s : float
@@ -56,7 +60,7 @@ class SceneRow:
     integrator: str
     reason: str
     asked: str
-    dt: float
+    step: str
     evaluations: int = 0
     cpu_s: float = 0.0
     half_step: float | None = None
@@ -83,14 +87,43 @@ def study_scene(name: str, load: Callable[[], World]) -> Iterator[float | SceneS
     load : callable
         Returns the scene's world, a new one each time.
     """
+    load = _without_trails(load)
     plain = load().simulation
-    wanted = ["auto", *(method for method in INTEGRATORS if _takes(load, plain, method))]
+    auto = dataclasses.replace(plain, integrator="auto")
+    methods = [method for method in INTEGRATORS if _takes(load, plain, method)]
+    wanted = [auto, *(rung for method in methods for rung in _ladder(plain, method))]
     best, tight = _tightest(load, plain)
     study = SceneStudy(name, _SECONDS, tight)
-    for i, method in enumerate(wanted):
-        study.rows.append(_row(load, dataclasses.replace(plain, integrator=method), best))
+    for i, simulation in enumerate(wanted):
+        study.rows.append(_row(load, simulation, best))
         yield (i + 1) / len(wanted)
     yield study
+
+
+def _without_trails(load: Callable[[], World]) -> Callable[[], World]:
+    """Return the same scene without records of where bodies have been: they cost time at every step."""
+
+    def bare() -> World:
+        world = load()
+        world.synchronise()
+        for entity in world.batch(Trail).entities.tolist():
+            world.discard(entity, Trail)
+        return world
+
+    return bare
+
+
+def _ladder(plain: SimulationConfig, method: str) -> Iterator[SimulationConfig]:
+    """Return the scene's settings for a method, coarser to finer."""
+    own = dataclasses.replace(plain, integrator=method)
+    if method == "exact":
+        yield own
+    elif INTEGRATORS[method].chooses_steps:
+        for tolerance in _TOLERANCES:
+            yield dataclasses.replace(own, tolerance=tolerance)
+    else:
+        for factor in _FINER:
+            yield dataclasses.replace(own, substeps=min(10_000, max(1, round(factor * plain.substeps))))
 
 
 def _takes(load: Callable[[], World], plain: SimulationConfig, method: str) -> bool:
@@ -125,7 +158,10 @@ def _row(
     world.synchronise()
     method = world.method
     parts = 1 if method.integrator.chooses_steps else method.substeps
-    row = SceneRow(method.integrator.name, method.reason, simulation.integrator, simulation.dt / parts)
+    step = f"{simulation.dt / parts:.3g} s"
+    if method.integrator.chooses_steps:
+        step = "" if method.integrator.name == "exact" else f"tol {simulation.tolerance:g}"
+    row = SceneRow(method.integrator.name, method.reason, simulation.integrator, step)
     drift = Drift(world)
     compiled, start = world.schedule.compile_s, time.process_time()
     try:
@@ -175,12 +211,13 @@ def scene_document(study: SceneStudy) -> dict[str, Any]:
     rows = []
     for row in study.rows:
         found = dataclasses.asdict(row)
-        found["cpu_ms"] = 1e3 * found.pop("cpu_s")
+        found["cpu_ms"] = 1e3 * found.pop("cpu_s") if not row.failure else None
+        found["error"] = row.tightest
         rows.append(
             {key: finite(value) if isinstance(value, float) else value for key, value in found.items()}
         )
     return {
-        "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "tightest": study.tightest,
+        "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.tightest,
         "rows": rows,
     }  # fmt: skip
 
@@ -191,7 +228,7 @@ def scene_text(study: SceneStudy) -> str:
         f"{study.name}: {ESTIMATE}",
         f"  how far bodies are [m] after {study.seconds:g} s from where they are with half the step "
         f"(dop853: twice the step), and with {study.tightest}",
-        f"  {'method':<18} {'ran':<18} {'step s':>9} {'forces':>9} {'CPU ms':>9} {'half step':>10} "
+        f"  {'method':<18} {'ran':<18} {'step':>9} {'forces':>9} {'CPU ms':>9} {'half step':>10} "
         f"{'tightest':>10} {'energy':>9}",
     ]
     for row in study.rows:
@@ -199,7 +236,7 @@ def scene_text(study: SceneStudy) -> str:
             "-" if number is None else f"{number:.1e}" for number in (row.half_step, row.tightest, row.energy)
         )
         lines.append(
-            f"  {row.asked:<18} {row.integrator:<18} {row.dt:>9.3g} {row.evaluations:>9} "
+            f"  {row.asked:<18} {row.integrator:<18} {row.step:>9} {row.evaluations:>9} "
             f"{1e3 * row.cpu_s:>9.3g} {half:>10} {tight:>10} {energy:>9}  {row.failure}".rstrip()
         )
     return "\n".join([*lines, f"  auto: {study.rows[0].reason}", ""])

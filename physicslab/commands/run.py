@@ -27,7 +27,7 @@ from physicslab.scenes import SCENES
 from physicslab.trajectory import TrajectoryWriter
 from physicslab.world import World
 
-__all__ = ["add_arguments", "execute", "note_unbuilt"]
+__all__ = ["add_arguments", "execute"]
 
 _DEFAULT_S = 10.0
 _SAMPLES = 500
@@ -110,16 +110,6 @@ def _configure(world: World, arguments: Namespace) -> None:
     seconds = _DEFAULT_S if arguments.seconds is None else arguments.seconds
     if arguments.steps is None and seconds / world.simulation.dt > MOST_STEPS:
         raise CommandError(f"--seconds {seconds:g}: must be at most {MOST_STEPS:g} steps of dt")
-    note_unbuilt(world)
-
-
-def note_unbuilt(world: World) -> None:
-    """Say on stderr which of the scene's wishes nothing here fulfils yet."""
-    if world.simulation.collisions == "exact":
-        print(
-            'physicslab: note: "collisions": "exact" is not built yet; contacts are found within steps',
-            file=sys.stderr,
-        )
 
 
 def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWriter | None) -> RunRecord:

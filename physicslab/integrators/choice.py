@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 from physicslab.closed_form import NoClosedForm, closed_form
 from physicslab.equations import why_not_smooth
+from physicslab.exact_collisions import why_not_exact, why_not_worthwhile
 from physicslab.integrators import INTEGRATORS, Integrator
 from physicslab.integrators.blanes_moan import BLANES_MOAN
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.exact import EXACT
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
 from physicslab.integrators.leapfrog import LEAPFROG
-from physicslab.schedule import ForceSystem
+from physicslab.schedule import ForceSystem, Stage
 
 if TYPE_CHECKING:
     from physicslab.config import SimulationConfig
@@ -46,6 +47,13 @@ class Choice:
         Whether nothing but forces acts, so that the method's flow advances the world.
     refused : str
         Why it is not the one that was asked for; empty if it is.
+    collisions : str
+        ``"exact"`` (contact times located, flights in between in closed form), ``"step"`` (found and resolved
+        within steps) or ``"none"`` (nothing can touch).
+    collision_reason : str
+        Why so, for people.
+    stages : Integrator
+        The method by whose stages the contact step goes; where collisions are exact, only for what rests.
     """
 
     integrator: Integrator
@@ -53,6 +61,9 @@ class Choice:
     substeps: int
     smooth: bool
     refused: str = ""
+    collisions: str = "none"
+    collision_reason: str = "nothing can touch"
+    stages: Integrator = LEAPFROG
 
 
 def provisional(simulation: SimulationConfig) -> Choice:
@@ -60,11 +71,40 @@ def provisional(simulation: SimulationConfig) -> Choice:
     name = simulation.integrator
     if name == "auto":
         return Choice(LEAPFROG, "nothing moves", simulation.substeps, smooth=False)
-    return Choice(INTEGRATORS[name], "asked for", simulation.substeps, smooth=False)
+    method = INTEGRATORS[name]
+    stages = method if method.substep else LEAPFROG
+    return Choice(method, "asked for", simulation.substeps, smooth=False, stages=stages)
 
 
 def choose(world: World) -> Choice:
     """Return the method for what a world holds, or the one that its configuration asks for if it can."""
+    if not world.schedule.runs(Stage.CONTACT):
+        return _mover(world)
+    wish = world.simulation.collisions
+    if wish == "step":
+        return replace(_mover(world), collisions="step", collision_reason="asked for")
+    obstacle = why_not_exact(world)
+    if wish == "exact":
+        if obstacle is not None:
+            reason = f"exact was asked for, and {obstacle}"
+            return replace(_mover(world), collisions="step", collision_reason=reason)
+        return _flights(world, "asked for")
+    obstacle = obstacle or why_not_worthwhile(world)
+    if obstacle is not None:
+        return replace(_mover(world), collisions="step", collision_reason=obstacle)
+    return _flights(world, "few bodies, which bounce")
+
+
+def _flights(world: World, reason: str) -> Choice:
+    """Return the choice for bodies whose collisions are exact."""
+    method = "between impacts bodies fly in closed form; what rests goes by leapfrog"
+    return Choice(
+        EXACT, method, world.simulation.substeps, smooth=False, collisions="exact", collision_reason=reason
+    )
+
+
+def _mover(world: World) -> Choice:
+    """Return what moves bodies where collisions, if there are any, are found within steps."""
     simulation = world.simulation
     obstacle = why_not_smooth(world)
     if simulation.integrator == "auto":

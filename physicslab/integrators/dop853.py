@@ -19,8 +19,8 @@ def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
     made = dop853(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, steps * h, tolerance)
     if made < 0:
         raise StepTooSmall(
-            f"no step is short enough for a tolerance of {tolerance:g}: a force changes at once, as where planets "
-            f"meet (softening > 0 keeps that finite) or a spring has no length"
+            f"no step is short enough for a tolerance of {tolerance:g}: a force changes at once, as where "
+            f"planets meet (softening > 0 keeps that finite) or a spring has no length"
         )
     return made
 

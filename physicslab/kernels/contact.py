@@ -6,7 +6,7 @@ from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.pair import NEAR, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
-__all__ = ["find_contacts"]
+__all__ = ["effective_masses", "find_contacts", "mix"]
 
 _KEEP = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found anew."""
@@ -30,7 +30,7 @@ def _refresh(
 
 
 @inlined
-def _effective_masses(
+def effective_masses(
     manifold: Manifold, points: Points, p: int, inverse_mass: Numbers, inverse_inertia: Numbers
 ) -> None:
     """Compute 1 / (1/m_a + 1/m_b + (r_a x n)^2 / I_a + (r_b x n)^2 / I_b), for normal and tangent."""
@@ -79,13 +79,16 @@ def find_contacts(
 
     Their numbers are written to ``touching``, in order. A pair of boxes that has hardly moved keeps its
     points. The substep spans ``h`` seconds from ``start`` h before or after now: a pair that meets within it
-    has points with the normal of that moment and the separation, along it, of now. ``first`` marks the first
-    substep of a step, in which records of impacts begin anew; ``fall`` is how far [m] the forces may bring
-    two bodies together within the substep.
+    has points with the normal of that moment and the separation, along it, of now. Pairs whose count is
+    negative are somebody else's, and passed over. ``first`` marks the first substep of a step, in which
+    records of impacts begin anew; ``fall`` is how far [m] the forces may bring two bodies together within the
+    substep.
     """
     found = 0
     for p in range(count):
         manifold = manifolds[p]
+        if manifold.count < 0:
+            continue
         a, b = manifold.a, manifold.b
         one, two = points[2 * p], points[2 * p + 1]
         if first and manifold.struck > 0:
@@ -130,8 +133,8 @@ def find_contacts(
                 touching[found] = p
                 found += 1
                 if first:
-                    _effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
-                    _mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
+                    effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
+                    mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
                 continue
             manifold.base_x, manifold.base_y = dx, dy
             manifold.base_angle_a, manifold.base_angle_b = angle[a], angle[b]
@@ -174,8 +177,8 @@ def find_contacts(
                     b_box, cb, sb, half_bx, half_by, radius[b],
                 )  # fmt: skip
         if manifold.count > 0:
-            _effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
-            _mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
+            effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
+            mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
             touching[found] = p
             found += 1
         elif had_points:
@@ -185,7 +188,7 @@ def find_contacts(
 
 
 @inlined
-def _mix(
+def mix(
     manifold: Manifold,
     a: int,
     b: int,

@@ -13,8 +13,8 @@ __all__ = ["dop853", "first_step", "largest", "make_stages", "step_error", "tota
 
 _SAFETY, _MOST, _LEAST = 0.9, 6.0, 0.2
 """How far a step keeps below what the estimate allows, and how much it may grow or shrink at once."""
-_LEADS = 0.1
-"""So large a share of the largest coordinate must be made in a step for the speed itself to be the measure."""
+_LEADS = 1e-4
+"""Such a share of the largest coordinate must be made in a step for the speed itself to be the measure."""
 _SHORTEST = 1e-13
 """The shortest step, as a share of the time to go: what needs shorter ones has no end."""
 _NOISE = 1e6

@@ -6,7 +6,7 @@ from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.impulse import apply_impulse, follow_drift, relative_velocity
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 
-__all__ = ["strike"]
+__all__ = ["bounce", "rub", "strike"]
 
 _SWEEPS = 32
 """How often the impacts of a substep are gone through before what is left is treated as inelastic."""
@@ -93,6 +93,34 @@ def _bounce_two(
 
 
 @inlined
+def bounce(
+    manifold: Manifold,
+    one: Point,
+    two: Point,
+    meets_1: bool,
+    meets_2: bool,
+    v1: float,
+    v2: float,
+    inverse_mass: Numbers,
+    inverse_inertia: Numbers,
+) -> tuple[float, float]:
+    """Return the normal impulses on B of an impact at the approach speeds v1 and v2 of its points [N s]."""
+    if meets_1 and meets_2:
+        return _bounce_two(manifold, one, two, v1, v2, inverse_mass, inverse_inertia)
+    if meets_1:
+        return -(1.0 + manifold.restitution) * v1 * one.normal_mass, 0.0
+    return 0.0, -(1.0 + manifold.restitution) * v2 * two.normal_mass
+
+
+@inlined
+def rub(manifold: Manifold, point: Point, j: float, sliding: float) -> float:
+    """Return the impulse that stops the sliding, mu times the normal impulse j at the most [N s]."""
+    limit = manifold.friction * j
+    along: float = min(max(-point.tangent_mass * sliding, -limit), limit)
+    return along
+
+
+@inlined
 def _hit(
     manifold: Manifold,
     point: Point,
@@ -110,10 +138,9 @@ def _hit(
     point.impact_normal += j
     if manifold.friction > 0.0:
         vx, vy = relative_velocity(point, a, b, linear, angular)
-        limit = manifold.friction * j
-        rub = min(max(-point.tangent_mass * (vy * nx - vx * ny), -limit), limit)
-        apply_impulse(point, -rub * ny, rub * nx, a, b, linear, angular, inverse_mass, inverse_inertia)
-        point.impact_tangent += rub
+        along = rub(manifold, point, j, vy * nx - vx * ny)
+        apply_impulse(point, -along * ny, along * nx, a, b, linear, angular, inverse_mass, inverse_inertia)
+        point.impact_tangent += along
 
 
 @inlined
@@ -159,13 +186,7 @@ def _strike_pair(
     # The speeds at the time of contact, not those of now.
     v1, v2 = v1 + pull * t, v2 + pull * t
     before = (linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
-    j1 = j2 = 0.0
-    if meets_1 and meets_2:
-        j1, j2 = _bounce_two(manifold, one, two, v1, v2, inverse_mass, inverse_inertia)
-    elif meets_1:
-        j1 = -(1.0 + manifold.restitution) * v1 * one.normal_mass
-    else:
-        j2 = -(1.0 + manifold.restitution) * v2 * two.normal_mass
+    j1, j2 = bounce(manifold, one, two, meets_1, meets_2, v1, v2, inverse_mass, inverse_inertia)
     if j1 > 0.0:
         _hit(manifold, one, j1, v1, linear, angular, inverse_mass, inverse_inertia)
     if j2 > 0.0:

@@ -6,7 +6,9 @@ import numpy as np
 from numba import from_dtype, int64
 from numpy.typing import NDArray
 
-__all__ = ["MANIFOLD", "POINT", "Manifold", "Manifolds", "Pairs", "Point", "Points"]
+__all__ = [
+    "IMPACT", "MANIFOLD", "POINT", "Impacts", "Manifold", "Manifolds", "Pairs", "Point", "Points",
+]  # fmt: skip
 
 MANIFOLD = np.dtype(
     [
@@ -15,7 +17,10 @@ MANIFOLD = np.dtype(
         ("wall", np.int64),  # which of the bounds (0 left, 1 bottom, 2 right, 3 top), -1 for a pair of bodies
         ("a", np.int64),  # rows
         ("b", np.int64),
-        ("count", np.int64),  # points in use
+        (
+            "count",
+            np.int64,
+        ),  # points in use; negative for a pair that flies, which the contact step passes over
         ("normal_x", np.float64),  # unit, from A to B
         ("normal_y", np.float64),
         ("friction", np.float64),
@@ -63,10 +68,29 @@ POINT = np.dtype(
 )
 """A contact point; the points of pair p are numbers 2 p and 2 p + 1."""
 
+IMPACT = np.dtype(
+    [
+        ("time", np.float64),  # [s]
+        ("entity_a", np.int64),  # 0 is the world's bounds
+        ("entity_b", np.int64),
+        ("wall", np.int64),  # which of the bounds, -1 for a pair of bodies
+        ("normal_x", np.float64),  # unit, from A to B
+        ("normal_y", np.float64),
+        ("x", np.float64),  # where they met [m]
+        ("y", np.float64),
+        ("approach_speed", np.float64),  # before the impact [m/s]
+        ("normal_impulse", np.float64),  # [N s], on B; the tangent is the normal turned counter-clockwise
+        ("tangent_impulse", np.float64),
+    ]
+)
+"""One impact whose time was located exactly."""
+
 Manifolds = Annotated[NDArray[np.void], from_dtype(MANIFOLD)[::1]]
 """An array of MANIFOLD (n,)."""
 Points = Annotated[NDArray[np.void], from_dtype(POINT)[::1]]
 """An array of POINT (2 n,)."""
+Impacts = Annotated[NDArray[np.void], from_dtype(IMPACT)[::1]]
+"""An array of IMPACT (n,)."""
 Pairs = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, 3): rows a < b, and the wall or -1."""
 Manifold = Any

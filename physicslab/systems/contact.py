@@ -25,6 +25,7 @@ class ContactSystem(System):
     """
 
     kernels = (contact.find_contacts,)
+    observes = False  # what it begins anew at a step is its own record
 
     def __init__(self) -> None:
         self._bounds = np.zeros(4)
@@ -53,7 +54,7 @@ class ContactSystem(System):
             shape["kind"], shape["radius"], shape["width"], shape["height"],
             material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
             self._bounds, physics.bounds_restitution, physics.bounds_friction, self._first, h,
-            world.method.integrator.window[0],
+            world.method.stages.window[0],
             0.5 * physics.gravity.magnitude * h * h if physics.gravity_mode == "linear" else 0.0,
         )  # fmt: skip
         self._first = False

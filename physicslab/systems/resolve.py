@@ -45,7 +45,7 @@ class ResolveSystem(System):
         """Bounce the pairs that meet within the substep."""
         contacts, bodies = world.contacts, world.bodies
         transform, velocity = world.table(Transform), world.table(Velocity)
-        start, end = world.method.integrator.window
+        start, end = world.method.stages.window
         if contacts.count:
             impacts, contacts.left = impact.strike(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.count,

@@ -77,6 +77,18 @@ def method_lines(world: World) -> list[Line]:
         Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
         Line(world.method.integrator.title, kind="remark"),
         Line(f"because: {world.method.reason}", kind="remark"),
+        *_collision_lines(world),
+    ]
+
+
+def _collision_lines(world: World) -> list[Line]:
+    method = world.method
+    if method.collisions == "none":
+        return []
+    words = {"exact": "Impacts at their exact times", "step": "Contacts found within steps"}
+    return [
+        Line(words[method.collisions], kind="remark"),
+        Line(f"because: {method.collision_reason}", kind="remark"),
     ]
 
 

@@ -1,0 +1,118 @@
+"""Times of meeting: at contact to rounding, never too late, and never the same one again."""
+
+import math
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from physicslab.kernels.meeting import meet_box_box, meet_circle_box, meet_circle_circle, meet_line
+
+away = st.floats(1.0, 3.0)
+turns = st.floats(0.0, 6.28)
+speeds = st.floats(-5.0, 5.0)
+SPAN = 4.0
+TIMES = np.linspace(0.0, SPAN, 4001)
+
+
+def path(t: NDArray[np.float64], d: float, u: float, w: float) -> NDArray[np.float64]:
+    place: NDArray[np.float64] = d + t * (u + 0.5 * t * w)
+    return place
+
+
+def check(t: float, gap: NDArray[np.float64], gap_at: float, scale: float) -> None:
+    """Check a time of meeting against the gap along the way."""
+    if t <= SPAN:
+        assert abs(gap_at) < 1e-12 * scale
+        assert (gap[t - 1e-9 > TIMES] > -1e-12 * scale).all()
+    else:
+        assert (gap > -1e-9 * scale).all()
+
+
+@settings(max_examples=300)
+@given(away, turns, speeds, speeds, speeds, speeds, st.booleans())
+def test_circles(d: float, turn: float, ux: float, uy: float, wx: float, wy: float, pulled: bool) -> None:
+    dx, dy, wx, wy = d * math.cos(turn), d * math.sin(turn), wx * pulled, wy * pulled
+    t = meet_circle_circle(dx, dy, ux, uy, wx, wy, 0.9, SPAN, 0.0)
+
+    def gap(at: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.hypot(path(at, dx, ux, wx), path(at, dy, uy, wy)) - 0.9
+
+    check(t, gap(TIMES), float(gap(np.array(min(t, SPAN)))), 1.0 + SPAN**2 * 10)
+
+
+@settings(max_examples=300)
+@given(away, turns, speeds, speeds, speeds, speeds, st.booleans())
+def test_a_circle_and_a_box(
+    d: float, turn: float, ux: float, uy: float, wx: float, wy: float, pulled: bool
+) -> None:
+    dx, dy, wx, wy = d * math.cos(turn), d * math.sin(turn), wx * pulled, wy * pulled
+    t = meet_circle_box(dx, dy, ux, uy, wx, wy, 0.5, 0.3, 0.2, SPAN, 0.0)
+
+    def gap(at: NDArray[np.float64]) -> NDArray[np.float64]:
+        x, y = np.abs(path(at, dx, ux, wx)) - 0.5, np.abs(path(at, dy, uy, wy)) - 0.3
+        return np.hypot(np.maximum(x, 0.0), np.maximum(y, 0.0)) - 0.2
+
+    check(t, gap(TIMES), float(gap(np.array(min(t, SPAN)))), 1.0 + SPAN**2 * 10)
+
+
+@settings(max_examples=200)
+@given(st.floats(1.5, 3.0), turns, speeds, speeds, speeds, speeds, turns, turns)
+def test_two_boxes(
+    d: float, turn: float, ux: float, uy: float, wx: float, wy: float, a: float, b: float
+) -> None:
+    dx, dy = d * math.cos(turn), d * math.sin(turn)
+    frame = math.cos(a), math.sin(a), math.cos(b), math.sin(b)
+    t, face = meet_box_box(dx, dy, ux, uy, wx, wy, *frame, 0.5, 0.3, 0.4, 0.2, 0.0)
+
+    def gap(at: NDArray[np.float64]) -> NDArray[np.float64]:
+        x, y = path(at, dx, ux, wx), path(at, dy, uy, wy)
+        c, s = abs(math.cos(a - b)), abs(math.sin(a - b))
+        sides = (
+            (a, 0.5 + c * 0.4 + s * 0.2, 0.3 + s * 0.4 + c * 0.2),
+            (b, 0.4 + c * 0.5 + s * 0.3, 0.2 + s * 0.5 + c * 0.3),
+        )
+        gaps = [
+            (
+                np.abs(math.cos(q) * x + math.sin(q) * y) - along,
+                np.abs(math.cos(q) * y - math.sin(q) * x) - up,
+            )
+            for q, along, up in sides
+        ]
+        widest: NDArray[np.float64] = np.stack([one for pair in gaps for one in pair]).max(axis=0)
+        return widest
+
+    assert (face >= 0) == (t < math.inf)
+    check(t, gap(TIMES), float(gap(np.array(min(t, SPAN)))), 1.0 + SPAN**2 * 10)
+
+
+@given(st.floats(0, 10), st.floats(-10, 10), st.floats(-10, 10))
+def test_a_line(gap: float, speed: float, pull: float) -> None:
+    t = meet_line(gap, speed, pull, 0.0)
+    if t < math.inf:
+        assert t >= 0.0 and speed + pull * t <= 1e-12 * (abs(speed) + abs(pull) * t)
+        assert (
+            abs(gap + t * (speed + 0.5 * t * pull))
+            <= 1e-12 * (gap + abs(speed) * t + abs(pull) * t * t) + 1e-300
+        )
+
+
+def test_what_has_just_bounced_is_not_met_again() -> None:
+    for gap in (0.0, 1e-17, -1e-17):
+        assert meet_line(gap, 1.0, 0.0, 0.0) == math.inf
+        assert abs(meet_line(gap, 1.0, -2.0, 0.0) - 1.0) < 1e-15
+        assert meet_circle_circle(1.0 + gap, 0.0, 1.0, 0.5, 0.0, 0.0, 1.0, SPAN, 0.0) == math.inf
+        later = meet_circle_circle(1.0 + gap, 0.0, 1.0, 0.0, -2.0, 0.0, 1.0, SPAN, 0.0)
+        assert abs(later - 1.0) < 1e-15
+        later = meet_circle_box(1.0 + gap, 0.1, 1.0, 0.0, -2.0, 0.0, 0.5, 0.5, 0.5, SPAN, 0.0)
+        assert abs(later - 1.0) < 1e-15
+
+
+def test_the_fastest_and_the_faintest_meeting_are_found() -> None:
+    assert meet_circle_circle(1e6, 0.0, -1e12, 0.0, 0.0, 0.0, 1.0, SPAN, 0.0) == (1e6 - 1.0) / 1e12
+    graze = 1.0 - 1e-12
+    assert abs(meet_circle_circle(10.0, graze, -5.0, 0.0, 0.0, 0.0, 1.0, SPAN, 0.0) - 2.0) < 1e-5
+    # A parabola whose top dips into the circle from below.
+    t = meet_circle_circle(-2.0, -3.0, 1.0, math.sqrt(2 * (2.0 + 1e-9)), 0.0, -1.0, 1.0, SPAN, 0.0)
+    assert 1.99 < t < 2.0
