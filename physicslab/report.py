@@ -63,6 +63,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "integrator_reason": world.method.reason,
         "collision_method": world.method.collisions,
         "collision_reason": world.method.collision_reason,
+        "interpreted": list(world.interpreted),
         "force_evaluations": world.force_evaluations,
         "wall_s": record.wall_s,
         "compile_s": world.schedule.compile_s,
@@ -145,5 +146,7 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         f"{report['collisions']} collisions, deepest overlap {report['max_penetration']:.3g} m",
         f"  systems     {systems or 'none'}",
     ]
+    if report["interpreted"]:
+        lines.append(f"  slower      {', '.join(report['interpreted'])}: computed by Python, call by call")
     lines += [f"  left out    {left['name']}: {left['reason']}" for left in report["left_out"]]
     return "\n".join(lines)

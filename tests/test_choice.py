@@ -5,7 +5,9 @@ import pytest
 from physicslab import config
 from physicslab.components import Drag, Mass, Shape, Spring, Transform, Velocity
 from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.diagnostics import Drift
 from physicslab.integrators import INTEGRATORS
+from physicslab.report import RunRecord, run_report, run_summary
 from physicslab.schedule import ForceSystem, Stage, at
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.standard import standard_systems
@@ -91,6 +93,9 @@ def test_a_force_written_in_python_works_with_every_method_and_is_named(name: st
     world.run(seconds=2.0)
     assert tuple(world.component(body, Transform).position) == pytest.approx((3.0, 4.0), abs=1e-9)
     assert world.interpreted == ("Wind",)
+    report = run_report(world, RunRecord("wind", Drift(world)))
+    assert report["interpreted"] == ["Wind"]
+    assert "Wind: computed by Python" in run_summary(report, "")
 
 
 def test_auto_keeps_to_one_evaluation_where_a_force_is_written_in_python() -> None:
