@@ -9,6 +9,7 @@ from physicslab.diagnostics import measure_energy
 from physicslab.equations import Equations
 from physicslab.integrators import implicit_midpoint
 from physicslab.systems.standard import standard_systems
+from physicslab.vector import Vector2
 from physicslab.world import World
 
 MIDPOINT = SimulationConfig(integrator="implicit_midpoint")
@@ -87,3 +88,19 @@ def test_neighbours_stand_close_together_in_the_order() -> None:
     order, band = implicit_midpoint._banded(world, equations.slots)
     assert sorted(order.tolist()) == list(range(equations.slots.moving_count))
     assert band < 40 < equations.slots.moving_count
+
+
+@pytest.mark.parametrize("stiffness", [1e6, 1e9])
+def test_a_pendulum_on_a_stiff_rod_swings_on(stiffness: float) -> None:
+    world = World(*standard_systems(), simulation=MIDPOINT)
+    bob = world.spawn(
+        Transform((1, 1)), Velocity(), Mass(1), Spring(anchor_b=(0, 1), rest_length=1, stiffness=stiffness)
+    )
+    before = measure_energy(world).total
+    for _ in world.stepping(seconds=10.0, stride=60):
+        energy = measure_energy(
+            world
+        )  # the rod is straight at the middles of steps; its ends store what is left
+        assert energy.kinetic + energy.potential["gravity"] == pytest.approx(before, abs=0.01 * 9.81)
+        length = world.component(bob, Transform).position - Vector2(0, 1)
+        assert length.magnitude == pytest.approx(1.0, abs=1e-4)

@@ -12,8 +12,8 @@ from physicslab.kernels.force_calls import Calls, accelerate
 __all__ = ["implicit_midpoint"]
 
 _MOST_ITERATIONS = 40
-_SLOW = 3
-"""After so many iterations the matrix is worked out anew."""
+_SLOW = 2
+"""After so many iterations with an old matrix it is worked out anew in each: stiff rods turn as they go."""
 _EPSILON = 2.220446049250313e-16
 
 
@@ -119,7 +119,7 @@ def implicit_midpoint(
         while True:
             _at_middle(q, u, stage_q, acceleration, inverse_mass, damping, calls, h)
             evaluations += 1
-            if not known or (iteration > 0 and iteration % _SLOW == 0):
+            if not known or iteration >= _SLOW:
                 evaluations += _differentiate(
                     q, u, stage_q, acceleration, shifted, inverse_mass, damping, calls, h, order, band, matrix
                 )
