@@ -14,15 +14,24 @@ from physicslab.scene import load_scene
 from physicslab.view.canvas import RecordingCanvas
 from physicslab.view.error_study import ErrorStudy
 
+
+def run(asked: str, integrator: str, cpu_ms: float | None, error: float | None) -> dict[str, object]:
+    failure = "" if error is not None else "it fell over"
+    found = {"asked": asked, "integrator": integrator, "cpu_ms": cpu_ms, "error": error}
+    return found | {"step": "0.01 s", "failure": failure}
+
+
 FOUND = {
-    "kind": "an estimate", "seconds": 5.0, "reference": "the tightest method",
+    "kind": "an estimate",
+    "seconds": 5.0,
+    "reference": "the tightest method",
     "rows": [
-        {"integrator": "rk4", "cpu_ms": 0.1, "error": 1e-3, "step": "dt = 0.01 s", "failure": ""},
-        {"integrator": "rk4", "cpu_ms": 10.0, "error": 1e-7, "step": "dt = 0.001 s", "failure": ""},
-        {"integrator": "exact", "cpu_ms": 0.01, "error": 0.0, "step": "", "failure": ""},
-        {"integrator": "leapfrog", "cpu_ms": None, "error": None, "step": "", "failure": "it fell over"},
+        run("rk4", "rk4", 0.1, 1e-3),
+        run("rk4", "rk4", 10.0, 1e-7),
+        run("auto", "exact", 0.01, 0.0),
+        run("leapfrog", "leapfrog", None, None),
     ],
-}  # fmt: skip
+}
 
 PROGRAM = """
 import json, pathlib, sys, time
@@ -66,7 +75,7 @@ def test_the_key_measures_in_another_process_and_shows_the_plot(tmp_path: Path) 
     measured(desk)
     canvas.calls.clear()
     desk.frames()
-    assert {"Error against run time", "rk4", "exact", "run time, ms", "error, m"} <= set(canvas.words)
+    assert {"Error against run time", "rk4", "auto: exact", "run time, ms", "error, m"} <= set(canvas.words)
     assert "leapfrog" not in canvas.words
     assert any("an estimate; distances after 5 s from the tightest method" in words for words in canvas.words)
     joined = next(call for call in canvas.called("lines") if call["width"] == 1.5)

@@ -26,6 +26,9 @@ _SECONDS = 5.0
 _TIGHTEST = 1e-17
 _FINER = (0.5, 1.0, 2.0, 4.0)
 """The rungs of a ladder of steps: so many times the scene's own substeps."""
+_REPEATS = 4
+_LONG = 2.0
+"""A run that takes longer [s] is not made again to be timed."""
 _TOLERANCES = (1e-6, 1e-9, 1e-12, 1e-15)
 """The rungs of a ladder of tolerances."""
 
@@ -163,10 +166,17 @@ def _row(
         step = "" if method.integrator.name == "exact" else f"tol {simulation.tolerance:g}"
     row = SceneRow(method.integrator.name, method.reason, simulation.integrator, step)
     drift = Drift(world)
-    compiled, start = world.schedule.compile_s, time.process_time()
     try:
-        places = _end(world)
-        row.cpu_s = max(0.0, time.process_time() - start - (world.schedule.compile_s - compiled))
+        for _ in range(_REPEATS):  # the shortest: the first also compiles, and other programs run as well
+            world = load()
+            world.simulation = simulation
+            world.synchronise()
+            start = time.process_time()
+            places = _end(world)
+            taken = time.process_time() - start
+            row.cpu_s = min(row.cpu_s or taken, taken)
+            if taken > _LONG:
+                break
         row.evaluations = world.force_evaluations
         drift.sample(world)
         row.energy = drift.relative
@@ -212,7 +222,9 @@ def scene_document(study: SceneStudy) -> dict[str, Any]:
     for row in study.rows:
         found = dataclasses.asdict(row)
         found["cpu_ms"] = 1e3 * found.pop("cpu_s") if not row.failure else None
-        found["error"] = row.tightest
+        found["error"] = (
+            row.tightest or row.half_step
+        )  # the tightest is compared with itself at half the step
         rows.append(
             {key: finite(value) if isinstance(value, float) else value for key, value in found.items()}
         )

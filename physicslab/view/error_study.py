@@ -17,6 +17,11 @@ __all__ = ["ErrorStudy", "Sample"]
 _COMMAND = (sys.executable, "-m", "physicslab.cli", "accuracy")
 
 
+def _series(row: dict[str, str]) -> str:
+    """Return what runs of one line of the plot have in common: the method that was asked for."""
+    return f"auto: {row['integrator']}" if row["asked"] == "auto" else row["integrator"]
+
+
 @dataclass(frozen=True, slots=True)
 class Sample:
     """One run of the scene: by which method, how long it took [ms], how far it is off [m], at what step."""
@@ -115,7 +120,7 @@ class ErrorStudy:
         (found,) = json.loads(self._report.read_text("utf-8"))["scenes"]
         self.remark = f"{found['kind']}; distances after {found['seconds']:g} s from {found['reference']}"
         self.samples = tuple(
-            Sample(row["integrator"], row["cpu_ms"], row["error"], row["step"])
+            Sample(_series(row), row["cpu_ms"], row["error"], row["step"])
             for row in found["rows"]
             if row["error"] is not None and row["cpu_ms"] is not None
         )
