@@ -17,8 +17,10 @@ from physicslab.view.error_study import ErrorStudy
 
 def run(asked: str, integrator: str, cpu_ms: float | None, error: float | None) -> dict[str, object]:
     failure = "" if error is not None else "it fell over"
-    found = {"asked": asked, "integrator": integrator, "cpu_ms": cpu_ms, "error": error}
-    return found | {"step": "0.01 s", "failure": failure}
+    return {
+        "asked": asked, "integrator": integrator, "cpu_ms": cpu_ms, "error": error,
+        "step": "0.01 s", "failure": failure,
+    }  # fmt: skip
 
 
 FOUND = {
