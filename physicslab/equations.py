@@ -127,6 +127,14 @@ class Equations:
         self.forces = tuple(system.name for system in self._forces)
         self.slots = Slots(world, all_turn=bool(interpreted))
         self._error: BaseException | None = None
+        self._settings = self._look(world)
+
+    def _look(self, world: World) -> bytes:
+        return world.bodies.inverse_mass.tobytes() + b"".join(f.settings(world) for f in self._forces)
+
+    def outdated(self, world: World) -> bool:
+        """Whether a number was changed that the layout, or the choice of a method, hangs on."""
+        return self._look(world) != self._settings
 
     def gather(self, world: World) -> None:
         """Take the state, the masses and the forces from the world's tables."""

@@ -144,6 +144,17 @@ class ForceSystem(System):
         """Return whether the force hangs on velocities, as drag does; a method is chosen by that."""
         return False
 
+    def may_be_singular(self, world: World) -> bool:
+        """Return whether bodies may come where the force is not smooth; fixed steps would not notice."""
+        return False
+
+    def settings(self, world: World) -> bytes:
+        """Return the numbers, bit by bit, that the force has apart from the state of motion.
+
+        Where they change, the method that moves the bodies is chosen anew.
+        """
+        return b""
+
     def couples(self, world: World) -> NDArray[np.int64] | None:
         """Return the pairs of rows (n, 2) whose motions the force couples; ``None``: any with any."""
         return None

@@ -255,6 +255,8 @@ class World:
             self._follow()
             if not self._stepping:
                 self.bodies.derive(self)
+                if self._equations is not None and self._equations.outdated(self):
+                    self._choose()
                 if self._flights is not None and not self._flights.holds(self):
                     self._choose()
 

@@ -10,6 +10,7 @@ from physicslab.integrators import INTEGRATORS
 from physicslab.report import RunRecord, run_report, run_summary
 from physicslab.schedule import ForceSystem, Stage, at
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.spring import SpringSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
@@ -38,7 +39,10 @@ def planets(count: int, softening: float) -> World:
         (world_of(ball()), "exact", "uniform gravity alone: solved in closed form"),
         (world_of(ball(0, Spring(rest_length=0))), "exact", "springs to fixed points"),
         (world_of(ball(0, Drag(linear=1))), "exact", "linear drag"),
-        (world_of(ball(2, Spring(rest_length=0.5))), "blanes_moan", "conservative and smooth"),
+        (world_of(ball(2, Spring(rest_length=2.2, stiffness=1e4))), "blanes_moan", "conservative and smooth"),
+        (world_of(ball(2, Spring(rest_length=0.5))), "dop853", "pressed together to nothing"),
+        (world_of(ball(2), linear_damping=1e9, gravity_mode="none"), "exact", "linear drag"),
+        (world_of(ball(2, Spring(rest_length=0.5)), linear_damping=1e9), "implicit_midpoint", "too fast"),
         (world_of(ball(2, Spring(rest_length=0.5, damping=1))), "dop853", "velocities"),
         (world_of(ball(0, Drag(quadratic=1))), "dop853", "velocities"),
         (world_of(ball(2, Spring(rest_length=0.5, stiffness=1e12))), "implicit_midpoint", "too fast"),
@@ -55,12 +59,46 @@ def test_auto_chooses_by_what_there_is_and_says_why(world: World, name: str, rea
 
 def test_auto_thinks_again_when_the_content_changes() -> None:
     world = world_of(ball())
-    spring = world.spawn(*ball(2, Spring(rest_length=0.5)))
+    spring = world.spawn(*ball(2, Spring(rest_length=2.2, stiffness=1e4)))
     world.synchronise()
     assert world.method.integrator.name == "blanes_moan"
+    world.component(spring, Spring).damping = 1.0
+    world.step()
+    assert world.method.integrator.name == "dop853"
     world.remove(spring)
     world.synchronise()
     assert world.method.integrator.name == "exact"
+
+
+@pytest.mark.parametrize("name", ["leapfrog", "rk4", "dop853", "auto"])
+def test_a_spring_moved_off_the_middle_turns_its_body_from_then_on(name: str) -> None:
+    world = World(SpringSystem(), IntegrateSystem(), simulation=SimulationConfig(dt=1 / 200, integrator=name))
+    spring = Spring(anchor_b=(1, 1), rest_length=0.3, stiffness=20)
+    body = world.spawn(Transform(), Velocity(), Mass(1.0, 0.4), spring)
+    world.run(seconds=0.1)
+    spring.anchor_a = (0.5, 0.0)
+    world.run(seconds=1.0)
+    assert world.component(body, Transform).angle == pytest.approx(0.9504, abs=2e-3)
+    assert tuple(world.component(body, Transform).position) == pytest.approx((0.9785, 0.9186), abs=2e-3)
+
+
+def test_a_spring_pulled_nearly_through_its_end_is_followed() -> None:
+    ends = []
+    for name in ("auto", "dop853"):
+        physics = PhysicsConfig(gravity_mode="none")
+        world = World(*standard_systems(), physics=physics, simulation=SimulationConfig(integrator=name))
+        spring = Spring(rest_length=1, stiffness=10)
+        body = world.spawn(Transform((2, 0)), Velocity((0, 1e-6)), Mass(1), spring)
+        world.run(seconds=5.0)
+        ends.append(tuple(world.component(body, Transform).position))
+    assert ends[0] == pytest.approx(ends[1], abs=1e-9)
+
+
+def test_strong_drag_on_a_body_at_rest_at_the_origin_is_no_trap() -> None:
+    world = World(*standard_systems())
+    body = world.spawn(Transform(), Velocity(), Mass(1), Drag(quadratic=1e4))
+    world.run(seconds=1.0)
+    assert world.component(body, Transform).position.y == pytest.approx(-0.0313, abs=2e-4)
 
 
 def test_what_was_asked_for_and_cannot_be_is_refused_in_words() -> None:

@@ -224,7 +224,7 @@ def test_a_bob_thrown_off_its_line_is_no_longer_solved_in_closed_form() -> None:
     assert world.method.integrator.name == "exact"
     world.component(bob, Velocity).linear = Vector2(0, 1)
     world.step()
-    assert world.method.integrator.name == "blanes_moan"
+    assert world.method.integrator.name == "dop853"
 
 
 def test_planets_that_meet_in_a_point_stop_the_run_and_say_why() -> None:

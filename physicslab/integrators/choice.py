@@ -140,16 +140,22 @@ def _best(world: World) -> Choice:
         why = str(error)
     attractors = max((getattr(system, "attractors", 0) for system in forces), default=0)
     planets = world.physics.gravity_mode == "planet" and attractors > 1
-    if planets and attractors >= _MANY and world.physics.softening > 0.0:
-        return Choice(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
-    if planets:
-        return Choice(DOP853, "planets may come close: the step follows them", 1, smooth=True)
-    rate = max((system.strongest_rate(world) for system in forces), default=0.0)
+    fixed = [system for system in forces if not (planets and hasattr(system, "attractors"))]
+    rate = max((system.strongest_rate(world) for system in fixed), default=0.0)
+    rate = max(rate, world.physics.linear_damping, world.physics.angular_damping)
     needed = max(1, math.ceil(rate * h / _WELL_RESOLVED))
     if needed > _MOST_STEPS:
         reason = f"{rate:.3g} rad/s is too fast to be followed: what it does between steps is not shown"
         return Choice(IMPLICIT_MIDPOINT, reason, substeps, smooth=True)
+    if planets and attractors >= _MANY and world.physics.softening > 0.0:
+        return Choice(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
+    if planets:
+        return Choice(DOP853, "planets may come close: the step follows them", 1, smooth=True)
     if world.physics.linear_damping or any(system.sees_velocity(world) for system in forces):
         return Choice(DOP853, f"forces hang on velocities, and {why}", 1, smooth=True)
+    if any(system.may_be_singular(world) for system in forces):
+        return Choice(
+            DOP853, "a spring may be pressed together to nothing: the step follows it", 1, smooth=True
+        )
     reason = f"conservative and smooth; {needed} steps of omega h = {rate * h / needed:.2g}"
     return Choice(BLANES_MOAN, reason, needed, smooth=True)

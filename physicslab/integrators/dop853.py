@@ -20,7 +20,7 @@ def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
     if made < 0:
         raise StepTooSmall(
             f"no step is short enough for a tolerance of {tolerance:g}: a force changes at once, as where "
-            f"planets meet (softening > 0 keeps that finite) or a spring has no length"
+            f"planets meet (softening > 0 keeps it finite), or a spring has no length or is too stiff to follow"
         )
     return made
 

@@ -105,6 +105,15 @@ def first_step(pushes: Vectors, q_scale: float, v_scale: float, span: float, tol
     return min(guess * math.pow(tolerance, 0.125), span)
 
 
+@inlined
+def _all_finite(q: Numbers, v: Numbers, n: int) -> bool:
+    """Whether every one of the first ``n`` numbers of both is finite; :func:`largest` may overlook NaN."""
+    for i in range(n):
+        if not (math.isfinite(q[i]) and math.isfinite(v[i])):
+            return False
+    return True
+
+
 @kernel
 def dop853(
     q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
@@ -140,7 +149,7 @@ def dop853(
         q_reach, v_reach = max(q_scale, largest(stage_q, n)), max(v_scale, largest(stage_v, n))
         # Where all is at rest, what counts is how far an error of the speed leads within the step.
         error = step_error(rates, pushes, taken, q_reach, max(v_reach, _LEADS * q_reach / taken), tolerance)
-        if not math.isfinite(error):
+        if not (math.isfinite(error) and _all_finite(stage_q, stage_v, n)):
             h, grow = _LEAST * taken, 1.0
             last_error = math.inf
             continue

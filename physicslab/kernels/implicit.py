@@ -14,6 +14,8 @@ __all__ = ["implicit_midpoint"]
 _MOST_ITERATIONS = 40
 _SLOW = 2
 """After so many iterations with an old matrix it is worked out anew in each: stiff rods turn as they go."""
+_SMALL = 1e-3
+"""The size of things [m] where all coordinates are zero."""
 _EPSILON = 2.220446049250313e-16
 
 
@@ -76,9 +78,8 @@ def _differentiate(
     Reid, J. Inst. Maths Applics 13 (1974) 117).
     """
     n = len(order)
-    shift = 1.5e-8 * max(
-        largest(u, n) + largest(q, n) / h, 1e-9
-    )  # moves places by sqrt(epsilon) of themselves
+    # Places move by sqrt(epsilon) of themselves.
+    shift = 1.5e-8 * max(largest(u, n) + largest(q, n) / h, _SMALL / h)
     stride = min(2 * band + 1, n)
     moved = u.copy()
     for first in range(stride):

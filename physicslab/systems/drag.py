@@ -48,6 +48,11 @@ class DragSystem(ForceSystem):
         ]
         return float(rates.max())
 
+    def settings(self, world: World) -> bytes:
+        """Return both coefficients of every body."""
+        table, rows = world.table(Drag), world.batch(*self.needs).rows
+        return table["linear"][rows].tobytes() + table["quadratic"][rows].tobytes()
+
     def couples(self, world: World) -> NDArray[np.int64]:
         """Drag couples nothing."""
         return np.zeros((0, 2), np.int64)

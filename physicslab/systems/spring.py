@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.columns import InvalidValue
-from physicslab.components import Name, Spring, Transform, Velocity
+from physicslab.components import Mass, Name, Spring, Transform, Velocity
 from physicslab.equations import PackedForce, spring_ends
 from physicslab.kernels import packed_forces, springs
 from physicslab.schedule import ForceSystem, Stage, at
@@ -97,6 +97,29 @@ class SpringSystem(ForceSystem):
         fixed = (bodies.inverse_mass[self._a] == 0.0) | (bodies.inverse_mass[self._b] == 0.0)
         share = 0.5 if fixed.all() else 1.0  # no pair of bodies moves against each other
         return max(float(np.sqrt(share * stiff.max())), float(share * damped.max()))
+
+    def may_be_singular(self, world: World) -> bool:
+        """Whether there is energy enough to press a spring together to nothing, where it has no direction.
+
+        Reckoned with a margin of four: what moves, what springs store, and a fall by twice a spring's length.
+        """
+        spring, bodies = world.table(Spring), world.bodies
+        rest, stiffness = spring["rest_length"][self._rows], spring["stiffness"][self._rows]
+        rigid = (rest > 0.0) & (stiffness > 0.0)
+        if not rigid.any():
+            return False
+        free = bodies.inverse_mass > 0.0
+        mass, linear = world.table(Mass)["mass"][free], world.table(Velocity)["linear"][free]
+        available = 0.5 * float(mass @ np.square(linear).sum(axis=1)) + self.potential_energy(world)
+        if world.physics.gravity_mode == "linear":
+            available += 2.0 * float(mass.sum()) * world.physics.gravity.magnitude * float(rest.max())
+        return available > 0.25 * float((0.5 * stiffness * rest * rest)[rigid].min())
+
+    def settings(self, world: World) -> bytes:
+        """Return every number of every spring."""
+        spring = world.table(Spring)
+        columns = ("anchor_a", "anchor_b", "rest_length", "stiffness", "damping")
+        return b"".join(spring[column][self._rows].tobytes() for column in columns)
 
     def couples(self, world: World) -> NDArray[np.int64]:
         """Return the bodies at both ends of every spring."""
