@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from physicslab.equations import Equations
 from physicslab.integrators.integrator import Integrator, StepTooSmall
-from physicslab.kernels.dop853 import dop853
+from physicslab.kernels.dop853 import NOT_FINITE, dop853
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -17,10 +17,12 @@ __all__ = ["DOP853"]
 def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
     eq, tolerance = equations, world.simulation.tolerance
     made = dop853(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, steps * h, tolerance)
+    if made == NOT_FINITE:
+        raise StepTooSmall(f"forces are no longer finite at t = {world.time:.9g} s")
     if made < 0:
         raise StepTooSmall(
             f"no step is short enough for a tolerance of {tolerance:g}: a force changes at once, as where "
-            f"planets meet (softening > 0 keeps it finite), or a spring has no length or is too stiff to follow"
+            f"planets meet (softening > 0 keeps it finite), or a spring has no length or is too stiff"
         )
     return made
 

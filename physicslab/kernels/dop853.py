@@ -9,8 +9,10 @@ from physicslab.kernels.compensated import add
 from physicslab.kernels.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, LAST_LOW, WEIGHTS
 from physicslab.kernels.force_calls import Calls, accelerate
 
-__all__ = ["dop853", "first_step", "largest", "make_stages", "step_error", "total"]
+__all__ = ["NOT_FINITE", "dop853", "first_step", "largest", "make_stages", "step_error", "total"]
 
+NOT_FINITE = -2
+"""What is returned where the forces at the start are not finite."""
 _SAFETY, _MOST, _LEAST = 0.9, 6.0, 0.2
 """How far a step keeps below what the estimate allows, and how much it may grow or shrink at once."""
 _LEADS = 1e-4
@@ -108,10 +110,10 @@ def first_step(pushes: Vectors, q_scale: float, v_scale: float, span: float, tol
 @inlined
 def _all_finite(q: Numbers, v: Numbers, n: int) -> bool:
     """Whether every one of the first ``n`` numbers of both is finite; :func:`largest` may overlook NaN."""
+    finite = True
     for i in range(n):
-        if not (math.isfinite(q[i]) and math.isfinite(v[i])):
-            return False
-    return True
+        finite = finite and math.isfinite(q[i]) and math.isfinite(v[i])
+    return finite
 
 
 @kernel
@@ -130,6 +132,8 @@ def dop853(
     q_low, v_low = np.zeros(n), np.zeros(n)
     q_scale, v_scale = largest(q, n), largest(v, n)
     make_stages(q, v, stage_q, stage_v, acceleration, rates, pushes, inverse_mass, damping, calls, 0.0, 0, 1)
+    if not _all_finite(acceleration, stage_v, n):
+        return NOT_FINITE
     evaluations, done, done_low = 1, 0.0, 0.0
     h = first_step(pushes, q_scale, v_scale, span, tolerance)
     grow, last_error, last_taken = _MOST, math.inf, 1.0

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 __all__ = ["SpringSystem"]
 
 
+_NOTHING = 1e-9
+"""A spring shorter than such a share of its rest length has no direction to push in."""
+
+
 class SpringSystem(ForceSystem):
     """Pulls the ends of every Spring together by F = k (length - rest_length) + c (rate of lengthening)."""
 
@@ -106,14 +110,25 @@ class SpringSystem(ForceSystem):
         spring, bodies = world.table(Spring), world.bodies
         rest, stiffness = spring["rest_length"][self._rows], spring["stiffness"][self._rows]
         rigid = (rest > 0.0) & (stiffness > 0.0)
-        if not rigid.any():
-            return False
+        if not rigid.any() or (self._lengths(world)[rigid] < _NOTHING * rest[rigid]).any():
+            return False  # or it is singular already, and no step leads away from there but a fixed one
         free = bodies.inverse_mass > 0.0
         mass, linear = world.table(Mass)["mass"][free], world.table(Velocity)["linear"][free]
         available = 0.5 * float(mass @ np.square(linear).sum(axis=1)) + self.potential_energy(world)
         if world.physics.gravity_mode == "linear":
             available += 2.0 * float(mass.sum()) * world.physics.gravity.magnitude * float(rest.max())
         return available > 0.25 * float((0.5 * stiffness * rest * rest)[rigid].min())
+
+    def _lengths(self, world: World) -> NDArray[np.float64]:
+        """Return how long every spring is [m]."""
+        spring, transform = world.table(Spring), world.table(Transform)
+        apart = np.zeros((len(self._rows), 2))
+        for end, anchors, sign in ((self._a, "anchor_a", -1.0), (self._b, "anchor_b", 1.0)):
+            angle, anchor = transform["angle"][end], spring[anchors][self._rows]
+            c, s = np.cos(angle), np.sin(angle)
+            x, y = c * anchor[:, 0] - s * anchor[:, 1], s * anchor[:, 0] + c * anchor[:, 1]
+            apart += sign * (transform["position"][end] + np.stack((x, y), axis=1))
+        return np.hypot(apart[:, 0], apart[:, 1])
 
     def settings(self, world: World) -> bytes:
         """Return every number of every spring."""
