@@ -14,6 +14,7 @@ from physicslab.stability.catalogue import CASES, select
 _IMPLICIT = "Newton finds no solution of the implicit step while the spring swings sideways"
 _BESIDE_CONTACTS = "forces beside contacts go by four substeps of leapfrog, however stiff the springs are"
 _RATIO = "the contact spring is no stiffer for what weighs a hundred times more than what carries it"
+_CROWD = "discs whose centres coincide are pushed out through each other faster than 2 m/s"
 FALLS_SHORT: dict[str, str] = {
     "spring_k_1e12_bounded": _IMPLICIT,
     "spring_k_1e12_energy": _IMPLICIT,
@@ -29,9 +30,13 @@ FALLS_SHORT: dict[str, str] = {
     "stack_100kg_sink": _RATIO,
     "stack_1e4kg_stands": _RATIO,
     "masses_1e-9_1e9": _RATIO,
-    "crowd_1000_speed": "discs whose centres coincide are pushed out through each other faster than 2 m/s",
+    "crowd_1000_speed": _CROWD,
+    "crowd_5000_speed": _CROWD,
 }
-"""Cases beyond the engine at present, and what stands in the way: one that is mended must be taken out."""
+"""Cases beyond the engine at present, and what stands in the way: one that is mended must be taken out.
+
+Long ones are not run here, and named for whoever reads what the command prints.
+"""
 
 
 def parameter(case: Case) -> object:

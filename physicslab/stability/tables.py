@@ -18,7 +18,7 @@ def row_text(outcome: Outcome, cases: Sequence[Case]) -> str:
     """Return a case's line, aligned with those of all ``cases``."""
     case = outcome.case
     figure = "-" if outcome.figure is None else f"{outcome.figure:.3g}"
-    limit = f"{case.limit:.3g} {case.unit}".rstrip()
+    limit = f"{case.limit:.4g} {case.unit}".rstrip()
     what = f"{case.title}: {outcome.failure or case.figure}"
     return _line(cases, case.name, figure, limit, str(outcome.verdict), what)
 
