@@ -30,6 +30,10 @@ __all__ = ["World"]
 _numbers = itertools.count(1)
 _MOST = 2**62
 """More steps than there can be."""
+_MOST_PARTS = 100_000
+"""Into so many parts, at the most, a step is divided that is longer than the scene's own."""
+_TOO_LONG = 0.01
+"""By which share a step may exceed the scene's own undivided: the last one of a run may take in a rest."""
 
 
 class World:
@@ -48,6 +52,8 @@ class World:
         How the bodies are moved, and why so.
     revision : int
         How often its structure or its configuration changed: what was measured before is another world's.
+    divided : int
+        Into how many parts the last :meth:`step` was divided, which was longer than ``simulation.dt``; or 1.
 
     Notes
     -----
@@ -76,6 +82,7 @@ class World:
         self.name, self.title, self.description = "", "", ""
         self.time = 0.0
         self.steps = 0
+        self.divided = 1
         self.revision = 0
         self.force_evaluations = 0
         self.collisions = 0
@@ -284,7 +291,11 @@ class World:
         self.contacts.stale |= had_flights or self._flights is not None
 
     def step(self, dt: float | None = None) -> None:
-        """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps."""
+        """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps.
+
+        What is longer than ``simulation.dt`` is divided, so that no substep is longer than the scene's own:
+        ``divided`` says into how many parts. A method that is exact or chooses its steps takes it whole.
+        """
         dt = self._simulation.dt if dt is None else dt
         if not (math.isfinite(dt) and dt > 0.0):
             raise ValueError(f"dt = {dt!r}: must be a finite number > 0 s")
@@ -292,25 +303,38 @@ class World:
             raise RuntimeError("a system cannot step the world that is calling it")
         with self.active():
             self.synchronise()
+            self.divided = parts = self._parts(dt)
             self._stepping = True
             try:
                 self.schedule.run(Stage.PREPARE, self, dt)
                 if self._equations is not None:
-                    self._flow(self._equations, dt, 1)
-                elif self._flights is not None:
-                    self._flights.step(self, dt)
+                    self._flow(self._equations, dt / parts, parts)
+                elif self._flights is None:
+                    self._substeps(dt / parts / self._simulation.substeps, parts * self._simulation.substeps)
+                elif parts > 1:
+                    self._flights.run(self, dt / parts, parts)
                 else:
-                    self._substeps(dt / self._simulation.substeps)
+                    self._flights.step(self, dt)
                 self.schedule.run(Stage.FINISH, self, dt)
             finally:
                 self._stepping = False
         self.time += dt
         self.steps += 1
 
-    def _substeps(self, h: float) -> None:
+    def _parts(self, dt: float) -> int:
+        """Return into how many parts a step of ``dt`` is divided."""
+        method = self.method.integrator
+        if self._equations is not None and (method.chooses_steps or math.isinf(method.order)):
+            return 1
+        own = self._simulation.dt
+        if dt / own > _MOST_PARTS:
+            raise ValueError(f"dt = {dt!r}: must be at most {_MOST_PARTS} times simulation.dt = {own!r} s")
+        return max(1, math.ceil(dt / own - _TOO_LONG))
+
+    def _substeps(self, h: float, count: int) -> None:
         """Go through the stages of a step, substep by substep."""
         run = self.schedule.run
-        for _ in range(self._simulation.substeps):
+        for _ in range(count):
             for stage, share in self.method.stages.substep:
                 run(stage, self, share * h)
 

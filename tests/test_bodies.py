@@ -53,7 +53,7 @@ def test_presence_decides_what_a_body_weighs() -> None:
 
 
 def test_forces_and_torques_change_velocities() -> None:
-    world = World(Push((3.0, -6.0), 2.0))
+    world = World(Push((3.0, -6.0), 2.0), simulation=SimulationConfig(dt=0.5))
     ball = world.spawn(Transform(), Velocity((1, 1), 1), Mass(2.0, inertia=4.0))
     world.step(0.5)
     velocity = world.component(ball, Velocity)

@@ -211,9 +211,11 @@ USAGE = [
     (["newtons_crade"], 'did you mean "newtons_cradle"?'),
     (["nowhere.json"], "nowhere.json: no such file"),
     (["drop", "--fast"], "unrecognized arguments: --fast"),
-    (["bench"], "the command bench is not there yet; there are run, accuracy, scenes"),
+    (["bench"], "the command bench is not there yet; there are run, accuracy, stability, scenes"),
     (["bench", "pile"], "the command bench is not there yet"),
-    (["stability"], "the command stability is not there yet"),
+    (["stability", "springz"], '"springz": is no case; did you mean "springs"?'),
+    (["stability", "qqqq"], '"qqqq": is no case; there are the groups springs, dampers, chains, stacks, '),
+    (["stability", "--json", "none/x.json", "far"], "--json none/x.json: cannot be written"),
 ]
 
 

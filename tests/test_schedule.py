@@ -63,13 +63,13 @@ def running(world: World) -> list[str]:
 
 def test_stages_come_in_the_integrators_order() -> None:
     recorder = Recorder()
-    world = World(recorder, simulation=SimulationConfig(substeps=2, integrator="symplectic_euler"))
+    world = World(recorder, simulation=SimulationConfig(dt=1.0, substeps=2, integrator="symplectic_euler"))
     world.step(1.0)
     substep = [("force", 0.5), ("kick", 0.5), ("drift", 0.5)]
     assert recorder.calls == [("prepare", 1.0), *substep, *substep, ("finish", 1.0)]
 
     recorder.calls.clear()
-    world.simulation = SimulationConfig(substeps=1, integrator="leapfrog")
+    world.simulation = SimulationConfig(dt=1.0, substeps=1, integrator="leapfrog")
     world.step(1.0)
     names = [name for name, _ in recorder.calls]
     assert names == ["prepare", "drift", "force", "kick", "kick", "drift", "finish"]
@@ -95,7 +95,7 @@ def test_systems_of_one_stage_run_in_the_order_given() -> None:
 
 def test_an_override_keeps_its_stage() -> None:
     louder = Louder()
-    World(louder, simulation=SimulationConfig(substeps=1)).step(1.0)
+    World(louder, simulation=SimulationConfig(dt=1.0, substeps=1)).step(1.0)
     assert ("louder", 1.0) in louder.calls and ("force", 1.0) not in louder.calls
 
 

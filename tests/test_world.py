@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from physicslab.components import Mass, Name, Spring, Transform, Velocity
 from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.scene import load_scene
 from physicslab.schedule import Stage, System, at
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
@@ -142,7 +143,7 @@ def test_changes_from_inside_a_system() -> None:
         world.remove(old)
         esper.add_component(kept, Mass(3.0))
 
-    world = World(Meddler(meddle), IntegrateSystem())
+    world = World(Meddler(meddle), IntegrateSystem(), simulation=SimulationConfig(dt=1.0))
     old, kept = world.spawn(Transform(), Velocity((1, 0))), world.spawn(Transform(), Velocity((1, 0)))
     handle = world.component(old, Transform)
     world.step(1.0)
@@ -330,7 +331,7 @@ def test_configuration_is_replaced_at_any_time() -> None:
     world.step(0.1)
     assert world.component(ball, Velocity).linear.y == pytest.approx(-0.981)
     world.physics = PhysicsConfig(gravity=Vector2(10, 0))
-    world.simulation = SimulationConfig(substeps=1, integrator="symplectic_euler")
+    world.simulation = SimulationConfig(dt=0.1, substeps=1, integrator="symplectic_euler")
     assert world.method.integrator.name == "symplectic_euler"
     world.step(0.1)
     assert world.component(ball, Velocity).linear.x == pytest.approx(1.0)
@@ -341,3 +342,39 @@ def test_configuration_is_replaced_at_any_time() -> None:
 def _start_from_esper_s_own_context() -> Iterator[None]:
     esper.switch_world("default")
     yield
+
+
+def test_a_step_longer_than_the_scenes_own_is_divided_so_that_no_substep_is_longer() -> None:
+    long, short = load_scene("stack"), load_scene("stack")
+    assert long.divided == 1
+    long.step(2.0)
+    assert (long.divided, long.steps, long.time) == (120, 1, 2.0)
+    short.run(seconds=2.0)
+    boxes = short.table(Transform)["position"]
+    assert abs(long.table(Transform)["position"] - boxes).max() < 1e-9
+    long.step()
+    assert long.divided == 1
+
+
+def test_where_forces_alone_act_a_long_step_is_divided_unless_the_method_is_exact() -> None:
+    world = World(GravitySystem(), IntegrateSystem(), simulation=SimulationConfig(integrator="rk4"))
+    world.spawn(Transform(), Velocity(), Mass(1.0))
+    world.step(1.0)
+    assert world.divided == 60
+    world.simulation = SimulationConfig(integrator="exact")
+    world.step(1.0)
+    assert world.divided == 1
+
+
+def test_the_last_step_of_a_run_may_take_in_a_rest_undivided() -> None:
+    world = load_scene("stack")
+    world.step(world.simulation.dt * 1.001)
+    assert world.divided == 1
+
+
+def test_a_step_that_would_have_to_be_divided_beyond_measure_is_refused() -> None:
+    world = load_scene("stack")
+    with pytest.raises(ValueError, match=r"dt = 1000000000.0: must be at most 100000 times simulation.dt"):
+        world.step(1e9)
+    assert (world.time, world.steps) == (0.0, 0)
+    world.step()

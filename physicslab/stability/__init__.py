@@ -1,0 +1,1 @@
+"""Stiff, extreme and hostile cases: what is right, the limit, and what the engine makes of each."""
