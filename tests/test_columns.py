@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from physicslab.columns import COMPONENTS, Component, InvalidValue, Table, Vector, component, field
 from physicslab.components import Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.config import SimulationConfig
 from physicslab.schedule import Stage, System, at
 from physicslab.vector import Vector2
 from physicslab.world import World
@@ -327,7 +328,7 @@ def test_a_copy_lets_go_of_the_world() -> None:
 
 
 def test_a_contributed_component_and_system_work_in_a_world() -> None:
-    world = World(IonSystem())
+    world = World(IonSystem(), simulation=SimulationConfig(dt=0.5))
     pushed = world.spawn(Transform(), Velocity(), Ion(2.0, (0, 3)))
     world.spawn(Transform(), Velocity())
     world.step(0.5)

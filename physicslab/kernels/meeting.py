@@ -23,7 +23,7 @@ left."""
 def meet_line(gap: float, speed: float, pull: float, least: float) -> float:
     """Return the first t >= 0 at which gap + speed t + pull t^2 / 2 is not positive and falls, or infinity.
 
-    Rates that fall no faster than ``least`` count as zero.
+    Rates that fall no faster than ``least`` count as zero. Squares of what is not zero must not vanish.
     """
     square = speed * speed - 2.0 * pull * gap
     if speed < -least:
