@@ -24,6 +24,7 @@ from physicslab.integrators import StepTooSmall
 from physicslab.integrators.choice import choose, provisional
 from physicslab.roster import Roster
 from physicslab.schedule import ForceSystem, Schedule, Stage, System
+from physicslab.tethers import Tethers
 
 __all__ = ["World"]
 
@@ -50,6 +51,8 @@ class World:
     ----------
     method : Choice
         How the bodies are moved, and why so.
+    tethers : Tethers, optional
+        What moves the bodies that springs and drag act on where contacts act as well.
     revision : int
         How often its structure or its configuration changed: what was measured before is another world's.
     divided : int
@@ -93,6 +96,7 @@ class World:
         self.has_forces = False
         self._equations: Equations | None = None
         self._flights: Flights | None = None
+        self.tethers: Tethers | None = None
         self._stale = True
         self._stepping = False
         self.method = provisional(self._simulation)
@@ -266,6 +270,8 @@ class World:
                     self._choose()
                 if self._flights is not None and not self._flights.holds(self):
                     self._choose()
+                if self.tethers is not None and self.tethers.outdated(self):
+                    self._choose()
 
     def _follow(self) -> None:
         """Follow what changed in the structure of the world since the last call, if anything did."""
@@ -284,6 +290,10 @@ class World:
         """Choose the method for what there is, and make ready what it works with."""
         self.method = choose(self)
         self._equations = Equations(self) if self.method.smooth else None
+        self.bodies.tethered[:] = False
+        self.tethers = None
+        if self.method.tethers is not None:
+            self.tethers = Tethers(self, self.method.tethers, self.method.tether_steps)
         had_flights, self._flights = self._flights is not None, None
         if self.method.collisions == "exact":
             self._flights = Flights(self)
@@ -307,6 +317,8 @@ class World:
             self._stepping = True
             try:
                 self.schedule.run(Stage.PREPARE, self, dt)
+                if self.tethers is not None:
+                    self.tethers.begin(self)
                 if self._equations is not None:
                     self._flow(self._equations, dt / parts, parts)
                 elif self._flights is None:
