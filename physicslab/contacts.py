@@ -97,6 +97,8 @@ class Contacts:
         How many pairs are near each other, and how many have points.
     left : int
         How many pairs the impacts of this substep have left to the solver.
+    span : float
+        The time [s] that the points' impulses stand for; 0 before there were any.
     stale : bool
         Whether the pairs must be found anew because bodies came, went or changed.
     log : array of IMPACT
@@ -111,6 +113,7 @@ class Contacts:
     def __init__(self) -> None:
         self.candidate_pairs = 0
         self.count = self.left = 0
+        self.span = 0.0
         self.stale = True
         self.log: NDArray[Any] = np.zeros(self.LOGGED, IMPACT)
         self.logged = 0

@@ -105,6 +105,10 @@ class System:
             return f"no {' and '.join(needed.__name__ for needed in absent)} in the scene"
         return None
 
+    def finer(self, world: World) -> int:
+        """Return how many times as many substeps as asked for the coming step needs, as things stand."""
+        return 1
+
     @classmethod
     def marked(cls) -> dict[Stage, str]:
         """Return the stages of the system, each with the name of its method.

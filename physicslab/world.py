@@ -55,6 +55,9 @@ class World:
         What moves the bodies that springs and drag act on where contacts act as well.
     revision : int
         How often its structure or its configuration changed: what was measured before is another world's.
+    substeps : int
+        Of how many parts the last step was, or each part of one that was divided: more than
+        ``simulation.substeps`` where a system found that these would not do.
     divided : int
         Into how many parts the last :meth:`step` was divided, which was longer than ``simulation.dt``; or 1.
 
@@ -86,6 +89,7 @@ class World:
         self.time = 0.0
         self.steps = 0
         self.divided = 1
+        self.substeps = self._simulation.substeps
         self.revision = 0
         self.force_evaluations = 0
         self.collisions = 0
@@ -322,7 +326,9 @@ class World:
                 if self._equations is not None:
                     self._flow(self._equations, dt / parts, parts)
                 elif self._flights is None:
-                    self._substeps(dt / parts / self._simulation.substeps, parts * self._simulation.substeps)
+                    finer = max((system.finer(self) for system in self.schedule.running), default=1)
+                    self.substeps = finer * self._simulation.substeps
+                    self._substeps(dt / parts / self.substeps, parts * self.substeps)
                 elif parts > 1:
                     self._flights.run(self, dt / parts, parts)
                 else:
