@@ -5,10 +5,10 @@ The smooth motion of a world is q' = v, v' = W f(q, v): ``q`` holds two coordina
 behind in both arrays and has no inverse mass. A force is a C function that adds to f; it reads what it needs
 from two arrays of its own.
 
-A force is asked for at an instant, or over a span of time in which the coordinates go steadily from q - span/2 v
-to q + span/2 v. What has a potential energy V that is not quadratic then answers with a discrete gradient of V:
-a force f whose work is all that V loses, f . (span v) = V(start) - V(end) (Gonzalez, J. Nonlinear Sci. 6 (1996)
-449). What hangs on velocities, and what is constant, answers with its value at the middle.
+A force is asked for at an instant, or over a span of time in which the coordinates go steadily from
+q - span/2 v to q + span/2 v. Springs then answer with a discrete gradient of their energy V, a force f whose
+work is all that V loses: f . (span v) = V(start) - V(end) (Gonzalez, J. Nonlinear Sci. 6 (1996) 449). Other
+forces answer with their value at the middle.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _SIGNATURE = void(_REAL, _REAL, float64, _REAL, _REAL, _WHOLE)
 
 
 class ForceKernel:
-    """A force ``f(q, v, span, force, numbers, whole)``, compiled to a C function when its address is asked for.
+    """A force ``f(q, v, span, force, numbers, whole)``: a C function, compiled when its address is asked for.
 
     All but the span [s] are pointers, to float64 and (the last) int64.
     """

@@ -12,6 +12,8 @@ from physicslab.kernels.force_calls import Calls, accelerate_over
 __all__ = ["implicit_midpoint"]
 
 _MOST_ITERATIONS = 40
+_PARTS = 1024
+"""Into how many parts a step may be divided, by halves, where Newton's method finds no end."""
 _SLOW = 2
 """After so many iterations with an old matrix it is worked out anew in each: stiff rods turn as they go."""
 _SMALL = 1e-3
@@ -132,6 +134,31 @@ def _newton(
     return -1, evaluations
 
 
+@inlined
+def _search(
+    q: Numbers, v: Numbers, u: Numbers, stage_q: Numbers, acceleration: Numbers, shifted: Numbers,
+    residual: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float,
+    order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool,
+) -> tuple[int, int]:  # fmt: skip
+    """Solve for ``u`` as :func:`_newton` does, from where there is a solution nearby.
+
+    Where a spring swings many times a step, v is another way at the end of each and leads far away: the
+    search begins where the bodies are. Where that finds nothing, v may, as on a rod that turns fast.
+    """
+    evaluations = 0
+    for guess in range(2):
+        for i in range(len(inverse_mass)):
+            u[i] = guess * v[i]
+        iterations, tried = _newton(
+            q, v, u, stage_q, acceleration, shifted, residual, inverse_mass, damping, calls, h,
+            order, band, matrix, pivots, known and guess == 0,
+        )  # fmt: skip
+        evaluations += tried
+        if iterations > 0:
+            return iterations, evaluations
+    return -1, evaluations
+
+
 @kernel
 def implicit_midpoint(
     q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
@@ -139,10 +166,10 @@ def implicit_midpoint(
 ) -> int:  # fmt: skip
     """Advance by ``steps`` steps of ``h`` seconds.
 
-    Returns the number of force evaluations, or -1 if Newton's method finds no solution. The velocity u at the
-    middle of a step solves u = v + h/2 a(q + h/2 u, u), where a is the acceleration over the step.
-    ``order`` (n,) is the order of the coordinates in which those that hang together lie within ``band`` of
-    each other. Sums are compensated.
+    Returns the number of force evaluations, or -1 if Newton's method finds no solution, not even of a small
+    part of a step. The velocity u at the middle solves u = v + h/2 a(q + h/2 u, u), where a is the
+    acceleration over the step. ``order`` (n,) is the order of the coordinates in which those that hang
+    together lie within ``band`` of each other. Sums are compensated.
     """
     n = len(inverse_mass)
     stage_q, u, residual = q.copy(), v.copy(), np.empty(n)
@@ -151,23 +178,24 @@ def implicit_midpoint(
     q_low, v_low = np.zeros(n), np.zeros(n)
     evaluations, known = 0, False
     for _ in range(steps):
-        iterations = -1
-        # Where a spring swings many times a step, v is another way at the end of each and leads far away:
-        # the search begins where the bodies are. Where that finds nothing, as on a rod that turns fast, v does.
-        for guess in range(2):
-            for i in range(n):
-                u[i] = guess * v[i]
-            iterations, tried = _newton(
-                q, v, u, stage_q, acceleration, shifted, residual, inverse_mass, damping, calls, h,
+        done, part = 0, _PARTS
+        while done < _PARTS:
+            span = h * part / _PARTS
+            iterations, tried = _search(
+                q, v, u, stage_q, acceleration, shifted, residual, inverse_mass, damping, calls, span,
                 order, band, matrix, pivots, known,
             )  # fmt: skip
             evaluations += tried
-            known = 0 < iterations <= _SLOW
-            if iterations > 0:
-                break
-        if iterations < 0:
-            return -1
-        for i in range(n):
-            q[i], q_low[i] = add(q[i], q_low[i], h * u[i])
-            v[i], v_low[i] = add(v[i], v_low[i], 2.0 * (u[i] - v[i]))
+            if iterations < 0 and part == 1:
+                return -1
+            known = part == _PARTS and 0 < iterations <= _SLOW
+            if iterations < 0:
+                part //= 2
+                continue
+            for i in range(n):
+                q[i], q_low[i] = add(q[i], q_low[i], span * u[i])
+                v[i], v_low[i] = add(v[i], v_low[i], 2.0 * (u[i] - v[i]))
+            done += part
+            if done % (2 * part) == 0:
+                part *= 2
     return evaluations

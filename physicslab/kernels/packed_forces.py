@@ -74,9 +74,7 @@ def springs(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
         if span == 0.0:
             fx, fy = spring_pull(dx, dy, vx, vy, numbers[p + 4], numbers[p + 5], numbers[p + 6])
         else:
-            fx, fy = mean_spring_pull(
-                dx, dy, vx, vy, span, numbers[p + 4], numbers[p + 5], numbers[p + 6]
-            )
+            fx, fy = mean_spring_pull(dx, dy, vx, vy, span, numbers[p + 4], numbers[p + 5], numbers[p + 6])
         force[a] += fx
         force[a + 1] += fy
         force[b] -= fx
