@@ -30,8 +30,6 @@ from physicslab.stability.case import Case, run_case
 from physicslab.stability.catalogue import CASES, select
 
 SUBSTEPS = 4
-SECONDS = 900
-"""How long a run may take."""
 NOT_ASKED = {
     "planets": "no such force",
     "sizes_pairs": "looks at PhysicsLab's broad phase",
@@ -60,7 +58,7 @@ class Found:
     @property
     def text(self) -> str:
         """The figure and the verdict."""
-        return f"{self.word}" if self.figure is None else f"{self.figure:.3g} {self.word}"
+        return f"{self.word}" if self.figure is None else f"{self.figure:.4g} {self.word}"
 
 
 def told(world: World) -> None:
@@ -144,7 +142,7 @@ def pymunks(substeps: int) -> Callable[[Case], Found]:
     return measure
 
 
-def apart(measure: Callable[[Case], Found], case: Case) -> Found:
+def apart(measure: Callable[[Case], Found], case: Case, seconds: float) -> Found:
     """Measure in a process of its own: pymunk ends the process on some numbers that it cannot work with."""
     context = multiprocessing.get_context("fork")
     here, there = context.Pipe(duplex=False)
@@ -152,7 +150,7 @@ def apart(measure: Callable[[Case], Found], case: Case) -> Found:
     process.start()
     there.close()
     try:
-        return here.recv() if here.poll(SECONDS) else Found(None, f"no end in {SECONDS} s")
+        return here.recv() if here.poll(seconds) else Found(None, f"no end in {seconds:g} s")
     except EOFError:
         return Found(None, "aborted")
     finally:
@@ -176,6 +174,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Run the stability lab's cases in pymunk as well.")
     parser.add_argument("cases", metavar="CASE", nargs="*", help="a case, or a group of them; all if none")
     parser.add_argument("--long", action="store_true", help="also those that take minutes")
+    parser.add_argument("--seconds", type=float, default=900.0, help="how long a run may take (default: 900)")
     parser.add_argument("--json", metavar="FILE", type=Path, help="write every figure and verdict")
     arguments = parser.parse_args()
     engines = {"ours": ours, "pymunk": pymunks(1), f"pymunk, {SUBSTEPS} substeps": pymunks(SUBSTEPS)}
@@ -184,7 +183,7 @@ def main() -> None:
     print("|---" * (2 + len(engines)) + "|", flush=True)
     rows: list[dict[str, Any]] = []
     for case in chosen(arguments.cases, arguments.long):
-        found = {name: apart(measure, case) for name, measure in engines.items()}
+        found = {name: apart(measure, case, arguments.seconds) for name, measure in engines.items()}
         if all(result.word == "no such force" for name, result in found.items() if name != "ours"):
             continue
         limit = f"{case.limit:.4g} {case.unit}".rstrip()
