@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable
 
 import pymunk
-from pymunk_mirror import Mirror
+from pymunk_mirror import PymunkMirror
 
 from physicslab import World
 from physicslab.config import PhysicsConfig
@@ -86,7 +86,7 @@ def main() -> None:
     print(f"{'scene':12} {'PhysicsLab':>12} {'pymunk':>12} {'ratio':>7}   ms a step; energy kept by both")
     for name, (build, settle) in SCENES.items():
         world = build()
-        space = Mirror(world).space
+        space = PymunkMirror(world).space
         dt = world.simulation.dt
         for _ in range(round(settle / dt)):
             world.step()

@@ -1,10 +1,10 @@
-"""Run the cases of the stability lab in pymunk as well, and print its figures beside ours.
+"""Run the cases of the stability lab in pymunk and Box2D as well, and print their figures beside ours.
 
 ``uv run --group peers python benchmarks/stability_peers.py [CASE ...] [--long] [--json FILE]`` runs every
-case whose scene pymunk has the parts for (or those named, or those of a group), each three times: by
-PhysicsLab, by pymunk with the scene's own steps, and by pymunk with each step divided into four, as
-PhysicsLab divides its own. Scene, figure and limit are the case's: what the case asks of its world is done by
-pymunk, which is all that differs. A run that ends in what is no number is shown as ``NaN``; bullets that are
+case whose scene they have the parts for (or those named, or those of a group), each four times: by PhysicsLab,
+by pymunk with the scene's own steps, by pymunk with each step divided into four, as PhysicsLab divides its own,
+and by Box2D. Scene, figure and limit are the case's: what the case asks of its world is done by the other
+engine, which is all that differs. A run that ends in what is no number is shown as ``NaN``; bullets that are
 behind their wall at the end are told as ``through``.
 """
 
@@ -21,10 +21,14 @@ from typing import Any
 from unittest.mock import patch
 from weakref import WeakKeyDictionary
 
+import Box2D
 import pymunk
-from pymunk_mirror import CannotBuild, Mirror
+from box2d_mirror import Box2DMirror
+from peer import CannotBuild, Peer
+from pymunk_mirror import PymunkMirror
 
 from physicslab import World
+from physicslab.components import Transform
 from physicslab.schedule import Stage
 from physicslab.stability.case import Case, run_case
 from physicslab.stability.catalogue import CASES, select
@@ -37,7 +41,7 @@ NOT_ASKED = {
     "steps_1e6_memory": "looks at Python's memory",
     "steps_1e6_pace": "times PhysicsLab",
 }
-"""Groups and cases that say nothing of pymunk. Those that differ by how PhysicsLab finds collisions, too."""
+"""Groups and cases that say nothing of another engine."""
 
 
 @dataclass(frozen=True)
@@ -70,20 +74,20 @@ def told(world: World) -> None:
 
 
 @contextmanager
-def stepped_by_pymunk(substeps: int) -> Iterator[list[Mirror]]:
-    """Let pymunk advance every world that is stepped meanwhile; yield the list of what stands for them."""
-    mirrors: WeakKeyDictionary[World, Mirror] = WeakKeyDictionary()
-    made: list[Mirror] = []
+def stepped_by(peer: type[Peer], substeps: int) -> Iterator[list[Peer]]:
+    """Let another engine advance every world that is stepped meanwhile; yield what stands for them."""
+    mirrors: WeakKeyDictionary[World, Peer] = WeakKeyDictionary()
+    made: list[Peer] = []
 
     def advance(world: World, dt: float, steps: int) -> None:
         if world not in mirrors:
-            mirrors[world] = Mirror(world)
+            mirrors[world] = peer(world)
             made.append(mirrors[world])
-            # What PhysicsLab would say of its own method does not hold for pymunk.
-            world.method = replace(world.method, reason="pymunk")
+            # What PhysicsLab would say of its own method does not hold for another.
+            world.method = replace(world.method, reason=peer.__name__)
         mirror = mirrors[world]
         for _ in range(steps * substeps):
-            mirror.space.step(dt / substeps)
+            mirror.step(dt / substeps)
         mirror.bring_back()
         world.time += steps * dt
         world.steps += steps
@@ -112,10 +116,11 @@ def stepped_by_pymunk(substeps: int) -> Iterator[list[Mirror]]:
         yield made
 
 
-def passed(mirror: Mirror) -> bool:
+def passed(mirror: Peer) -> bool:
     """Whether the last body, which came from the left, is on the right of the first."""
-    first, *_, last = mirror.space.bodies
-    return bool(last.position.x > first.position.x)
+    first, *_, last = mirror.world.batch(Transform).rows
+    x = mirror.world.table(Transform)["position"][:, 0]
+    return bool(x[last] > x[first])
 
 
 def ours(case: Case) -> Found:
@@ -124,12 +129,12 @@ def ours(case: Case) -> Found:
     return Found(outcome.figure, str(outcome.verdict) if outcome.figure is not None else "stopped")
 
 
-def pymunks(substeps: int) -> Callable[[Case], Found]:
-    """Return what measures a case in pymunk."""
+def theirs(peer: type[Peer], substeps: int = 1) -> Callable[[Case], Found]:
+    """Return what measures a case in another engine."""
 
     def measure(case: Case) -> Found:
         try:
-            with stepped_by_pymunk(substeps) as mirrors:
+            with stepped_by(peer, substeps) as mirrors:
                 outcome = run_case(case)
         except CannotBuild as error:
             return Found(None, str(error))
@@ -143,7 +148,7 @@ def pymunks(substeps: int) -> Callable[[Case], Found]:
 
 
 def apart(measure: Callable[[Case], Found], case: Case, seconds: float) -> Found:
-    """Measure in a process of its own: pymunk ends the process on some numbers that it cannot work with."""
+    """Measure in a process of its own, which an engine may end on numbers that it cannot work with."""
     context = multiprocessing.get_context("fork")
     here, there = context.Pipe(duplex=False)
     process = context.Process(target=lambda: there.send(measure(case)))
@@ -159,7 +164,7 @@ def apart(measure: Callable[[Case], Found], case: Case, seconds: float) -> Found
 
 
 def chosen(names: list[str], long: bool) -> list[Case]:
-    """Return the cases to run."""
+    """Return the cases to run; two that differ by how PhysicsLab finds collisions are one."""
     wanted = [case for name in names for case in select(name)] if names else list(CASES.values())
     return [
         case for case in wanted
@@ -171,14 +176,17 @@ def chosen(names: list[str], long: bool) -> list[Case]:
 
 def main() -> None:
     """Run the cases and print a line for each."""
-    parser = argparse.ArgumentParser(description="Run the stability lab's cases in pymunk as well.")
+    parser = argparse.ArgumentParser(description="Run the stability lab's cases in pymunk and Box2D as well.")
     parser.add_argument("cases", metavar="CASE", nargs="*", help="a case, or a group of them; all if none")
     parser.add_argument("--long", action="store_true", help="also those that take minutes")
     parser.add_argument("--seconds", type=float, default=900.0, help="how long a run may take (default: 900)")
     parser.add_argument("--json", metavar="FILE", type=Path, help="write every figure and verdict")
     arguments = parser.parse_args()
-    engines = {"ours": ours, "pymunk": pymunks(1), f"pymunk, {SUBSTEPS} substeps": pymunks(SUBSTEPS)}
-    print(f"pymunk {pymunk.version}")
+    engines = {
+        "ours": ours, "pymunk": theirs(PymunkMirror),
+        f"pymunk, {SUBSTEPS} substeps": theirs(PymunkMirror, SUBSTEPS), "Box2D": theirs(Box2DMirror),
+    }  # fmt: skip
+    print(f"pymunk {pymunk.version}, Box2D {Box2D.__version__}")
     print("| case | limit |", *(f"{name} |" for name in engines))
     print("|---" * (2 + len(engines)) + "|", flush=True)
     rows: list[dict[str, Any]] = []
@@ -191,7 +199,9 @@ def main() -> None:
         figures = {name: asdict(result) for name, result in found.items()}
         rows.append({"name": case.name, "unit": case.unit, "limit": case.limit, **figures})
     if arguments.json is not None:
-        arguments.json.write_text(json.dumps({"pymunk": pymunk.version, "cases": rows}, indent=2) + "\n")
+        arguments.json.write_text(
+            json.dumps({"pymunk": pymunk.version, "box2d": Box2D.__version__, "cases": rows}, indent=2) + "\n"
+        )
 
 
 if __name__ == "__main__":
