@@ -1,11 +1,11 @@
 """Run the cases of the stability lab in pymunk and Box2D as well, and print their figures beside ours.
 
 ``uv run --group peers python benchmarks/stability_peers.py [CASE ...] [--long] [--json FILE]`` runs every
-case whose scene they have the parts for (or those named, or those of a group), each four times: by PhysicsLab,
-by pymunk with the scene's own steps, by pymunk with each step divided into four, as PhysicsLab divides its own,
-and by Box2D. Scene, figure and limit are the case's: what the case asks of its world is done by the other
-engine, which is all that differs. A run that ends in what is no number is shown as ``NaN``; bullets that are
-behind their wall at the end are told as ``through``.
+case whose scene they have the parts for (or those named, or those of a group), each four times: by
+PhysicsLab, by pymunk with the scene's own steps, by pymunk with each step divided into four, as PhysicsLab
+divides its own, and by Box2D. Scene, figure and limit are the case's: what the case asks of its world is done
+by the other engine, which is all that differs. A run that ends in what is no number is shown as ``NaN``;
+bullets that are behind their wall at the end are told as ``through``.
 """
 
 from __future__ import annotations
