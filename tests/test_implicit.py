@@ -1,5 +1,6 @@
 """The implicit midpoint rule: bounded however stiff, and the same whatever the order of the coordinates."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -10,6 +11,7 @@ from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.diagnostics import measure_energy, measure_momentum
 from physicslab.equations import Equations
 from physicslab.integrators import implicit_midpoint
+from physicslab.kernels import springs
 from physicslab.systems.standard import standard_systems
 from physicslab.vector import Vector2
 from physicslab.world import World
@@ -156,3 +158,19 @@ def test_a_pair_on_a_stiff_spring_keeps_its_momenta() -> None:
     after = measure_momentum(world)
     assert (after.linear.x, after.linear.y) == pytest.approx((before.linear.x, before.linear.y), abs=1e-9)
     assert after.angular == pytest.approx(before.angular, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_pull_over_a_span_does_the_work_that_the_energy_loses(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    (dx, dy, vx, vy), (span, rest, k) = random.normal(size=4), random.uniform(0.1, 2.0, size=3)
+    fx, fy = springs.mean_spring_pull.py_func(dx, dy, vx, vy, span, rest, k, 0.0)  # type: ignore[attr-defined]
+    start, end = (math.hypot(dx + s * span * vx, dy + s * span * vy) for s in (-0.5, 0.5))
+    gained = 0.5 * k * ((end - rest) ** 2 - (start - rest) ** 2)
+    assert span * (fx * vx + fy * vy) == pytest.approx(gained, rel=1e-12, abs=1e-13)
+
+
+def test_over_no_time_the_pull_is_that_of_the_instant() -> None:
+    state = (0.3, -0.7, 0.2, 0.9)
+    mean = springs.mean_spring_pull.py_func(*state, 0.0, 1.0, 40.0, 3.0)  # type: ignore[attr-defined]
+    assert mean == pytest.approx(springs.spring_pull.py_func(*state, 1.0, 40.0, 3.0))  # type: ignore[attr-defined]
