@@ -21,7 +21,7 @@ __all__ = ["Equations", "PackedForce", "Slots", "spring_ends", "why_not_smooth"]
 
 _REAL = ctypes.POINTER(ctypes.c_double)
 _WHOLE = ctypes.POINTER(ctypes.c_int64)
-_CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, _REAL, _REAL, _WHOLE)
+_CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, ctypes.c_double, _REAL, _REAL, _WHOLE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,7 +219,7 @@ class Equations:
         slots, bodies = self.slots, world.bodies
         n, d, size = 2 * len(slots.moving), slots.moving_count, len(self.q)
 
-        def call(q: Any, v: Any, force: Any, numbers: Any, whole: Any) -> None:
+        def call(q: Any, v: Any, _span: float, force: Any, numbers: Any, whole: Any) -> None:
             if self._error is not None:
                 return
             try:
