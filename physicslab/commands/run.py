@@ -8,6 +8,7 @@ import os
 import sys
 import time
 from argparse import ArgumentParser, Namespace
+from collections.abc import Mapping
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -21,7 +22,8 @@ from physicslab.config import INTEGRATORS
 from physicslab.diagnostics import Drift
 from physicslab.json_text import json_text
 from physicslab.report import RunRecord, find_not_finite, run_report, run_summary
-from physicslab.scene import load_scene
+from physicslab.rescue import save_last_good
+from physicslab.scene import SceneError, load_scene
 from physicslab.scene_checks import shown
 from physicslab.scenes import SCENES
 from physicslab.trajectory import TrajectoryWriter
@@ -65,12 +67,12 @@ def execute(arguments: Namespace) -> int:
         try:
             record = _run(world, name, arguments, trajectory)
         except Diverged as error:
-            raise CommandError(f"{name}: {error}", FAILED) from error
+            raise CommandError(f"{name}: {error}; {_rescue(world, name, outputs)}", FAILED) from error
     report = run_report(world, record)
     place = find_not_finite(report)
     if place is not None:
-        where = f"{place} is not finite at t = {world.time:.9g} s"
-        raise CommandError(f"{name}: {where}: the run diverged", FAILED)
+        where = f"{place} is not finite at t = {world.time:.9g} s: the run diverged"
+        raise CommandError(f"{name}: {where}; {_rescue(world, name, outputs)}", FAILED)
     if "json" in outputs:
         outputs["json"].write(json_text(report).encode("utf-8"))
     if "png" in outputs:
@@ -78,6 +80,17 @@ def execute(arguments: Namespace) -> int:
     if not any(output.to_stdout for output in outputs.values()):
         print(run_summary(report, world.title))
     return 0
+
+
+def _rescue(world: World, name: str, outputs: Mapping[str, Output]) -> str:
+    """Save the last good state beside the document that was asked for, or here; return what came of it."""
+    json = outputs.get("json")
+    directory = Path() if json is None or json.to_stdout else Path(json.path).parent
+    try:
+        path = save_last_good(world, name, directory)
+    except (OSError, SceneError) as error:
+        return f"the last good state, of t = {world.time:.9g} s, could not be saved: {error}"
+    return f"the last good state, of t = {world.time:.9g} s, is in {path}"
 
 
 def _outputs(arguments: Namespace) -> dict[str, Output]:
