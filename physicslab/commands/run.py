@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from contextlib import nullcontext
 from pathlib import Path
 
+from physicslab.advice import advise
 from physicslab.bodies import Diverged
 from physicslab.columns import InvalidValue
 from physicslab.commands.command_error import FAILED, CommandError
@@ -34,6 +35,8 @@ __all__ = ["add_arguments", "execute"]
 _DEFAULT_S = 10.0
 _SAMPLES = 500
 """How often a run without contacts is measured: what lies between is one compiled loop."""
+_LOOKS = 100
+"""How often a run is looked at for advice: a look at thousands of contacts takes a third of a step."""
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -133,6 +136,8 @@ def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWr
     start, progress = world.time, Progress(name, sys.stderr)
     stride = 1 if trajectory is not None else max(1, round(length / world.simulation.dt) // _SAMPLES)
     stepping = world.stepping(seconds=seconds, steps=arguments.steps, stride=stride)
+    look_every = max(1, round(length / world.simulation.dt) // (stride * _LOOKS))
+    samples = 0
     try:
         while True:
             if trajectory is not None:
@@ -140,6 +145,9 @@ def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWr
             compiled, began = world.schedule.compile_s, time.perf_counter()
             done = next(stepping, None)
             record.wall_s += time.perf_counter() - began - (world.schedule.compile_s - compiled)
+            if samples % look_every == 0 or done is None:
+                record.advice.note(advise(world))
+            samples += 1
             if done is None:
                 return record
             record.steps = done
@@ -152,6 +160,7 @@ def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWr
 def _measure(world: World, record: RunRecord) -> None:
     record.drift.sample(world)
     record.max_penetration = max(record.max_penetration, world.contacts.max_penetration)
+    record.divided = max(record.divided, world.divided)
 
 
 def _picture(world: World) -> bytes:

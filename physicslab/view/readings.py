@@ -77,6 +77,7 @@ def method_lines(world: World) -> list[Line]:
         Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
         Line(world.method.integrator.title, kind="remark"),
         Line(f"because: {world.method.reason}", kind="remark"),
+        *([Line(f"the last step was divided into {world.divided}", kind="remark")] if world.divided > 1 else []),
         *(Line(f"{_plain(name)} is computed by Python: slower", kind="remark") for name in world.interpreted),
         *_collision_lines(world),
     ]
