@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 __all__ = ["Advice", "WorstAdvice", "advise"]
 
 _RESOLVED = 0.3
-"""omega h of a fixed step, as a share of the method's limit: the energy of such an oscillation swings by a tenth
-with leapfrog."""
+"""omega h of a fixed step, as a share of the method's limit: with leapfrog the energy of such an oscillation
+swings by a tenth."""
 _FOLLOWED = 1.0
 """omega h of the implicit rule, which is stable beyond: the phase is 8 % off there."""
 _AUTO_FOLLOWS = 500.0
@@ -34,11 +34,11 @@ _AUTO_FOLLOWS = 500.0
 _MOST_SUBSTEPS = 10_000
 _DEEP = 0.2
 """Overlap as a share of the smaller body. A stack of ten equal boxes stays below 0.005, 300 kg on 1 kg below
-0.08, a pile of 900 bodies that lands has 0.16 for a moment; where a body is pressed through another it passes 0.3."""
+0.08, a pile of 900 bodies that lands has 0.16 for a moment; what is pressed through another passes 0.3."""
 _FAST = 1.0
-"""Relative speed times the substep, in sizes of the smaller body, among several neighbours. A single impact is
-right at any speed, for the motion is swept; but a body meets one neighbour a substep: of 20 discs of e = 1 in
-walls none is lost in 300 steps at 1, three at 2, twelve at 5."""
+"""Relative speed times the substep, in sizes of the smaller body, among several neighbours. One impact is
+right at any speed, for the motion is swept; but a body meets one neighbour a substep: of 20 discs of e = 1
+in walls none is lost in 300 steps at 1, three at 2, twelve at 5."""
 _TURNING = 0.25
 """Angle that a box turns by in a substep [rad] near others. Places are swept, corners are not: a spinning box
 dropped on a floor lands 8 % off at 0.25, 25 % off at 0.5, anywhere at 1; energy never grows, up to 5."""

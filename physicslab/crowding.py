@@ -96,7 +96,8 @@ def near_pairs(world: World) -> Near:
     manifolds = contacts.manifolds[: contacts.candidate_pairs]
     touching = contacts.touching[: contacts.count]
     held = manifolds[touching]
-    first, second = contacts.points["separation"][2 * touching], contacts.points["separation"][2 * touching + 1]
+    separation = contacts.points["separation"]
+    first, second = separation[2 * touching], separation[2 * touching + 1]
     depth = -np.where(held["count"] > 1, np.minimum(first, second), first)
     depth[held["count"] <= 0] = 0.0
     size = np.where(manifolds["size"] > 0.0, manifolds["size"], np.inf)  # 0 where nothing was measured yet

@@ -63,7 +63,7 @@ class Frozen:
         row, held = self._rows[entity], self._tables.get(kind)
         if held is None or not held[0][row]:
             return None
-        handle: Component = kind.__new__(kind)
+        handle: Component = Component.__new__(kind)
         handle._views, handle._row = held[1], row
         return handle
 

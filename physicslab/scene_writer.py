@@ -57,7 +57,7 @@ def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
             contacts.append(row)
         yield
     ids = dict(frozen.names)
-    ids |= _invented(entities, ids, {end for row in contacts for end in row[:2]})
+    ids |= yield from _invented(entities, ids, {end for row in contacts for end in row[:2]})
     document: dict[str, Any] = {"format": FORMAT} | {key: text for key, text in frozen.texts.items() if text}
     if frozen.time:
         document["time"] = frozen.time
@@ -69,9 +69,10 @@ def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
         named = {"id": ids[number]} if number in ids else {}
         written.append(named | {type(part).__name__: _fields(part, ids, label) for part in components})
         yield
-    if contacts:
-        document["contacts"] = [[ids.get(a), ids.get(b), *rest] for a, b, *rest in contacts]
-    return document
+    for row in contacts:
+        row[:2] = [ids.get(end) for end in row[:2]]
+        yield
+    return document | ({"contacts": contacts} if contacts else {})
 
 
 def unique_name(wanted: str, taken: Container[str]) -> str:
@@ -97,9 +98,10 @@ def _saved(frozen: Frozen, entity: int) -> list[Component]:
 
 def _invented(
     entities: Mapping[int, Iterable[Component]], ids: Mapping[int, str], referred: set[int]
-) -> dict[int, str]:
+) -> Generator[None, None, dict[int, str]]:
     """Return ids for the entities that have none and are referred to, by components or in ``referred``."""
     for components in entities.values():
+        yield
         for component in components:
             ends = (getattr(component, spec.name) for spec in component.FIELDS if spec.kind == "entity")
             referred.update(end for end in ends if end is not None)

@@ -367,7 +367,8 @@ class World:
             made = method.integrator.flow(self, equations, h, count)
         except StepTooSmall as error:
             label = self.label(self._liveliest())
-            raise Diverged(f"{label}: Velocity changes too fast: {error} (after t = {self.time:.9g} s)") from error
+            what = f"{label}: Velocity changes too fast: {error}"
+            raise Diverged(f"{what} (after t = {self.time:.9g} s)") from error
         except NoClosedForm:  # somebody gave a body another velocity, or another spring
             self.method = choose(self)
             self._flow(equations, dt, steps)
