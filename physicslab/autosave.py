@@ -22,9 +22,9 @@ class Autosave:
     """Saves a world when something changed, at the most every ``period`` seconds.
 
     The columns are copied in one frame; turning them into text is spread over the frames that follow, a
-    little in each; the disk is waited for in a thread. With 4,000 discs in contact that adds 5 ms to one frame
-    and 2 ms to some 200. Python collects no garbage meanwhile: the many small objects of a document would set
-    off a search through all there are, which holds up a frame for 100 ms.
+    little in each; the disk is waited for in a thread. With 4,000 discs in contact that adds 5 ms to one
+    frame and 2 ms to some 200. Python collects no garbage meanwhile: the many small objects of a document
+    would set off a search through all there are, which holds up a frame for 100 ms.
 
     Parameters
     ----------

@@ -69,8 +69,8 @@ def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
         named = {"id": ids[number]} if number in ids else {}
         written.append(named | {type(part).__name__: _fields(part, ids, label) for part in components})
         yield
-    for row in contacts:
-        row[:2] = [ids.get(end) for end in row[:2]]
+    for memory in contacts:
+        memory[:2] = [ids.get(end) for end in memory[:2]]
         yield
     return document | ({"contacts": contacts} if contacts else {})
 
