@@ -212,7 +212,7 @@ def test_run_writes_advice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert list(found) == ["entity", "what", "value", "unit", "limit", "setting"]
     assert found["entity"] == "rope" and found["value"] == pytest.approx(200 / 240)
     capsys.readouterr()
-    assert main(["run", str(tmp_path / "stiff.json"), "--steps", "20"]) == 0
+    assert main(command) == 0
     (line,) = [line for line in capsys.readouterr().out.splitlines() if line.startswith("  advice")]
     assert "rope" in line and found["setting"] in line
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from physicslab.view import actions
 from physicslab.view.canvas import TextStyle
@@ -36,11 +37,9 @@ class RecoveryBar:
         self._window = window
         self._plate = widgets.plate()
         choices = (Choice("Restore it", actions.restore_session), Choice("Discard", actions.discard_session))
-        self._buttons = [
-            (choice, widgets.button(lambda choice=choice: ask(choice), row=False))  # type: ignore[misc]
-            for choice in choices
-        ]
-        self._top = 0
+        # No lambda with a default: the widgets would take that for a parameter, and pass it what happened.
+        self._buttons = [(choice, widgets.button(partial(ask, choice))) for choice in choices]
+        self._top = self._room = 0
         self.height = 0
 
     @property
