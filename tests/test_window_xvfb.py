@@ -190,7 +190,7 @@ def test_what_a_crash_has_left_is_offered_and_restored(screen: Screen) -> None:
         assert screen.do("getwindowname", window).strip() == "A ball on a floor - PhysicsLab"
         screen.do("mousemove", 1055, 55)  # the bar's button below the toolbar
         screen.do("click", 1)
-        stack = "A stack of ten boxes - PhysicsLab"
+        stack = "A tower of ten boxes - PhysicsLab"
         screen.until(lambda _: screen.do("getwindowname", window).strip() == stack, "the stack again")
         screen.do("key", "Escape")
         assert program.wait(timeout=20) == 0
