@@ -7,12 +7,12 @@ bodies and below a millisecond for thousands, and is taken ten times a second or
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from physicslab.advice_records import Advice, WorstAdvice
 from physicslab.components import Shape, Spring, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.crowding import Near, near_pairs
@@ -47,63 +47,6 @@ _HEAVY = 300.0
 Sixteen times the substeps or fifty sweeps change that by little, so no setting is named."""
 _FAR = 1e9
 """Coordinate in sizes of a body: float64 keeps places there to 1e-7 of the body, and a tower to 1e-3."""
-
-
-@dataclass(frozen=True, slots=True)
-class Advice:
-    """One thing that is not to be trusted.
-
-    Attributes
-    ----------
-    entity : str, optional
-        Whose motion, by its id; ``None`` where it concerns all of the world.
-    what : str
-        What is wrong, in words that hang on no number.
-    value, limit : float, optional
-        How much of it there is, and how much would be well.
-    unit : str
-        Of both; empty for a plain number.
-    setting : str
-        What to set, and to which value; empty where no setting helps.
-    """
-
-    entity: str | None
-    what: str
-    value: float | None
-    unit: str
-    limit: float | None
-    setting: str
-
-    @property
-    def excess(self) -> float:
-        """How far beyond the limit it is, as a factor."""
-        return math.inf if self.value is None or not self.limit else self.value / self.limit
-
-    def __str__(self) -> str:
-        words = f"{self.entity}: {self.what}" if self.entity else self.what
-        if self.value is not None and self.limit is not None:
-            unit = f" {self.unit}" if self.unit else ""
-            words += f": {self.value:.3g}{unit}, well up to {self.limit:.3g}"
-        return f"{words}; {self.setting} would help" if self.setting else words
-
-
-class WorstAdvice:
-    """The worst of every kind of advice over a run."""
-
-    def __init__(self) -> None:
-        self._worst: dict[str, Advice] = {}
-
-    def note(self, advices: Iterable[Advice]) -> None:
-        """Take note of what was found at one moment."""
-        for advice in advices:
-            known = self._worst.get(advice.what)
-            if known is None or advice.excess > known.excess:
-                self._worst[advice.what] = advice
-
-    @property
-    def all(self) -> tuple[Advice, ...]:
-        """One of each kind, in the order in which they were first met."""
-        return tuple(self._worst.values())
 
 
 def advise(world: World) -> tuple[Advice, ...]:
@@ -223,10 +166,9 @@ def _loads(world: World, near: Near) -> Iterator[Advice]:
     """Yield the heaviest body that lies on a lighter one, which something holds from below."""
     ratio = near.loads(world)
     if len(ratio) and ratio.max() > _HEAVY:
-        worst = int(np.argmax(ratio))
-        name = near.lighter(world, int(near.touching[worst]))
+        name = near.lighter(world, int(near.touching[np.argmax(ratio)]))
         what = "carries a body so much heavier that contacts do not hold it (mass ratio)"
-        yield Advice(name, what, float(ratio[worst]), "", _HEAVY, "")
+        yield Advice(name, what, float(ratio.max()), "", _HEAVY, "")
 
 
 def _speeds(world: World, near: Near) -> Iterator[Advice]:
@@ -238,8 +180,7 @@ def _speeds(world: World, near: Near) -> Iterator[Advice]:
     sizes[~near.crowded(sizes > _FAST)] = 0.0
     if len(sizes) and sizes.max() > _FAST:
         worst = int(np.argmax(sizes))
-        needed = math.ceil(world.simulation.substeps * float(sizes[worst]) / _FAST)
-        setting = f"simulation.substeps = {needed}" if needed <= _MOST_SUBSTEPS else "a smaller simulation.dt"
+        setting = _more_substeps(world, float(sizes[worst]) / _FAST)
         what = "passes so many sizes of a body in a substep, and impacts after the first may be missed"
         yield Advice(near.faster(world, worst), what, float(sizes[worst]), "", _FAST, setting)
 
@@ -253,9 +194,12 @@ def _turning(world: World, near: Near) -> Iterator[Advice]:
     rows = np.flatnonzero(involved & (kind == BOX))
     angles = np.abs(world.table(Velocity)["angular"][rows]) * h
     if len(angles) and angles.max() > _TURNING:
-        row = int(rows[np.argmax(angles)])
-        needed = math.ceil(world.simulation.substeps * float(angles.max()) / _TURNING)
-        setting = f"simulation.substeps = {needed}" if needed <= _MOST_SUBSTEPS else "a smaller simulation.dt"
+        setting = _more_substeps(world, float(angles.max()) / _TURNING)
         what = "turns so far in a substep that its corners strike by chance"
-        name = world.label(int(world.roster.entities[row]))
+        name = world.label(int(world.roster.entities[rows[np.argmax(angles)]]))
         yield Advice(name, what, float(angles.max()), "rad", _TURNING, setting)
+
+
+def _more_substeps(world: World, factor: float) -> str:
+    needed = math.ceil(world.simulation.substeps * factor)
+    return f"simulation.substeps = {needed}" if needed <= _MOST_SUBSTEPS else "a smaller simulation.dt"

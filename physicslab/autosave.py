@@ -57,6 +57,7 @@ class Autosave:
         self._saved: tuple[object, ...] = ()
         self._writing: Iterator[bytes | None] | None = None
         self._content: list[bytes] = []
+        self._collected = False  # whether garbage was collected before
         self._thread: threading.Thread | None = None
         self._outcome: list[OSError] = []
 
@@ -79,6 +80,7 @@ class Autosave:
                 self._due = self._clock() + self._period
             else:
                 self._saved, self._content = state, []
+                self._collected = gc.isenabled()
                 gc.disable()
                 self._writing = _text(Frozen(world))
 
@@ -113,7 +115,8 @@ class Autosave:
         """Drop the document, and let garbage be collected again."""
         if self._writing is not None:
             self._writing = None
-            gc.enable()
+            if self._collected:
+                gc.enable()
 
     def _finish(self, failure: str) -> None:
         self._let_go()

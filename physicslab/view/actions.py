@@ -15,9 +15,8 @@ from physicslab.view.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "ask_screenshot", "choose_tool", "clear", "close", "discard_session", "enlarge", "faster", "fit",
-    "go_home", "leave", "next_theme", "open_scene", "reduce", "reopen", "restore_session", "save", "slower",
-    "step", "study_error",
+    "ask_screenshot", "choose_tool", "clear", "close", "enlarge", "faster", "fit", "go_home", "leave",
+    "next_theme", "open_scene", "reduce", "reopen", "save", "slower", "step", "study_error",
     "toggle_arrows", "toggle_figures", "toggle_gravity", "toggle_grid", "toggle_help", "toggle_impulses",
     "toggle_menu", "toggle_pause", "toggle_planets", "toggle_slow_motion", "toggle_trails",
     "zoom", "zoom_in", "zoom_out",
@@ -103,22 +102,6 @@ def open_scene(window: Window, source: str | Path) -> None:
     if isinstance(source, Path):
         window.scene_file = source
     window.notify(f"Opened {source if isinstance(source, Path) else opened.title}")
-
-
-def restore_session(world: World, window: Window) -> None:
-    """Open what the session on offer has left; where that fails, all stays as it is."""
-    try:
-        window.next_world = window.recovery.restore()
-    except (SceneError, InvalidValue, OSError) as error:
-        window.notify(f"Not restored: {error}", 8.0, failed=True)
-    else:
-        window.pace.paused = True
-        window.notify("Restored, and paused: Space goes on")
-
-
-def discard_session(world: World, window: Window) -> None:
-    """Remove what the session on offer has left."""
-    window.recovery.discard()
 
 
 def clear(world: World, window: Window) -> None:

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from physicslab.view import actions
+from physicslab.fields import InvalidValue
+from physicslab.scene import SceneError
 from physicslab.view.canvas import TextStyle
 from physicslab.view.menus import Choice
 from physicslab.view.panels import broken
 from physicslab.view.widgets import Widgets
 from physicslab.view.window import Window
+from physicslab.world import World
 
-__all__ = ["RecoveryBar"]
+__all__ = ["RecoveryBar", "discard_session", "restore_session"]
 
 
 class RecoveryBar:
@@ -36,7 +38,7 @@ class RecoveryBar:
     def __init__(self, widgets: Widgets, window: Window, ask: Callable[[Choice], None]) -> None:
         self._window = window
         self._plate = widgets.plate()
-        choices = (Choice("Restore it", actions.restore_session), Choice("Discard", actions.discard_session))
+        choices = (Choice("Restore it", restore_session), Choice("Discard", discard_session))
         # No lambda with a default: the widgets would take that for a parameter, and pass it what happened.
         self._buttons = [(choice, widgets.button(partial(ask, choice))) for choice in choices]
         self._top = self._room = 0
@@ -82,3 +84,19 @@ class RecoveryBar:
         words = broken(f"! {window.recovery.words}", max(self._room, 2), canvas, style)[0]
         drop = (self.height - canvas.text_size(words, style)[1]) // 2
         canvas.text(words, (2 * size, self._top + drop), style)
+
+
+def restore_session(world: World, window: Window) -> None:
+    """Open what the session on offer has left; where that fails, all stays as it is."""
+    try:
+        window.next_world = window.recovery.restore()
+    except (SceneError, InvalidValue, OSError) as error:
+        window.notify(f"Not restored: {error}", 8.0, failed=True)
+    else:
+        window.pace.paused = True
+        window.notify("Restored, and paused: Space goes on")
+
+
+def discard_session(world: World, window: Window) -> None:
+    """Remove what the session on offer has left."""
+    window.recovery.discard()
