@@ -246,7 +246,10 @@ def test_a_run_does_not_write_over_its_own_scene(capsys: pytest.CaptureFixture[s
     assert path.read_bytes() == before
 
 
-def test_a_run_that_diverges_says_where_and_when(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_a_run_that_diverges_says_where_and_when(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # where the last good state is saved
     world = load_scene("pendulum")
     spring = world.component(world.entity("bob"), physicslab.components.Spring)
     spring.stiffness = 1e9
@@ -263,7 +266,10 @@ def test_a_run_that_diverges_says_where_and_when(capsys: pytest.CaptureFixture[s
     assert all(math.isfinite(float(value)) for value in rows[-1].split(",")[2:])
 
 
-def test_no_report_holds_what_is_not_a_number(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_no_report_holds_what_is_not_a_number(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # where the last good state is saved
     ball = {"id": "ball", "Transform": {}, "Velocity": {"linear": [1e200, 0]}, "Mass": {}}
     scene = {"format": "physicslab-scene/1", "physics": {"gravity_mode": "none"}, "entities": [ball]}
     (tmp_path / "fast.json").write_text(json.dumps(scene))
