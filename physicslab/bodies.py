@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
-from physicslab.kernels import motion
+from physicslab.kernels import impulse, motion
 from physicslab.schedule import Stage, System, at
 
 if TYPE_CHECKING:
@@ -30,6 +30,8 @@ class Bodies(System):
         Forces [N] and torques [N m] added up in this substep.
     inverse_mass, inverse_inertia : float64 arrays (rows,)
         Zero for what cannot be moved or turned: static, kinematic and held bodies.
+    unequal : bool
+        Whether two bodies that may meet differ so much in mass that one may be too heavy for the other.
     tethered : bool array (rows,)
         What moves by a method of its own beside contacts (:class:`physicslab.tethers.Tethers`).
     """
@@ -39,6 +41,7 @@ class Bodies(System):
 
     def __init__(self) -> None:
         self._resize(0)
+        self.unequal = False
 
     def _resize(self, rows: int) -> None:
         self.force: NDArray[np.float64] = np.zeros((rows, 2))
@@ -53,12 +56,13 @@ class Bodies(System):
             self._resize(len(world.roster))
             world.schedule.compile((motion.derive_masses,))
         mass, shape, velocity = world.table(Mass), world.table(Shape), world.table(Velocity)
-        motion.derive_masses(
+        ratio = motion.derive_masses(
             velocity.present, mass.present, world.table(Held).present,
             mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
             shape["kind"], shape["radius"], shape["width"], shape["height"], velocity["angular"],
             self.inverse_mass, self.inverse_inertia,
         )  # fmt: skip
+        self.unequal = ratio > impulse.UNEQUAL
 
     def attach(self, world: World) -> None:
         """Forget the forces of systems that may run no more."""

@@ -13,12 +13,15 @@ def derive_masses(
     mass: Numbers, inertia: Numbers, inertia_given: Flags, fixed_rotation: Flags,
     kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
-) -> None:  # fmt: skip
+) -> float:  # fmt: skip
     """Work out each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
+
+    Returns the ratio of the greatest mass that can be moved to the least, of what has a shape; 1 if none has.
 
     A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. What has no velocity, no mass or is held weighs
     infinitely much.
     """
+    lightest, heaviest = 0.0, math.inf
     for i in range(len(mass)):
         if not inertia_given[i]:
             if kind[i] == 1:
@@ -33,6 +36,9 @@ def derive_masses(
         inverse_inertia[i] = 1.0 / inertia[i] if turns_freely else 0.0
         if fixed_rotation[i]:
             angular[i] = 0.0
+        if inverse_mass[i] > 0.0 and kind[i] != 0:
+            lightest, heaviest = max(lightest, inverse_mass[i]), min(heaviest, inverse_mass[i])
+    return lightest / heaviest if lightest > 0.0 else 1.0
 
 
 @kernel
