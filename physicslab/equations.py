@@ -34,11 +34,15 @@ class PackedForce:
         What adds to the forces.
     numbers, whole : float64 array, int64 array
         Whatever the kernel wants to know; it gets pointers to them.
+    resistance : ForceKernel, optional
+        What the force answers to another velocity than that of the moment, where it resists motion (see
+        :mod:`physicslab.kernels.resistance`).
     """
 
     kernel: ForceKernel
     numbers: NDArray[np.float64]
     whole: NDArray[np.int64]
+    resistance: ForceKernel | None = None
 
 
 class Slots:
@@ -116,8 +120,11 @@ class Equations:
         Of what moves: inverse masses [1/kg] and inverse moments of inertia [1/(kg m^2)].
     damping : float64 array
         Rates of damping [1/s]; empty where nothing is damped.
-    calls : int64 array (n, 3)
-        What kernels call.
+    calls, resistances : int64 arrays (n, 3)
+        What kernels call for the forces, and for what of them resists motion.
+    near : int64 array and int, optional
+        An order of the coordinates in which those that forces couple are near, and how near; whoever needs
+        it finds it once, as it hangs on the layout alone.
     forces, interpreted : tuple of str
         The force systems, and those of them that are not compiled.
 
@@ -135,6 +142,7 @@ class Equations:
         self.interpreted = tuple(system.name for system in interpreted)
         self.forces = tuple(system.name for system in self._forces)
         self.slots = Slots(world, part, all_turn=bool(interpreted))
+        self.near: tuple[NDArray[np.int64], int] | None = None
         self._error: BaseException | None = None
         self._settings = self._look(world)
 
@@ -201,11 +209,18 @@ class Equations:
             (system, system.packed(world, self.slots) if type(system).packs() else None)
             for system in self._forces
         ]
-        self._kept: list[Any] = [force for _, force in packed if force is not None]  # while C may read them
-        world.schedule.compile(force.kernel for force in self._kept)
-        rows = [
-            (force.kernel.address, force.numbers.ctypes.data, force.whole.ctypes.data) for force in self._kept
+        forces = [force for _, force in packed if force is not None]
+        # Behind how many coordinates there are, as resistances get several velocities in one.
+        resisting = [
+            (force.resistance, force.numbers, np.concatenate(([len(self.q)], force.whole)))
+            for force in forces
+            if force.resistance is not None
         ]
+        self._kept: list[Any] = [*forces, *resisting]  # while C may read them
+        world.schedule.compile([*(force.kernel for force in forces), *(kernel for kernel, _, _ in resisting)])
+        rows = [(force.kernel.address, force.numbers.ctypes.data, force.whole.ctypes.data) for force in forces]
+        against = [(kernel.address, n.ctypes.data, whole.ctypes.data) for kernel, n, whole in resisting]
+        self.resistances = np.array(against, np.int64).reshape(-1, 3)
         python = [system for system, force in packed if force is None]
         if python:
             callback = _CALLBACK(self._caller(world, python))
