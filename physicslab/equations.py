@@ -218,7 +218,9 @@ class Equations:
         ]
         self._kept: list[Any] = [*forces, *resisting]  # while C may read them
         world.schedule.compile([*(force.kernel for force in forces), *(kernel for kernel, _, _ in resisting)])
-        rows = [(force.kernel.address, force.numbers.ctypes.data, force.whole.ctypes.data) for force in forces]
+        rows = [
+            (force.kernel.address, force.numbers.ctypes.data, force.whole.ctypes.data) for force in forces
+        ]
         against = [(kernel.address, n.ctypes.data, whole.ctypes.data) for kernel, n, whole in resisting]
         self.resistances = np.array(against, np.int64).reshape(-1, 3)
         python = [system for system, force in packed if force is None]

@@ -1,4 +1,4 @@
-"""The implicit midpoint rule, by Newton's method with a banded matrix."""
+"""The implicit midpoint rule, leaning to the end where something resists, by Newton's method."""
 
 import math
 
@@ -16,6 +16,8 @@ _PARTS = 1024
 """Into how many parts a step may be divided, by halves, where Newton's method finds no end."""
 _SLOW = 2
 """After so many iterations with an old matrix it is worked out anew in each: stiff rods turn as they go."""
+_FAR = 1e-6
+"""Beyond such a change, as a share, the old matrix is not used again beside dampers: they turn as they go."""
 _SMALL = 1e-3
 """The size of things [m] where all coordinates are zero."""
 _EPSILON = 2.220446049250313e-16
@@ -100,20 +102,28 @@ def _differentiate(
     # Places move by sqrt(epsilon) of themselves.
     shift = 1.5e-8 * max(largest(x, n) + largest(q, len(inverse_mass)) / h, _SMALL / h)
     stride = min(2 * band + 1, n)
-    moved = x.copy()
+    # One that turns bends so much within the shift that strong dampers need both sides.
+    both = n > len(inverse_mass)
+    moved, below = x.copy(), miss.copy()
     for first in range(stride):
         for j in range(first, n, stride):
-            moved[order[j]] += shift
+            moved[order[j]] = x[order[j]] + shift
         _miss(
             q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, shifted
         )
+        if both:
+            for j in range(first, n, stride):
+                moved[order[j]] = x[order[j]] - shift
+            _miss(
+                q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, below
+            )
         for j in range(first, n, stride):
             moved[order[j]] = x[order[j]]
             for i in range(max(j - 2 * band, 0), min(j + 2 * band + 1, n)):
                 matrix[i, j] = 0.0
             for i in range(max(j - band, 0), min(j + band + 1, n)):
-                matrix[i, j] = (miss[order[i]] - shifted[order[i]]) / shift
-    return stride
+                matrix[i, j] = (below[order[i]] - shifted[order[i]]) / (2.0 * shift if both else shift)
+    return 2 * stride if both else stride
 
 
 @inlined
@@ -128,11 +138,11 @@ def _newton(
     """
     n = len(order)
     residual = shifted
-    before, evaluations = math.inf, 0
+    before, evaluations, far = math.inf, 0, False
     for iteration in range(1, _MOST_ITERATIONS + 1):
         _miss(q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss)
         evaluations += 1
-        if (iteration == 1 and not known) or iteration > _SLOW:
+        if (iteration == 1 and not known) or iteration > _SLOW or far:
             evaluations += _differentiate(
                 q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss,
                 shifted, order, band, matrix,
@@ -150,7 +160,7 @@ def _newton(
             return iteration, evaluations
         if not math.isfinite(change):
             break
-        before = change
+        before, far = change, n > len(inverse_mass) and change > _FAR * size
     return -1, evaluations
 
 

@@ -29,10 +29,10 @@ def drag_resistance(q, v, span, force, numbers, whole):  # type: ignore[no-untyp
 def damper_resistance(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
     """Add the pull of every damper, were y the velocity, less what is owed to the damper's turning.
 
-    A velocity that turns with the damper changes along it, though its length stays: by a . d - (n1 . v1 -
-    n0 . v0), where a is the mean direction, d the change of velocity, and n0 and n1 the directions at the
-    start and at the end. Half of that is taken off, but never more than there is: so what is left points the
-    same way, the answer is one of a damper no stronger than this, and energy cannot grow by it.
+    The velocity of what goes round at the end of a damper changes along it, though its length stays: by
+    a . d - (n1 . v1 - n0 . v0), where a is the mean direction, d the change of velocity, and n0 and n1 the
+    directions at the start and at the end. Half of that is taken off, so that a rod that only turns is left
+    to the midpoint rule: with the end's velocity along the mean direction it would lose speed.
     """
     n = whole[0]
     for s in range(whole[1]):
@@ -83,7 +83,7 @@ def damper_resistance(q, v, span, force, numbers, whole):  # type: ignore[no-unt
             v1x += -spin_b[2] * b1y + spin_a[2] * a1y
             v1y += spin_b[2] * b1x - spin_a[2] * a1x
             turning = along - (l1x * v1x + l1y * v1y) / end + (l0x * v0x + l0y * v0y) / start
-            rate -= max(min(0.0, rate), min(0.5 * turning, max(0.0, rate)))
+            rate -= 0.5 * turning
         fx, fy = damping * rate * nx, damping * rate * ny
         force[a] += fx
         force[a + 1] += fy
