@@ -55,6 +55,8 @@ class Slots:
     ----------
     moving, turning, fixed : int64 arrays
         The rows in that order.
+    steady : int64 array
+        The rows that move and no force turns.
     place, turn : int64 arrays (rows,)
         Where x of a row stands, and where its angle; -1 for a row that has none, or takes no part.
     """
@@ -70,6 +72,7 @@ class Slots:
             turns[_swung(world)] = True
             turns &= transform & velocity
         self.turning = np.flatnonzero(turns)
+        self.steady = np.setdiff1d(self.moving, self.turning, assume_unique=True)
         fixed = transform & ~velocity
         fixed[0] = True
         self.fixed = np.flatnonzero(fixed)
@@ -188,7 +191,7 @@ class Equations:
             raise error
         slots, transform, velocity = self.slots, world.table(Transform), world.table(Velocity)
         self._write(world, self.q, self.v)
-        steady = np.setdiff1d(slots.moving, slots.turning, assume_unique=True)
+        steady = slots.steady
         if len(steady):
             spin, c = velocity["angular"][steady], world.physics.angular_damping
             free = world.bodies.inverse_mass[steady] > 0.0
