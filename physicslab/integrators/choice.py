@@ -16,7 +16,7 @@ from physicslab.integrators.exact import EXACT
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
 from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_BESIDE_TETHERS
 from physicslab.schedule import ForceSystem, Stage
-from physicslab.tethers import tethered_rows
+from physicslab.tethered import tethered_rows
 
 if TYPE_CHECKING:
     from physicslab.config import SimulationConfig
@@ -191,9 +191,7 @@ def _beside_contacts(world: World, obstacle: str) -> Choice:
     else:
         method, how = BLANES_MOAN, f"steps of omega h = {rate * half / needed:.2g}"
     reason = f"{obstacle}; between contacts what springs or drag act on goes by {method.name}: {how}"
-    return replace(
-        kicks, reason=reason, stages=LEAPFROG_BESIDE_TETHERS, tethers=method, tether_steps=needed
-    )
+    return replace(kicks, reason=reason, stages=LEAPFROG_BESIDE_TETHERS, tethers=method, tether_steps=needed)
 
 
 def _fastest(world: World, forces: list[ForceSystem]) -> float:
