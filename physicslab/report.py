@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from physicslab.components import Transform, Velocity
-from physicslab.diagnostics import Drift, Energy, measure_momentum
+from physicslab.diagnostics import Drift, Energy, measure_momentum, summation
 from physicslab.scene_writer import unique_name
 from physicslab.world import World
 
@@ -63,6 +63,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "integrator_reason": world.method.reason,
         "collision_method": world.method.collisions,
         "collision_reason": world.method.collision_reason,
+        "summation": summation(world),
         "interpreted": list(world.interpreted),
         "force_evaluations": world.force_evaluations,
         "wall_s": record.wall_s,
@@ -146,6 +147,8 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         f"{report['collisions']} collisions, deepest overlap {report['max_penetration']:.3g} m",
         f"  systems     {systems or 'none'}",
     ]
+    if report["summation"]:
+        lines.append(f"  summed      {report['summation']}")
     if report["interpreted"]:
         lines.append(f"  slower      {', '.join(report['interpreted'])}: computed by Python, call by call")
     lines += [f"  left out    {left['name']}: {left['reason']}" for left in report["left_out"]]
