@@ -1,0 +1,96 @@
+"""Times of engines that take turns, so that noise and heat and a full cache are the same for all."""
+
+from __future__ import annotations
+
+import gc
+import itertools
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.bench.engine import Engine
+
+__all__ = ["Spread", "Times", "take_turns"]
+
+
+class Spread:
+    """How long something took, again and again.
+
+    Attributes
+    ----------
+    median_ms, p90_ms : float
+        The middle one, and the one that nine of ten do not exceed [ms].
+    """
+
+    def __init__(self, milliseconds: NDArray[np.float64]) -> None:
+        self.median_ms, self.p90_ms = (float(found) for found in np.percentile(milliseconds, (50, 90)))
+
+
+class Times:
+    """What each step of an engine took.
+
+    Attributes
+    ----------
+    step, read : list of float
+        The step, and reading the state back after it [ms].
+    """
+
+    def __init__(self) -> None:
+        self.step: list[float] = []
+        self.read: list[float] = []
+
+    @property
+    def with_read(self) -> NDArray[np.float64]:
+        """A step and reading the state back [ms]."""
+        return np.add(self.step, self.read)
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Keep Python's garbage collector from striking one engine and not the other."""
+    gc.collect()
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
+
+
+def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterator[list[Times]]:
+    """Advance all engines ``rounds`` times, in every order in turn; yield the times so far now and then.
+
+    Parameters
+    ----------
+    engines : sequence of Engine
+        Who takes part.
+    rounds : int
+        How often each has its turn.
+    block : int
+        Steps of a turn, in one call; 0 for a single one, after which the state is read back as well.
+    """
+    times = [Times() for _ in engines]
+    orders = itertools.cycle(itertools.permutations(range(len(engines))))
+    clock = time.perf_counter_ns
+    for start in range(0, rounds, _PORTION):
+        with _no_collection():
+            for order in itertools.islice(orders, min(_PORTION, rounds - start)):
+                for i in order:
+                    engine, spent = engines[i], times[i]
+                    began = clock()
+                    if block:
+                        engine.run(block)
+                        spent.step.append((clock() - began) / 1e6 / block)
+                        continue
+                    engine.step()
+                    stepped = clock()
+                    engine.read()
+                    spent.step.append((stepped - began) / 1e6)
+                    spent.read.append((clock() - stepped) / 1e6)
+        yield times
+
+
+_PORTION = 12
+"""Turns between two looks at how far all is: a whole number of times through the orders of three."""
