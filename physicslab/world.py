@@ -11,8 +11,10 @@ from contextlib import contextmanager
 from typing import Any
 
 import esper
+import numpy as np
 
 from physicslab.bodies import Bodies, Diverged
+from physicslab.checkpoint import Checkpoint
 from physicslab.closed_form import NoClosedForm
 from physicslab.columns import Batch, Table
 from physicslab.components import Name
@@ -103,6 +105,7 @@ class World:
         self.tethers: Tethers | None = None
         self._stale = True
         self._stepping = False
+        self._before = Checkpoint()
         self.method = provisional(self._simulation)
         self.context = f"physicslab-{next(_numbers)}"
         esper.switch_world(self.context)
@@ -309,6 +312,11 @@ class World:
 
         What is longer than ``simulation.dt`` is divided, so that no substep is longer than the scene's own:
         ``divided`` says into how many parts. A method that is exact or chooses its steps takes it whole.
+
+        Raises
+        ------
+        Diverged
+            If a value would not be finite; the world then stands where it stood before the step.
         """
         dt = self._simulation.dt if dt is None else dt
         if not (math.isfinite(dt) and dt > 0.0):
@@ -318,6 +326,7 @@ class World:
         with self.active():
             self.synchronise()
             self.divided = parts = self._parts(dt)
+            self._before.take(self)
             self._stepping = True
             try:
                 self.schedule.run(Stage.PREPARE, self, dt)
@@ -334,10 +343,18 @@ class World:
                 else:
                     self._flights.step(self, dt)
                 self.schedule.run(Stage.FINISH, self, dt)
+            except Diverged:
+                self._go_back()
+                raise
             finally:
                 self._stepping = False
         self.time += dt
         self.steps += 1
+
+    def _go_back(self) -> None:
+        """Stand where the step that failed began."""
+        self._before.restore(self)
+        self._stale = True  # flights and equations hold numbers of the step that failed
 
     def _parts(self, dt: float) -> int:
         """Return into how many parts a step of ``dt`` is divided."""
@@ -367,7 +384,9 @@ class World:
         try:
             made = method.integrator.flow(self, equations, h, count)
         except StepTooSmall as error:
-            raise Diverged(f"{error} (after t = {self.time:.9g} s)") from error
+            label = self.label(self._liveliest())
+            what = f"{label}: Velocity changes too fast: {error}"
+            raise Diverged(f"{what} (after t = {self.time:.9g} s)") from error
         except NoClosedForm:  # somebody gave a body another velocity, or another spring
             self.method = choose(self)
             self._flow(equations, dt, steps)
@@ -377,6 +396,13 @@ class World:
         for name in equations.forces:
             self.schedule.note(name, made, 0)  # their time is within the loop's
         self.force_evaluations += made
+
+    def _liveliest(self) -> int:
+        """Return the entity whose velocity changes fastest as things stand."""
+        self.add_up_forces()
+        bodies = self.bodies
+        rates = np.hypot(bodies.force[:, 0], bodies.force[:, 1]) * bodies.inverse_mass
+        return int(self.roster.entities[np.argmax(rates)])
 
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.
@@ -403,8 +429,14 @@ class World:
             self.force_evaluations -= self.has_forces  # looking at them is no work of the method
 
     def _leap(self, dt: float, parts: int, steps: int) -> None:
-        """Advance by ``parts`` times ``dt``, which nobody looks at and which count as ``steps``."""
+        """Advance by ``parts`` times ``dt``, which nobody looks at and which count as ``steps``.
+
+        Where that fails it is halved, until the one step that cannot be made is found; the world then stands
+        where it stood before that step.
+        """
         with self.active():
+            self.synchronise()
+            self._before.take(self)
             self._stepping = True
             try:
                 if self._flights is not None:
@@ -412,10 +444,23 @@ class World:
                 elif self._equations is not None:
                     self._flow(self._equations, dt, parts)
                 self.schedule.run(Stage.FINISH, self, dt * parts)
+            except Diverged:
+                self._go_back()
+                if steps == 1:
+                    raise
+            else:
+                self.time += dt * parts
+                self.steps += steps
+                return
             finally:
                 self._stepping = False
-        self.time += dt * parts
-        self.steps += steps
+        first = steps // 2
+        if parts > 1:
+            self._leap(dt, first, first)
+            self._leap(dt, parts - first, steps - first)
+        else:
+            self._leap(first * self._simulation.dt, 1, first)
+            self._leap(dt - first * self._simulation.dt, 1, steps - first)
 
     def stepping(
         self, *, seconds: float | None = None, steps: int | None = None, stride: int = 1

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from physicslab.closed_form import NoClosedForm, closed_form
-from physicslab.equations import why_not_smooth
+from physicslab.equations import tethered_rows, why_not_smooth
 from physicslab.exact_collisions import why_not_exact, why_not_worthwhile
 from physicslab.integrators import INTEGRATORS, Integrator
 from physicslab.integrators.blanes_moan import BLANES_MOAN
@@ -16,7 +16,6 @@ from physicslab.integrators.exact import EXACT
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
 from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_BESIDE_TETHERS
 from physicslab.schedule import ForceSystem, Stage
-from physicslab.tethers import tethered_rows
 
 if TYPE_CHECKING:
     from physicslab.config import SimulationConfig
@@ -191,9 +190,7 @@ def _beside_contacts(world: World, obstacle: str) -> Choice:
     else:
         method, how = BLANES_MOAN, f"steps of omega h = {rate * half / needed:.2g}"
     reason = f"{obstacle}; between contacts what springs or drag act on goes by {method.name}: {how}"
-    return replace(
-        kicks, reason=reason, stages=LEAPFROG_BESIDE_TETHERS, tethers=method, tether_steps=needed
-    )
+    return replace(kicks, reason=reason, stages=LEAPFROG_BESIDE_TETHERS, tethers=method, tether_steps=needed)
 
 
 def _fastest(world: World, forces: list[ForceSystem]) -> float:

@@ -88,6 +88,7 @@ def fat_boxes(
         boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
         boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
 
+
 _CROWD = 32
 """So many bodies of a body's own size, at the most, that overlap with it make pairs with it."""
 _OWN_SIZE = 2.0
@@ -105,7 +106,8 @@ def _overlap(these: Vectors, i: int, those: Vectors, j: int) -> bool:
 
 @inlined
 def _take(
-    pairs: Pairs, found: int, inverse_mass: Numbers, boxes: Vectors, fat: Vectors, company: Rows, i: int, j: int
+    pairs: Pairs, found: int, inverse_mass: Numbers,
+    boxes: Vectors, fat: Vectors, company: Rows, i: int, j: int,
 ) -> int:  # fmt: skip
     """Write the pair (i, j) in order, if it can be moved and there is room; return how many there are now.
 
@@ -245,7 +247,8 @@ def _level(
 
 @kernel
 def find_pairs(
-    boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers, bounded: bool, bounds: Numbers, pairs: Pairs
+    boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers,
+    bounded: bool, bounds: Numbers, pairs: Pairs,
 ) -> int:  # fmt: skip
     """Write the pairs (a, b, wall) whose fat boxes overlap, each once, sorted; return how many there are.
 
