@@ -41,8 +41,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.epilog = (
         f"groups: {', '.join(groups())}; scenes: {', '.join(SCENES)}; {_UNUSED}: what a step costs more "
         f"for systems that the scene does not use; {_MEMORY}: bytes a body. dt is 1/60 s, 4 substeps, one "
-        "thread, nothing sleeps; pymunk takes 10 iterations with a slop of 5 mm, Box2D 8 and 3. The exit status is 0 "
-        "whether targets are met or not, and 1 if a run diverges."
+        "thread, nothing sleeps; pymunk takes 10 iterations with a slop of 5 mm, Box2D 8 and 3. The exit "
+        "status is 0 whether targets are met or not, and 1 if a run diverges."
     )
 
 

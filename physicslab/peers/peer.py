@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Any, ClassVar
@@ -44,7 +45,10 @@ class Peer(ABC):
     module: ClassVar[str]
 
     def __init__(self, world: World) -> None:
-        self.engine: Any = importlib.import_module(self.module)  # here: most users have no peers
+        with warnings.catch_warnings():
+            # Box2D's binding has types without modules, which Python 3.12 tells of; as an error it crashes.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            self.engine: Any = importlib.import_module(self.module)  # here: most users have no peers
         world.synchronise()
         self.world = world
         if world.physics.gravity_mode == "planet" or world.batch(Drag).entities.size:
