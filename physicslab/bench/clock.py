@@ -1,4 +1,8 @@
-"""Times of engines that take turns, so that noise and heat and a full cache are the same for all."""
+"""Times of engines that take turns, so that noise and heat and a full cache are the same for all.
+
+What is told is CPU time, of all threads of the process: on an idle machine that is the time on the wall, and on
+one that does other work it leaves the waiting out. No engine gains by a second thread.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +21,7 @@ __all__ = ["Spread", "Times", "take_turns"]
 
 
 class Spread:
-    """How long something took, again and again.
+    """How much CPU time something took, again and again.
 
     Attributes
     ----------
@@ -73,7 +77,7 @@ def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterat
     """
     times = [Times() for _ in engines]
     orders = itertools.cycle(itertools.permutations(range(len(engines))))
-    clock = time.perf_counter_ns
+    clock = time.process_time_ns
     for start in range(0, rounds, _PORTION):
         with _no_collection():
             for order in itertools.islice(orders, min(_PORTION, rounds - start)):

@@ -51,7 +51,6 @@ def _scene(result: SceneResult) -> dict[str, Any]:
         "quality_limits": [
             {"name": quality.name, "unit": quality.unit, "limit": quality.limit} for quality in scene.quality
         ],
-        "mean_ms": result.mean_ms,
         "systems_ms": result.systems,
         "engines": [_engine(found) for found in result.engines.values()],
     }

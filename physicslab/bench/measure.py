@@ -50,10 +50,7 @@ def measure_scene(scene: BenchScene, peers: Sequence[type[Peer]] = ()) -> Iterat
     else:
         _summarise(result, engines, times)
         result.contacts = ours.world.contacts.count
-        result.systems = {
-            name: (spent - before.get(name, 0)) / 1e6 / scene.steps
-            for name, spent in _spent(ours.world).items()
-        }
+        result.systems = _shares(before, _spent(ours.world), times[0].step, max(1, block))
     yield result
 
 
@@ -86,10 +83,18 @@ def _spent(world: World) -> dict[str, int]:
     return {name: timing.nanoseconds for name, timing in world.schedule.timings.items()}
 
 
+def _shares(
+    before: dict[str, int], after: dict[str, int], turns: Sequence[float], block: int
+) -> dict[str, float]:
+    """Return what systems take of a median step [ms]: noise that made some steps long takes no part."""
+    whole = sum(turns) * block
+    median = float(np.median(turns))
+    return {name: (spent - before.get(name, 0)) / 1e6 / whole * median for name, spent in after.items()}
+
+
 def _summarise(result: SceneResult, engines: Sequence[Engine], times: Sequence[Times]) -> None:
     """Note medians, and ratios step by step."""
     ours = times[0]
-    result.mean_ms = float(np.mean(ours.step))
     for engine, spent in zip(engines, times, strict=True):
         found = result.engines[engine.title]
         found.step = Spread(np.array(spent.step))

@@ -58,9 +58,7 @@ class SceneResult:
     engines : dict of str to EngineResult
         By the engine's name, PhysicsLab first.
     systems : dict of str to float
-        What each of PhysicsLab's systems takes of a step [ms], on the average.
-    mean_ms : float
-        What its whole step takes on the average [ms].
+        What each of PhysicsLab's systems takes of its median step [ms], by their shares of the whole time.
     """
 
     scene: BenchScene
@@ -68,7 +66,6 @@ class SceneResult:
     contacts: int = 0
     engines: dict[str, EngineResult] = field(default_factory=dict)
     systems: dict[str, float] = field(default_factory=dict)
-    mean_ms: float = 0.0
 
     @property
     def ours(self) -> EngineResult:

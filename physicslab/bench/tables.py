@@ -15,11 +15,11 @@ __all__ = ["report_text", "scene_text"]
 type Rows = Sequence[Sequence[str]]
 
 
-def _table(rows: Rows) -> str:
-    """Return rows aligned in columns: the first to the left, the others to the right."""
+def _table(rows: Rows, words: int = 1) -> str:
+    """Return rows aligned in columns: the first, with words, to the left, the others to the right."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     lines = (
-        "  ".join(f"{text:<{width}}" if i == 0 else f"{text:>{width}}" for i, (text, width) in pairs)
+        "  ".join(f"{text:<{width}}" if i < words else f"{text:>{width}}" for i, (text, width) in pairs)
         for row in rows
         for pairs in [list(enumerate(zip(row, widths, strict=True)))]
     )
@@ -47,10 +47,10 @@ def report_text(report: BenchReport) -> str:
     blocks = [("", machine_text(peers=report.peers))]
     if report.scenes:
         blocks += [
-            ("ms a step: median of the settled scene, nine of ten below p90, and median of the first 2 s",
+            ("ms of CPU time a step: median of the settled scene, nine of ten below p90, median of the first 2 s",
              _times(report)),
             ("quality after 10 s", _quality(report)),
-            ("ms a step by system", _systems(report)),
+            ("ms a step by system, as shares of the median", _systems(report)),
         ]  # fmt: skip
     if report.growths:
         blocks.append(("growth of a step's cost: N^p", _growth(report)))
@@ -102,7 +102,7 @@ def _quality(report: BenchReport) -> str:
             figures = [_figure(result.engines.get(name), quality.name) for name in engines]
             limit = f"{quality.limit:g} {quality.unit}".rstrip()
             rows.append([result.scene.name, quality.name, *figures, limit])
-    return _table(rows) if len(rows) > 1 else "nothing is looked at in scenes that were opened"
+    return _table(rows, 2) if len(rows) > 1 else "nothing is looked at in scenes that were opened"
 
 
 def _figure(found: EngineResult | None, name: str) -> str:
@@ -118,7 +118,7 @@ def _systems(report: BenchReport) -> str:
     for result in report.scenes:
         if result.ours.step is None:
             continue
-        rest = result.mean_ms - sum(result.systems.values())
+        rest = result.ours.step.median_ms - sum(result.systems.values())
         spent = [result.systems.get(name) for name in names]
         rows.append([result.scene.name, *(_number(ms, 4) for ms in spent), _number(max(0.0, rest), 4)])
     return _table(rows)
@@ -129,7 +129,7 @@ def _growth(report: BenchReport) -> str:
     for growth in report.growths:
         sizes = f"{growth.sizes[0]}..{growth.sizes[-1]}"
         rows.append([growth.group, growth.engine, sizes, _number(growth.exponent, 3)])
-    return _table(rows)
+    return _table(rows, 2)
 
 
 def _unused(report: BenchReport) -> str:
@@ -154,4 +154,4 @@ def _targets(report: BenchReport) -> str:
         ]
         for check in report.checks
     ]  # fmt: skip
-    return _table(rows)
+    return _table(rows, 2)
