@@ -50,7 +50,7 @@ def measure_scene(scene: BenchScene, peers: Sequence[type[Peer]] = ()) -> Iterat
     else:
         _summarise(result, engines, times)
         result.contacts = ours.world.contacts.count
-        result.systems = _shares(before, _spent(ours.world), times[0].step, max(1, block))
+        result.systems = _shares(before, _spent(ours.world), times[0])
     yield result
 
 
@@ -83,13 +83,12 @@ def _spent(world: World) -> dict[str, int]:
     return {name: timing.nanoseconds for name, timing in world.schedule.timings.items()}
 
 
-def _shares(
-    before: dict[str, int], after: dict[str, int], turns: Sequence[float], block: int
-) -> dict[str, float]:
+def _shares(before: dict[str, int], after: dict[str, int], ours: Times) -> dict[str, float]:
     """Return what systems take of a median step [ms]: noise that made some steps long takes no part."""
-    whole = sum(turns) * block
-    median = float(np.median(turns))
-    return {name: (spent - before.get(name, 0)) / 1e6 / whole * median for name, spent in after.items()}
+    median = float(np.median(ours.step))
+    return {
+        name: (spent - before.get(name, 0)) / 1e6 / ours.wall_ms * median for name, spent in after.items()
+    }
 
 
 def _summarise(result: SceneResult, engines: Sequence[Engine], times: Sequence[Times]) -> None:

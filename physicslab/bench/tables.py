@@ -47,7 +47,7 @@ def report_text(report: BenchReport) -> str:
     blocks = [("", machine_text(peers=report.peers))]
     if report.scenes:
         blocks += [
-            ("ms of CPU time a step: median of the settled scene, nine of ten below p90, median of the first 2 s",
+            ("ms of CPU time a step: median and p90 of the settled scene, median of the first 2 s",
              _times(report)),
             ("quality after 10 s", _quality(report)),
             ("ms a step by system, as shares of the median", _systems(report)),
