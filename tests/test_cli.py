@@ -211,7 +211,7 @@ USAGE = [
     (["newtons_crade"], 'did you mean "newtons_cradle"?'),
     (["nowhere.json"], "nowhere.json: no such file"),
     (["drop", "--fast"], "unrecognized arguments: --fast"),
-    (["bench", "pilez"], '"pilez": is no scene; did you mean "piles"?'),
+    (["bench", "pilez"], '"pilez": is no scene; did you mean "pile"'),
     (["stability", "springz"], '"springz": is no case; did you mean "springs"?'),
     (["stability", "qqqq"], '"qqqq": is no case; there are the groups springs, dampers, chains, stacks, '),
     (["stability", "--json", "none/x.json", "far"], "--json none/x.json: cannot be written"),
