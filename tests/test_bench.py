@@ -4,6 +4,7 @@ import dataclasses
 import importlib.util
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -149,6 +150,13 @@ def test_the_document_alone_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -
     assert set(engine["step_ms"]) == {"median", "p90"}
     (growth,) = found["growth"]
     assert (growth["group"], growth["sizes"]) == ("piles", [5, 10, 20])
+
+
+@pytest.mark.usefixtures("small_scenes")
+def test_the_plot_is_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    assert cli.main(["bench", "piles", "--plot", str(tmp_path)]) == 0
+    assert (tmp_path / "bench.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_run_that_diverges_is_told_in_the_end(
