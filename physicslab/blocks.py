@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Blocks", "Lanes"]
 
+type _Numbers = NDArray[np.float64]
+type _Rows = NDArray[np.int64]
 _FEW = 64
 """So many contacts, at the least, are worth a block: fewer are done by the time that they are sorted."""
 _SPARSE = 0.5
@@ -64,12 +66,12 @@ class Lanes:
             self.a, self.b, self.pair = (np.ascontiguousarray(lane) for lane in lanes)
 
     @property
-    def layout(self) -> tuple[Any, ...]:
+    def layout(self) -> tuple[int, _Numbers, int, _Rows, _Rows, _Rows, _Rows, NDArray[np.uint64]]:
         """What kernels that take lanes in or give them back want to know."""
         return self.kind, self.data, self.count, self.a, self.b, self.pair, self.colour, self.used
 
     @property
-    def solved(self) -> tuple[Any, ...]:
+    def solved(self) -> tuple[_Numbers, int, _Rows, _Rows]:
         """What kernels that only change impulses want to know."""
         return self.data, self.count, self.a, self.b
 

@@ -178,7 +178,7 @@ class Contacts:
         self.blocks.reset(rows)
 
     def in_order(self) -> None:
-        """List the loose pairs in order, where some were set loose since: what a file tells of them is that."""
+        """List the loose pairs in order, where some were set loose since: a file tells no other order."""
         if self.unordered:
             self._list_loose()
 
@@ -254,7 +254,8 @@ class Contacts:
             lanes.count, seated = block_lanes.seat_again(
                 lanes.kind, lanes.data, lanes.a, lanes.b, lanes.pair, lanes.colour, lanes.used,
                 self.manifolds, self.points, self.candidate_pairs, world.table(Shape)["radius"],
-                material["restitution"], material["friction"], world.bodies.inverse_mass, world.bodies.inverse_inertia,
+                material["restitution"], material["friction"],
+                world.bodies.inverse_mass, world.bodies.inverse_inertia,
             )  # fmt: skip
             self.blocks.lanes += seated
         if not self.blocks.known:

@@ -3,8 +3,34 @@
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.block_lanes import Masks, give_up, store_lane
 from physicslab.kernels.block_layout import (
-    ANGLE_A, ANGLE_B, ARM_AX, ARM_AY, ARM_BX, ARM_BY, BASE_X, BASE_Y, BOX, BOX_ROWS, DISC, DISC_ROWS, FOUND,
-    NORMAL_X, NORMAL_Y, ONE, RADIUS_A, RADIUS_B, SEPARATION, SIZE, TWO, WA, WB, WIDE, XA, XB, YA, YB,
+    ANGLE_A,
+    ANGLE_B,
+    ARM_AX,
+    ARM_AY,
+    ARM_BX,
+    ARM_BY,
+    BASE_X,
+    BASE_Y,
+    BOX,
+    BOX_ROWS,
+    DISC,
+    DISC_ROWS,
+    FOUND,
+    NORMAL_X,
+    NORMAL_Y,
+    ONE,
+    RADIUS_A,
+    RADIUS_B,
+    SEPARATION,
+    SIZE,
+    TWO,
+    WA,
+    WB,
+    WIDE,
+    XA,
+    XB,
+    YA,
+    YB,
 )  # fmt: skip
 from physicslab.kernels.records import Manifolds, Points
 
@@ -47,7 +73,7 @@ def _restless(block: Numbers, still: float, h: float) -> float:
 
 @inlined
 def _refresh_discs(block: Numbers, near: float, fall: float) -> float:
-    """Find normals and separations of a block of discs; mark in row ``WA`` what touches no more, or deeply."""
+    """Find normals and separations of a block of discs; mark in row ``WA`` what is apart, or overlaps deeply."""
     lost = 0.0
     for lane in range(WIDE):
         dx, dy = block[XB + lane] - block[XA + lane], block[YB + lane] - block[YA + lane]

@@ -1,11 +1,38 @@
-"""Impulses at settled contacts, eight at a time: the same formulas as in :mod:`physicslab.kernels.impulse`."""
+"""Impulses at settled contacts, eight at a time, by the formulas of :mod:`physicslab.kernels.impulse`."""
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined
 from physicslab.kernels.block_contact import gather, scatter
 from physicslab.kernels.block_layout import (
-    ARM_AX, ARM_AY, ARM_BX, ARM_BY, BOX_ROWS, DISC_ROWS, FRICTION, IMPULSE, INERTIA_A, INERTIA_B, MASS, MASS_A,
-    MASS_B, NORMAL_X, NORMAL_Y, ONE, RADIUS_A, RADIUS_B, RUB, RUB_MASS, SEPARATION, SIZE, TWO, WA, WB, WIDE, XA,
-    XB, YA, YB,
+    ARM_AX,
+    ARM_AY,
+    ARM_BX,
+    ARM_BY,
+    BOX_ROWS,
+    DISC_ROWS,
+    FRICTION,
+    IMPULSE,
+    INERTIA_A,
+    INERTIA_B,
+    MASS,
+    MASS_A,
+    MASS_B,
+    NORMAL_X,
+    NORMAL_Y,
+    ONE,
+    RADIUS_A,
+    RADIUS_B,
+    RUB,
+    RUB_MASS,
+    SEPARATION,
+    SIZE,
+    TWO,
+    WA,
+    WB,
+    WIDE,
+    XA,
+    XB,
+    YA,
+    YB,
 )  # fmt: skip
 
 __all__ = ["DEEPER", "SOFT", "start_lanes", "sweep_lanes"]

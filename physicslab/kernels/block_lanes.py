@@ -4,14 +4,41 @@ import math
 from typing import Annotated
 
 import numpy as np
-from numba import from_dtype, uint64
+from numba import uint64
 from numpy.typing import NDArray
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.block_layout import (
-    ANGLE_A, ANGLE_B, ARM_AX, ARM_AY, ARM_BX, ARM_BY, BASE_X, BASE_Y, BOX, BOX_ROWS, DISC, DISC_ROWS, FOUND,
-    FRICTION, IMPULSE, INERTIA_A, INERTIA_B, MASS, MASS_A, MASS_B, NORMAL_X, NORMAL_Y, ONE, RADIUS_A, RADIUS_B,
-    RUB, RUB_MASS, SEPARATION, SIZE, TWO, WIDE,
+    ANGLE_A,
+    ANGLE_B,
+    ARM_AX,
+    ARM_AY,
+    ARM_BX,
+    ARM_BY,
+    BASE_X,
+    BASE_Y,
+    BOX_ROWS,
+    DISC,
+    DISC_ROWS,
+    FOUND,
+    FRICTION,
+    IMPULSE,
+    INERTIA_A,
+    INERTIA_B,
+    MASS,
+    MASS_A,
+    MASS_B,
+    NORMAL_X,
+    NORMAL_Y,
+    ONE,
+    RADIUS_A,
+    RADIUS_B,
+    RUB,
+    RUB_MASS,
+    SEPARATION,
+    SIZE,
+    TWO,
+    WIDE,
 )  # fmt: skip
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 
@@ -183,8 +210,8 @@ def _free_lane(home: int, blocks: int, c: int, pair: Rows, colour: Rows) -> int:
 
 @kernel
 def admit(
-    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks, opened: Rows,
-    manifolds: Manifolds, points: Points, touching: Rows, count: int,
+    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
+    opened: Rows, manifolds: Manifolds, points: Points, touching: Rows, count: int,
     shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
     inverse_mass: Numbers, inverse_inertia: Numbers,
     h: float, still: float, near: float,
