@@ -39,6 +39,8 @@ class Lanes:
         Rows of the bodies in each lane, and which near pair it is; -1 for a free lane.
     colour : int64 array (capacity,)
         Which of a body's contacts each block holds.
+    order : int64 array (capacity,)
+        The blocks, those of one colour together: as they are solved.
     used : uint64 array (rows of the world,)
         The colours that each body has been given, bit by bit.
     """
@@ -46,7 +48,7 @@ class Lanes:
     def __init__(self, kind: int) -> None:
         self.kind, self.rows = kind, DISC_ROWS if kind == DISC else BOX_ROWS
         self.data: NDArray[np.float64] = np.zeros(0)
-        self.a, self.b, self.pair, self.colour = (np.zeros(0, np.int64) for _ in range(4))
+        self.a, self.b, self.pair, self.colour, self.order = (np.zeros(0, np.int64) for _ in range(5))
         self.reset(1)
 
     def reset(self, rows: int) -> None:
@@ -62,8 +64,12 @@ class Lanes:
             data[: len(self.data)], colour[: len(self.colour)] = self.data, self.colour
             lanes = np.zeros((3, room * WIDE), np.int64)
             lanes[:, : len(self.pair)] = self.a, self.b, self.pair
-            self.data, self.colour = data, colour
+            self.data, self.colour, self.order = data, colour, np.zeros(room, np.int64)
             self.a, self.b, self.pair = (np.ascontiguousarray(lane) for lane in lanes)
+
+    def sort(self) -> None:
+        """Put the blocks in the order in which they are solved."""
+        block_lanes.sort_blocks(self.count, self.colour, self.order)
 
     @property
     def layout(self) -> tuple[int, _Numbers, int, _Rows, _Rows, _Rows, _Rows, NDArray[np.uint64]]:
@@ -71,9 +77,9 @@ class Lanes:
         return self.kind, self.data, self.count, self.a, self.b, self.pair, self.colour, self.used
 
     @property
-    def solved(self) -> tuple[_Numbers, int, _Rows, _Rows]:
+    def solved(self) -> tuple[_Numbers, int, _Rows, _Rows, _Rows]:
         """What kernels that only change impulses want to know."""
-        return self.data, self.count, self.a, self.b
+        return self.data, self.count, self.order, self.a, self.b
 
 
 class Blocks:
@@ -92,7 +98,7 @@ class Blocks:
 
     kernels = (
         block_lanes.admit, block_lanes.store, block_lanes.list_loose, block_lanes.keep_loose,
-        block_lanes.follow_pairs, block_lanes.wake, block_lanes.seat_again,
+        block_lanes.follow_pairs, block_lanes.wake, block_lanes.seat_again, block_lanes.sort_blocks,
         block_contact.refresh, block_contact.deepest_lane,
     )  # fmt: skip
 

@@ -200,12 +200,15 @@ class Contacts:
         came = 0
         for lanes in blocks.kinds:
             lanes.make_room(lanes.count + self.active // WIDE + block_lanes.COLOURS)
+            before = lanes.count
             lanes.count, more = block_lanes.admit(
                 *lanes.layout, self._opened, self.manifolds, self.points, self.touching, self.active,
                 shape, world.table(Shape)["radius"], material["restitution"], material["friction"], linear,
                 bodies.inverse_mass, bodies.inverse_inertia,
                 h, 0.25 * STILL, 0.25 * NEAR,  # half of what sets them loose
             )  # fmt: skip
+            if more or lanes.count != before:
+                lanes.sort()
             came += more
         if came:
             if not blocks.lanes:
@@ -257,6 +260,7 @@ class Contacts:
                 material["restitution"], material["friction"],
                 world.bodies.inverse_mass, world.bodies.inverse_inertia,
             )  # fmt: skip
+            lanes.sort()
             self.blocks.lanes += seated
         if not self.blocks.known:
             self.blocks.remember(world)

@@ -1,6 +1,6 @@
 """Where settled contacts touch now, eight at a time; those that have settled no longer are set loose."""
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
 from physicslab.kernels.block_lanes import Masks, give_up, store_lane
 from physicslab.kernels.block_layout import (
     ANGLE_A,
@@ -40,20 +40,22 @@ _DEEP = 0.1
 """Share of the smaller size: what overlaps more is taken apart by moving, which lanes know nothing of."""
 
 
-@inlined
+@fused
 def gather(block: Numbers, k: int, a: Rows, b: Rows, vectors: Vectors, numbers: Numbers) -> None:
     """Bring together the places and angles, or the velocities, of the bodies of block k."""
+    rows_a, rows_b = a[k * WIDE : (k + 1) * WIDE], b[k * WIDE : (k + 1) * WIDE]
     for lane in range(WIDE):
-        i, j = a[k * WIDE + lane], b[k * WIDE + lane]
+        i, j = rows_a[lane], rows_b[lane]
         block[XA + lane], block[YA + lane], block[WA + lane] = vectors[i, 0], vectors[i, 1], numbers[i]
         block[XB + lane], block[YB + lane], block[WB + lane] = vectors[j, 0], vectors[j, 1], numbers[j]
 
 
-@inlined
+@fused
 def scatter(block: Numbers, k: int, a: Rows, b: Rows, linear: Vectors, angular: Numbers) -> None:
     """Give the bodies of block k their velocities back; what nothing moves has the one it had."""
+    rows_a, rows_b = a[k * WIDE : (k + 1) * WIDE], b[k * WIDE : (k + 1) * WIDE]
     for lane in range(WIDE):
-        i, j = a[k * WIDE + lane], b[k * WIDE + lane]
+        i, j = rows_a[lane], rows_b[lane]
         linear[i, 0], linear[i, 1], angular[i] = block[XA + lane], block[YA + lane], block[WA + lane]
         linear[j, 0], linear[j, 1], angular[j] = block[XB + lane], block[YB + lane], block[WB + lane]
 
@@ -73,7 +75,7 @@ def _restless(block: Numbers, still: float, h: float) -> float:
 
 @inlined
 def _refresh_discs(block: Numbers, near: float, fall: float) -> float:
-    """Find normals and separations of a block of discs; mark in row ``WA`` what is apart, or overlaps deeply."""
+    """Find normals and separations of a block of discs; mark what is apart or overlaps much in row ``WA``."""
     lost = 0.0
     for lane in range(WIDE):
         dx, dy = block[XB + lane] - block[XA + lane], block[YB + lane] - block[YA + lane]
@@ -91,6 +93,19 @@ def _refresh_discs(block: Numbers, near: float, fall: float) -> float:
     return lost
 
 
+@fused
+def _separation(
+    block: Numbers, point: int, lane: int, x: float, y: float, nx: float, ny: float, turn_a: float,
+    turn_b: float,
+) -> float:  # fmt: skip
+    """Return the separation of a point, to second order in how far the pair has moved and turned."""
+    rax, ray = block[point + ARM_AX + lane], block[point + ARM_AY + lane]
+    rbx, rby = block[point + ARM_BX + lane], block[point + ARM_BY + lane]
+    ax, ay = turn_a * (-ray - 0.5 * turn_a * rax), turn_a * (rax - 0.5 * turn_a * ray)
+    bx, by = turn_b * (-rby - 0.5 * turn_b * rbx), turn_b * (rbx - 0.5 * turn_b * rby)
+    return block[point + FOUND + lane] + (x + bx - ax) * nx + (y + by - ay) * ny
+
+
 @inlined
 def _refresh_boxes(block: Numbers, keep: float, keep_turn: float) -> float:
     """Update the separations of a block of boxes; mark in row ``WA`` whose points must be found anew."""
@@ -101,17 +116,11 @@ def _refresh_boxes(block: Numbers, keep: float, keep_turn: float) -> float:
         y = block[YB + lane] - block[YA + lane] - block[BASE_Y + lane]
         turn_a, turn_b = block[WA + lane] - block[ANGLE_A + lane], block[WB + lane] - block[ANGLE_B + lane]
         size = block[SIZE + lane]
-        lowest = 0.0
-        for point in (ONE, TWO):
-            rax, ray = block[point + ARM_AX + lane], block[point + ARM_AY + lane]
-            rbx, rby = block[point + ARM_BX + lane], block[point + ARM_BY + lane]
-            ax, ay = turn_a * (-ray - 0.5 * turn_a * rax), turn_a * (rax - 0.5 * turn_a * ray)
-            bx, by = turn_b * (-rby - 0.5 * turn_b * rbx), turn_b * (rbx - 0.5 * turn_b * rby)
-            separation = block[point + FOUND + lane] + (x + bx - ax) * nx + (y + by - ay) * ny
-            block[point + SEPARATION + lane] = separation
-            lowest = min(lowest, separation)
+        one = _separation(block, ONE, lane, x, y, nx, ny, turn_a, turn_b)
+        two = _separation(block, TWO, lane, x, y, nx, ny, turn_a, turn_b)
+        block[ONE + SEPARATION + lane], block[TWO + SEPARATION + lane] = one, two
         moved = (abs(x) + abs(y) > keep * size) | (abs(turn_a) > keep_turn) | (abs(turn_b) > keep_turn)
-        bad = 1.0 if moved | (lowest < -_DEEP * size) else 0.0
+        bad = 1.0 if moved | (one < -_DEEP * size) | (two < -_DEEP * size) else 0.0
         block[WA + lane] = bad
         lost += bad
     return lost

@@ -1,6 +1,6 @@
 """Impulses at settled contacts, eight at a time, by the formulas of :mod:`physicslab.kernels.impulse`."""
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
 from physicslab.kernels.block_contact import gather, scatter
 from physicslab.kernels.block_layout import (
     ARM_AX,
@@ -35,7 +35,7 @@ from physicslab.kernels.block_layout import (
     YB,
 )  # fmt: skip
 
-__all__ = ["DEEPER", "SOFT", "start_lanes", "sweep_lanes"]
+__all__ = ["DEEPER", "SOFT", "pressed", "start_lanes", "sweep_lanes"]
 
 SOFT = 0.01
 """Share of the smaller body's size that the contact spring takes away at its full rate; the load on it comes
@@ -44,119 +44,143 @@ DEEPER = 0.15
 """Share beyond which overlap is not taken away by impulses."""
 
 
-@inlined
-def _total(
+@fused
+def pressed(
     impulse: float, mass: float, v: float, separation: float, size: float, inverse_h: float, push_rate: float,
     mass_scale: float, impulse_scale: float, slop: float, heaviest: float,
 ) -> float:  # fmt: skip
-    """Return the normal impulse [N s] after one more look at a point that approaches at -v."""
-    load = min(impulse, heaviest) * impulse_scale / (mass_scale * mass)
-    limit = push_rate * SOFT * size + 2.0 * load
-    push = max(push_rate * min(separation + slop * size, 0.0), -limit)
+    """Return the normal impulse [N s] after one more look at a point that approaches at -v [m/s].
+
+    Below the slop the contact is a stiff, overdamped spring that takes ``push_rate`` of the overlap a second;
+    no faster than what balances twice the load, or a pile of overlapping bodies would fly apart. A positive
+    separation may be closed within the time that the impulses stand for, and not more.
+    """
+    most = mass * push_rate * SOFT * size + 2.0 * min(impulse, heaviest) * impulse_scale / mass_scale
+    push = max(mass * push_rate * min(separation + slop * size, 0.0), -most)
     push = 0.0 if separation < -DEEPER * size else push
-    apart = separation > 0.0
-    bias = separation * inverse_h if apart else push
-    hardness = 1.0 if apart else mass_scale
-    softness = 0.0 if apart else impulse_scale
-    return max(impulse - mass * hardness * (v + bias) - softness * impulse, 0.0)
+    soft = impulse - mass_scale * (mass * v + push) - impulse_scale * impulse
+    hard = impulse - mass * (v + separation * inverse_h)
+    return max(hard if separation > 0.0 else soft, 0.0)
+
+
+@fused
+def _pushed(
+    block: Numbers, point: int, lane: int, v: float, drift: float, inverse_h: float,
+    push_rate: float, mass_scale: float, impulse_scale: float, slop: float, heaviest: float,
+) -> float:  # fmt: skip
+    """Let the separation follow the velocity, set the normal impulse anew; return its change [N s]."""
+    separation = block[point + SEPARATION + lane] + drift * v
+    block[point + SEPARATION + lane] = separation
+    impulse, mass = block[point + IMPULSE + lane], block[point + MASS + lane]
+    total = pressed(
+        impulse, mass, v, separation, block[SIZE + lane], inverse_h, push_rate, mass_scale, impulse_scale,
+        slop, heaviest,
+    )  # fmt: skip
+    block[point + IMPULSE + lane] = total
+    return total - impulse
+
+
+@fused
+def _rubbed(block: Numbers, point: int, lane: int, v: float) -> float:
+    """Set the impulse across anew, mu times the normal one at the most; return its change [N s]."""
+    limit, rub = block[FRICTION + lane] * block[point + IMPULSE + lane], block[point + RUB + lane]
+    total = min(max(rub - block[point + RUB_MASS + lane] * v, -limit), limit)
+    block[point + RUB + lane] = total
+    return total - rub
 
 
 @inlined
 def _sweep_discs(
-    block: Numbers, drift: float, inverse_h: float, push_rate: float, mass_scale: float, impulse_scale: float,
-    slop: float, heaviest: float,
+    block: Numbers, drift: float, inverse_h: float, push_rate: float, mass_scale: float,
+    impulse_scale: float, slop: float, heaviest: float,
 ) -> None:  # fmt: skip
+    """Go through a block of discs; pushes turn no disc, so that friction sees nothing of them."""
     for lane in range(WIDE):
         nx, ny = block[NORMAL_X + lane], block[NORMAL_Y + lane]
-        ma, mb = block[MASS_A + lane], block[MASS_B + lane]
-        vax, vay, wa = block[XA + lane], block[YA + lane], block[WA + lane]
-        vbx, vby, wb = block[XB + lane], block[YB + lane], block[WB + lane]
-        v = nx * (vbx - vax) + ny * (vby - vay)
-        separation = block[ONE + SEPARATION + lane] + drift * v
-        block[ONE + SEPARATION + lane] = separation
-        impulse = block[ONE + IMPULSE + lane]
-        total = _total(
-            impulse, block[ONE + MASS + lane], v, separation, block[SIZE + lane], inverse_h, push_rate,
-            mass_scale, impulse_scale, slop, heaviest,
-        )  # fmt: skip
-        block[ONE + IMPULSE + lane] = total
-        change = total - impulse
-        px, py = change * nx, change * ny
-        vax, vay, vbx, vby = vax - ma * px, vay - ma * py, vbx + mb * px, vby + mb * py
         ra, rb = block[RADIUS_A + lane], block[RADIUS_B + lane]
-        v = nx * (vby - vay) - ny * (vbx - vax) - rb * wb - ra * wa
-        limit = block[FRICTION + lane] * total
-        rub = block[ONE + RUB + lane]
-        total = min(max(rub - block[ONE + RUB_MASS + lane] * v, -limit), limit)
-        block[ONE + RUB + lane] = total
-        change = total - rub
-        px, py = -change * ny, change * nx
-        block[XA + lane], block[YA + lane] = vax - ma * px, vay - ma * py
-        block[XB + lane], block[YB + lane] = vbx + mb * px, vby + mb * py
-        block[WA + lane] = wa - block[INERTIA_A + lane] * ra * change
-        block[WB + lane] = wb - block[INERTIA_B + lane] * rb * change
+        vx, vy = block[XB + lane] - block[XA + lane], block[YB + lane] - block[YA + lane]
+        across = nx * vy - ny * vx - rb * block[WB + lane] - ra * block[WA + lane]
+        push = _pushed(
+            block, ONE, lane, nx * vx + ny * vy, drift, inverse_h, push_rate, mass_scale,
+            impulse_scale, slop, heaviest,
+        )  # fmt: skip
+        rub = _rubbed(block, ONE, lane, across)
+        px, py = push * nx - rub * ny, push * ny + rub * nx
+        block[XA + lane] -= block[MASS_A + lane] * px
+        block[YA + lane] -= block[MASS_A + lane] * py
+        block[XB + lane] += block[MASS_B + lane] * px
+        block[YB + lane] += block[MASS_B + lane] * py
+        block[WA + lane] -= block[INERTIA_A + lane] * ra * rub
+        block[WB + lane] -= block[INERTIA_B + lane] * rb * rub
 
 
 @inlined
 def _sweep_boxes(
-    block: Numbers, drift: float, inverse_h: float, push_rate: float, mass_scale: float, impulse_scale: float,
-    slop: float, heaviest: float,
+    block: Numbers, drift: float, inverse_h: float, push_rate: float, mass_scale: float,
+    impulse_scale: float, slop: float, heaviest: float,
 ) -> None:  # fmt: skip
+    """Go through a block of boxes: both pushes, then both points' friction.
+
+    Velocities at the points are worked out once; what an impulse does to the next point's is added to it (the
+    effective masses between them), for a processor waits less for that than for the bodies' velocities.
+    """
     for lane in range(WIDE):
         nx, ny = block[NORMAL_X + lane], block[NORMAL_Y + lane]
-        ma, mb, ia, ib = (
-            block[MASS_A + lane], block[MASS_B + lane], block[INERTIA_A + lane], block[INERTIA_B + lane],
+        ma, mb = block[MASS_A + lane], block[MASS_B + lane]
+        ia, ib = block[INERTIA_A + lane], block[INERTIA_B + lane]
+        vx, vy = block[XB + lane] - block[XA + lane], block[YB + lane] - block[YA + lane]
+        wa, wb = block[WA + lane], block[WB + lane]
+        ax, ay, bx, by = (
+            block[ONE + ARM_AX + lane], block[ONE + ARM_AY + lane],
+            block[ONE + ARM_BX + lane], block[ONE + ARM_BY + lane],
         )  # fmt: skip
-        vax, vay, wa = block[XA + lane], block[YA + lane], block[WA + lane]
-        vbx, vby, wb = block[XB + lane], block[YB + lane], block[WB + lane]
-        for point in (ONE, TWO):
-            rax, ray = block[point + ARM_AX + lane], block[point + ARM_AY + lane]
-            rbx, rby = block[point + ARM_BX + lane], block[point + ARM_BY + lane]
-            v = nx * (vbx - wb * rby - vax + wa * ray) + ny * (vby + wb * rbx - vay - wa * rax)
-            separation = block[point + SEPARATION + lane] + drift * v
-            block[point + SEPARATION + lane] = separation
-            impulse = block[point + IMPULSE + lane]
-            mass = block[point + MASS + lane]
-            total = _total(
-                impulse, mass, v, separation, block[SIZE + lane], inverse_h, push_rate, mass_scale,
-                impulse_scale, slop, heaviest,
-            )  # fmt: skip
-            total = total if mass > 0.0 else 0.0
-            block[point + IMPULSE + lane] = total
-            change = total - impulse
-            px, py = change * nx, change * ny
-            vax, vay, wa = vax - ma * px, vay - ma * py, wa - ia * (rax * py - ray * px)
-            vbx, vby, wb = vbx + mb * px, vby + mb * py, wb + ib * (rbx * py - rby * px)
-        for point in (ONE, TWO):
-            rax, ray = block[point + ARM_AX + lane], block[point + ARM_AY + lane]
-            rbx, rby = block[point + ARM_BX + lane], block[point + ARM_BY + lane]
-            v = nx * (vby + wb * rbx - vay - wa * rax) - ny * (vbx - wb * rby - vax + wa * ray)
-            limit = block[FRICTION + lane] * block[point + IMPULSE + lane]
-            rub = block[point + RUB + lane]
-            total = min(max(rub - block[point + RUB_MASS + lane] * v, -limit), limit)
-            block[point + RUB + lane] = total
-            change = total - rub
-            px, py = -change * ny, change * nx
-            vax, vay, wa = vax - ma * px, vay - ma * py, wa - ia * (rax * py - ray * px)
-            vbx, vby, wb = vbx + mb * px, vby + mb * py, wb + ib * (rbx * py - rby * px)
-        block[XA + lane], block[YA + lane], block[WA + lane] = vax, vay, wa
-        block[XB + lane], block[YB + lane], block[WB + lane] = vbx, vby, wb
+        n1a, n1b, t1a, t1b = ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny
+        ax, ay, bx, by = (
+            block[TWO + ARM_AX + lane], block[TWO + ARM_AY + lane],
+            block[TWO + ARM_BX + lane], block[TWO + ARM_BY + lane],
+        )  # fmt: skip
+        n2a, n2b, t2a, t2b = ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny
+        along, across = nx * vx + ny * vy, nx * vy - ny * vx
+        push1 = _pushed(
+            block, ONE, lane, along + wb * n1b - wa * n1a, drift, inverse_h, push_rate, mass_scale,
+            impulse_scale, slop, heaviest,
+        )  # fmt: skip
+        felt = push1 * (ma + mb + ia * n1a * n2a + ib * n1b * n2b)
+        push2 = _pushed(
+            block, TWO, lane, along + wb * n2b - wa * n2a + felt, drift, inverse_h, push_rate,
+            mass_scale, impulse_scale, slop, heaviest,
+        )  # fmt: skip
+        turned_a, turned_b = ia * (n1a * push1 + n2a * push2), ib * (n1b * push1 + n2b * push2)
+        wa, wb = wa - turned_a, wb + turned_b
+        rub1 = _rubbed(block, ONE, lane, across + wb * t1b - wa * t1a)
+        felt = rub1 * (ma + mb + ia * t1a * t2a + ib * t1b * t2b)
+        rub2 = _rubbed(block, TWO, lane, across + wb * t2b - wa * t2a + felt)
+        push, rub = push1 + push2, rub1 + rub2
+        px, py = push * nx - rub * ny, push * ny + rub * nx
+        block[XA + lane] -= ma * px
+        block[YA + lane] -= ma * py
+        block[XB + lane] += mb * px
+        block[YB + lane] += mb * py
+        block[WA + lane] = wa - ia * (t1a * rub1 + t2a * rub2)
+        block[WB + lane] = wb + ib * (t1b * rub1 + t2b * rub2)
 
 
 @inlined
 def sweep_lanes(
-    discs: Numbers, disc_blocks: int, disc_a: Rows, disc_b: Rows,
-    boxes: Numbers, box_blocks: int, box_a: Rows, box_b: Rows,
-    linear: Vectors, angular: Numbers, drift: float, inverse_h: float, push_rate: float, mass_scale: float,
-    impulse_scale: float, slop: float, heaviest: float,
+    discs: Numbers, disc_blocks: int, disc_order: Rows, disc_a: Rows, disc_b: Rows,
+    boxes: Numbers, box_blocks: int, box_order: Rows, box_a: Rows, box_b: Rows,
+    linear: Vectors, angular: Numbers, drift: float, inverse_h: float, push_rate: float,
+    mass_scale: float, impulse_scale: float, slop: float, heaviest: float,
 ) -> None:  # fmt: skip
     """Go once through all blocks. Separations first follow ``drift`` s of the velocities that are found."""
-    for k in range(disc_blocks):
+    for number in range(disc_blocks):
+        k = disc_order[number]
         block = discs[k * DISC_ROWS : (k + 1) * DISC_ROWS]
         gather(block, k, disc_a, disc_b, linear, angular)
         _sweep_discs(block, drift, inverse_h, push_rate, mass_scale, impulse_scale, slop, heaviest)
         scatter(block, k, disc_a, disc_b, linear, angular)
-    for k in range(box_blocks):
+    for number in range(box_blocks):
+        k = box_order[number]
         block = boxes[k * BOX_ROWS : (k + 1) * BOX_ROWS]
         gather(block, k, box_a, box_b, linear, angular)
         _sweep_boxes(block, drift, inverse_h, push_rate, mass_scale, impulse_scale, slop, heaviest)
@@ -202,17 +226,19 @@ def _start_boxes(block: Numbers, carried: float) -> None:
 
 @inlined
 def start_lanes(
-    discs: Numbers, disc_blocks: int, disc_a: Rows, disc_b: Rows,
-    boxes: Numbers, box_blocks: int, box_a: Rows, box_b: Rows,
+    discs: Numbers, disc_blocks: int, disc_order: Rows, disc_a: Rows, disc_b: Rows,
+    boxes: Numbers, box_blocks: int, box_order: Rows, box_a: Rows, box_b: Rows,
     linear: Vectors, angular: Numbers, carried: float,
 ) -> None:  # fmt: skip
     """Apply the impulses of the last substep, ``carried`` times as large, at all blocks."""
-    for k in range(disc_blocks):
+    for number in range(disc_blocks):
+        k = disc_order[number]
         block = discs[k * DISC_ROWS : (k + 1) * DISC_ROWS]
         gather(block, k, disc_a, disc_b, linear, angular)
         _start_discs(block, carried)
         scatter(block, k, disc_a, disc_b, linear, angular)
-    for k in range(box_blocks):
+    for number in range(box_blocks):
+        k = box_order[number]
         block = boxes[k * BOX_ROWS : (k + 1) * BOX_ROWS]
         gather(block, k, box_a, box_b, linear, angular)
         _start_boxes(block, carried)

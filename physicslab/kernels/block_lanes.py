@@ -44,12 +44,14 @@ from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 
 __all__ = [
     "COLOURS", "Masks", "admit", "empty_lane", "follow_pairs", "give_up", "keep_loose", "list_loose",
-    "seat_again", "store",
+    "seat_again", "sort_blocks", "store",
     "store_lane", "wake",
 ]  # fmt: skip
 
 COLOURS = 64
 """So many blocks, at the most, may move one body; what is left over stays loose."""
+_OF_FIXED = 48
+"""The first colour of contacts with what nothing moves: they are solved last, and so hold best."""
 Masks = Annotated[NDArray[np.uint64], uint64[::1]]
 """A uint64 array (n,), bit by bit."""
 
@@ -236,7 +238,7 @@ def admit(
         taken = used[i] if inverse_mass[i] > 0.0 else np.uint64(0)
         if inverse_mass[j] > 0.0:
             taken |= used[j]
-        c = 0
+        c = 0 if inverse_mass[i] > 0.0 and inverse_mass[j] > 0.0 else _OF_FIXED
         while c < COLOURS and (taken >> np.uint64(c)) & np.uint64(1) != np.uint64(0):
             c += 1
         if c == COLOURS:
@@ -287,6 +289,20 @@ def seat_again(
             )  # fmt: skip
             seated += 1
     return blocks, seated
+
+
+@kernel
+def sort_blocks(blocks: int, colour: Rows, order: Rows) -> None:
+    """Write the blocks in the order of their colours.
+
+    Blocks of one colour share no body that moves: one need not wait for what the last one came to.
+    """
+    found = 0
+    for c in range(-1, COLOURS):
+        for k in range(blocks):
+            if colour[k] == c:
+                order[found] = k
+                found += 1
 
 
 @kernel
@@ -348,17 +364,34 @@ def keep_loose(manifolds: Manifolds, touching: Rows, count: int) -> int:
     return kept
 
 
+@inlined
+def _resting_speed(a: int, b: int, linear: Vectors, force: Vectors, inverse_mass: Numbers, h: float) -> float:
+    """Return up to which speed an approach is rest: what forces bring about in two substeps [m/s]."""
+    speed = abs(linear[a, 0]) + abs(linear[a, 1]) + abs(linear[b, 0]) + abs(linear[b, 1])
+    pull_a = math.sqrt(force[a, 0] * force[a, 0] + force[a, 1] * force[a, 1]) * inverse_mass[a]
+    pull_b = math.sqrt(force[b, 0] * force[b, 0] + force[b, 1] * force[b, 1]) * inverse_mass[b]
+    return 1e-9 * speed + 2.0 * h * max(pull_a, pull_b)
+
+
 @kernel
 def wake(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, points: Points, loose: Rows, loose_count: int, touching: Rows, count: int,
-    linear: Vectors, angular: Numbers, resting_speed: float,
+    linear: Vectors, angular: Numbers, force: Vectors, inverse_mass: Numbers, h: float,
 ) -> tuple[int, int]:  # fmt: skip
-    """After impacts, set loose what may bounce and approaches faster than rest; return both counts."""
+    """Set loose what touches a struck body, may bounce, and approaches faster than rest.
+
+    Returns how many pairs are loose, and how many of them touch.
+    """
     rows = DISC_ROWS if kind == DISC else BOX_ROWS
+    struck = np.zeros(len(angular), np.bool_)
+    for k in range(count):
+        manifold = manifolds[touching[k]]
+        if manifold.struck > 0:
+            struck[manifold.a] = struck[manifold.b] = True
     for lane in range(blocks * WIDE):
         p = pair[lane]
-        if p < 0 or manifolds[p].restitution == 0.0:
+        if p < 0 or not (struck[a[lane]] | struck[b[lane]]) or manifolds[p].restitution == 0.0:
             continue
         at, i, j = lane // WIDE * rows + lane % WIDE, a[lane], b[lane]
         nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
@@ -374,7 +407,7 @@ def wake(
             vx = linear[j, 0] - angular[j] * rby - linear[i, 0] + angular[i] * ray
             vy = linear[j, 1] + angular[j] * rbx - linear[i, 1] - angular[i] * rax
             lowest = min(lowest, vx * nx + vy * ny)
-        if lowest < -resting_speed:
+        if lowest < 0.0 and lowest < -_resting_speed(i, j, linear, force, inverse_mass, h):
             store_lane(data, rows, lane, p, manifolds, points)
             manifolds[p].lane = -1
             loose[loose_count], touching[count] = p, p

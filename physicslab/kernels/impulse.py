@@ -3,7 +3,7 @@
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.block_impulse import DEEPER, SOFT, start_lanes, sweep_lanes
+from physicslab.kernels.block_impulse import pressed, start_lanes, sweep_lanes
 from physicslab.kernels.records import Manifolds, Point, Points
 
 __all__ = [
@@ -64,11 +64,7 @@ def _sweep(
     slop: float,
     heaviest: float,
 ) -> None:
-    """Go once through all contacts; friction goes by the newest normal impulse.
-
-    Below the slop the contact is a stiff, overdamped spring that takes push_rate of the overlap a second. A
-    positive separation may be closed within the time that the impulses stand for, and not more.
-    """
+    """Go once through all contacts; friction goes by the newest normal impulse."""
     for k in range(count):
         p = touching[k]
         manifold = manifolds[p]
@@ -83,20 +79,10 @@ def _sweep(
             if point.ahead:
                 continue
             vn = nx * (vbx - wb * rby - vax + wa * ray) + ny * (vby + wb * rbx - vay - wa * rax)
-            separation = point.separation
-            if separation > 0.0:
-                bias, hardness, softness = separation * inverse_h, 1.0, 0.0
-            else:
-                # No faster than what balances twice the load, or a pile of overlapping bodies would fly
-                # apart.
-                load = min(point.normal_impulse, heaviest) * impulse_scale / (mass_scale * point.normal_mass)
-                limit = push_rate * SOFT * manifold.size + 2.0 * load
-                bias = max(push_rate * min(separation + slop * manifold.size, 0.0), -limit)
-                if separation < -DEEPER * manifold.size:
-                    bias = 0.0
-                hardness, softness = mass_scale, impulse_scale
-            change = -point.normal_mass * hardness * (vn + bias) - softness * point.normal_impulse
-            total = max(point.normal_impulse + change, 0.0)
+            total = pressed(
+                point.normal_impulse, point.normal_mass, vn, point.separation, manifold.size, inverse_h,
+                push_rate, mass_scale, impulse_scale, slop, heaviest,
+            )  # fmt: skip
             change = total - point.normal_impulse
             point.normal_impulse = total
             px, py = change * nx, change * ny
@@ -126,10 +112,12 @@ def solve(
     count: int,
     discs: Numbers,
     disc_blocks: int,
+    disc_order: Rows,
     disc_a: Rows,
     disc_b: Rows,
     boxes: Numbers,
     box_blocks: int,
+    box_order: Rows,
     box_a: Rows,
     box_b: Rows,
     linear: Vectors,
@@ -169,7 +157,7 @@ def solve(
             apply_impulse(
                 point, px, py, manifold.a, manifold.b, linear, angular, inverse_mass, inverse_inertia
             )
-    lanes = discs, disc_blocks, disc_a, disc_b, boxes, box_blocks, box_a, box_b
+    lanes = discs, disc_blocks, disc_order, disc_a, disc_b, boxes, box_blocks, box_order, box_a, box_b
     start_lanes(*lanes, linear, angular, carried)
     heaviest = 0.0
     if has_forces:
@@ -217,10 +205,12 @@ def relax(
     count: int,
     discs: Numbers,
     disc_blocks: int,
+    disc_order: Rows,
     disc_a: Rows,
     disc_b: Rows,
     boxes: Numbers,
     box_blocks: int,
+    box_order: Rows,
     box_a: Rows,
     box_b: Rows,
     linear: Vectors,
@@ -235,7 +225,7 @@ def relax(
     ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call.
     """
     follow_drift(manifolds, points, touching, count, linear, angular, h)
-    lanes = discs, disc_blocks, disc_a, disc_b, boxes, box_blocks, box_a, box_b
+    lanes = discs, disc_blocks, disc_order, disc_a, disc_b, boxes, box_blocks, box_order, box_a, box_b
     drift = h
     for _ in range(iterations):
         _sweep(

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from physicslab.components import Transform, Velocity
 from physicslab.kernels import block_lanes, impact, impulse
 from physicslab.schedule import Stage, System, at
@@ -84,16 +82,14 @@ class ResolveSystem(System):
 
     def _wake(self, world: World, h: float) -> bool:
         """After impacts, let settled contacts that may bounce take part in them; return whether any does."""
-        contacts, velocity, force = world.contacts, world.table(Velocity), world.bodies.force
+        contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
         before = contacts.active
         if contacts.blocks.lanes:
-            strongest = np.hypot(force[:, 0], force[:, 1]) * world.bodies.inverse_mass
-            resting_speed = 2.0 * h * float(strongest.max()) if world.has_forces else 0.0
             for lanes in contacts.blocks.kinds:
                 contacts.loose_count, contacts.active = block_lanes.wake(
                     *lanes.layout, contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
                     contacts.touching, contacts.active, velocity["linear"], velocity["angular"],
-                    resting_speed,
+                    bodies.force, bodies.inverse_mass, h,
                 )  # fmt: skip
             contacts.blocks.lanes -= contacts.active - before
             contacts.unordered |= contacts.active > before

@@ -1,0 +1,155 @@
+"""Settled contacts in blocks: the same answer as one by one, no body twice in a block, woken by a blow."""
+
+import numpy as np
+import pytest
+
+from physicslab.components import Mass, Transform, Velocity
+from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.kernels import compile_kernels, impulse
+from physicslab.kernels.block_layout import WIDE
+from physicslab.prefabs import box, circle, container, pile, pyramid
+from physicslab.stability.worlds import floor, open_space, place
+from physicslab.world import World
+
+
+def settled_boxes() -> World:
+    world = open_space()
+    floor(world)
+    pyramid(world, 15)
+    world.run(seconds=1.0)
+    return world
+
+
+def settled_discs() -> World:
+    world = open_space()
+    container(world, width=3.0, height=6.0)
+    pile(world, 120, columns=11)
+    world.run(seconds=6.0)
+    return world
+
+
+SETTLED = {"boxes": settled_boxes, "discs": settled_discs}
+
+
+@pytest.mark.parametrize("name", SETTLED)
+def test_what_has_settled_lies_in_blocks(name: str) -> None:
+    world = SETTLED[name]()
+    assert world.contacts.blocks.lanes > 0.7 * world.contacts.count
+    assert world.contacts.count == world.contacts.active + world.contacts.blocks.lanes
+
+
+@pytest.mark.parametrize("name", SETTLED)
+def test_no_block_moves_a_body_twice(name: str) -> None:
+    world = SETTLED[name]()
+    for lanes in world.contacts.blocks.kinds:
+        for k in range(lanes.count):
+            span = slice(k * WIDE, (k + 1) * WIDE)
+            taken = lanes.pair[span] >= 0
+            rows = np.concatenate((lanes.a[span][taken], lanes.b[span][taken]))
+            rows = rows[world.bodies.inverse_mass[rows] > 0.0]
+            assert len(np.unique(rows)) == len(rows)
+
+
+@pytest.mark.parametrize("name", SETTLED)
+def test_every_pair_has_one_lane_or_is_loose(name: str) -> None:
+    contacts = SETTLED[name]().contacts
+    seated = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.blocks.kinds])
+    seated = seated[seated >= 0]
+    everyone = np.sort(np.concatenate((seated, contacts.loose[: contacts.loose_count])))
+    assert np.array_equal(everyone, np.arange(contacts.candidate_pairs))
+
+
+@pytest.mark.parametrize("name", SETTLED)
+def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
+    """Both solvers, from the same state and in the same order, agree to rounding."""
+    world = SETTLED[name]()
+    world.step()
+    contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
+    contacts.sync()
+    blocks = contacts.blocks
+    order = [
+        int(p)
+        for kind in blocks.kinds
+        for k in kind.order[: kind.count]
+        for p in kind.pair[k * WIDE : (k + 1) * WIDE]
+        if p >= 0
+    ]
+    compile_kernels((impulse.solve, impulse.relax))
+    h = 1.0 / 240.0
+    ends = []
+    for in_blocks in (True, False):
+        linear, angular = velocity["linear"].copy(), velocity["angular"].copy()
+        linear[bodies.inverse_mass > 0.0] -= (0.0, 9.81 * h)
+        points, touching = contacts.points.copy(), np.array(order, np.int64)
+        lanes = [
+            (kind.data.copy(), kind.count if in_blocks else 0, kind.order, kind.a, kind.b)
+            for kind in blocks.kinds
+        ]
+        common = (
+            contacts.manifolds, points, touching, 0 if in_blocks else len(order), *lanes[0], *lanes[1],
+            linear, angular, bodies.inverse_mass, bodies.inverse_inertia,
+        )  # fmt: skip
+        impulse.solve(*common, bodies.force, True, h, 1.0, 1, 45.0, 2.0, 0.0005)
+        ends.append((linear, angular))
+    assert ends[0][0] == pytest.approx(ends[1][0], rel=1e-9, abs=1e-12)
+    assert ends[0][1] == pytest.approx(ends[1][1], rel=1e-9, abs=1e-11)
+
+
+def test_few_contacts_stay_loose() -> None:
+    world = open_space()
+    floor(world)
+    for i in range(5):
+        box(world, (0.0, 0.5 + i), width=1.0, height=1.0)
+    world.run(seconds=2.0)
+    assert world.contacts.blocks.lanes == 0
+
+
+def test_a_settled_pile_rests_and_keeps_its_momentum() -> None:
+    world = settled_discs()
+    energy = measure_energy(world).total
+    world.run(seconds=2.0)
+    assert measure_energy(world).total <= energy + 1e-6 * abs(energy)
+    assert measure_momentum(world).linear.magnitude < 0.05 * 120
+
+
+def test_a_blow_goes_through_a_settled_row_of_elastic_balls() -> None:
+    world = open_space(gravity=None, collisions="step")
+    balls = [circle(world, (0.2 * i, 0.0), radius=0.1, restitution=1.0, friction=0.0) for i in range(80)]
+    world.run(steps=5)
+    assert world.contacts.blocks.lanes > 60
+    circle(world, (-1.0, 0.0), radius=0.1, restitution=1.0, friction=0.0, velocity=(2.0, 0.0))
+    world.run(seconds=1.0)
+    speeds = [world.component(ball, Velocity).linear.x for ball in balls]
+    assert speeds[-1] == pytest.approx(2.0, rel=0.02)
+    assert max(abs(speed) for speed in speeds[:-1]) < 0.05
+
+
+def test_a_mass_changed_by_hand_counts_from_the_next_step() -> None:
+    worlds = [settled_boxes() for _ in range(2)]
+    top = max(
+        (entity for entity in worlds[0].entities() if worlds[0].has(entity, Mass)),
+        key=lambda entity: place(worlds[0], entity).y,
+    )
+    worlds[0].component(top, Mass).mass = 2.0
+    for world in worlds:
+        world.step()
+        world.contacts.sync()
+    near = worlds[0].contacts.manifolds[: worlds[0].contacts.candidate_pairs]
+    touches = (near["count"] > 0) & ((near["entity_a"] == top) | (near["entity_b"] == top))
+    felt = [
+        float(world.contacts.points["normal_impulse"].reshape(-1, 2)[: len(near)][touches].sum())
+        for world in worlds
+    ]
+    assert felt[0] > 1.2 * felt[1]
+
+
+def test_removing_a_body_lets_those_above_fall() -> None:
+    world = settled_boxes()
+    lowest = [entity for entity in world.entities() if world.has(entity, Mass)][:15]
+    before = max(place(world, entity).y for entity in world.entities() if world.has(entity, Mass))
+    for entity in lowest:
+        world.remove(entity)
+    world.run(seconds=1.0)
+    after = max(place(world, entity).y for entity in world.entities() if world.has(entity, Mass))
+    assert after < before - 0.5
+    assert np.isfinite(world.table(Transform)["position"]).all()
