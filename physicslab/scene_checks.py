@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 import json
 import math
 import unicodedata
@@ -15,6 +16,7 @@ __all__ = [
 ]  # fmt: skip
 
 _LONGEST = 60
+_MOST_KNOWN = 2_000
 
 
 class SceneError(ValueError):
@@ -58,11 +60,25 @@ def shown(value: object) -> str:
     '[1, null, "two\\nlines"]'
     """
     try:
-        text = json.dumps(value, ensure_ascii=False, default=repr)
+        text = json.dumps(_beginning(value), ensure_ascii=False, default=repr)
     except (ValueError, RecursionError):  # a whole number of thousands of digits, or lists without end
         text = f"<{type(value).__name__}>"
     text = printable(text)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+
+
+def _beginning(value: object) -> object:
+    """Return as much of a value as can be shown: a whole one may be as long as the file it stood in."""
+    if isinstance(value, str):
+        return value[: _LONGEST + 1]
+    if isinstance(value, list | tuple):
+        return [_beginning(item) for item in value[:_LONGEST]]
+    if isinstance(value, dict):
+        return {
+            key[:_LONGEST] if isinstance(key, str) else key: _beginning(item)
+            for key, item in itertools.islice(value.items(), _LONGEST)
+        }
+    return value
 
 
 def printable(text: str) -> str:
@@ -80,7 +96,8 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     >>> suggestion("Velocty", ["Transform", "Velocity"])
     '; did you mean "Velocity"?'
     """
-    likely = difflib.get_close_matches(word, list(known), n=1)
+    # Comparing takes time with the square of a word's length, and with the number of words.
+    likely = difflib.get_close_matches(word[:_LONGEST], list(itertools.islice(known, _MOST_KNOWN)), n=1)
     return f"; did you mean {shown(likely[0])}?" if likely else ""
 
 
