@@ -6,7 +6,6 @@ import json
 import math
 import os
 import stat
-from pathlib import Path
 
 from physicslab.file_replacement import replace_file
 from physicslab.json_text import json_text

@@ -87,6 +87,8 @@ def printable(text: str) -> str:
     >>> print(printable("a\x1b[2Jb"))
     a\x1b[2Jb
     """
+    if text.isprintable():
+        return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
@@ -125,6 +127,8 @@ def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequenc
 def checked_text(value: object, where: str, *, lines: bool = False) -> str:
     """Return a text without half surrogate pairs or control characters (but new lines, if ``lines``)."""
     if isinstance(value, str):
+        if value.isprintable():  # as nearly every text is, and soon told
+            return value
         unwanted = {unicodedata.category(c) for c in value if not (lines and c in "\n\t")} & {"Cc", "Cs"}
         if not unwanted:
             return value

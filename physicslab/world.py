@@ -14,7 +14,7 @@ import esper
 
 from physicslab.bodies import Bodies, Diverged
 from physicslab.closed_form import NoClosedForm
-from physicslab.columns import Batch, Table
+from physicslab.columns import Batch, InvalidValue, Table
 from physicslab.components import Name
 from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.contacts import Contacts
@@ -83,6 +83,8 @@ class World:
         self.time = 0.0
         self.steps = 0
         self.divided = 1
+        # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
+        self._names: set[str] = set()
         self.revision = 0
         self.force_evaluations = 0
         self.collisions = 0
@@ -133,6 +135,8 @@ class World:
             if kinds.count(kind) > 1:
                 raise ValueError(f"an entity has one {kind.__name__}, not {kinds.count(kind)}")
         with self.active():
+            for component in components:
+                self._check_name(component)
             return esper.create_entity(*components)
 
     def remove(self, entity: int) -> None:
@@ -153,6 +157,7 @@ class World:
         with self.active():
             self._require(entity)
             _kind(component)
+            self._check_name(component, entity)
             esper.add_component(entity, component)
 
     def discard[C](self, entity: int, component: type[C]) -> C | None:
@@ -197,9 +202,9 @@ class World:
     def entity(self, name: str) -> int:
         """Return the entity with this id, or raise ``KeyError``."""
         with self.active():
-            for entity, named in esper.get_component(Name):
-                if named.id == name and esper.entity_exists(entity):
-                    return entity
+            entity = self._holder(name)
+        if entity is not None:
+            return entity
         raise KeyError(f"no entity has the id {name!r}")
 
     def label(self, entity: int) -> str:
@@ -207,6 +212,24 @@ class World:
         with self.active():
             named = esper.try_component(entity, Name)
         return named.id if named is not None else f"entity {entity}"
+
+    def _check_name(self, component: Any, entity: int = 0) -> None:
+        """Refuse a Name that no scene file may hold, or that another entity than this one has."""
+        if not isinstance(component, Name):
+            return
+        if not isinstance(component.id, str) or not component.id.strip():
+            raise InvalidValue("Name", "id", component.id, "a text that is not empty")
+        if component.id in self._names and self._holder(component.id) not in (None, entity):
+            allowed = f"an id of its own; entity {self._holder(component.id)} has this one"
+            raise InvalidValue("Name", "id", component.id, allowed)
+        self._names.add(component.id)
+
+    def _holder(self, name: str) -> int | None:
+        """Return the entity with this id, if there is one."""
+        for entity, named in esper.get_component(Name):
+            if named.id == name and esper.entity_exists(entity):
+                return entity
+        return None
 
     def _require(self, entity: int) -> None:
         if not esper.entity_exists(entity):

@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 import numpy as np
+from hostile_scenes import scenes
 from hypothesis import HealthCheck, given, settings
 
 from physicslab.bodies import Diverged
@@ -16,7 +17,6 @@ from physicslab.json_text import json_text
 from physicslab.report import RunRecord, find_not_finite, run_report
 from physicslab.scene import SceneError, read_scene, write_scene
 from physicslab.world import World
-from hostile_scenes import scenes
 
 STEPS = 3
 
@@ -60,7 +60,7 @@ def _refuse(word: str) -> None:
     raise AssertionError(f"{word} in JSON")
 
 
-@settings(max_examples=settings.default.max_examples * 5, suppress_health_check=list(HealthCheck))
+@settings(suppress_health_check=list(HealthCheck))
 @given(scenes())
 def test_a_scene_is_refused_in_one_line_or_runs_with_finite_numbers(document: dict[str, Any]) -> None:
     run_or_refuse(document)
