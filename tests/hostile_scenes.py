@@ -133,7 +133,7 @@ def scenes(draw: st.DrawFn) -> dict[str, Any]:
 
 
 def _mutate(draw: st.DrawFn, document: dict[str, Any]) -> None:
-    """Change one thing: a value becomes extreme (most often) or absurd, goes, or comes; or an entity is copied."""
+    """Change one thing: a value becomes extreme or absurd, goes or comes; or an entity is copied."""
     containers = _containers(document)
     where = containers[draw(st.integers(0, len(containers) - 1))]
     what = draw(st.sampled_from(["extreme", "extreme", "extreme", "hostile", "drop", "key", "copy"]))

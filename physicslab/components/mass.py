@@ -1,6 +1,9 @@
 """How a body resists forces and torques."""
 
-from physicslab.columns import Component, Derived, component, field
+from physicslab.columns import Component, Derived, InvalidValue, component, field
+
+LEAST = 1e-300
+"""The smallest mass [kg]; of much smaller ones the inverse is infinite."""
 
 
 @component
@@ -18,3 +21,8 @@ class Mass(Component):
     fixed_rotation: bool = field(
         default=False, meaning="whether the body keeps its angle whatever the torque"
     )
+
+    def validate(self) -> None:
+        """Check that the inverse of the mass, by which forces act, is a finite number."""
+        if self.mass < LEAST:
+            raise InvalidValue("Mass", "mass", self.mass, f"a finite number > 0 kg, at least {LEAST:g}")
