@@ -14,9 +14,9 @@ import time
 from collections.abc import Callable
 
 import pymunk
+from pymunk_mirror import PymunkMirror
 
 from physicslab import World
-from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.config import PhysicsConfig
 from physicslab.diagnostics import measure_energy
 from physicslab.prefabs import box, container, gas, pile, pyramid
@@ -25,46 +25,6 @@ from physicslab.vector import Vector2
 
 BLOCK = 20
 """Steps that one engine takes before the other has its turn."""
-
-
-def mirror(world: World) -> pymunk.Space:
-    """Build the world's bodies, as they are now, in pymunk."""
-    world.synchronise()
-    space = pymunk.Space()
-    space.iterations = 10
-    space.collision_slop = 0.005
-    physics = world.physics
-    gravity = physics.gravity if physics.gravity_mode == "linear" else Vector2()
-    space.gravity = gravity.x, gravity.y
-    if physics.bounds is not None:
-        xmin, ymin, xmax, ymax = physics.bounds
-        corners = ((xmin, ymin), (xmax, ymin), (xmax, ymax), (xmin, ymax))
-        for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
-            # pymunk's walls have a thickness; this puts their inner face on the bound.
-            outward = pymunk.Vec2d(end[1] - start[1], start[0] - end[0]).normalized() * 1.0
-            wall = pymunk.Segment(
-                space.static_body, pymunk.Vec2d(*start) + outward, pymunk.Vec2d(*end) + outward, 1.0
-            )
-            wall.elasticity, wall.friction = physics.bounds_restitution, physics.bounds_friction
-            space.add(wall)
-    for entity in world.batch(Shape, Transform).entities.tolist():
-        outline, pose = world.component(entity, Shape), world.component(entity, Transform)
-        if world.has(entity, Velocity):
-            mass, velocity = world.component(entity, Mass), world.component(entity, Velocity)
-            body = pymunk.Body(mass.mass, mass.inertia)
-            body.velocity, body.angular_velocity = (velocity.linear.x, velocity.linear.y), velocity.angular
-        else:
-            body = pymunk.Body(body_type=pymunk.Body.STATIC)
-        body.position, body.angle = (pose.position.x, pose.position.y), pose.angle
-        made: pymunk.Shape
-        if outline.kind == "circle":
-            made = pymunk.Circle(body, outline.radius)
-        else:
-            made = pymunk.Poly.create_box(body, (outline.width, outline.height))
-        material = world.component(entity, Material)
-        made.elasticity, made.friction = material.restitution, material.friction
-        space.add(body, made)
-    return space
 
 
 def pyramid_60() -> World:
@@ -126,7 +86,7 @@ def main() -> None:
     print(f"{'scene':12} {'PhysicsLab':>12} {'pymunk':>12} {'ratio':>7}   ms a step; energy kept by both")
     for name, (build, settle) in SCENES.items():
         world = build()
-        space = mirror(world)
+        space = PymunkMirror(world).space
         dt = world.simulation.dt
         for _ in range(round(settle / dt)):
             world.step()

@@ -8,16 +8,20 @@ from pathlib import Path
 
 import pygame
 
+from physicslab.autosave import Autosave
 from physicslab.bodies import Diverged
 from physicslab.config import WindowConfig
 from physicslab.kernels.warm import Warmup, is_warm
-from physicslab.scene import load_scene
+from physicslab.rescue import save_last_good
+from physicslab.scene import SceneError, load_scene
 from physicslab.schedule import Stage
+from physicslab.sessions import Session, session_folder
 from physicslab.systems.hud import HudSystem
 from physicslab.systems.input import InputSystem
 from physicslab.systems.render import RenderSystem
 from physicslab.view.display import Display
 from physicslab.view.progress import draw_progress
+from physicslab.view.recovery import Recovery
 from physicslab.view.theme import DARK
 from physicslab.view.toolbar import Toolbar
 from physicslab.view.window import Window
@@ -40,6 +44,8 @@ class Sandbox:
         Where it is shown.
     clock : callable
         Returns the time [s]; it limits how long the steps of a frame may take.
+    autosave : Autosave, optional
+        What keeps the state for the case that the program ends badly.
 
     Attributes
     ----------
@@ -49,14 +55,25 @@ class Sandbox:
         The buttons over it.
     """
 
-    def __init__(self, world: World, window: Window, clock: Callable[[], float] = time.perf_counter) -> None:
+    def __init__(
+        self,
+        world: World,
+        window: Window,
+        clock: Callable[[], float] = time.perf_counter,
+        autosave: Autosave | None = None,
+    ) -> None:
         self.window = window
         self._clock = clock
+        self._autosave = autosave
+        self._told = False  # that the state cannot be kept
+        self._rescued: tuple[World, float] | None = None
         self.toolbar = Toolbar(window)
         hud = HudSystem(window, self.toolbar)
         window.room = hud.room
         self._systems = InputSystem(window, self.toolbar), RenderSystem(window), hud
         self.show(world)
+        if autosave is not None:
+            autosave.settle(world)
 
     def show(self, world: World) -> None:
         """Show a world in place of the one that was shown, with nothing held and nothing begun."""
@@ -79,6 +96,16 @@ class Sandbox:
         self._advance()
         self.world.frame(Stage.RENDER, elapsed)
         self.world.frame(Stage.HUD, elapsed)
+        if self._autosave is not None:
+            self._keep(self._autosave)
+
+    def _keep(self, autosave: Autosave) -> None:
+        """Let the state be saved where that is due; say once where it cannot be."""
+        autosave.advance(self.world)
+        if autosave.failure and not self._told:
+            words = f"The state cannot be kept for the case of a crash: {autosave.failure}"
+            self.window.notify(words, 8.0, failed=True)
+        self._told = bool(autosave.failure)
 
     def _advance(self) -> None:
         """Make the steps that are due.
@@ -96,9 +123,20 @@ class Sandbox:
                 made += 1
         except Diverged as error:
             pace.halt()
-            self.window.error = f"Stopped: {error}. R clears all."
+            self.window.error = f"Stopped: {error}. {self._rescue()} R clears all."
         else:
             pace.done(made, dt)
+
+    def _rescue(self) -> str:
+        """Save the state before the step that failed, once, and return what to say of it."""
+        if self._rescued == (self.world, self.world.time):
+            return "The last good state is shown; it was saved before."
+        try:
+            path = save_last_good(self.world, self.world.name, Path.cwd())
+        except (OSError, SceneError) as error:
+            return f"The last good state is shown; it could not be saved: {error}."
+        self._rescued = self.world, self.world.time
+        return f"The last good state is shown, and saved as {path.name}."
 
 
 def open_window(scene: str | None) -> int:
@@ -122,21 +160,44 @@ def open_window(scene: str | None) -> int:
         if not is_warm() and not _warm_up(display):
             return 0
         window = Window(display.canvas, config)
-        sandbox = Sandbox(world, window)
-        sandbox.frame(0.0)
-        display.show()  # the time that the first frame took, with all that it loads, is not made up for
-        elapsed = 0.0
+        folder = session_folder()
+        abandoned = Session.abandoned(folder)
+        session: Session | None = None
+        autosave: Autosave | None = None
         try:
-            while not window.closing:
-                sandbox.frame(elapsed)
-                display.title = _title(sandbox.world)
-                if window.wants_screenshot:
-                    window.wants_screenshot = False
-                    window.notify(_keep_screenshot(display))
-                elapsed = display.show()
+            session = Session.begin(folder)
+        except OSError as error:
+            words = f"The state cannot be kept for the case of a crash: {error}"
+            window.notify(words, 8.0, failed=True)
+        else:
+            autosave = Autosave(session.path)
+        window.recovery = Recovery(abandoned, None if session is None else session.path)
+        sandbox = Sandbox(world, window, autosave=autosave)
+        try:
+            _loop(sandbox, display)
         finally:
             window.error_study.stop()
+            window.recovery.leave()
+        # Only here, where the window was closed as it should be: an error leaves the state to the next start.
+        if autosave is not None and session is not None:
+            autosave.stop()
+            session.end()
     return 0
+
+
+def _loop(sandbox: Sandbox, display: Display) -> None:
+    """Show frames until the window is to be closed."""
+    window = sandbox.window
+    sandbox.frame(0.0)
+    display.show()  # the time that the first frame took, with all that it loads, is not made up for
+    elapsed = 0.0
+    while not window.closing:
+        sandbox.frame(elapsed)
+        display.title = _title(sandbox.world)
+        if window.wants_screenshot:
+            window.wants_screenshot = False
+            window.notify(_keep_screenshot(display))
+        elapsed = display.show()
 
 
 def _title(world: World) -> str:

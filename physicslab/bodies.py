@@ -30,6 +30,8 @@ class Bodies(System):
         Forces [N] and torques [N m] added up in this substep.
     inverse_mass, inverse_inertia : float64 arrays (rows,)
         Zero for what cannot be moved or turned: static, kinematic and held bodies.
+    tethered : bool array (rows,)
+        What moves by a method of its own beside contacts (:class:`physicslab.tethers.Tethers`).
     """
 
     kernels = (motion.clear, motion.kick, motion.find_not_finite)
@@ -43,6 +45,7 @@ class Bodies(System):
         self.torque: NDArray[np.float64] = np.zeros(rows)
         self.inverse_mass: NDArray[np.float64] = np.zeros(rows)
         self.inverse_inertia: NDArray[np.float64] = np.zeros(rows)
+        self.tethered: NDArray[np.bool_] = np.zeros(rows, np.bool_)
 
     def derive(self, world: World) -> None:
         """Work out moments of inertia and inverse masses from the components as they are now."""
@@ -84,7 +87,8 @@ class Bodies(System):
         velocity = world.table(Velocity)
         motion.kick(
             velocity["linear"], velocity["angular"], self.force, self.torque,
-            self.inverse_mass, self.inverse_inertia, physics.linear_damping, physics.angular_damping, h,
+            self.inverse_mass, self.inverse_inertia, self.tethered,
+            physics.linear_damping, physics.angular_damping, h,
         )  # fmt: skip
 
     @at(Stage.FINISH)

@@ -302,6 +302,11 @@ class Table:
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self._columns[name]
 
+    @property
+    def columns(self) -> list[NDArray[Any]]:
+        """Every column, in the order in which components hold them."""
+        return list(self._columns.values())
+
     def resize(self, rows: int, capacity: int) -> None:
         """Use the first ``rows`` rows, with room for ``capacity``."""
         if capacity > len(self._present):

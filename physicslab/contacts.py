@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -97,6 +97,8 @@ class Contacts:
         How many pairs are near each other, and how many have points.
     left : int
         How many pairs the impacts of this substep have left to the solver.
+    span : float
+        The time [s] that the points' impulses stand for; 0 before there were any.
     stale : bool
         Whether the pairs must be found anew because bodies came, went or changed.
     log : array of IMPACT
@@ -111,6 +113,7 @@ class Contacts:
     def __init__(self) -> None:
         self.candidate_pairs = 0
         self.count = self.left = 0
+        self.span = 0.0
         self.stale = True
         self.log: NDArray[Any] = np.zeros(self.LOGGED, IMPACT)
         self.logged = 0
@@ -209,25 +212,37 @@ class Contacts:
             float(manifold["restitution"]), float(manifold["friction"]), points,
         )  # fmt: skip
 
-    def export(self, world: World) -> list[list[float]]:
-        """Return what the next step takes from the last one, as rows of numbers that JSON can hold.
+    def copied(self) -> Contacts:
+        """Return what :meth:`remembered` needs, in copies that no step changes."""
+        held = Contacts.__new__(Contacts)
+        held.candidate_pairs = self.candidate_pairs
+        held.manifolds = self.manifolds[: self.candidate_pairs].copy()
+        held.points = self.points[: 2 * self.candidate_pairs].copy()
+        return held
+
+    def remembered(self) -> Iterator[list[float] | None]:
+        """Yield what the next step takes from the last one, as rows of numbers that JSON can hold.
 
         A row starts with the two entities (0 for the world's bounds) and the wall. Points that will be found
-        anew leave their features and impulses; those that will be kept, everything.
+        anew leave their features and impulses; those that will be kept, everything; ``None`` stands for a
+        pair of which nothing is kept.
         """
-        rows: list[list[float]] = []
         for p in range(self.candidate_pairs):
             manifold = self.manifolds[p]
             pair = [int(manifold["entity_a"]), int(manifold["entity_b"]), int(manifold["wall"])]
-            if manifold["found"] == 2 and manifold["count"] > 0:
+            if manifold["count"] <= 0:
+                yield None
+            elif manifold["found"] == 2:
                 kept = [manifold[name].item() for name in _KEPT[1:]]
                 both = [value for j in (2 * p, 2 * p + 1) for value in self.points[j].item()]
-                rows.append([*pair, *kept, *both])
-            elif manifold["count"] > 0:
+                yield [*pair, *kept, *both]
+            else:
                 warm = [self.points[j][name].item() for j in (2 * p, 2 * p + 1) for name in _WARM]
-                if any(warm[1:3] + warm[4:]):
-                    rows.append([*pair, *warm])
-        return rows
+                yield [*pair, *warm] if any(warm[1:3] + warm[4:]) else None
+
+    def export(self) -> list[list[float]]:
+        """Return all that is :meth:`remembered`."""
+        return [row for row in self.remembered() if row is not None]
 
     def restore(self, world: World, rows: Sequence[Sequence[float]]) -> None:
         """Take back what :meth:`export` returned.

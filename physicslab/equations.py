@@ -21,7 +21,7 @@ __all__ = ["Equations", "PackedForce", "Slots", "spring_ends", "why_not_smooth"]
 
 _REAL = ctypes.POINTER(ctypes.c_double)
 _WHOLE = ctypes.POINTER(ctypes.c_int64)
-_CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, _REAL, _REAL, _WHOLE)
+_CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, ctypes.c_double, _REAL, _REAL, _WHOLE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +52,13 @@ class Slots:
     moving, turning, fixed : int64 arrays
         The rows in that order.
     place, turn : int64 arrays (rows,)
-        Where x of a row stands, and where its angle; -1 for a row that has none.
+        Where x of a row stands, and where its angle; -1 for a row that has none, or takes no part.
     """
 
-    def __init__(self, world: World, *, all_turn: bool) -> None:
+    def __init__(self, world: World, part: NDArray[np.bool_] | None, *, all_turn: bool) -> None:
         transform, velocity = world.table(Transform).present, world.table(Velocity).present
+        if part is not None:
+            transform = transform & part
         self.moving = np.flatnonzero(transform & velocity)
         turns = np.zeros(len(transform), np.bool_)
         turns[self.moving] = all_turn
@@ -118,14 +120,21 @@ class Equations:
         What kernels call.
     forces, interpreted : tuple of str
         The force systems, and those of them that are not compiled.
+
+    Parameters
+    ----------
+    world : World
+        Whose motion.
+    part : bool array (rows,), optional
+        The rows that take part; all where nothing is said.
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, part: NDArray[np.bool_] | None = None) -> None:
         self._forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
         interpreted = [system for system in self._forces if not type(system).packs()]
         self.interpreted = tuple(system.name for system in interpreted)
         self.forces = tuple(system.name for system in self._forces)
-        self.slots = Slots(world, all_turn=bool(interpreted))
+        self.slots = Slots(world, part, all_turn=bool(interpreted))
         self._error: BaseException | None = None
         self._settings = self._look(world)
 
@@ -138,16 +147,9 @@ class Equations:
 
     def gather(self, world: World) -> None:
         """Take the state, the masses and the forces from the world's tables."""
-        slots, bodies, physics = self.slots, world.bodies, world.physics
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        moving, turning, fixed = slots.moving, slots.turning, slots.fixed
-        position, linear = transform["position"], velocity["linear"]
-        self.q = np.concatenate(
-            (position[moving].ravel(), transform["angle"][turning], position[fixed].ravel())
-        )
-        self.v = np.concatenate(
-            (linear[moving].ravel(), velocity["angular"][turning], np.zeros(2 * len(fixed)))
-        )
+        self.gather_state(world)
+        bodies, physics = world.bodies, world.physics
+        moving, turning = self.slots.moving, self.slots.turning
         self.inverse_mass = np.concatenate(
             (np.repeat(bodies.inverse_mass[moving], 2), bodies.inverse_inertia[turning])
         )
@@ -158,6 +160,18 @@ class Equations:
             rates_of = np.repeat(rates, (2 * len(moving), len(turning)))
             self.damping = rates_of * (bodies.inverse_mass[pulled] > 0.0)
         self._calls(world)
+
+    def gather_state(self, world: World) -> None:
+        """Take the state alone, where masses and forces are those of the last :meth:`gather`."""
+        transform, velocity = world.table(Transform), world.table(Velocity)
+        moving, turning, fixed = self.slots.moving, self.slots.turning, self.slots.fixed
+        position, linear = transform["position"], velocity["linear"]
+        self.q = np.concatenate(
+            (position[moving].ravel(), transform["angle"][turning], position[fixed].ravel())
+        )
+        self.v = np.concatenate(
+            (linear[moving].ravel(), velocity["angular"][turning], np.zeros(2 * len(fixed)))
+        )
 
     def scatter(self, world: World, span: float) -> None:
         """Put the state back into the tables; what no force turns has turned steadily for ``span`` s."""
@@ -205,7 +219,7 @@ class Equations:
         slots, bodies = self.slots, world.bodies
         n, d, size = 2 * len(slots.moving), slots.moving_count, len(self.q)
 
-        def call(q: Any, v: Any, force: Any, numbers: Any, whole: Any) -> None:
+        def call(q: Any, v: Any, _span: float, force: Any, numbers: Any, whole: Any) -> None:
             if self._error is not None:
                 return
             try:

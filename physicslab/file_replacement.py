@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
+import contextlib
+import glob
 import os
 import secrets
 import stat
+import time
 from pathlib import Path
 
-__all__ = ["check_writable", "replace_file"]
+__all__ = ["check_writable", "remove_leftovers", "replace_file"]
+
+_ENDING = ".physicslab-tmp"
+"""How files end that are being written; one that is there for long was left by a process that was killed."""
+_ABANDONED = 3600.0
+"""Age [s] from which on such a file is nobody's any more."""
 
 
 def replace_file(path: str | os.PathLike[str], content: bytes) -> None:
     """Write ``content`` to a file; if anything fails, the file stays as it was.
 
     The bytes go to a new file beside it and to the disk; then that takes the old one's place. Links are
-    followed, and what is no ordinary file (a device, a pipe) is written to as it is.
+    followed, and what is no ordinary file (a device, a pipe) is written to as it is. A process that is killed
+    meanwhile leaves the new file behind, ``.<name>.<16 digits>.physicslab-tmp``; the next that writes the
+    same file removes it once it is an hour old.
 
     Raises
     ------
@@ -26,7 +36,8 @@ def replace_file(path: str | os.PathLike[str], content: bytes) -> None:
         Path(path).write_bytes(content)
         return
     target = Path(os.path.realpath(path))
-    fresh = target.with_name(f".{secrets.token_hex(8)}.tmp")
+    fresh = target.with_name(f"{_beginning(target)}{secrets.token_hex(8)}{_ENDING}")
+    remove_leftovers(target, _ABANDONED)
     try:
         with open(fresh, "xb") as file:
             file.write(content)
@@ -37,6 +48,20 @@ def replace_file(path: str | os.PathLike[str], content: bytes) -> None:
         os.replace(fresh, target)
     finally:
         fresh.unlink(missing_ok=True)
+
+
+def remove_leftovers(path: Path, age: float = 0.0) -> None:
+    """Remove what killed processes left behind that were writing this file, if it is ``age`` seconds old."""
+    beginning, digits = glob.escape(_beginning(path)), "[0-9a-f]" * 16
+    for left in path.parent.glob(f"{beginning}{digits}{_ENDING}"):
+        with contextlib.suppress(OSError):
+            if time.time() - left.stat().st_mtime >= age:
+                left.unlink()
+
+
+def _beginning(path: Path) -> str:
+    # Of a long name a part will do: the system has a limit, in bytes, and a letter may take four.
+    return f".{path.name[:40]}."
 
 
 def check_writable(path: str | os.PathLike[str]) -> None:

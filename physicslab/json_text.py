@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
-__all__ = ["json_text"]
+__all__ = ["json_pieces", "json_text"]
 
 
 def json_text(document: Mapping[str, object]) -> str:
@@ -27,18 +27,33 @@ def json_text(document: Mapping[str, object]) -> str:
       ]
     }
     """
-    return "{\n" + ",\n".join(f"  {_line(key)}: {_value(value)}" for key, value in document.items()) + "\n}\n"
+    return "".join(json_pieces(document))
 
 
-def _value(value: object) -> str:
-    """Return what stands behind a key; where all its items are lists or objects, one line an item."""
+def json_pieces(document: Mapping[str, object]) -> Iterator[str]:
+    """Yield the text of :func:`json_text` piece by piece, none longer than one item."""
+    lead = "{\n"
+    for key, value in document.items():
+        yield f"{lead}  {_line(key)}: "
+        yield from _value(value)
+        lead = ",\n"
+    yield "\n}\n" if document else "{\n\n}\n"
+
+
+def _value(value: object) -> Iterator[str]:
+    """Yield what stands behind a key; where all its items are lists or objects, one line an item."""
     if isinstance(value, dict) and value and all(isinstance(item, dict | list) for item in value.values()):
-        items, ends = [f"{_line(key)}: {_line(item)}" for key, item in value.items()], "{}"
+        items, ends = ((f"{_line(key)}: ", item) for key, item in value.items()), "{}"
     elif isinstance(value, list) and value and all(isinstance(item, dict | list) for item in value):
-        items, ends = [_line(item) for item in value], "[]"
+        items, ends = (("", item) for item in value), "[]"
     else:
-        return _line(value)
-    return ends[0] + "\n    " + ",\n    ".join(items) + "\n  " + ends[1]
+        yield _line(value)
+        return
+    lead = ends[0]
+    for key, item in items:
+        yield f"{lead}\n    {key}{_line(item)}"
+        lead = ","
+    yield f"\n  {ends[1]}"
 
 
 def _line(value: object) -> str:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
+from physicslab.advice import Advice, WorstAdvice
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics import Drift, Energy, measure_momentum
 from physicslab.scene_writer import unique_name
@@ -31,6 +32,10 @@ class RunRecord:
         Seconds of stepping, without compiling and without measuring.
     max_penetration : float
         The deepest overlap after any step [m].
+    divided : int
+        Into how many parts a step was divided, at the most.
+    advice : WorstAdvice
+        What was not to be trusted on the way.
     """
 
     scene: str
@@ -38,6 +43,8 @@ class RunRecord:
     steps: int = 0
     wall_s: float = 0.0
     max_penetration: float = 0.0
+    divided: int = 1
+    advice: WorstAdvice = field(default_factory=WorstAdvice)
 
 
 def body_names(world: World) -> dict[int, str]:
@@ -79,6 +86,11 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "contacts": int(world.contacts.count),
         "collisions": int(world.collisions),
         "max_penetration": record.max_penetration,
+        "divided": record.divided,
+        "advice": [
+            {name: getattr(advice, name) for name in ("entity", "what", "value", "unit", "limit", "setting")}
+            for advice in record.advice.all
+        ],
         "entities": _bodies(world),
     }
 
@@ -148,5 +160,6 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
     ]
     if report["interpreted"]:
         lines.append(f"  slower      {', '.join(report['interpreted'])}: computed by Python, call by call")
+    lines += [f"  advice      {words}" for words in (Advice(**found) for found in report["advice"])]
     lines += [f"  left out    {left['name']}: {left['reason']}" for left in report["left_out"]]
     return "\n".join(lines)

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Generator, Iterable, Mapping
 from typing import Any
 
-import esper
-
 from physicslab.columns import COMPONENTS, Component
-from physicslab.components import Name, Shape
 from physicslab.config import PhysicsConfig, SimulationConfig, field_names
 from physicslab.fields import REQUIRED, Field
+from physicslab.frozen import Frozen
 from physicslab.scene_checks import SceneError
 from physicslab.scene_entities import UNSAVED
 from physicslab.scene_reader import FORMAT
 from physicslab.vector import Vector2
 from physicslab.world import World
 
-__all__ = ["unique_name", "write_scene"]
+__all__ = ["scene_pieces", "unique_name", "write_scene"]
 
 _FIRST = ("Transform", "Velocity", "Mass", "Shape", "Material", "Spring", "Trail")
 
@@ -34,29 +32,47 @@ def write_scene(world: World) -> dict[str, Any]:
     SceneError
         If a component refers to an entity that is not there.
     """
-    world.synchronise()
-    with world.active():
-        parts: dict[int, tuple[Any, ...]] = {
-            number: esper.components_for_entity(number) for number in world.entities()
-        }
-    entities = {number: _saved(components) for number, components in parts.items()}
-    contacts = _contacts(world)
-    ids = {number: part.id for number in parts for part in parts[number] if isinstance(part, Name)}
-    ids |= _invented(entities, ids, {end for row in contacts for end in row[:2]})
-    texts = {key: getattr(world, key) for key in ("name", "title", "description")}
-    document: dict[str, Any] = {"format": FORMAT} | {key: text for key, text in texts.items() if text}
-    if world.time:
-        document["time"] = world.time
-    document["physics"] = _settings(world.physics)
-    document["simulation"] = _settings(world.simulation)
-    document["entities"] = [
-        ({"id": ids[number]} if number in ids else {})
-        | {type(component).__name__: _fields(component, ids, world.label(number)) for component in components}
-        for number, components in entities.items()
-    ]
-    if contacts:
-        document["contacts"] = [[ids.get(a), ids.get(b), *rest] for a, b, *rest in contacts]
-    return document
+    pieces = scene_pieces(Frozen(world))
+    while True:
+        try:
+            next(pieces)
+        except StopIteration as done:
+            document: dict[str, Any] = done.value
+            return document
+
+
+def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
+    """Write like :func:`write_scene`, stopping after every entity: the world may go on meanwhile.
+
+    The document is what the generator returns.
+    """
+    entities: dict[int, list[Component]] = {}
+    for number in frozen.entities:
+        entities[number] = _saved(frozen, number)
+        yield
+    contacts: list[list[Any]] = []
+    shaped = {0, *frozen.shaped}
+    for row in frozen.contacts.remembered():
+        if row is not None and shaped.issuperset(row[:2]):  # what is still there to touch
+            contacts.append(row)
+        yield
+    ids = dict(frozen.names)
+    ids |= yield from _invented(entities, ids, {end for row in contacts for end in row[:2]})
+    document: dict[str, Any] = {"format": FORMAT} | {key: text for key, text in frozen.texts.items() if text}
+    if frozen.time:
+        document["time"] = frozen.time
+    document["physics"] = _settings(frozen.physics)
+    document["simulation"] = _settings(frozen.simulation)
+    document["entities"] = written = []
+    for number, components in entities.items():
+        label = frozen.label(number)
+        named = {"id": ids[number]} if number in ids else {}
+        written.append(named | {type(part).__name__: _fields(part, ids, label) for part in components})
+        yield
+    for memory in contacts:
+        memory[:2] = [ids.get(end) for end in memory[:2]]
+        yield
+    return document | ({"contacts": contacts} if contacts else {})
 
 
 def unique_name(wanted: str, taken: Container[str]) -> str:
@@ -72,25 +88,20 @@ def unique_name(wanted: str, taken: Container[str]) -> str:
     return name
 
 
-def _saved(components: Iterable[Any]) -> list[Component]:
+def _saved(frozen: Frozen, entity: int) -> list[Component]:
     """Return those of an entity's components that a file holds, the contract's first."""
     order = [*_FIRST, *(name for name in COMPONENTS if name not in _FIRST)]
-    found = {type(component): component for component in components}
     kinds = [COMPONENTS[name] for name in order if COMPONENTS[name] not in UNSAVED]
-    return [found[kind] for kind in kinds if kind in found]
-
-
-def _contacts(world: World) -> list[list[Any]]:
-    """Return the contact solver's memory of what is still there to touch."""
-    shaped = {0, *world.batch(Shape).entities.tolist()}
-    return [row for row in world.contacts.export(world) if shaped.issuperset(row[:2])]
+    found = (frozen.component(entity, kind) for kind in kinds)
+    return [component for component in found if component is not None]
 
 
 def _invented(
     entities: Mapping[int, Iterable[Component]], ids: Mapping[int, str], referred: set[int]
-) -> dict[int, str]:
+) -> Generator[None, None, dict[int, str]]:
     """Return ids for the entities that have none and are referred to, by components or in ``referred``."""
     for components in entities.values():
+        yield
         for component in components:
             ends = (getattr(component, spec.name) for spec in component.FIELDS if spec.kind == "entity")
             referred.update(end for end in ends if end is not None)

@@ -31,6 +31,7 @@ class Stage(Enum):
     BROAD_PHASE = "which bodies are near each other"
     CONTACT = "where they touch"
     IMPACT = "approaching bodies bounce"
+    FORESEE = "what forces will do to tethered bodies is shown to the contacts, and taken back"
     SOLVE = "contact impulses keep bodies apart, correcting overlap"
     RELAX = "contact impulses again, so that the correction leaves no velocity behind"
     FINISH = "once a step: what is recorded of it"
@@ -104,6 +105,10 @@ class System:
             return f"no {' and '.join(needed.__name__ for needed in absent)} in the scene"
         return None
 
+    def finer(self, world: World) -> int:
+        """Return how many times as many substeps as asked for the coming step needs, as things stand."""
+        return 1
+
     @classmethod
     def marked(cls) -> dict[Stage, str]:
         """Return the stages of the system, each with the name of its method.
@@ -140,6 +145,14 @@ class ForceSystem(System):
         """Return the fastest angular frequency [rad/s] that this force gives any body; 0 if it gives none."""
         return 0.0
 
+    def rates(self, world: World) -> NDArray[np.float64] | None:
+        """Return for each row the fastest angular frequency [rad/s] or rate of decay [1/s] it is given.
+
+        ``None`` for a force that does not tell bodies apart. Where it does, and contacts act as well, the
+        bodies it acts on are moved by a method that follows it, instead of a kick a substep.
+        """
+        return None
+
     def sees_velocity(self, world: World) -> bool:
         """Return whether the force hangs on velocities, as drag does; a method is chosen by that."""
         return False
@@ -162,6 +175,7 @@ class ForceSystem(System):
     def packed(self, world: World, slots: Slots) -> PackedForce | None:
         """Return the force as compiled integrators call it, with the world's numbers as they are now.
 
+        A row whose ``slots.place`` is -1 takes no part; there is none where :meth:`couples` is ``None``.
         ``None`` where there is no such kernel: the method at ``Stage.FORCE`` is called instead, from Python.
         """
         return None

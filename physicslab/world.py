@@ -11,8 +11,10 @@ from contextlib import contextmanager
 from typing import Any
 
 import esper
+import numpy as np
 
 from physicslab.bodies import Bodies, Diverged
+from physicslab.checkpoint import Checkpoint
 from physicslab.closed_form import NoClosedForm
 from physicslab.columns import Batch, InvalidValue, Table
 from physicslab.components import Name
@@ -24,6 +26,7 @@ from physicslab.integrators import StepTooSmall
 from physicslab.integrators.choice import choose, provisional
 from physicslab.roster import Roster
 from physicslab.schedule import ForceSystem, Schedule, Stage, System
+from physicslab.tethers import Tethers
 
 __all__ = ["World"]
 
@@ -50,8 +53,13 @@ class World:
     ----------
     method : Choice
         How the bodies are moved, and why so.
+    tethers : Tethers, optional
+        What moves the bodies that springs and drag act on where contacts act as well.
     revision : int
         How often its structure or its configuration changed: what was measured before is another world's.
+    substeps : int
+        Of how many parts the last step was, or each part of one that was divided: more than
+        ``simulation.substeps`` where a system found that these would not do.
     divided : int
         Into how many parts the last :meth:`step` was divided, which was longer than ``simulation.dt``; or 1.
 
@@ -85,6 +93,7 @@ class World:
         self.divided = 1
         # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
         self._names: set[str] = set()
+        self.substeps = self._simulation.substeps
         self.revision = 0
         self.force_evaluations = 0
         self.collisions = 0
@@ -95,8 +104,10 @@ class World:
         self.has_forces = False
         self._equations: Equations | None = None
         self._flights: Flights | None = None
+        self.tethers: Tethers | None = None
         self._stale = True
         self._stepping = False
+        self._before = Checkpoint()
         self.method = provisional(self._simulation)
         self.context = f"physicslab-{next(_numbers)}"
         esper.switch_world(self.context)
@@ -289,6 +300,8 @@ class World:
                     self._choose()
                 if self._flights is not None and not self._flights.holds(self):
                     self._choose()
+                if self.tethers is not None and self.tethers.outdated(self):
+                    self._choose()
 
     def _follow(self) -> None:
         """Follow what changed in the structure of the world since the last call, if anything did."""
@@ -307,6 +320,10 @@ class World:
         """Choose the method for what there is, and make ready what it works with."""
         self.method = choose(self)
         self._equations = Equations(self) if self.method.smooth else None
+        self.bodies.tethered[:] = False
+        self.tethers = None
+        if self.method.tethers is not None:
+            self.tethers = Tethers(self, self.method.tethers, self.method.tether_steps)
         had_flights, self._flights = self._flights is not None, None
         if self.method.collisions == "exact":
             self._flights = Flights(self)
@@ -318,6 +335,11 @@ class World:
 
         What is longer than ``simulation.dt`` is divided, so that no substep is longer than the scene's own:
         ``divided`` says into how many parts. A method that is exact or chooses its steps takes it whole.
+
+        Raises
+        ------
+        Diverged
+            If a value would not be finite; the world then stands where it stood before the step.
         """
         dt = self._simulation.dt if dt is None else dt
         if not (math.isfinite(dt) and dt > 0.0):
@@ -327,22 +349,35 @@ class World:
         with self.active():
             self.synchronise()
             self.divided = parts = self._parts(dt)
+            self._before.take(self)
             self._stepping = True
             try:
                 self.schedule.run(Stage.PREPARE, self, dt)
+                if self.tethers is not None:
+                    self.tethers.begin(self)
                 if self._equations is not None:
                     self._flow(self._equations, dt / parts, parts)
                 elif self._flights is None:
-                    self._substeps(dt / parts / self._simulation.substeps, parts * self._simulation.substeps)
+                    finer = max((system.finer(self) for system in self.schedule.running), default=1)
+                    self.substeps = finer * self._simulation.substeps
+                    self._substeps(dt / parts / self.substeps, parts * self.substeps)
                 elif parts > 1:
                     self._flights.run(self, dt / parts, parts)
                 else:
                     self._flights.step(self, dt)
                 self.schedule.run(Stage.FINISH, self, dt)
+            except Diverged:
+                self._go_back()
+                raise
             finally:
                 self._stepping = False
         self.time += dt
         self.steps += 1
+
+    def _go_back(self) -> None:
+        """Stand where the step that failed began."""
+        self._before.restore(self)
+        self._stale = True  # flights and equations hold numbers of the step that failed
 
     def _parts(self, dt: float) -> int:
         """Return into how many parts a step of ``dt`` is divided."""
@@ -372,7 +407,9 @@ class World:
         try:
             made = method.integrator.flow(self, equations, h, count)
         except StepTooSmall as error:
-            raise Diverged(f"{error} (after t = {self.time:.9g} s)") from error
+            label = self.label(self._liveliest())
+            what = f"{label}: Velocity changes too fast: {error}"
+            raise Diverged(f"{what} (after t = {self.time:.9g} s)") from error
         except NoClosedForm:  # somebody gave a body another velocity, or another spring
             self.method = choose(self)
             self._flow(equations, dt, steps)
@@ -382,6 +419,13 @@ class World:
         for name in equations.forces:
             self.schedule.note(name, made, 0)  # their time is within the loop's
         self.force_evaluations += made
+
+    def _liveliest(self) -> int:
+        """Return the entity whose velocity changes fastest as things stand."""
+        self.add_up_forces()
+        bodies = self.bodies
+        rates = np.hypot(bodies.force[:, 0], bodies.force[:, 1]) * bodies.inverse_mass
+        return int(self.roster.entities[np.argmax(rates)])
 
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.
@@ -408,8 +452,14 @@ class World:
             self.force_evaluations -= self.has_forces  # looking at them is no work of the method
 
     def _leap(self, dt: float, parts: int, steps: int) -> None:
-        """Advance by ``parts`` times ``dt``, which nobody looks at and which count as ``steps``."""
+        """Advance by ``parts`` times ``dt``, which nobody looks at and which count as ``steps``.
+
+        Where that fails it is halved, until the one step that cannot be made is found; the world then stands
+        where it stood before that step.
+        """
         with self.active():
+            self.synchronise()
+            self._before.take(self)
             self._stepping = True
             try:
                 if self._flights is not None:
@@ -417,10 +467,23 @@ class World:
                 elif self._equations is not None:
                     self._flow(self._equations, dt, parts)
                 self.schedule.run(Stage.FINISH, self, dt * parts)
+            except Diverged:
+                self._go_back()
+                if steps == 1:
+                    raise
+            else:
+                self.time += dt * parts
+                self.steps += steps
+                return
             finally:
                 self._stepping = False
-        self.time += dt * parts
-        self.steps += steps
+        first = steps // 2
+        if parts > 1:
+            self._leap(dt, first, first)
+            self._leap(dt, parts - first, steps - first)
+        else:
+            self._leap(first * self._simulation.dt, 1, first)
+            self._leap(dt - first * self._simulation.dt, 1, steps - first)
 
     def stepping(
         self, *, seconds: float | None = None, steps: int | None = None, stride: int = 1

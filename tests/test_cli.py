@@ -49,7 +49,7 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
         "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason",
         "collision_method", "collision_reason", "interpreted", "force_evaluations", "wall_s", "compile_s",
         "systems", "left_out", "energy", "momentum", "angular_momentum", "candidate_pairs", "contacts",
-        "collisions", "max_penetration", "entities",
+        "collisions", "max_penetration", "divided", "advice", "entities",
     ]  # fmt: skip
     assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
     assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "exact")
@@ -246,7 +246,10 @@ def test_a_run_does_not_write_over_its_own_scene(capsys: pytest.CaptureFixture[s
     assert path.read_bytes() == before
 
 
-def test_a_run_that_diverges_says_where_and_when(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_a_run_that_diverges_says_where_and_when(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # where the last good state is saved
     world = load_scene("pendulum")
     spring = world.component(world.entity("bob"), physicslab.components.Spring)
     spring.stiffness = 1e9
@@ -263,7 +266,10 @@ def test_a_run_that_diverges_says_where_and_when(capsys: pytest.CaptureFixture[s
     assert all(math.isfinite(float(value)) for value in rows[-1].split(",")[2:])
 
 
-def test_no_report_holds_what_is_not_a_number(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_no_report_holds_what_is_not_a_number(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # where the last good state is saved
     ball = {"id": "ball", "Transform": {}, "Velocity": {"linear": [1e200, 0]}, "Mass": {}}
     scene = {"format": "physicslab-scene/1", "physics": {"gravity_mode": "none"}, "entities": [ball]}
     (tmp_path / "fast.json").write_text(json.dumps(scene))

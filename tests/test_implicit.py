@@ -1,13 +1,17 @@
 """The implicit midpoint rule: bounded however stiff, and the same whatever the order of the coordinates."""
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.diagnostics import measure_energy
+from physicslab.diagnostics import measure_energy, measure_momentum
 from physicslab.equations import Equations
 from physicslab.integrators import implicit_midpoint
+from physicslab.kernels import springs
 from physicslab.systems.standard import standard_systems
 from physicslab.vector import Vector2
 from physicslab.world import World
@@ -104,3 +108,69 @@ def test_a_pendulum_on_a_stiff_rod_swings_on(stiffness: float) -> None:
         assert energy.kinetic + energy.potential["gravity"] == pytest.approx(before, abs=0.01 * 9.81)
         length = world.component(bob, Transform).position - Vector2(0, 1)
         assert length.magnitude == pytest.approx(1.0, abs=1e-4)
+
+
+def alone(world: World, stiffness: float) -> None:
+    """Add a body that is let go with its spring stretched, and pushed sideways."""
+    spring = Spring(rest_length=1, stiffness=stiffness)
+    world.spawn(Transform((0, -1.01)), Velocity((0.01, 0)), Mass(1), spring)
+
+
+def pair(world: World, stiffness: float) -> None:
+    """Add two bodies on a stretched spring that turn about each other."""
+    a = world.spawn(Transform((0, 0)), Velocity((0, 1)), Mass(1))
+    b = world.spawn(Transform((1.01, 0)), Velocity((0.3, -1)), Mass(2))
+    world.spawn(Spring(a, b, rest_length=1, stiffness=stiffness))
+
+
+def held_by_its_rim(world: World, stiffness: float) -> None:
+    """Add a body that turns, on a stretched spring that does not end at its middle."""
+    spring = Spring(anchor_a=(0, 0.5), rest_length=1, stiffness=stiffness)
+    world.spawn(Transform((0, -1.51)), Velocity((0.5, 0), 2), Mass(1, 0.1), spring)
+
+
+def links(world: World, stiffness: float) -> None:
+    """Add ten masses that are let go level, a heavy one last, each on a spring to the one before."""
+    before = None
+    for i in range(10):
+        ball = world.spawn(Transform((0.2 * (i + 1), 0)), Velocity((0, -1)), Mass(0.1 if i < 9 else 10))
+        world.add(ball, Spring(None, before, rest_length=0.2, stiffness=stiffness))
+        before = ball
+
+
+@pytest.mark.parametrize("stiffness", [1e6, 1e8, 1e12])
+@pytest.mark.parametrize("fill", [alone, pair, held_by_its_rim, links])
+def test_stiff_springs_that_turn_as_they_swing_keep_their_energy(
+    fill: Callable[[World, float], None], stiffness: float
+) -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"), simulation=MIDPOINT)
+    fill(world, stiffness)
+    before = measure_energy(world).total
+    for _ in world.stepping(steps=300, stride=7):
+        assert measure_energy(world).total == pytest.approx(before, rel=1e-6)
+
+
+def test_a_pair_on_a_stiff_spring_keeps_its_momenta() -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"), simulation=MIDPOINT)
+    pair(world, 1e12)
+    before = measure_momentum(world)
+    world.run(steps=300)
+    after = measure_momentum(world)
+    assert (after.linear.x, after.linear.y) == pytest.approx((before.linear.x, before.linear.y), abs=1e-9)
+    assert after.angular == pytest.approx(before.angular, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_pull_over_a_span_does_the_work_that_the_energy_loses(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    (dx, dy, vx, vy), (span, rest, k) = random.normal(size=4), random.uniform(0.1, 2.0, size=3)
+    fx, fy = springs.mean_spring_pull.py_func(dx, dy, vx, vy, span, rest, k, 0.0)  # type: ignore[attr-defined]
+    start, end = (math.hypot(dx + s * span * vx, dy + s * span * vy) for s in (-0.5, 0.5))
+    gained = 0.5 * k * ((end - rest) ** 2 - (start - rest) ** 2)
+    assert span * (fx * vx + fy * vy) == pytest.approx(gained, rel=1e-12, abs=1e-13)
+
+
+def test_over_no_time_the_pull_is_that_of_the_instant() -> None:
+    state = (0.3, -0.7, 0.2, 0.9)
+    mean = springs.mean_spring_pull.py_func(*state, 0.0, 1.0, 40.0, 3.0)  # type: ignore[attr-defined]
+    assert mean == pytest.approx(springs.spring_pull.py_func(*state, 1.0, 40.0, 3.0))  # type: ignore[attr-defined]

@@ -86,11 +86,11 @@ def test_half_kicks_compose_to_whole_ones() -> None:
     compile_kernels((motion.kick,))
     random = np.random.default_rng(0)
     linear, force, weights = random.normal(size=(4, 2)), random.normal(size=(4, 2)), random.uniform(size=4)
-    spins = random.normal(size=4)
+    spins, free = random.normal(size=4), np.zeros(4, np.bool_)
     once, twice = (linear.copy(), spins.copy()), (linear.copy(), spins.copy())
-    motion.kick(*once, force, spins, weights, weights, 0.7, 0.3, 0.5)
+    motion.kick(*once, force, spins, weights, weights, free, 0.7, 0.3, 0.5)
     for _ in range(2):
-        motion.kick(*twice, force, spins, weights, weights, 0.7, 0.3, 0.25)
+        motion.kick(*twice, force, spins, weights, weights, free, 0.7, 0.3, 0.25)
     assert once[0] == pytest.approx(twice[0], rel=1e-14)
     assert once[1] == pytest.approx(twice[1], rel=1e-14)
 

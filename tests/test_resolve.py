@@ -379,7 +379,7 @@ def test_what_the_solver_remembers_survives_export() -> None:
             Mass(world.component(entity, Mass).mass), Shape(shape.kind, shape.radius, shape.width,
             shape.height), Material(material.restitution, material.friction),
         )  # fmt: skip
-    again.contacts.restore(again, world.contacts.export(world))
+    again.contacts.restore(again, world.contacts.export())
     for _ in range(120):
         world.step()
         again.step()

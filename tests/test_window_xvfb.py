@@ -29,6 +29,7 @@ class Screen:
     def __init__(self, number: str, folder: Path) -> None:
         self.environment = {**os.environ, "DISPLAY": number}
         self.environment.pop("SDL_VIDEODRIVER", None)
+        self.environment["XDG_STATE_HOME"] = str(folder / "state")
         self.folder = folder
         self.shots = 0
 
@@ -172,6 +173,28 @@ def test_a_resized_window_shows_more_of_the_world(screen: Screen) -> None:
         assert picture[700:880, 20:120].max() > 200, "the right panel moved along"
         screen.do("key", "Escape")
         assert program.wait(timeout=20) == 0
+    finally:
+        program.kill()
+        program.communicate()
+
+
+def test_what_a_crash_has_left_is_offered_and_restored(screen: Screen) -> None:
+    sessions = screen.folder / "state" / "physicslab" / "sessions"
+    program = screen.launch("stack")
+    screen.until(lambda _: any(sessions.glob("*.json")), "the state, after ten seconds")
+    program.kill()
+    program.communicate()
+    program = screen.launch("drop")
+    try:
+        (window,) = screen.windows()
+        assert screen.do("getwindowname", window).strip() == "A ball on a floor - PhysicsLab"
+        screen.do("mousemove", 1055, 55)  # the bar's button below the toolbar
+        screen.do("click", 1)
+        stack = "A tower of ten boxes - PhysicsLab"
+        screen.until(lambda _: screen.do("getwindowname", window).strip() == stack, "the stack again")
+        screen.do("key", "Escape")
+        assert program.wait(timeout=20) == 0
+        assert not list(sessions.iterdir())
     finally:
         program.kill()
         program.communicate()

@@ -9,9 +9,11 @@ import os
 import sys
 import time
 from argparse import ArgumentParser, Namespace
+from collections.abc import Mapping
 from contextlib import nullcontext
 from pathlib import Path
 
+from physicslab.advice import advise
 from physicslab.bodies import Diverged
 from physicslab.columns import InvalidValue
 from physicslab.commands.command_error import FAILED, CommandError
@@ -22,7 +24,8 @@ from physicslab.config import INTEGRATORS
 from physicslab.diagnostics import Drift
 from physicslab.json_text import json_text
 from physicslab.report import RunRecord, find_not_finite, run_report, run_summary
-from physicslab.scene import load_scene
+from physicslab.rescue import save_last_good
+from physicslab.scene import SceneError, load_scene
 from physicslab.scene_checks import shown
 from physicslab.scenes import SCENES
 from physicslab.trajectory import TrajectoryWriter
@@ -33,6 +36,8 @@ __all__ = ["add_arguments", "execute"]
 _DEFAULT_S = 10.0
 _SAMPLES = 500
 """How often a run without contacts is measured: what lies between is one compiled loop."""
+_LOOKS = 100
+"""How often a run is looked at for advice: a look at thousands of contacts takes a third of a step."""
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -66,12 +71,12 @@ def execute(arguments: Namespace) -> int:
         try:
             record = _run(world, name, arguments, trajectory)
         except Diverged as error:
-            raise CommandError(f"{name}: {error}", FAILED) from error
+            raise CommandError(f"{name}: {error}; {_rescue(world, name, outputs)}", FAILED) from error
     report = run_report(world, record)
     place = find_not_finite(report)
     if place is not None:
-        where = f"{place} is not finite at t = {world.time:.9g} s"
-        raise CommandError(f"{name}: {where}: the run diverged", FAILED)
+        where = f"{place} is not finite at t = {world.time:.9g} s: the run diverged"
+        raise CommandError(f"{name}: {where}; {_rescue(world, name, outputs)}", FAILED)
     if "json" in outputs:
         outputs["json"].write(json_text(report).encode("utf-8"))
     if "png" in outputs:
@@ -79,6 +84,17 @@ def execute(arguments: Namespace) -> int:
     if not any(output.to_stdout for output in outputs.values()):
         print(run_summary(report, world.title))
     return 0
+
+
+def _rescue(world: World, name: str, outputs: Mapping[str, Output]) -> str:
+    """Save the last good state beside the document that was asked for, or here; return what came of it."""
+    json = outputs.get("json")
+    directory = Path() if json is None or json.to_stdout else Path(json.path).parent
+    try:
+        path = save_last_good(world, name, directory)
+    except (OSError, SceneError) as error:
+        return f"the last good state, of t = {world.time:.9g} s, could not be saved: {error}"
+    return f"the last good state, of t = {world.time:.9g} s, is in {path}"
 
 
 def _outputs(arguments: Namespace) -> dict[str, Output]:
@@ -125,6 +141,8 @@ def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWr
     start, progress = world.time, Progress(name, sys.stderr)
     stride = 1 if trajectory is not None else max(1, round(length / world.simulation.dt) // _SAMPLES)
     stepping = world.stepping(seconds=seconds, steps=arguments.steps, stride=stride)
+    look_every = max(1, round(length / world.simulation.dt) // (stride * _LOOKS))
+    samples = 0
     try:
         while True:
             if trajectory is not None:
@@ -132,6 +150,9 @@ def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWr
             compiled, began = world.schedule.compile_s, time.perf_counter()
             done = next(stepping, None)
             record.wall_s += time.perf_counter() - began - (world.schedule.compile_s - compiled)
+            if samples % look_every == 0 or done is None:
+                record.advice.note(advise(world))
+            samples += 1
             if done is None:
                 return record
             record.steps = done
@@ -144,6 +165,7 @@ def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWr
 def _measure(world: World, record: RunRecord) -> None:
     record.drift.sample(world)
     record.max_penetration = max(record.max_penetration, world.contacts.max_penetration)
+    record.divided = max(record.divided, world.divided)
 
 
 def _picture(world: World) -> bytes:

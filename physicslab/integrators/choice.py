@@ -14,8 +14,9 @@ from physicslab.integrators.blanes_moan import BLANES_MOAN
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.exact import EXACT
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
-from physicslab.integrators.leapfrog import LEAPFROG
+from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_BESIDE_TETHERS
 from physicslab.schedule import ForceSystem, Stage
+from physicslab.tethers import tethered_rows
 
 if TYPE_CHECKING:
     from physicslab.config import SimulationConfig
@@ -54,6 +55,10 @@ class Choice:
         Why so, for people.
     stages : Integrator
         The method by whose stages the contact step goes; where collisions are exact, only for what rests.
+    tethers : Integrator, optional
+        What moves the bodies that springs and drag act on between contacts; ``None`` where kicks do.
+    tether_steps : int
+        Its steps each half substep.
     """
 
     integrator: Integrator
@@ -64,6 +69,8 @@ class Choice:
     collisions: str = "none"
     collision_reason: str = "nothing can touch"
     stages: Integrator = LEAPFROG
+    tethers: Integrator | None = None
+    tether_steps: int = 1
 
 
 def provisional(simulation: SimulationConfig) -> Choice:
@@ -109,7 +116,7 @@ def _mover(world: World) -> Choice:
     obstacle = why_not_smooth(world)
     if simulation.integrator == "auto":
         if obstacle is not None:
-            return Choice(LEAPFROG, obstacle, simulation.substeps, smooth=False)
+            return _beside_contacts(world, obstacle)
         return _best(world)
     choice = provisional(simulation)
     method = choice.integrator
@@ -140,18 +147,15 @@ def _best(world: World) -> Choice:
         why = str(error)
     attractors = max((getattr(system, "attractors", 0) for system in forces), default=0)
     planets = world.physics.gravity_mode == "planet" and attractors > 1
-    fixed = [system for system in forces if not (planets and hasattr(system, "attractors"))]
-    rate = max((system.strongest_rate(world) for system in fixed), default=0.0)
-    rate = max(rate, world.physics.linear_damping, world.physics.angular_damping)
+    rate = _fastest(world, [f for f in forces if not (planets and hasattr(f, "attractors"))])
     needed = max(1, math.ceil(rate * h / _WELL_RESOLVED))
     if needed > _MOST_STEPS:
-        reason = f"{rate:.3g} rad/s is too fast to be followed: what it does between steps is not shown"
-        return Choice(IMPLICIT_MIDPOINT, reason, substeps, smooth=True)
+        return Choice(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
     if planets and attractors >= _MANY and world.physics.softening > 0.0:
         return Choice(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
     if planets:
         return Choice(DOP853, "planets may come close: the step follows them", 1, smooth=True)
-    if world.physics.linear_damping or any(system.sees_velocity(world) for system in forces):
+    if _sees_velocity(world, forces):
         return Choice(DOP853, f"forces hang on velocities, and {why}", 1, smooth=True)
     if any(system.may_be_singular(world) for system in forces):
         return Choice(
@@ -159,3 +163,48 @@ def _best(world: World) -> Choice:
         )
     reason = f"conservative and smooth; {needed} steps of omega h = {rate * h / needed:.2g}"
     return Choice(BLANES_MOAN, reason, needed, smooth=True)
+
+
+def _beside_contacts(world: World, obstacle: str) -> Choice:
+    """Return the choice where more than forces acts within a step: kicks, or a method for what is tethered.
+
+    Other stages than those of leapfrog know of no flow.
+    """
+    substeps = world.simulation.substeps
+    kicks = Choice(LEAPFROG, obstacle, substeps, smooth=False)
+    forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
+    moved = any(system.name == "IntegrateSystem" for system in world.schedule.running)
+    if not moved or not tethered_rows(world).any():
+        return kicks
+    python = [system.name for system in forces if not type(system).packs()]
+    if python:
+        return replace(kicks, reason=f"{obstacle}, and the force of {python[0]} is written in Python")
+    planets = world.physics.gravity_mode == "planet"
+    if max((getattr(system, "attractors", 0) for system in forces), default=0) >= _MANY and planets:
+        return kicks
+    rate, half = _fastest(world, forces), 0.5 * world.simulation.dt / substeps
+    needed = max(1, math.ceil(rate * half / _WELL_RESOLVED))
+    if needed * 2 * substeps > _MOST_STEPS:
+        method, needed, how = IMPLICIT_MIDPOINT, 1, _too_fast(rate)
+    elif planets or _sees_velocity(world, forces) or any(f.may_be_singular(world) for f in forces):
+        method, needed, how = DOP853, 1, "the step follows the motion"
+    else:
+        method, how = BLANES_MOAN, f"steps of omega h = {rate * half / needed:.2g}"
+    reason = f"{obstacle}; between contacts what springs or drag act on goes by {method.name}: {how}"
+    return replace(
+        kicks, reason=reason, stages=LEAPFROG_BESIDE_TETHERS, tethers=method, tether_steps=needed
+    )
+
+
+def _fastest(world: World, forces: list[ForceSystem]) -> float:
+    """Return the fastest rate that forces and damping give any body [rad/s]."""
+    rate = max((system.strongest_rate(world) for system in forces), default=0.0)
+    return max(rate, world.physics.linear_damping, world.physics.angular_damping)
+
+
+def _sees_velocity(world: World, forces: list[ForceSystem]) -> bool:
+    return world.physics.linear_damping > 0.0 or any(system.sees_velocity(world) for system in forces)
+
+
+def _too_fast(rate: float) -> str:
+    return f"{rate:.3g} rad/s is too fast to be followed: what it does between steps is not shown"

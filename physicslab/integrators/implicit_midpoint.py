@@ -1,4 +1,11 @@
-"""The implicit midpoint rule: bounded however stiff the springs are."""
+"""The implicit midpoint rule, with the springs' force over the step: bounded however stiff they are.
+
+The midpoint rule itself keeps what is quadratic, so the energy of a spring of no rest length; one that turns
+as it swings many times a step gains energy. Springs therefore answer with a discrete gradient of what they
+store (:func:`physicslab.kernels.springs.mean_spring_pull`), by which the energy is kept to the rounding of
+the search, and so no spring becomes longer than the energy allows. The price: areas in phase space are kept
+only where the force is linear. All other forces are taken at the middle of the step.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +30,9 @@ def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
     order, band = _banded(world, eq.slots)
     made = implicit_midpoint(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, order, band, h, steps)
     if made < 0:
-        raise StepTooSmall(f"the implicit step of {h:.3g} s has no solution; more substeps may help")
+        raise StepTooSmall(
+            f"no part of the implicit step of {h:.3g} s has a solution; more substeps may help"
+        )
     return made
 
 
@@ -73,12 +82,13 @@ def _cuthill_mckee(neighbours: dict[int, set[int]]) -> list[int]:
 
 IMPLICIT_MIDPOINT = Integrator(
     name="implicit_midpoint",
-    title="Implicit midpoint (Newton)",
+    title="Implicit midpoint, spring energy kept (Newton)",
     order=2,
     evaluations=3,
     stability_limit=float("inf"),
-    symplectic=True,
-    source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, II.1.1 and VIII.6",
+    symplectic=False,
+    source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, II.1.1 and VIII.6; "
+    "LaBudde & Greenspan, J. Comput. Phys. 15 (1974) 134",
     flow=_flow,
     kernels=(implicit_midpoint,),
 )

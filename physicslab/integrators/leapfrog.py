@@ -1,11 +1,13 @@
 """Leapfrog in its drift-kick-drift form."""
 
+from dataclasses import replace
+
 from physicslab.integrators.integrator import Integrator
 from physicslab.integrators.splitting import splitting
 from physicslab.kernels.splitting import split
 from physicslab.schedule import Stage
 
-__all__ = ["LEAPFROG"]
+__all__ = ["LEAPFROG", "LEAPFROG_BESIDE_TETHERS"]
 
 # Between the two half kicks, positions and velocities are both those of the middle of the substep. Impacts
 # are resolved there: turning a velocity round at the place it belongs to leaves the energy as it was. The
@@ -34,4 +36,16 @@ LEAPFROG = Integrator(
         (Stage.RELAX, 0.5),
     ),
     window=(-0.5, 0.5),
+)
+
+_FORESEEN = ((Stage.FORESEE, 0.5), (Stage.SOLVE, 1.0), (Stage.FORESEE, -0.5))
+
+# What is tethered (see physicslab.tethers) is not kicked: the contact solver is shown ahead what comes.
+LEAPFROG_BESIDE_TETHERS = replace(
+    LEAPFROG,
+    substep=tuple(
+        part
+        for stage in LEAPFROG.substep
+        for part in (_FORESEEN if stage == (Stage.SOLVE, 1.0) else (stage,))
+    ),
 )

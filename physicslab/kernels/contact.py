@@ -84,7 +84,7 @@ def find_contacts(
     records of impacts begin anew; ``fall`` is how far [m] the forces may bring two bodies together within the
     substep.
     """
-    found = 0
+    found, held = 0, count
     for p in range(count):
         manifold = manifolds[p]
         if manifold.count < 0:
@@ -130,8 +130,12 @@ def find_contacts(
                 and travel <= 0.5 * NEAR * size
             ):
                 _refresh(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
-                touching[found] = p
-                found += 1
+                if inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0:
+                    touching[found] = p
+                    found += 1
+                else:
+                    held -= 1
+                    touching[held] = p
                 if first:
                     effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
                     mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
@@ -179,12 +183,22 @@ def find_contacts(
         if manifold.count > 0:
             effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
             mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
-            touching[found] = p
-            found += 1
+            if inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0:
+                touching[found] = p
+                found += 1
+            else:
+                held -= 1
+                touching[held] = p
         elif had_points:
             one.feature = two.feature = 0
             one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
-    return found
+    # Those of bodies that nothing moves stand at the end, the last first.
+    resting = count - held
+    for k in range(resting // 2):
+        touching[held + k], touching[count - 1 - k] = touching[count - 1 - k], touching[held + k]
+    for k in range(resting):
+        touching[found + k] = touching[held + k]
+    return found + resting
 
 
 @inlined

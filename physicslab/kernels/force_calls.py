@@ -4,6 +4,11 @@ The smooth motion of a world is q' = v, v' = W f(q, v): ``q`` holds two coordina
 [rad] of those that forces can turn, ``v`` their rates, W the inverse masses. What is fixed in place follows
 behind in both arrays and has no inverse mass. A force is a C function that adds to f; it reads what it needs
 from two arrays of its own.
+
+A force is asked for at an instant, or over a span of time in which the coordinates go steadily from
+q - span/2 v to q + span/2 v. Springs then answer with a discrete gradient of their energy V, a force f whose
+work is all that V loses: f . (span v) = V(start) - V(end) (Gonzalez, J. Nonlinear Sci. 6 (1996) 449). Other
+forces answer with their value at the middle.
 """
 
 from __future__ import annotations
@@ -21,19 +26,19 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import FASTMATH, KERNELS, Numbers, cached, inlined
 
-__all__ = ["Calls", "ForceKernel", "accelerate", "force_kernel"]
+__all__ = ["Calls", "ForceKernel", "accelerate", "accelerate_over", "force_kernel"]
 
 Calls = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, 3): of each force the address, and those of its numbers and of its whole numbers."""
 _pointer: Any = types.CPointer
 _REAL, _WHOLE = _pointer(float64), _pointer(int64)
-_SIGNATURE = void(_REAL, _REAL, _REAL, _REAL, _WHOLE)
+_SIGNATURE = void(_REAL, _REAL, float64, _REAL, _REAL, _WHOLE)
 
 
 class ForceKernel:
-    """A force ``f(q, v, force, numbers, whole)``, compiled to a C function when its address is asked for.
+    """A force ``f(q, v, span, force, numbers, whole)``: a C function, compiled when its address is asked for.
 
-    All five are pointers, to float64 and (the last) int64.
+    All but the span [s] are pointers, to float64 and (the last) int64.
     """
 
     declared_signature = _SIGNATURE
@@ -78,23 +83,24 @@ def force_kernel(function: Callable[..., None]) -> ForceKernel:
 
 
 def _call_type(
-    context: Any, address: Any, q: Any, v: Any, force: Any, numbers: Any, whole: Any
+    context: Any, address: Any, q: Any, v: Any, span: Any, force: Any, numbers: Any, whole: Any
 ) -> tuple[Any, Callable[..., Any]]:
     """Call the C function at an address with the data of three arrays and two addresses."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        real, integer = ir.DoubleType().as_pointer(), ir.IntType(64).as_pointer()
-        function_type = ir.FunctionType(ir.VoidType(), [real, real, real, real, integer])
+        number = ir.DoubleType()
+        real, integer = number.as_pointer(), ir.IntType(64).as_pointer()
+        function_type = ir.FunctionType(ir.VoidType(), [real, real, number, real, real, integer])
         function = builder.inttoptr(arguments[0], function_type.as_pointer())
-        data = [
-            builder.bitcast(context.make_array(kind)(context, builder, value).data, real)
-            for kind, value in zip(signature.args[1:4], arguments[1:4], strict=True)
-        ]
-        rest = builder.inttoptr(arguments[4], real), builder.inttoptr(arguments[5], integer)
-        builder.call(function, [*data, *rest])
+        state_q, state_v, total = (
+            builder.bitcast(context.make_array(signature.args[i])(context, builder, arguments[i]).data, real)
+            for i in (1, 2, 4)
+        )
+        rest = builder.inttoptr(arguments[5], real), builder.inttoptr(arguments[6], integer)
+        builder.call(function, [state_q, state_v, arguments[3], total, *rest])
         return context.get_dummy_value()
 
-    return void(int64, q, v, force, int64, int64), generate
+    return void(int64, q, v, float64, force, int64, int64), generate
 
 
 _call: Any = intrinsic(_call_type)
@@ -104,15 +110,24 @@ _call: Any = intrinsic(_call_type)
 def accelerate(
     q: Numbers, v: Numbers, acceleration: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls
 ) -> None:
-    """Work out v' at a state: every force called, weighed, and the damping v' = -c v taken off.
+    """Work out v' at an instant, as :func:`accelerate_over` does."""
+    accelerate_over(q, v, 0.0, acceleration, inverse_mass, damping, calls)
 
-    ``acceleration`` is as long as ``q``; only what has an inverse mass is meaningful. ``damping`` (n,) [1/s]
-    may be empty where nothing is damped.
+
+@inlined
+def accelerate_over(
+    q: Numbers, v: Numbers, span: float,
+    acceleration: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
+) -> None:  # fmt: skip
+    """Work out v' about a state, over ``span`` seconds: every force called, weighed, and damping taken off.
+
+    ``acceleration`` is as long as ``q``; only what has an inverse mass is meaningful. ``damping`` (n,) [1/s],
+    of v' = -c v, may be empty where nothing is damped.
     """
     for i in range(len(acceleration)):
         acceleration[i] = 0.0
     for k in range(len(calls)):
-        _call(calls[k, 0], q, v, acceleration, calls[k, 1], calls[k, 2])
+        _call(calls[k, 0], q, v, span, acceleration, calls[k, 1], calls[k, 2])
     for i in range(len(inverse_mass)):
         acceleration[i] *= inverse_mass[i]
     for i in range(len(damping)):

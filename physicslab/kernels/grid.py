@@ -88,6 +88,11 @@ def fat_boxes(
         boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
         boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
 
+_CROWD = 32
+"""So many bodies of a body's own size, at the most, that overlap with it make pairs with it."""
+_OWN_SIZE = 2.0
+"""What is no more than so many times larger is of a body's own size: beside it, few have room."""
+
 
 @inlined
 def _overlap(these: Vectors, i: int, those: Vectors, j: int) -> bool:
@@ -99,10 +104,28 @@ def _overlap(these: Vectors, i: int, those: Vectors, j: int) -> bool:
 
 
 @inlined
-def _take(pairs: Pairs, found: int, inverse_mass: Numbers, i: int, j: int) -> int:
-    """Write the pair (i, j) in order, if it can be moved and there is room; return how many there are now."""
+def _take(
+    pairs: Pairs, found: int, inverse_mass: Numbers, boxes: Vectors, fat: Vectors, company: Rows, i: int, j: int
+) -> int:  # fmt: skip
+    """Write the pair (i, j) in order, if it can be moved and there is room; return how many there are now.
+
+    Of bodies that were put on one spot only so many pairs are taken that work and memory stay in proportion
+    to the bodies: whoever has a crowd in its ``company`` meets the others when some of those have gone.
+    """
     if inverse_mass[i] + inverse_mass[j] == 0.0:
         return found
+    # The boxes without their margins.
+    across_i, up_i = boxes[i, 2] - boxes[i, 0] - 2.0 * fat[i, 4], boxes[i, 3] - boxes[i, 1] - 2.0 * fat[i, 4]
+    across_j, up_j = boxes[j, 2] - boxes[j, 0] - 2.0 * fat[j, 4], boxes[j, 3] - boxes[j, 1] - 2.0 * fat[j, 4]
+    dx = abs(boxes[i, 0] + boxes[i, 2] - boxes[j, 0] - boxes[j, 2])
+    dy = abs(boxes[i, 1] + boxes[i, 3] - boxes[j, 1] - boxes[j, 3])
+    if dx < across_i + across_j and dy < up_i + up_j:
+        larger, smaller = max(across_i, up_i), min(across_j, up_j)
+        if larger <= _OWN_SIZE * smaller and max(across_j, up_j) <= _OWN_SIZE * min(across_i, up_i):
+            if company[i] >= _CROWD or company[j] >= _CROWD:
+                return found
+            company[i] += 1
+            company[j] += 1
     if found < len(pairs):
         pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, j), max(i, j), -1
     return found + 1
@@ -119,6 +142,7 @@ def _bucket(ix: int, iy: int, low_x: int, low_y: int, up: int, buckets: int, den
 @inlined
 def _level(
     boxes: Vectors,
+    fat: Vectors,
     members: Rows,
     count: int,
     cell: float,
@@ -126,6 +150,7 @@ def _level(
     pairs: Pairs,
     found: int,
     larges: Rows,
+    company: Rows,
 ) -> tuple[int, int]:
     """Find all pairs with a body no larger than a cell; return how many there are, and how many are larger.
 
@@ -184,10 +209,10 @@ def _level(
             at = (ix - low_x) * up + iy - low_y
             for q in range(p + 1, first[at + 2]):
                 if _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, body[p], body[q])
+                    found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], body[q])
             for q in range(first[at + up - 1], first[at + up + 2]):
                 if _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, body[p], body[q])
+                    found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], body[q])
             continue
         for neighbour in range(5):
             jx = ix if neighbour < 2 else ix + 1
@@ -195,7 +220,7 @@ def _level(
             at = _bucket(jx, jy, low_x, low_y, up, buckets, dense)
             for q in range(p + 1 if neighbour == 0 else first[at], first[at + 1]):
                 if home[q, 0] == jx and home[q, 1] == jy and _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, body[p], body[q])
+                    found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], body[q])
 
     for k in range(large_count):
         i = larges[k]
@@ -208,20 +233,20 @@ def _level(
         if not dense or float(to_x - from_x + 1) * float(to_y - from_y + 1) > smalls:
             for q in range(smalls):
                 if _overlap(boxes, i, near, q):
-                    found = _take(pairs, found, inverse_mass, i, body[q])
+                    found = _take(pairs, found, inverse_mass, boxes, fat, company, i, body[q])
             continue
         for ix in range(from_x, to_x + 1):
             column = (ix - low_x) * up - low_y
             for q in range(first[column + from_y], first[column + to_y + 1]):
                 if _overlap(boxes, i, near, q):
-                    found = _take(pairs, found, inverse_mass, i, body[q])
+                    found = _take(pairs, found, inverse_mass, boxes, fat, company, i, body[q])
     return found, large_count
 
 
 @kernel
 def find_pairs(
-    boxes: Vectors, kind: Rows, inverse_mass: Numbers, bounded: bool, bounds: Numbers, pairs: Pairs
-) -> int:
+    boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers, bounded: bool, bounds: Numbers, pairs: Pairs
+) -> int:  # fmt: skip
     """Write the pairs (a, b, wall) whose fat boxes overlap, each once, sorted; return how many there are.
 
     A grid whose cells fit the usual body finds the pairs of small ones, and of small with large ones; the
@@ -231,6 +256,7 @@ def find_pairs(
     n = len(kind)
     members = np.empty(n, np.int64)
     larges = np.empty(n, np.int64)
+    company = np.zeros(n, np.int64)
     count, found = 0, 0
     for i in range(n):
         if kind[i] == 0:
@@ -251,8 +277,9 @@ def find_pairs(
             inverse_sizes += 1.0 / max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1])
         # The harmonic mean goes by the small bodies, which are many, and not by the few walls.
         found, count = _level(
-            boxes, members, count, 1.25 * count / inverse_sizes, inverse_mass, pairs, found, larges
-        )
+            boxes, fat, members, count, 1.25 * count / inverse_sizes, inverse_mass, pairs, found, larges,
+            company,
+        )  # fmt: skip
         members[:count] = larges[:count]
     if found <= len(pairs):
         _sort_pairs(pairs, walls, found, n)

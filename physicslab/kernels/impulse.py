@@ -5,7 +5,10 @@ import math
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.records import Manifolds, Point, Points
 
-__all__ = ["apply_impulse", "deepest", "follow_drift", "relative_velocity", "relax", "separate", "solve"]
+__all__ = [
+    "apply_impulse", "deepest", "follow_drift", "heaviest_load", "relative_velocity", "relax", "separate",
+    "solve",
+]  # fmt: skip
 
 
 _SOFT = 0.01
@@ -13,6 +16,10 @@ _SOFT = 0.01
 on top."""
 _DEEP = 0.1
 """Share beyond which overlap is taken away by moving."""
+_DEEPER = 0.15
+"""Share beyond which it is taken away by nothing else: of a thousand pushes on one body speed would be left."""
+_UNEQUAL = 10.0
+"""From such a ratio of masses on, the lighter body of a pair has to carry what is no body of its own kind."""
 
 
 @inlined
@@ -89,6 +96,8 @@ def _sweep(
                 load = min(point.normal_impulse, heaviest) * impulse_scale / (mass_scale * point.normal_mass)
                 limit = push_rate * _SOFT * manifold.size + 2.0 * load
                 bias = max(push_rate * min(separation + slop * manifold.size, 0.0), -limit)
+                if separation < -_DEEPER * manifold.size:
+                    bias = 0.0
                 hardness, softness = mass_scale, impulse_scale
             change = -point.normal_mass * hardness * (vn + bias) - softness * point.normal_impulse
             total = max(point.normal_impulse + change, 0.0)
@@ -126,12 +135,16 @@ def solve(
     force: Vectors,
     has_forces: bool,
     h: float,
+    carried: float,
     iterations: int,
     hertz: float,
     damping_ratio: float,
     slop: float,
 ) -> None:
     """Start from the last substep's impulses, then go through all contacts, correcting overlap.
+
+    ``carried`` is how many times as long this substep is as the last one was: so many times the impulses of
+    what rests.
 
     The contact spring of frequency ``hertz`` is integrated implicitly over h (Catto, Soft Constraints, GDC
     2011): with omega = 2 pi hertz and q = 2 zeta + h omega, it takes omega / q of the overlap a second.
@@ -145,6 +158,8 @@ def solve(
             if point.ahead:
                 point.normal_impulse = point.tangent_impulse = 0.0
                 continue
+            point.normal_impulse *= carried
+            point.tangent_impulse *= carried
             px = point.normal_impulse * nx - point.tangent_impulse * ny
             py = point.normal_impulse * ny + point.tangent_impulse * nx
             apply_impulse(
@@ -219,10 +234,11 @@ def separate(
     inverse_mass: Numbers,
     farthest: float,
 ) -> None:
-    """Move bodies that overlap deeply apart, a fifth of the way and by ``farthest`` [m] at the most.
+    """Move bodies that overlap deeply apart, six tenths of the way and by ``farthest`` [m] at the most.
 
     Only positions change: however many bodies lie on one spot, coming apart gives them no speed. What is
-    beyond the world's bounds is put back inside at once.
+    beyond the world's bounds, or within what nothing moves, is put back at once: the heaviest body presses no
+    other through a floor.
     """
     deep = False
     for k in range(count):
@@ -245,7 +261,7 @@ def separate(
         moved_y = position[b, 1] - before[b, 1] - position[a, 1] + before[a, 1]
         depth = -(lowest + moved_x * nx + moved_y * ny) - _DEEP * manifold.size
         if depth > 0.0:
-            share = 0.2 * depth / (inverse_mass[a] + inverse_mass[b])
+            share = 0.6 * depth / (inverse_mass[a] + inverse_mass[b])
             position[a, 0] -= share * inverse_mass[a] * nx
             position[a, 1] -= share * inverse_mass[a] * ny
             position[b, 0] += share * inverse_mass[b] * nx
@@ -259,17 +275,18 @@ def separate(
     for k in range(count):
         p = touching[k]
         manifold = manifolds[p]
-        if manifold.wall < 0 or manifold.swept == 1:
+        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        if manifold.swept == 1 or (inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0):
             continue
-        b, nx, ny = manifold.b, manifold.normal_x, manifold.normal_y
-        moved = (position[b, 0] - before[b, 0]) * nx + (position[b, 1] - before[b, 1]) * ny
+        i, sign = (b, 1.0) if inverse_mass[b] > 0.0 else (a, -1.0)
+        moved = sign * ((position[i, 0] - before[i, 0]) * nx + (position[i, 1] - before[i, 1]) * ny)
         lowest = points[2 * p].separation
         if manifold.count == 2:
             lowest = min(lowest, points[2 * p + 1].separation)
         depth = -(lowest + moved) - _DEEP * manifold.size
         if depth > 0.0:
-            position[b, 0] += depth * nx
-            position[b, 1] += depth * ny
+            position[i, 0] += sign * depth * nx
+            position[i, 1] += sign * depth * ny
 
 
 @kernel
@@ -281,3 +298,29 @@ def deepest(manifolds: Manifolds, points: Points, touching: Rows, count: int) ->
         for j in range(2 * p, 2 * p + manifolds[p].count):
             depth = max(depth, -points[j].separation)
     return depth
+
+
+@kernel
+def heaviest_load(
+    manifolds: Manifolds, touching: Rows, count: int, force: Vectors, inverse_mass: Numbers
+) -> float:
+    """Return how many times its own weight a body carries, at the most, of one that is far heavier.
+
+    By the forces that act on both, as they stand: whatever lies beside or below presses nothing.
+    """
+    heaviest = 0.0
+    for k in range(count):
+        manifold = manifolds[touching[k]]
+        a, b = manifold.a, manifold.b
+        ma, mb = inverse_mass[a], inverse_mass[b]
+        if _UNEQUAL * ma < mb and ma > 0.0:
+            heavy, light, sign = a, b, 1.0
+        elif _UNEQUAL * mb < ma and mb > 0.0:
+            heavy, light, sign = b, a, -1.0
+        else:
+            continue
+        press = sign * (force[heavy, 0] * manifold.normal_x + force[heavy, 1] * manifold.normal_y)
+        x, y = force[light, 0], force[light, 1]
+        if press > 0.0:
+            heaviest = max(heaviest, press / math.sqrt(x * x + y * y))
+    return heaviest

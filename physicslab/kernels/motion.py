@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, kernel
 
-__all__ = ["clear", "derive_masses", "drift", "find_not_finite", "kick"]
+__all__ = ["clear", "derive_masses", "drift", "find_not_finite", "foresee", "kick"]
 
 
 @kernel
@@ -47,9 +47,12 @@ def clear(force: Vectors, torque: Numbers) -> None:
 @kernel
 def kick(
     linear: Vectors, angular: Numbers, force: Vectors, torque: Numbers,
-    inverse_mass: Numbers, inverse_inertia: Numbers, linear_damping: float, angular_damping: float, h: float,
+    inverse_mass: Numbers, inverse_inertia: Numbers, tethered: Flags,
+    linear_damping: float, angular_damping: float, h: float,
 ) -> None:  # fmt: skip
     """Change velocities by constant forces over a time h, with damping dv/dt = -c v solved exactly.
+
+    What is tethered is left to the method that moves it.
 
     v(h) = v e^(-c h) + a (1 - e^(-c h)) / c, so that half kicks compose to whole ones.
     """
@@ -62,19 +65,35 @@ def kick(
         angular_decay = math.exp(-angular_damping * h)
         angular_gain = -math.expm1(-angular_damping * h) / angular_damping
     for i in range(len(inverse_mass)):
-        if inverse_mass[i] > 0.0:
+        if inverse_mass[i] > 0.0 and not tethered[i]:
             linear[i, 0] = linear[i, 0] * decay + force[i, 0] * inverse_mass[i] * gain
             linear[i, 1] = linear[i, 1] * decay + force[i, 1] * inverse_mass[i] * gain
             angular[i] = angular[i] * angular_decay + torque[i] * inverse_inertia[i] * angular_gain
 
 
 @kernel
-def drift(position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers, h: float) -> None:
-    """Move and turn every row at its present velocity for a time h."""
+def drift(
+    position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers, tethered: Flags, h: float
+) -> None:
+    """Move and turn every row that is not tethered at its present velocity for a time h."""
     for i in range(len(angle)):
-        position[i, 0] += h * linear[i, 0]
-        position[i, 1] += h * linear[i, 1]
-        angle[i] += h * angular[i]
+        if not tethered[i]:
+            position[i, 0] += h * linear[i, 0]
+            position[i, 1] += h * linear[i, 1]
+            angle[i] += h * angular[i]
+
+
+@kernel
+def foresee(
+    linear: Vectors, angular: Numbers, force: Vectors, torque: Numbers,
+    inverse_mass: Numbers, inverse_inertia: Numbers, gentle: Flags, h: float,
+) -> None:  # fmt: skip
+    """Change the velocities of the rows that are pulled gently by what the forces give them in a time h."""
+    for i in range(len(gentle)):
+        if gentle[i]:
+            linear[i, 0] += h * force[i, 0] * inverse_mass[i]
+            linear[i, 1] += h * force[i, 1] * inverse_mass[i]
+            angular[i] += h * torque[i] * inverse_inertia[i]
 
 
 @kernel

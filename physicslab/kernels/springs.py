@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 
-__all__ = ["spring_forces", "spring_potential", "spring_pull", "turned"]
+__all__ = ["mean_spring_pull", "spring_forces", "spring_potential", "spring_pull", "turn_over", "turned"]
 
 
 @inlined
@@ -28,6 +28,39 @@ def spring_pull(
         return 0.0, 0.0
     nx, ny = dx / length, dy / length
     pull = stiffness * (length - rest_length) + damping * (nx * vx + ny * vy)
+    return pull * nx, pull * ny
+
+
+@inlined
+def turn_over(angle: float) -> tuple[float, float]:
+    """Return by what an arm's mean and its mean rate are shorter over a turn by ``angle`` than at its middle.
+
+    The mean is that of the arm at the start and at the end, the rate that at which one leads to the other.
+    """
+    half = 0.5 * angle
+    if half == 0.0:
+        return 1.0, 1.0
+    return math.cos(half), math.sin(half) / half
+
+
+@inlined
+def mean_spring_pull(
+    dx: float, dy: float, vx: float, vy: float, span: float,
+    rest_length: float, stiffness: float, damping: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the force on A [N] whose work is all that the spring's energy loses while B goes on steadily.
+
+    The line from A to B goes within ``span`` seconds from l0 = d - span/2 v to l1 = d + span/2 v. The pull is
+    k ((|l0| + |l1|) / 2 - rest_length) along (l0 + l1) / (|l0| + |l1|), and the damper's by the mean rate of
+    lengthening (LaBudde & Greenspan, J. Comput. Phys. 15 (1974) 134).
+    """
+    rx, ry = 0.5 * span * vx, 0.5 * span * vy
+    lengths = math.sqrt((dx - rx) * (dx - rx) + (dy - ry) * (dy - ry))
+    lengths += math.sqrt((dx + rx) * (dx + rx) + (dy + ry) * (dy + ry))
+    if lengths == 0.0:
+        return 0.0, 0.0
+    nx, ny = 2.0 * dx / lengths, 2.0 * dy / lengths
+    pull = stiffness * (0.5 * lengths - rest_length) + damping * (nx * vx + ny * vy)
     return pull * nx, pull * ny
 
 

@@ -78,11 +78,11 @@ CROWDS = [
         right="they come apart, to a tenth of their size", figure="overlap after 2 s, of a radius", limit=0.2,
         measure=partial(_overlap, 2, 120),
     ),
-    *_cases(1_000, 200),
+    *_cases(1_000, 300),
     Case(
         name="crowd_1000_same", title="1,000 discs on one spot, twice", group="crowds",
         right="they go the same ways: no normal is left to chance", figure="difference of two runs", unit="m",
         limit=0.0, measure=partial(_difference, 1_000, 6),
     ),
-    *_cases(5_000, 300),
+    *_cases(5_000, 900),
 ]  # fmt: skip

@@ -34,7 +34,7 @@ def _lost(world: World, bodies: list[int], steps: int) -> float:
 def _masses() -> float:
     """Return what is lost of bodies from 1e-9 to 1e9 kg that fall on a floor and on each other."""
     world = open_space()
-    floor(world)
+    floor(world, width=1e5)  # what is squeezed out is flung far
     exponents = range(-9, 10)
     made = [
         circle(world, (0.6 * (e % 5), 0.3 + 0.6 * n), radius=0.25, mass=10.0**e)

@@ -39,14 +39,17 @@ class DragSystem(ForceSystem):
         numbers = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
         return PackedForce(packed_forces.drag, numbers, np.concatenate(([len(rows)], slots.place[rows])))
 
-    def strongest_rate(self, world: World) -> float:
-        """Return the fastest rate of slowing down at the present speeds [1/s]."""
+    def rates(self, world: World) -> NDArray[np.float64]:
+        """Return for each row the rate at which it slows down at its present speed [1/s]."""
         table, rows = world.table(Drag), world.batch(*self.needs).rows
         speed = np.hypot(*world.table(Velocity)["linear"][rows].T)
-        rates = (table["linear"][rows] + 2.0 * table["quadratic"][rows] * speed) * world.bodies.inverse_mass[
-            rows
-        ]
-        return float(rates.max())
+        rates = np.zeros(len(world.roster))
+        rates[rows] = table["linear"][rows] + 2.0 * table["quadratic"][rows] * speed
+        return rates * world.bodies.inverse_mass
+
+    def strongest_rate(self, world: World) -> float:
+        """Return the largest of :meth:`rates`."""
+        return float(self.rates(world).max())
 
     def settings(self, world: World) -> bytes:
         """Return both coefficients of every body."""

@@ -74,7 +74,7 @@ class GravitySystem(ForceSystem):
         """Return the pull for compiled integrators."""
         physics, mass = world.physics, world.table(Mass)["mass"]
         if physics.gravity_mode == "linear":
-            rows = np.flatnonzero(world.bodies.inverse_mass > 0.0)
+            rows = np.flatnonzero((world.bodies.inverse_mass > 0.0) & (slots.place >= 0))
             whole = np.concatenate(([len(rows)], slots.place[rows]))
             numbers = np.concatenate(((physics.gravity.x, physics.gravity.y), mass[rows]))
             return PackedForce(packed_forces.uniform_gravity, numbers, whole)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from physicslab.advice import Advice, advise
 from physicslab.schedule import Stage, System, at
+from physicslab.view.advice import draw_advice
 from physicslab.view.canvas import TextStyle
 from physicslab.view.controls import CONTROLS
 from physicslab.view.edge_arrows import draw_edge_arrows
@@ -63,6 +65,7 @@ class HudSystem(System):
         self._world: World | None = None
         self._panels: list[Panel] = []
         self._legend: Legend | None = None
+        self._advice: tuple[Advice, ...] = ()
         self._overlays = (False, False, True)
         self._middle = 0
         self._hint: Hint
@@ -161,6 +164,7 @@ class HudSystem(System):
         width, margin = round(_PANEL * size), round(_MARGIN * size)
         top = self._toolbar.height + margin
         measured = measure_world(world, self._watch)
+        self._advice = advise(world)
         figures = figure_lines(world, measured, self._meter.frame_rate)
         costs = [*cost_lines(world, self._meter), *left_out_lines(world)]
         plain = [line for line in figures if line.kind != "detail"]
@@ -211,7 +215,17 @@ class HudSystem(System):
         for words, colour in self._banners(world):
             taken.append(draw_pill([words], self._middle, top, size + 2, colour, window.canvas, window.theme))
             top += size // 2 + taken[-1][3]
-        return taken
+        advice = draw_advice(
+            self._advice, self._middle, top, self._between, size, window.canvas, window.theme
+        )
+        return [*taken, *([advice] if advice is not None else [])]
+
+    @property
+    def _between(self) -> int:
+        """The room between the panels at the sides [px]."""
+        across, margin = self._window.canvas.size[0], round(_MARGIN * self._text_size)
+        left, right = self._sides() if self._panels else (0, across)
+        return right - left - 2 * margin
 
     def _banners(self, world: World) -> list[tuple[str, Colour]]:
         window, theme = self._window, self._window.theme

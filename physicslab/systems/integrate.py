@@ -18,10 +18,25 @@ class IntegrateSystem(System):
     """Moves and turns every body that has a Velocity, when the integrator's plan says so."""
 
     needs = (Transform, Velocity)
-    kernels = (motion.drift,)
+    kernels = (motion.drift, motion.foresee)
 
     @at(Stage.DRIFT)
     def drift(self, world: World, h: float) -> None:
-        """Move at the present velocity for a time h."""
+        """Move at the present velocity for a time h, and what is tethered as its tethers have it."""
         transform, velocity = world.table(Transform), world.table(Velocity)
-        motion.drift(transform["position"], transform["angle"], velocity["linear"], velocity["angular"], h)
+        motion.drift(
+            transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
+            world.bodies.tethered, h,
+        )  # fmt: skip
+        if world.tethers is not None:
+            world.tethers.move(world, h)
+
+    @at(Stage.FORESEE)
+    def foresee(self, world: World, h: float) -> None:
+        """Show contacts the velocity that tethers will bring about in a time h; take it back with -h."""
+        if world.tethers is not None:
+            bodies, velocity = world.bodies, world.table(Velocity)
+            motion.foresee(
+                velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
+                bodies.inverse_mass, bodies.inverse_inertia, world.tethers.gentle, h,
+            )  # fmt: skip

@@ -85,8 +85,8 @@ class SpringSystem(ForceSystem):
             numbers[:, column] = spring[name][rows]
         return PackedForce(packed_forces.springs, numbers.ravel(), whole)
 
-    def strongest_rate(self, world: World) -> float:
-        """Return a bound on the fastest oscillation or decay [rad/s].
+    def rates(self, world: World) -> NDArray[np.float64]:
+        """Return for each row a bound on its fastest oscillation or decay [rad/s].
 
         Of a body's springs the stiffnesses add up, weighed with the masses at both ends; no eigenvalue of the
         whole lies outside these sums (Gershgorin).
@@ -100,7 +100,11 @@ class SpringSystem(ForceSystem):
             np.add.at(damped, end, 2.0 * spring["damping"][self._rows] * give)
         fixed = (bodies.inverse_mass[self._a] == 0.0) | (bodies.inverse_mass[self._b] == 0.0)
         share = 0.5 if fixed.all() else 1.0  # no pair of bodies moves against each other
-        return max(float(np.sqrt(share * stiff.max())), float(share * damped.max()))
+        return np.maximum(np.sqrt(share * stiff), share * damped)
+
+    def strongest_rate(self, world: World) -> float:
+        """Return the largest of :meth:`rates`."""
+        return float(self.rates(world).max())
 
     def may_be_singular(self, world: World) -> bool:
         """Whether there is energy enough to press a spring together to nothing, where it has no direction.

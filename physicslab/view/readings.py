@@ -77,9 +77,16 @@ def method_lines(world: World) -> list[Line]:
         Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
         Line(world.method.integrator.title, kind="remark"),
         Line(f"because: {world.method.reason}", kind="remark"),
+        *_division_lines(world),
         *(Line(f"{_plain(name)} is computed by Python: slower", kind="remark") for name in world.interpreted),
         *_collision_lines(world),
     ]
+
+
+def _division_lines(world: World) -> list[Line]:
+    if world.divided <= 1:
+        return []
+    return [Line(f"the last step was divided into {world.divided}", kind="remark")]
 
 
 def _collision_lines(world: World) -> list[Line]:

@@ -12,6 +12,7 @@ from physicslab.view.controls import CONTROLS, Control
 from physicslab.view.menus import MENUS, Choice
 from physicslab.view.panels import text_size
 from physicslab.view.popup import Popup
+from physicslab.view.recovery_bar import RecoveryBar
 from physicslab.view.widgets import Button, Widgets
 
 if TYPE_CHECKING:
@@ -38,10 +39,6 @@ class Toolbar:
     window : Window
         What is shown and what is on.
 
-    Attributes
-    ----------
-    height : int
-        What it takes up of the window [px], from the top down.
     """
 
     def __init__(self, window: Window) -> None:
@@ -52,17 +49,31 @@ class Toolbar:
         self._buttons: dict[Control, Button] = {
             control: self._button(control) for control in (*CONTROLS, _MORE) if control.icon
         }
-        self._popup = Popup(self._widgets, lambda choice: self._asked.append(choice))
+        self._popup = Popup(self._widgets, self._asked_for)
+        self._bar = RecoveryBar(self._widgets, window, self._asked_for)
         self._laid_out: tuple[object, ...] = ()
         self._hidden: list[Control] = []
         self._look_at = 0.0
         self._menu = ""
         self._resting: tuple[Button | None, float] = (None, 0.0)
-        self.height = 0
+        self._height = 0
         self.lay_out()
 
     def _button(self, control: Control) -> Button:
         return self._widgets.button(lambda: self._asked.append(control), icon=control.icon)
+
+    def _asked_for(self, choice: Choice) -> None:
+        self._asked.append(choice)
+
+    @property
+    def height(self) -> int:
+        """What it takes up of the window [px], from the top down, with what is offered below it."""
+        return self._height + self._bar.height
+
+    @property
+    def offers(self) -> dict[str, Rect]:
+        """Where the buttons of the recovery bar are, by what they say [px]."""
+        return self._bar.places
 
     @property
     def _text_size(self) -> int:
@@ -91,6 +102,7 @@ class Toolbar:
         window, size = self._window, self._window.canvas.size
         now = (size, window.theme)
         if now == self._laid_out:
+            self._bar.lay_out(self._height, self._text_size)
             return
         self._laid_out = now
         self._widgets.resize(size)
@@ -104,8 +116,9 @@ class Toolbar:
                 kept.remove(next((c for c in reversed(kept) if c.minor and not c.menu), kept[-1]))
             shown = [*kept, _MORE]
         self._hidden = [control for control in self._buttons if control not in shown and control is not _MORE]
-        self.height = side + 2 * pad
-        self._plate.put((0, 0, max(size[0], 2), self.height))
+        self._height = side + 2 * pad
+        self._plate.put((0, 0, max(size[0], 2), self._height))
+        self._bar.lay_out(self._height, self._text_size)
         x, before = max((size[0] - self._width(shown, side)) // 2, pad), shown[0].group
         for control, button in self._buttons.items():
             if control not in shown:
@@ -198,6 +211,7 @@ class Toolbar:
     def draw(self) -> None:
         """Draw it, with the tip of the button that the cursor rests on."""
         self._window.canvas.paint(self._widgets.draw)
+        self._bar.draw()
         self._draw_tip()
 
     def _draw_tip(self) -> None:

@@ -14,6 +14,7 @@ from physicslab.view.error_study import ErrorStudy
 from physicslab.view.extent import extent_of
 from physicslab.view.hand import Hand
 from physicslab.view.overlays import Overlays
+from physicslab.view.recovery import Recovery
 from physicslab.view.sparks import Sparks
 from physicslab.view.spring_tool import SpringTool
 from physicslab.view.theme import DARK, Theme
@@ -82,6 +83,8 @@ class Window:
         The world that is to be shown in place of the present one from the next frame on.
     notice_failed : bool
         Whether the notice is of something that could not be done.
+    recovery : Recovery
+        What sessions that ended without closing have left.
     """
 
     def __init__(self, canvas: Canvas, config: WindowConfig | None = None, theme: Theme = DARK) -> None:
@@ -111,6 +114,7 @@ class Window:
         self.scene_file: Path | None = None
         self.next_world: World | None = None
         self.notice_failed = False
+        self.recovery = Recovery()
         self._notice, self._notice_until = "", 0.0
         self._shown: tuple[Vector2, float, float] | None = None
 

@@ -1,0 +1,107 @@
+"""The near pairs of a world as columns: who is near whom, how deep, how fast and under what load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Mass, Velocity
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["Near", "near_pairs"]
+
+_ABOVE = 0.5
+"""Cosine between gravity and the normal from which on one body lies on the other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Near:
+    """Near pairs, and those of them that touch.
+
+    Attributes
+    ----------
+    a, b : int64 arrays (pairs,)
+        Rows of the bodies; 0 for the world's bounds.
+    size : float64 array (pairs,)
+        Of the smaller body [m].
+    touching : int64 array (touching,)
+        Which pairs touch.
+    depth : float64 array (touching,)
+        How deep these overlap [m]; negative where they are apart.
+    normal : float64 array (touching, 2)
+        Unit vectors from A to B.
+    """
+
+    a: NDArray[np.int64]
+    b: NDArray[np.int64]
+    size: NDArray[np.float64]
+    touching: NDArray[np.int64]
+    depth: NDArray[np.float64]
+    normal: NDArray[np.float64]
+
+    def lighter(self, world: World, pair: int) -> str:
+        """Return the name of the lighter body of a pair."""
+        inverse = world.bodies.inverse_mass
+        row = self.a[pair] if inverse[self.a[pair]] > inverse[self.b[pair]] else self.b[pair]
+        return world.label(int(world.roster.entities[row]))
+
+    def faster(self, world: World, pair: int) -> str:
+        """Return the name of the faster body of a pair."""
+        linear = world.table(Velocity)["linear"]
+        a, b = int(self.a[pair]), int(self.b[pair])
+        row = a if np.hypot(*linear[a]) > np.hypot(*linear[b]) else b
+        return world.label(int(world.roster.entities[row]))
+
+    def crowded(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return which pairs have a body that is in several of the ``chosen`` pairs."""
+        if not chosen.any():
+            return chosen
+        rows = int(max(self.a.max(), self.b.max())) + 1
+        count = np.bincount(self.a[chosen], minlength=rows) + np.bincount(self.b[chosen], minlength=rows)
+        count[0] = 0  # the bounds are near to many, and are no crowd
+        return chosen & ((count[self.a] > 1) | (count[self.b] > 1))
+
+    def loads(self, world: World) -> NDArray[np.float64]:
+        """Return the mass ratio of each touching pair in which the heavier body lies on the lighter; else 0.
+
+        The lighter one must touch something else too, which holds it. Without uniform gravity nothing lies on
+        anything, and what is squeezed counts.
+        """
+        a, b = self.a[self.touching], self.b[self.touching]
+        inverse = world.bodies.inverse_mass
+        free = (inverse[a] > 0.0) & (inverse[b] > 0.0)
+        ratio = np.zeros(len(a))
+        if not free.any():
+            return ratio
+        mass = world.table(Mass)["mass"]
+        ratio[free] = np.maximum(mass[a[free]] / mass[b[free]], mass[b[free]] / mass[a[free]])
+        light = np.where(mass[a] < mass[b], a, b)
+        count = np.bincount(np.concatenate((a, b)))
+        ratio[count[light] < 2] = 0.0
+        if world.physics.gravity_mode == "linear" and world.physics.gravity:
+            down = np.array(tuple(world.physics.gravity.normalized))
+            towards_light = np.where(light == b, 1.0, -1.0) * (self.normal @ down)
+            ratio[towards_light < _ABOVE] = 0.0
+        return ratio
+
+
+def near_pairs(world: World) -> Near:
+    """Return the near pairs of the last step."""
+    contacts = world.contacts
+    manifolds = contacts.manifolds[: contacts.candidate_pairs]
+    touching = contacts.touching[: contacts.count]
+    held = manifolds[touching]
+    separation = contacts.points["separation"]
+    first, second = separation[2 * touching], separation[2 * touching + 1]
+    depth = -np.where(held["count"] > 1, np.minimum(first, second), first)
+    depth[held["count"] <= 0] = 0.0
+    size = np.where(manifolds["size"] > 0.0, manifolds["size"], np.inf)  # 0 where nothing was measured yet
+    return Near(
+        manifolds["a"].copy(), manifolds["b"].copy(), size, touching.copy(), depth,
+        np.stack((held["normal_x"], held["normal_y"]), axis=1),
+    )  # fmt: skip

@@ -1,0 +1,261 @@
+"""Advice: said where something is not to be trusted, and nowhere else."""
+
+import itertools
+import json
+import math
+from pathlib import Path
+
+import pytest
+from desk import Desk, empty_world
+from test_hud import frame, recorded
+
+from physicslab.advice import Advice, WorstAdvice, advise
+from physicslab.cli import main
+from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.config import SimulationConfig
+from physicslab.prefabs import box, circle, stack
+from physicslab.scene import load_scene, save_scene
+from physicslab.scenes import SCENES
+from physicslab.systems.standard import standard_systems
+from physicslab.view.advice import draw_advice
+from physicslab.view.canvas import RecordingCanvas, TextStyle
+from physicslab.view.theme import THEMES
+from physicslab.world import World
+
+
+def open_world(**simulation: object) -> World:
+    return World(*standard_systems(), simulation=SimulationConfig(**simulation))  # type: ignore[arg-type]
+
+
+def floor(world: World) -> None:
+    box(world, (0, -0.5), width=20, height=1, static=True)
+
+
+def hang(world: World, stiffness: float) -> None:
+    bob = world.spawn(Transform((0, -1.5)), Velocity(), Mass(1.0), name="bob")
+    world.spawn(Spring(a=bob, anchor_b=(0, 0), rest_length=1.0, stiffness=stiffness), name="rope")
+
+
+def only(world: World, words: str) -> Advice:
+    (found,) = [advice for advice in advise(world) if words in advice.what]
+    return found
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_built_in_scenes_need_no_advice(name: str) -> None:
+    world, worst = load_scene(name), WorstAdvice()
+    for _ in world.stepping(seconds=3.0, stride=6):
+        worst.note(advise(world))
+    assert [str(advice) for advice in worst.all] == []
+
+
+@pytest.mark.parametrize("method", ["leapfrog", "symplectic_euler", "rk4"])
+def test_the_setting_that_is_named_helps(method: str) -> None:
+    world = open_world(integrator=method)
+    hang(world, 1e6)
+    world.synchronise()
+    found = only(world, "too stiff")
+    assert (found.entity, found.unit) == ("rope", "")
+    assert found.value == pytest.approx(1e3 / 60 / 4) and found.value > found.limit  # type: ignore[operator]
+    name, value = found.setting.split(" = ")
+    assert name == "simulation.substeps"
+    world.simulation = SimulationConfig(integrator=method, substeps=int(value))
+    world.synchronise()
+    assert advise(world) == ()
+    world.simulation = SimulationConfig(integrator=method, substeps=int(value) - 1)
+    world.synchronise()
+    assert only(world, "coarsely").setting == found.setting
+
+
+@pytest.mark.parametrize("method", ["auto", "implicit_midpoint"])
+def test_what_is_too_fast_to_be_followed_is_said(method: str) -> None:
+    world = open_world(integrator=method)
+    hang(world, 1e12)
+    world.spawn(Transform((3, 0)), Velocity(), Mass(1.0), name="far")
+    world.spawn(Spring(a=world.entity("far"), b=world.entity("bob"), stiffness=1.0, damping=0.1))
+    world.synchronise()
+    found = only(world, "too fast to be followed")
+    assert found.entity == "rope"
+    name, value = found.setting.split(" = ")
+    dt = float(value) if name == "simulation.dt" else world.simulation.dt
+    assert name == "simulation.dt"
+    world.simulation = SimulationConfig(integrator=method, dt=dt)
+    world.synchronise()
+    assert not [advice for advice in advise(world) if "too fast" in advice.what]
+
+
+def test_what_chooses_its_steps_or_is_exact_needs_no_advice() -> None:
+    for method in ("auto", "exact", "dop853"):
+        world = open_world(integrator=method)
+        bob = world.spawn(Transform((0, -1.5)), Velocity(), Mass(1.0))
+        world.spawn(Spring(a=bob, anchor_b=(0, 0), rest_length=0.0, stiffness=1e6))
+        world.synchronise()
+        assert advise(world) == ()
+
+
+def test_what_was_asked_for_and_refused_is_said() -> None:
+    world = open_world(integrator="exact", collisions="exact")
+    floor(world)
+    box(world, (0, 0.25), angular_velocity=1.0)
+    world.synchronise()
+    settings = {advice.setting for advice in advise(world)}
+    assert settings == {'simulation.integrator = "auto"', 'simulation.collisions = "auto"'}
+
+
+def test_a_divided_step_is_said() -> None:
+    world = open_world()
+    floor(world)
+    stack(world, 2)
+    world.step(0.05)
+    found = only(world, "divided")
+    assert (found.value, found.limit, world.divided) == (3.0, 1.0, 3)
+    world.step()
+    assert advise(world) == ()
+
+
+@pytest.mark.parametrize(("ratio", "said"), [(25.0, False), (40.0, True), (1e6, True)])
+def test_a_load_that_contacts_do_not_hold_is_said(ratio: float, said: bool) -> None:
+    world = open_world()
+    floor(world)
+    box(world, (0, 0.5), width=1, height=1, mass=1.0, name="light")
+    box(world, (0, 1.5), width=1, height=1, mass=ratio)
+    world.run(steps=3)
+    found = [advice for advice in advise(world) if "heavier" in advice.what]
+    assert [advice.entity for advice in found] == (["light"] if said else [])
+    assert all(advice.value == pytest.approx(ratio) for advice in found)
+
+
+def test_a_heavy_body_beside_or_below_a_light_one_is_no_load() -> None:
+    world = open_world()
+    floor(world)
+    box(world, (0, 0.5), width=1, height=1, mass=1e6)
+    box(world, (0, 1.5), width=1, height=1, mass=1.0)
+    box(world, (1.0, 0.5), width=1, height=1, mass=1.0)
+    world.run(steps=5)
+    assert advise(world) == ()
+
+
+def test_overlap_is_said_until_it_is_gone() -> None:
+    world = open_world()
+    for n in range(40):
+        circle(world, (0.001 * n, 0.0), radius=0.5)
+    world.step()
+    found = only(world, "pressed into")
+    assert found.unit == "m" and found.value == pytest.approx(world.contacts.max_penetration, rel=0.2)
+
+
+def test_speed_matters_in_a_crowd_and_not_alone() -> None:
+    world = open_world(collisions="step")
+    world.physics = type(world.physics)(gravity_mode="none")
+    box(world, (5, 0), width=1, height=9, static=True, restitution=1.0)
+    circle(world, (0, 0), radius=0.1, velocity=(1e4, 0.0), restitution=1.0, name="bullet")
+    world.step()
+    assert advise(world) == ()
+    for x, y in itertools.product((-3.0, -2.0, -1.0, 1.0, 2.0), (-0.1, 0.1)):
+        circle(world, (x, y), radius=0.1, restitution=1.0)
+    world.component(world.entity("bullet"), Transform).position = (-4.0, 0.0)
+    world.component(world.entity("bullet"), Velocity).linear = (1e4, 0.0)
+    world.step()
+    worst = WorstAdvice()
+    worst.note(advise(world))
+    (found,) = [advice for advice in worst.all if "sizes of a body" in advice.what]
+    assert found.excess > 10.0 and found.setting.startswith("simulation.substeps = ")
+
+
+def test_a_box_that_spins_fast_is_said_near_others_alone() -> None:
+    world = open_world(collisions="step")
+    floor(world)
+    box(world, (0, 50.0), angular_velocity=500.0)
+    world.step()
+    assert advise(world) == ()
+    box(world, (0, 0.3), angular_velocity=500.0, friction=0.0, name="top")
+    world.step()
+    found = only(world, "corners")
+    assert (found.entity, found.unit) == ("top", "rad")
+    assert found.value == pytest.approx(500.0 / 240, rel=0.3)
+
+
+@pytest.mark.parametrize(("where", "said"), [(1e6, False), (1e8, False), (2e9, True)])
+def test_what_is_too_far_out_is_said(where: float, said: bool) -> None:
+    world = open_world()
+    circle(world, (where, 0.0), radius=0.5)
+    world.synchronise()
+    assert bool(advise(world)) is said
+
+
+def test_the_worst_of_each_kind_is_kept() -> None:
+    worst = WorstAdvice()
+    for value in (2.0, 5.0, 3.0):
+        worst.note([Advice("a", "one", value, "m", 1.0, ""), Advice(None, "two", None, "", None, "x")])
+    assert [(advice.what, advice.value) for advice in worst.all] == [("one", 5.0), ("two", None)]
+
+
+def test_a_look_changes_nothing() -> None:
+    worlds = load_scene("pile"), load_scene("pile")
+    for _ in range(30):
+        for world in worlds:
+            world.step()
+        advise(worlds[0])
+    one, two = (world.table(Transform)["position"].tobytes() for world in worlds)
+    assert one == two
+
+
+def test_run_writes_advice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    world = open_world(integrator="leapfrog")
+    hang(world, 4e4)
+    save_scene(world, tmp_path / "stiff.json")
+    command, output = ["run", str(tmp_path / "stiff.json"), "--steps", "20"], tmp_path / "o.json"
+    assert main([*command, "--json", str(output)]) == 0
+    document = json.loads(output.read_text())
+    assert document["divided"] == 1
+    (found,) = document["advice"]
+    assert list(found) == ["entity", "what", "value", "unit", "limit", "setting"]
+    assert found["entity"] == "rope" and found["value"] == pytest.approx(200 / 240)
+    capsys.readouterr()
+    assert main(command) == 0
+    (line,) = [line for line in capsys.readouterr().out.splitlines() if line.startswith("  advice")]
+    assert "rope" in line and found["setting"] in line
+
+
+def test_the_hud_says_it_in_words() -> None:
+    world = empty_world()
+    floor(world)
+    box(world, (0, 0.5), width=1, height=1, mass=1.0, name="light")
+    box(world, (0, 1.5), width=1, height=1, mass=1000.0)
+    desk, canvas = recorded(world)
+    frame(desk, canvas)
+    words = [text["words"] for text in canvas.called("text")]
+    assert any(word.startswith("! ADVICE") for word in words) and any("light" in word for word in words)
+    world.clear()
+    frame(desk, canvas)
+    assert not any(text["words"].startswith("! ADVICE") for text in canvas.called("text"))
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (800, 600)])
+def test_the_advice_lies_over_no_panel(size: tuple[int, int]) -> None:
+    world = empty_world()
+    floor(world)
+    box(world, (0, 0.5), width=1, height=1, mass=1.0, name="light")
+    box(world, (0, 1.5), width=1, height=1, mass=1000.0)
+    canvas = RecordingCanvas(size)
+    desk = Desk(world, canvas)
+    frame(desk, canvas)
+    (advice,) = [p["rect"] for p in canvas.called("panel") if p["outline"] == desk.window.theme.warning]
+    others = [p["rect"] for p in canvas.called("panel") if p["outline"] != desk.window.theme.warning]
+    for x, y, wide, high in others:
+        apart_x = x >= advice[0] + advice[2] or advice[0] >= x + wide
+        apart_y = y >= advice[1] + advice[3] or advice[1] >= y + high
+        assert apart_x or apart_y
+
+
+def test_at_most_three_are_said_and_the_rest_counted() -> None:
+    canvas = RecordingCanvas((800, 600))
+    many = [Advice(f"body {n}", f"kind {n}", float(n), "", 1.0, "") for n in range(2, 8)]
+    rect = draw_advice(many, 400, 50, 300, 12, canvas, THEMES[0])
+    words = [text["words"] for text in canvas.called("text")]
+    assert sum("body" in word for word in words) == 3 and "body 7" in words[1] and words[-1] == "and 3 more"
+    assert rect is not None and rect[2] <= 300
+    style = TextStyle(11, THEMES[0].warning, bold=True)
+    assert all(canvas.text_size(word, style)[0] <= 300 for word in words)
+    assert draw_advice([], 400, 50, 300, 12, canvas, THEMES[0]) is None
+    assert math.isinf(Advice(None, "x", None, "", None, "").excess)

@@ -1,0 +1,158 @@
+"""Saving never destroys: a kill in the middle, or a full disk, leaves the old file whole."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pygame
+import pytest
+from desk import Desk
+
+from physicslab.autosave import Autosave
+from physicslab.cli import main
+from physicslab.file_replacement import remove_leftovers, replace_file
+from physicslab.scene import load_scene, save_scene
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="signals and limits of POSIX")
+
+CTRL = pygame.KMOD_LCTRL
+
+WRITER = """
+import os, signal, sys, threading
+from pathlib import Path
+from physicslab.scene import load_scene, save_scene
+from physicslab.autosave import Autosave
+from physicslab.cli import main
+way, path, moment = sys.argv[1], Path(sys.argv[2]), sys.argv[3]
+
+def die(*arguments, **named):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+class Half:
+    def __init__(self, file): self.file = file
+    def __enter__(self): return self
+    def __exit__(self, *why): self.file.close()
+    def write(self, content):
+        self.file.write(content[: len(content) // 2]); self.file.flush(); die()
+
+if moment == "write":
+    import builtins
+    import physicslab.file_replacement as module
+    module.open = lambda name, mode: Half(builtins.open(name, mode))
+else:
+    setattr(os, moment, die)
+world = load_scene("stack")
+if way == "save_scene":
+    save_scene(world, path)
+elif way == "json":
+    main(["run", "drop", "--steps", "3", "--json", str(path)])
+else:
+    autosave = Autosave(path, period=0.0, share=60.0)
+    while True:
+        autosave.advance(world)
+"""
+
+
+@pytest.mark.parametrize(
+    ("way", "moment"),
+    [
+        ("save_scene", "write"), ("save_scene", "fsync"), ("save_scene", "replace"),
+        ("json", "write"), ("autosave", "write"), ("autosave", "replace"),
+    ],
+)  # fmt: skip
+def test_a_kill_in_the_middle_leaves_the_old_file_whole(way: str, moment: str, tmp_path: Path) -> None:
+    path = tmp_path / "kept.json"
+    save_scene(load_scene("drop"), path)
+    old = path.read_bytes()
+    command = [sys.executable, "-c", WRITER, way, str(path), moment]
+    done = subprocess.run(command, capture_output=True, timeout=100, check=False)
+    assert done.returncode == -9, done.stderr.decode()
+    assert path.read_bytes() == old
+    (left,) = set(tmp_path.iterdir()) - {path}
+    assert left.name.startswith(".kept.json.") and left.name.endswith(".physicslab-tmp")
+    replace_file(path, b"new")
+    assert left.exists(), "another process might still write it"
+    os.utime(left, (0, 0))
+    replace_file(path, b"newer")
+    assert list(tmp_path.iterdir()) == [path] and path.read_bytes() == b"newer"
+
+
+def test_a_writer_killed_at_any_time_leaves_one_whole_file(tmp_path: Path) -> None:
+    path = tmp_path / "kept.bin"
+    code = (
+        "import sys; from physicslab.file_replacement import replace_file\n"
+        "n = 0\n"
+        "while True:\n"
+        "    n = (n + 1) % 250; replace_file(sys.argv[1], bytes([n]) * 3_000_000)\n"
+        "    n == 1 and print('on', flush=True)"
+    )
+    for wait in (0.0, 0.003, 0.01, 0.02, 0.05):
+        command = [sys.executable, "-c", code, str(path)]
+        with subprocess.Popen(command, stdout=subprocess.PIPE) as writer:
+            assert writer.stdout is not None
+            writer.stdout.readline()
+            time.sleep(wait)
+            writer.kill()
+        content = path.read_bytes()
+        assert len(content) == 3_000_000 and len(set(content)) == 1
+    remove_leftovers(path)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("way", ["save_scene", "json", "autosave", "ctrl+s"])
+def test_a_full_disk_leaves_the_old_file_whole(
+    way: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "kept.json"
+    save_scene(load_scene("drop"), path)
+    old = path.read_bytes()
+
+    def no_room(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("physicslab.file_replacement.os.fsync", no_room)
+    world = load_scene("stack")
+    if way == "save_scene":
+        with pytest.raises(OSError, match="No space left"):
+            save_scene(world, path)
+    elif way == "json":
+        assert main(["run", "drop", "--steps", "3", "--json", str(path)]) == 1
+        assert "No space left on device" in capsys.readouterr().err
+    elif way == "autosave":
+        autosave = Autosave(path, period=0.0, share=60.0)
+        while not autosave.failure:
+            autosave.advance(world)
+        assert "No space left" in autosave.failure
+    else:
+        desk = Desk(world)
+        desk.key("s", CTRL)
+        desk.frames()
+        assert "could not be saved" in desk.window.notice and "No space left" in desk.window.notice
+    assert list(tmp_path.iterdir()) == [path] and path.read_bytes() == old
+
+
+@pytest.mark.parametrize("way", ["save_scene", "json"])
+def test_a_limit_on_the_size_of_files_leaves_the_old_file_whole(way: str, tmp_path: Path) -> None:
+    """The system itself refuses to write on, in the middle of the file."""
+    path = tmp_path / "kept.json"
+    save_scene(load_scene("drop"), path)
+    old = path.read_bytes()
+    code = (
+        "import resource, signal, sys\n"
+        "from physicslab.cli import main\n"
+        "from physicslab.scene import load_scene, save_scene\n"
+        "world = load_scene('stack')\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))\n"
+        "if sys.argv[1] == 'json':\n"
+        "    sys.exit(main(['run', 'drop', '--steps', '3', '--json', sys.argv[2]]))\n"
+        "try: save_scene(world, sys.argv[2])\n"
+        "except OSError as error: print(error, file=sys.stderr); sys.exit(1)\n"
+    )
+    command = [sys.executable, "-c", code, way, str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=100, check=False)
+    assert done.returncode == 1 and "File too large" in done.stderr
+    assert list(tmp_path.iterdir()) == [path] and path.read_bytes() == old

@@ -1,0 +1,203 @@
+"""What springs and drag act on beside contacts moves as their forces have it, however stiff they are."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from physicslab.components import Drag, Held, Mass, Spring, Transform, Velocity
+from physicslab.config import PhysicsConfig
+from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.integrators.blanes_moan import BLANES_MOAN
+from physicslab.integrators.dop853 import DOP853
+from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
+from physicslab.prefabs import box, circle
+from physicslab.stability.worlds import floor, open_space, place
+from physicslab.world import World
+
+
+def far_floor(world: World) -> World:
+    """Return a world in which things could touch, and do not."""
+    box(world, (0.0, -1e3), width=1.0, height=1.0, static=True)
+    return world
+
+
+def hung(stiffness: float, **spring: float) -> tuple[World, int]:
+    world = far_floor(open_space(gravity=None))
+    bob = circle(world, (0.0, -1.01), radius=0.1, velocity=(0.01, 0.0))
+    world.add(bob, Spring(rest_length=1.0, stiffness=stiffness, **spring))
+    return world, bob
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "method"), [(50.0, BLANES_MOAN), (1e6, BLANES_MOAN), (1e12, IMPLICIT_MIDPOINT)]
+)
+def test_the_method_goes_by_the_stiffness_and_the_reason_says_so(stiffness: float, method: object) -> None:
+    world, _ = hung(stiffness)
+    world.synchronise()
+    assert world.method.tethers is method
+    assert f"goes by {world.method.tethers.name}" in world.method.reason
+    assert ("too fast to be followed" in world.method.reason) == (method is IMPLICIT_MIDPOINT)
+
+
+def test_dampers_are_followed_by_an_adaptive_method() -> None:
+    world, _ = hung(50.0, damping=1.0)
+    world.synchronise()
+    assert world.method.tethers is DOP853
+
+
+def test_a_method_asked_for_by_name_is_used() -> None:
+    world = far_floor(open_space(integrator="leapfrog"))
+    circle(world, (0.0, 0.0), radius=0.1)
+    world.spawn(Spring(2, None, stiffness=10.0))
+    world.synchronise()
+    assert world.method.tethers is None
+    assert not world.bodies.tethered.any()
+
+
+def test_what_no_spring_holds_is_not_tethered() -> None:
+    world, bob = hung(50.0)
+    free = circle(world, (5.0, 0.0), radius=0.1)
+    world.synchronise()
+    assert world.bodies.tethered[world.roster.row_of[bob]]
+    assert not world.bodies.tethered[world.roster.row_of[free]]
+
+
+@given(rate=st.floats(0.1, 6000.0), start=st.floats(0.001, 0.4))
+@settings(max_examples=15, deadline=None)
+def test_an_oscillation_is_that_of_the_formula(rate: float, start: float) -> None:
+    world = far_floor(open_space(gravity=None))
+    bob = circle(world, (1.0 + start, 0.0), radius=0.1)
+    world.add(bob, Spring(rest_length=1.0, stiffness=rate**2))
+    world.run(seconds=0.5)
+    assert place(world, bob).x == pytest.approx(1.0 + start * math.cos(0.5 * rate), abs=1e-8 * rate * start)
+
+
+def test_the_scene_beside_it_moves_as_it_would_without() -> None:
+    def fallen(tethered: bool) -> float:
+        world = far_floor(open_space())
+        ball = circle(world, (0.0, 0.0), radius=0.1)
+        if tethered:
+            circle(world, (5.0, 0.0), radius=0.1)
+            world.spawn(Spring(3, None, anchor_b=(5.0, 1.0), rest_length=1.0, stiffness=1e4))
+        world.run(seconds=1.0)
+        return place(world, ball).y
+
+    assert fallen(True) == fallen(False)
+
+
+@pytest.mark.parametrize("stiffness", [10.0, 1e3, 1e5, 1e7, 1e9])
+def test_what_a_spring_presses_on_the_floor_stays_there(stiffness: float) -> None:
+    world = open_space()
+    floor(world)
+    block = box(world, (0.0, 0.5), width=1.0, height=1.0, mass=1.0)
+    world.add(block, Spring(None, None, (0.0, 0.0), (0.0, 2.5), 2.0 + 100.0 / stiffness, stiffness))
+    world.run(seconds=3.0)
+    assert place(world, block).y == pytest.approx(0.5, abs=0.003)
+    assert place(world, block).x == pytest.approx(0.0, abs=1e-4)
+    assert world.component(block, Velocity).linear.magnitude < 1e-4
+
+
+def test_drag_brings_a_body_to_its_limit_beside_contacts() -> None:
+    for coefficient in (0.5, 1e6, 1e12):
+        world = far_floor(open_space())
+        ball = circle(world, (0.0, 0.0), radius=0.1, mass=1.0)
+        world.add(ball, Drag(linear=coefficient))
+        lowest = 0.0
+        for _ in world.stepping(seconds=20.0 if coefficient < 1.0 else 1.0):
+            lowest = min(lowest, world.component(ball, Velocity).linear.y)
+        limit = -9.81 / coefficient
+        assert lowest >= limit * (1.0 + 1e-9)
+        assert world.component(ball, Velocity).linear.y == pytest.approx(limit, rel=1e-3)
+
+
+def test_two_bodies_on_a_spring_keep_their_momentum_through_collisions() -> None:
+    world = open_space(gravity=None)
+    a = circle(world, (0.0, 0.0), radius=0.2, mass=1.0, velocity=(4.0, 0.0))
+    b = circle(world, (1.0, 0.0), radius=0.2, mass=3.0)
+    circle(world, (3.0, 0.1), radius=0.4, mass=2.0, restitution=1.0)
+    world.spawn(Spring(a, b, rest_length=1.0, stiffness=1e4))
+    before = measure_momentum(world)
+    world.run(seconds=6.0)
+    after = measure_momentum(world)
+    assert world.collisions > 0
+    assert after.linear.x == pytest.approx(before.linear.x, rel=1e-12)
+    assert after.linear.y == pytest.approx(before.linear.y, rel=1e-12)
+    assert after.angular == pytest.approx(before.angular, abs=1e-3)  # overlapping, the two arms differ
+
+
+def test_an_elastic_bob_that_strikes_a_wall_keeps_its_energy() -> None:
+    world = open_space()
+    box(world, (-0.7, -1.0), width=1.0, height=4.0, static=True, restitution=1.0, friction=0.0)
+    bob = circle(world, (0.8, -0.6), radius=0.2, restitution=1.0, friction=0.0)
+    world.add(bob, Spring(rest_length=1.0, stiffness=1e4))
+    before = measure_energy(world).total
+    world.run(seconds=10.0)
+    assert world.collisions > 5
+    assert measure_energy(world).total == pytest.approx(before, abs=0.005 * abs(before))
+
+
+def test_a_held_end_pulls_the_other_along() -> None:
+    world = far_floor(open_space(gravity=None))
+    hand = circle(world, (0.0, 0.0), radius=0.1)
+    load = circle(world, (1.0, 0.0), radius=0.1)
+    world.add(hand, Held())
+    world.component(hand, Velocity).linear = (-1.0, 0.0)
+    world.spawn(Spring(hand, load, rest_length=1.0, stiffness=1e4, damping=50.0))
+    world.run(seconds=2.0)
+    assert place(world, hand).x == pytest.approx(-2.0)
+    assert place(world, load).x == pytest.approx(-1.0, abs=0.01)
+
+
+def test_a_spring_changed_by_hand_is_followed_from_the_next_step() -> None:
+    world, bob = hung(50.0)
+    world.run(steps=2)
+    world.component(bob, Spring).stiffness = 1e12
+    world.step()
+    assert world.method.tethers is IMPLICIT_MIDPOINT
+
+
+def test_planets_on_springs_beside_contacts_are_all_followed() -> None:
+    world = open_space(physics=PhysicsConfig(gravity_mode="planet", G=1.0))
+    a = circle(world, (0.0, 0.0), radius=0.1, mass=1.0)
+    b = circle(world, (2.0, 0.0), radius=0.1, mass=1.0)
+    circle(world, (0.0, 5.0), radius=0.1, mass=1.0)
+    world.spawn(Spring(a, b, rest_length=1.8, stiffness=100.0))
+    before = measure_energy(world).total
+    world.run(seconds=2.0)
+    assert world.bodies.tethered[1:4].all()
+    assert measure_energy(world).total == pytest.approx(before, rel=1e-9)
+
+
+def test_the_same_scene_gives_the_same_bits() -> None:
+    ends = []
+    for _ in range(2):
+        world, _ = hung(1e5, damping=3.0)
+        floor(world, place(world, 2))
+        world.run(seconds=1.0)
+        ends.append(world.table(Transform)["position"].copy())
+    assert np.array_equal(*ends)
+
+
+def test_a_heavy_load_makes_substeps_finer_and_its_taking_away_coarser() -> None:
+    world = open_space()
+    floor(world)
+    box(world, (0.0, 0.5), width=1.0, height=1.0, mass=1.0)
+    load = box(world, (0.0, 1.5), width=1.0, height=1.0, mass=1e3)
+    world.run(steps=10)
+    assert world.substeps > world.simulation.substeps
+    world.remove(load)
+    world.run(steps=2)
+    assert world.substeps == world.simulation.substeps
+
+
+def test_what_lies_on_a_heavy_body_makes_nothing_finer() -> None:
+    world = open_space()
+    floor(world)
+    box(world, (0.0, 0.5), width=1.0, height=1.0, mass=1e6)
+    box(world, (0.0, 1.5), width=1.0, height=1.0, mass=1.0)
+    world.run(steps=10)
+    assert world.substeps == world.simulation.substeps
+    assert world.component(2, Mass).mass == 1e6
