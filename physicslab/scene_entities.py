@@ -11,6 +11,7 @@ from typing import Any
 
 from physicslab.columns import COMPONENTS, Component, InvalidValue
 from physicslab.components import Held, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components.spring import OTHER_END
 from physicslab.scene_checks import (
     SceneError,
     checked_keys,
@@ -145,3 +146,5 @@ def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any
         if end is not None and "Transform" not in entities[end - 1]:
             value = entities[end - 1].get("id") if given else None
             raise refusal(f"{where}: Spring.{name}", value, "the id of an entity with a Transform")
+    if spring.b == (spring.a or number):
+        raise refusal(f"{where}: Spring.b", entities[spring.b - 1].get("id"), OTHER_END)

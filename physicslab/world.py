@@ -21,6 +21,7 @@ from physicslab.components import Name
 from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.contacts import Contacts
 from physicslab.equations import Equations
+from physicslab.fields import Field
 from physicslab.flights import Flights
 from physicslab.integrators import StepTooSmall
 from physicslab.integrators.choice import choose, provisional
@@ -35,6 +36,10 @@ _MOST = 2**62
 """More steps than there can be."""
 _MOST_PARTS = 100_000
 """Into so many parts, at the most, a step is divided that is longer than the scene's own."""
+_STEP = Field("dt", "number", above=0.0, unit="s", owner="step")
+_STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
+_SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
+"""What the methods of a world may be given."""
 _TOO_LONG = 0.01
 """By which share a step may exceed the scene's own undivided: the last one of a run may take in a rest."""
 
@@ -341,9 +346,7 @@ class World:
         Diverged
             If a value would not be finite; the world then stands where it stood before the step.
         """
-        dt = self._simulation.dt if dt is None else dt
-        if not (math.isfinite(dt) and dt > 0.0):
-            raise ValueError(f"dt = {dt!r}: must be a finite number > 0 s")
+        dt = self._simulation.dt if dt is None else _STEP.check(dt)
         if self._stepping:
             raise RuntimeError("a system cannot step the world that is calling it")
         with self.active():
@@ -518,11 +521,11 @@ class World:
             raise TypeError("give either seconds or steps")
         dt = self._simulation.dt
         if seconds is None:
-            if not isinstance(steps, int) or isinstance(steps, bool) or steps < 0:
-                raise ValueError(f"steps = {steps!r}: must be a whole number >= 0")
-            return steps * dt, steps, 0.0
-        if not (math.isfinite(seconds) and seconds >= 0.0):
-            raise ValueError(f"seconds = {seconds!r}: must be a finite number >= 0 s")
+            count: int = _STEPS.check(steps)
+            if not math.isfinite(self.time + count * dt):
+                raise InvalidValue("run", "steps", steps, f"so few that {dt!r} s each lead to a finite time")
+            return count * dt, count, 0.0
+        seconds = _SECONDS.check(seconds)
         return seconds, *_whole_steps(seconds, dt)
 
     def install(self, *systems: System) -> None:
@@ -554,7 +557,7 @@ def _whole_steps(seconds: float, dt: float) -> tuple[int, float]:
     its own is taken together with the last whole step.
     """
     if not seconds / dt < 2**53:
-        raise ValueError(f"seconds = {seconds!r}: too many steps of dt = {dt!r} s")
+        raise InvalidValue("run", "seconds", seconds, f"less than 2**53 steps of dt = {dt!r} s")
     whole = round(seconds / dt)
     if whole and abs(seconds - whole * dt) <= 4.0 * math.ulp(seconds):
         return whole, 0.0

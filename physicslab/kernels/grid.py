@@ -88,6 +88,7 @@ def fat_boxes(
         boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
         boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
 
+
 _CROWD = 32
 """So many bodies of a body's own size, at the most, that overlap with it make pairs with it."""
 _OWN_SIZE = 2.0

@@ -76,7 +76,11 @@ class BroadPhaseSystem(System):
     def _count_pairs(self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool) -> int:
         """Fill the list of pairs, made larger where it is too small, and return their number."""
         while True:
-            count = int(grid.find_pairs(self._boxes, self._fat, kind, inverse_mass, bounded, self._bounds, self._pairs))
+            count = int(
+                grid.find_pairs(
+                    self._boxes, self._fat, kind, inverse_mass, bounded, self._bounds, self._pairs
+                )
+            )
             if count <= len(self._pairs):
                 return count
             self._pairs = np.zeros((2 * count, 3), np.int64)
