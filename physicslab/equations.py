@@ -17,7 +17,7 @@ from physicslab.schedule import ForceSystem, Stage
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["Equations", "PackedForce", "Slots", "spring_ends", "why_not_smooth"]
+__all__ = ["Equations", "PackedForce", "Slots", "spring_ends", "tethered_rows", "why_not_smooth"]
 
 _REAL = ctypes.POINTER(ctypes.c_double)
 _WHOLE = ctypes.POINTER(ctypes.c_int64)
@@ -257,3 +257,22 @@ def why_not_smooth(world: World) -> str | None:
     if (world.table(Velocity).present & ~world.table(Transform).present).any():
         return "something moves that is nowhere"
     return None
+
+
+def tethered_rows(world: World) -> NDArray[np.bool_]:
+    """Return for each row whether a force acts on it that tells bodies apart, or it is an end of one.
+
+    Where another force couples any body with any, all are.
+    """
+    forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
+    rows = np.zeros(len(world.roster), np.bool_)
+    for force in forces:
+        rates = force.rates(world)
+        pairs = force.couples(world)
+        if rates is not None:
+            rows |= rates > 0.0
+            if pairs is not None:
+                rows[pairs.ravel()] = True
+    if rows.any() and any(force.couples(world) is None for force in forces):
+        rows[:] = True
+    return rows & world.table(Transform).present

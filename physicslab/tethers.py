@@ -8,37 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.bodies import Diverged
-from physicslab.components import Transform, Velocity
-from physicslab.equations import Equations
+from physicslab.components import Velocity
+from physicslab.equations import Equations, tethered_rows
 from physicslab.integrators import Integrator, StepTooSmall
 from physicslab.schedule import ForceSystem
 
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["Tethers", "tethered_rows"]
+__all__ = ["Tethers"]
 
 _GENTLE = 1.0
 """omega h up to which a force hardly changes within a substep, and contacts are told what it will do."""
-
-
-def tethered_rows(world: World) -> NDArray[np.bool_]:
-    """Return for each row whether a force acts on it that tells bodies apart, or it is an end of one.
-
-    Where another force couples any body with any, all are.
-    """
-    forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
-    rows = np.zeros(len(world.roster), np.bool_)
-    for force in forces:
-        rates = force.rates(world)
-        pairs = force.couples(world)
-        if rates is not None:
-            rows |= rates > 0.0
-            if pairs is not None:
-                rows[pairs.ravel()] = True
-    if rows.any() and any(force.couples(world) is None for force in forces):
-        rows[:] = True
-    return rows & world.table(Transform).present
 
 
 class Tethers:

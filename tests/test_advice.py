@@ -113,7 +113,7 @@ def test_a_divided_step_is_said() -> None:
     assert advise(world) == ()
 
 
-@pytest.mark.parametrize(("ratio", "said"), [(25.0, False), (40.0, True), (1e6, True)])
+@pytest.mark.parametrize(("ratio", "said"), [(2000.0, False), (4000.0, True), (1e6, True)])
 def test_a_load_that_contacts_do_not_hold_is_said(ratio: float, said: bool) -> None:
     world = open_world()
     floor(world)
@@ -221,7 +221,7 @@ def test_the_hud_says_it_in_words() -> None:
     world = empty_world()
     floor(world)
     box(world, (0, 0.5), width=1, height=1, mass=1.0, name="light")
-    box(world, (0, 1.5), width=1, height=1, mass=1000.0)
+    box(world, (0, 1.5), width=1, height=1, mass=1e6)
     desk, canvas = recorded(world)
     frame(desk, canvas)
     words = [text["words"] for text in canvas.called("text")]
@@ -236,7 +236,7 @@ def test_the_advice_lies_over_no_panel(size: tuple[int, int]) -> None:
     world = empty_world()
     floor(world)
     box(world, (0, 0.5), width=1, height=1, mass=1.0, name="light")
-    box(world, (0, 1.5), width=1, height=1, mass=1000.0)
+    box(world, (0, 1.5), width=1, height=1, mass=1e6)
     canvas = RecordingCanvas(size)
     desk = Desk(world, canvas)
     frame(desk, canvas)

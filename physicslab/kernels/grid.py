@@ -106,7 +106,8 @@ def _overlap(these: Vectors, i: int, those: Vectors, j: int) -> bool:
 
 @inlined
 def _take(
-    pairs: Pairs, found: int, inverse_mass: Numbers, boxes: Vectors, fat: Vectors, company: Rows, i: int, j: int
+    pairs: Pairs, found: int, inverse_mass: Numbers,
+    boxes: Vectors, fat: Vectors, company: Rows, i: int, j: int,
 ) -> int:  # fmt: skip
     """Write the pair (i, j) in order, if it can be moved and there is room; return how many there are now.
 
@@ -246,7 +247,8 @@ def _level(
 
 @kernel
 def find_pairs(
-    boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers, bounded: bool, bounds: Numbers, pairs: Pairs
+    boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers,
+    bounded: bool, bounds: Numbers, pairs: Pairs,
 ) -> int:  # fmt: skip
     """Write the pairs (a, b, wall) whose fat boxes overlap, each once, sorted; return how many there are.
 

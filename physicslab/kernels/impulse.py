@@ -17,9 +17,10 @@ on top."""
 _DEEP = 0.1
 """Share beyond which overlap is taken away by moving."""
 _DEEPER = 0.15
-"""Share beyond which it is taken away by nothing else: of a thousand pushes on one body speed would be left."""
+"""Share beyond which it is taken away by nothing else: of a thousand pushes on one body, speed would be
+left."""
 _UNEQUAL = 10.0
-"""From such a ratio of masses on, the lighter body of a pair has to carry what is no body of its own kind."""
+"""From such a ratio of masses on, the lighter body of a pair may have to carry many times its weight."""
 
 
 @inlined
