@@ -59,6 +59,8 @@ def shown(value: object) -> str:
     >>> shown([1, None, "two\nlines"])
     '[1, null, "two\\nlines"]'
     """
+    if isinstance(value, str) and value.isalnum() and len(value) < _LONGEST:  # as most ids are, and soon told
+        return f'"{value}"'
     try:
         text = json.dumps(_beginning(value), ensure_ascii=False, default=repr)
     except (ValueError, RecursionError):  # a whole number of thousands of digits, or lists without end

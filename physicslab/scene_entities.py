@@ -28,6 +28,7 @@ __all__ = ["UNSAVED", "check_contacts", "check_entities", "check_ids"]
 UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
 
+type _Expected = tuple[tuple[str, ...], tuple[str, ...], str]
 _NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Trail)
 
 
@@ -55,12 +56,13 @@ def check_entities(
 ) -> list[tuple[str | None, list[Component]]]:
     """Return each entity's id and components, in order; they refer to each other by place, from 1."""
     made: list[tuple[str | None, list[Component]]] = []
-    known = ["id", *(name for name, kind in COMPONENTS.items() if kind not in UNSAVED)]
+    expected = {name: _expected(kind) for name, kind in COMPONENTS.items() if kind not in UNSAVED}
+    known = ("id", *expected)
     for number, entity in enumerate(entities, start=1):
         where = _label(number, entity, source)
         checked_keys(entity, f"{where}: ", "component", known)
         components = [
-            _component(COMPONENTS[name], values, ids, where)
+            _component(COMPONENTS[name], expected[name], values, ids, where)
             for name, values in entity.items()
             if name != "id"
         ]
@@ -103,15 +105,24 @@ def _label(number: int, entity: object, source: str) -> str:
     return f"{source}: entity {shown(name) if isinstance(name, str) else number}"
 
 
-def _component(kind: type[Component], value: object, ids: Mapping[str, int], where: str) -> Component:
+def _expected(kind: type[Component]) -> _Expected:
+    """Return the names of a component's fields, of those that are entities, and what it must look like."""
+    names = tuple(spec.name for spec in kind.FIELDS)
+    ends = tuple(spec.name for spec in kind.FIELDS if spec.kind == "entity")
+    return names, ends, "an object {" + ", ".join(f'"{name}": ...' for name in names) + "}"
+
+
+def _component(
+    kind: type[Component], expected: _Expected, value: object, ids: Mapping[str, int], where: str
+) -> Component:
     place = f"{where}: {kind.__name__}"
-    fields = {spec.name: spec for spec in kind.FIELDS}
-    given = checked_object(value, place, "an object {" + ", ".join(f'"{name}": ...' for name in fields) + "}")
-    checked_keys(given, f"{place}.", "field", tuple(fields))
-    values = dict(given)
-    for name, end in given.items():
-        if fields[name].kind == "entity" and end is not None:
-            values[name] = _entity_of(end, ids, f"{place}.{name}")
+    names, ends, allowed = expected
+    given = checked_object(value, place, allowed)
+    checked_keys(given, f"{place}.", "field", names)
+    values = dict(given) if ends else given
+    for name in ends:
+        if given.get(name) is not None:
+            values = {**values, name: _entity_of(given[name], ids, f"{place}.{name}")}
     try:
         return kind(**values)
     except InvalidValue as error:

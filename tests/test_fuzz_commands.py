@@ -7,6 +7,7 @@ import itertools
 import json
 
 import pytest
+from deadline import deadline
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -14,9 +15,9 @@ from physicslab.cli import main
 
 _WORDS = st.sampled_from(
     [
-        "0", "1", "-1", "2.5", "1e308", "5e-324", "1e-3", "nan", "inf", "-inf", "9" * 5000, "", " ", "--",
-        "-", "\x00", "\udcff", "a\nb", "x" * 5000, "/dev/zero", "/", "drop", "two_planets", "auto", "leapfrog",
-        "exact", "dop853",
+        "0", "1", "-1", "2.5", "1e308", "5e-324", "1e-3", "nan", "inf", "-inf", "9" * 5000, "", " ",
+        "--", "-", "\x00", "\udcff", "a\nb", "x" * 5000, "/dev/zero", "/", "drop", "two_planets", "auto",
+        "leapfrog", "exact", "dop853",
     ]
 )  # fmt: skip
 _OPTIONS = st.sampled_from(
@@ -56,7 +57,8 @@ def test_a_command_line_is_done_or_refused_in_one_line(line: list[str]) -> None:
         out, err = _Captured(), _Captured()
         patch.setattr("sys.stdout", out.text)
         patch.setattr("sys.stderr", err.text)
-        status = main(line)
+        with deadline(line):
+            status = main(line)
     said = err.read()
     assert status in (0, 1, 2), (line, status, said)
     if status == 0:

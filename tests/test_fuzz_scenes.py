@@ -1,4 +1,9 @@
-"""Whatever stands in a scene document, it is refused in one line or runs with finite numbers."""
+"""Whatever stands in a scene document, it is refused in one line or runs with finite numbers.
+
+A few examples are tried with every run of the tests; thousands by
+
+    pytest tests/test_fuzz_*.py --hypothesis-profile=thorough
+"""
 
 from __future__ import annotations
 
@@ -7,6 +12,7 @@ import math
 from typing import Any
 
 import numpy as np
+from deadline import deadline
 from hostile_scenes import scenes
 from hypothesis import HealthCheck, given, settings
 
@@ -63,4 +69,5 @@ def _refuse(word: str) -> None:
 @settings(suppress_health_check=list(HealthCheck))
 @given(scenes())
 def test_a_scene_is_refused_in_one_line_or_runs_with_finite_numbers(document: dict[str, Any]) -> None:
-    run_or_refuse(document)
+    with deadline(document):
+        run_or_refuse(document)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from deadline import deadline
 from hostile_scenes import EXTREME, HOSTILE, NAMES, PLAIN
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -69,7 +70,8 @@ class Hostile(RuleBasedStateMachine):
 
     def call(self, function: Any, *values: Any, **named: Any) -> None:
         try:
-            function(*values, **named)
+            with deadline((function, values, named)):
+                function(*values, **named)
         except REFUSED as error:
             assert str(error)
             if isinstance(error, Diverged):
@@ -109,9 +111,17 @@ class Hostile(RuleBasedStateMachine):
     def step(self, dt: float | None) -> None:
         self.call(self.world.step, dt)
 
-    @rule(steps=st.integers(-1, 2))
-    def run_steps(self, steps: int) -> None:
+    @rule(steps=st.integers(-1, 2) | st.sampled_from([10**400, 2**63, 1.5, True, "1", None]))
+    def run_steps(self, steps: Any) -> None:
         self.call(self.world.run, steps=steps)
+
+    @rule(
+        seconds=st.sampled_from(
+            [0, 0.02, -0.0, 5e-324, 1e308, 10**400, "1", float("nan"), float("inf"), True]
+        )
+    )
+    def run_seconds(self, seconds: Any) -> None:
+        self.call(self.world.run, seconds=seconds)
 
     @rule()
     def save_and_load(self) -> None:
@@ -133,10 +143,7 @@ class Hostile(RuleBasedStateMachine):
 Hostile.TestCase.settings = settings(
     stateful_step_count=12, deadline=None, suppress_health_check=list(HealthCheck)
 )
-# Not always met, hence not strict; to be taken out with the warning.
-TestHostileCalls = pytest.mark.xfail(
-    strict=False, reason="SpringSystem.strongest_rate overflows for extreme inertias: a RuntimeWarning"
-)(Hostile.TestCase)
+TestHostileCalls = Hostile.TestCase
 
 
 def test_an_id_is_given_once() -> None:
