@@ -11,12 +11,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 __all__ = [
-    "JsonObject", "SceneError", "checked_keys", "checked_object", "checked_text", "is_number", "printable",
-    "refusal", "shown", "suggestion",
+    "JsonObject", "SceneError", "checked_keys", "checked_object", "checked_text", "is_line", "is_number",
+    "printable", "refusal", "shown", "suggestion",
 ]  # fmt: skip
 
 _LONGEST = 60
 _MOST_KNOWN = 2_000
+_BREAKS = dict.fromkeys(map(ord, "\n\t"), " ")
 
 
 class SceneError(ValueError):
@@ -126,14 +127,21 @@ def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequenc
             )
 
 
+def is_line(text: str) -> bool:
+    r"""Whether a text has neither half surrogate pairs nor control characters nor breaks of lines.
+
+    >>> is_line("caf\u00e9"), is_line("a\nb"), is_line("\u2028")
+    (True, False, False)
+    """
+    if text.isprintable():  # as nearly every text is, and soon told
+        return True
+    return not {unicodedata.category(c) for c in text} & {"Cc", "Cs", "Zl", "Zp"}
+
+
 def checked_text(value: object, where: str, *, lines: bool = False) -> str:
     """Return a text without half surrogate pairs or control characters (but new lines, if ``lines``)."""
-    if isinstance(value, str):
-        if value.isprintable():  # as nearly every text is, and soon told
-            return value
-        unwanted = {unicodedata.category(c) for c in value if not (lines and c in "\n\t")} & {"Cc", "Cs"}
-        if not unwanted:
-            return value
+    if isinstance(value, str) and is_line(value.translate(_BREAKS) if lines else value):
+        return value
     raise refusal(where, value, "a text" if lines else "a text on one line")
 
 

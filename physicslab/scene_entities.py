@@ -11,12 +11,12 @@ from typing import Any
 
 from physicslab.columns import COMPONENTS, Component, InvalidValue
 from physicslab.components import Held, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components.name import why_no_id
 from physicslab.components.spring import OTHER_END
 from physicslab.scene_checks import (
     SceneError,
     checked_keys,
     checked_object,
-    checked_text,
     is_number,
     refusal,
     shown,
@@ -42,9 +42,10 @@ def check_ids(entities: object, source: str) -> dict[str, int]:
         if "id" not in entity:
             continue
         where = f"{source}: entity {number}: id"
-        name = checked_text(entity["id"], where)
-        if not name.strip():
-            raise refusal(where, name, "a text that is not empty, or left out")
+        name = entity["id"]
+        allowed = why_no_id(name)
+        if allowed is not None:
+            raise refusal(where, name, allowed)
         if name in ids:
             raise refusal(where, name, f"an id of its own; entity {ids[name]} has this one")
         ids[name] = number

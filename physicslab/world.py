@@ -18,7 +18,8 @@ from physicslab.checkpoint import Checkpoint
 from physicslab.closed_form import NoClosedForm
 from physicslab.columns import Batch, InvalidValue, Table
 from physicslab.components import Name
-from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.components.name import why_no_id
+from physicslab.config import SHORTEST, PhysicsConfig, SimulationConfig
 from physicslab.contacts import Contacts
 from physicslab.equations import Equations
 from physicslab.fields import Field
@@ -32,11 +33,13 @@ from physicslab.tethers import Tethers
 __all__ = ["World"]
 
 _numbers = itertools.count(1)
+_quiet = np.errstate(all="ignore")
+"""What overflows becomes infinite, which is found and told as :class:`Diverged`: numpy need not warn."""
 _MOST = 2**62
 """More steps than there can be."""
 _MOST_PARTS = 100_000
 """Into so many parts, at the most, a step is divided that is longer than the scene's own."""
-_STEP = Field("dt", "number", above=0.0, unit="s", owner="step")
+_STEP = Field("dt", "number", minimum=SHORTEST, unit="s", owner="step")
 _STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
 _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
 """What the methods of a world may be given."""
@@ -233,8 +236,9 @@ class World:
         """Refuse a Name that no scene file may hold, or that another entity than this one has."""
         if not isinstance(component, Name):
             return
-        if not isinstance(component.id, str) or not component.id.strip():
-            raise InvalidValue("Name", "id", component.id, "a text that is not empty")
+        allowed = why_no_id(component.id)
+        if allowed is not None:
+            raise InvalidValue("Name", "id", component.id, allowed)
         if component.id in self._names and self._holder(component.id) not in (None, entity):
             allowed = f"an id of its own; entity {self._holder(component.id)} has this one"
             raise InvalidValue("Name", "id", component.id, allowed)
@@ -291,6 +295,7 @@ class World:
 
     # ---- time ----------------------------------------------------------------------------------------------
 
+    @_quiet
     def synchronise(self) -> None:
         """Follow what entities and components there are now, and weigh them.
 
@@ -308,6 +313,7 @@ class World:
                 if self.tethers is not None and self.tethers.outdated(self):
                     self._choose()
 
+    @_quiet
     def _follow(self) -> None:
         """Follow what changed in the structure of the world since the last call, if anything did."""
         if self._stepping:
@@ -335,6 +341,7 @@ class World:
             self.schedule.compile(self._flights.kernels)
         self.contacts.stale |= had_flights or self._flights is not None
 
+    @_quiet
     def step(self, dt: float | None = None) -> None:
         """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps.
 
@@ -440,6 +447,7 @@ class World:
         for _ in self.stepping(seconds=seconds, steps=steps, stride=_MOST):
             pass
 
+    @_quiet
     def add_up_forces(self) -> None:
         """See to it that ``bodies.force`` and ``.torque`` hold the forces that act.
 
@@ -454,6 +462,7 @@ class World:
                     getattr(system, system.marked()[Stage.FORCE])(self, 0.0)
             self.force_evaluations -= self.has_forces  # looking at them is no work of the method
 
+    @_quiet
     def _leap(self, dt: float, parts: int, steps: int) -> None:
         """Advance by ``parts`` times ``dt``, which nobody looks at and which count as ``steps``.
 
@@ -498,6 +507,8 @@ class World:
         seconds, whole, rest = self._plan(seconds, steps)
         dt, start, done = self._simulation.dt, self.time, 0
         last = whole + 1 if rest else whole
+        if not last:
+            self.time += seconds  # which is nothing, or too short for anything to move
         while done < last:
             self.synchronise()
             by_step = self._equations is None and self._flights is None
@@ -558,6 +569,8 @@ def _whole_steps(seconds: float, dt: float) -> tuple[int, float]:
     """
     if not seconds / dt < 2**53:
         raise InvalidValue("run", "seconds", seconds, f"less than 2**53 steps of dt = {dt!r} s")
+    if seconds < SHORTEST:
+        return 0, 0.0
     whole = round(seconds / dt)
     if whole and abs(seconds - whole * dt) <= 4.0 * math.ulp(seconds):
         return whole, 0.0
