@@ -119,7 +119,8 @@ def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequenc
     """Refuse the first key that is not ``known``; ``noun`` is what keys are called there."""
     for key, value in given.items():
         if key not in known:
-            name = key if isinstance(key, str) and key.isidentifier() else shown(key)
+            plain = isinstance(key, str) and key.isidentifier() and len(key) <= _LONGEST
+            name = key if plain else shown(key)
             likely = suggestion(str(key), known)
             allowed = ", ".join(known) or "none"
             raise SceneError(
