@@ -14,11 +14,11 @@ import time
 from collections.abc import Callable
 
 import pymunk
-from pymunk_mirror import PymunkMirror
 
 from physicslab import World
 from physicslab.config import PhysicsConfig
 from physicslab.diagnostics import measure_energy
+from physicslab.peers.pymunk_mirror import PymunkMirror
 from physicslab.prefabs import box, container, gas, pile, pyramid
 from physicslab.systems.standard import standard_systems
 from physicslab.vector import Vector2

@@ -23,13 +23,12 @@ from weakref import WeakKeyDictionary
 
 import Box2D
 import pymunk
-from box2d_mirror import Box2DMirror
-from peer import CannotBuild, Peer
-from pymunk_mirror import PymunkMirror
 
 from physicslab import World
 from physicslab.components import Transform
-from physicslab.schedule import Stage
+from physicslab.peers.box2d_mirror import Box2DMirror
+from physicslab.peers.peer import CannotBuild, Peer, find_contacts
+from physicslab.peers.pymunk_mirror import PymunkMirror
 from physicslab.stability.case import Case, run_case
 from physicslab.stability.catalogue import CASES, select
 
@@ -65,14 +64,6 @@ class Found:
         return f"{self.word}" if self.figure is None else f"{self.figure:.4g} {self.word}"
 
 
-def told(world: World) -> None:
-    """See to it that the world's contacts are those of where its bodies are now."""
-    with world.active():
-        world.contacts.stale = True
-        for stage in (Stage.BROAD_PHASE, Stage.CONTACT):
-            world.schedule.run(stage, world, 0.0)
-
-
 @contextmanager
 def stepped_by(peer: type[Peer], substeps: int) -> Iterator[list[Peer]]:
     """Let another engine advance every world that is stepped meanwhile; yield what stands for them."""
@@ -106,7 +97,7 @@ def stepped_by(peer: type[Peer], substeps: int) -> Iterator[list[Peer]]:
             advance(world, dt, due)
             done += due
             yield done
-        told(world)
+        find_contacts(world)
 
     def run(world: World, *, seconds: float | None = None, steps: int | None = None) -> None:
         for _ in stepping(world, seconds=seconds, steps=steps, stride=10**9):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from physicslab.columns import InvalidValue
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
-from physicslab.kernels import motion
+from physicslab.kernels import impulse, motion
 from physicslab.schedule import Stage, System, at
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ class Bodies(System):
         Forces [N] and torques [N m] added up in this substep.
     inverse_mass, inverse_inertia : float64 arrays (rows,)
         Zero for what cannot be moved or turned: static, kinematic and held bodies.
+    unequal : bool
+        Whether two bodies that may meet differ so much in mass that one may be too heavy for the other.
     tethered : bool array (rows,)
         What moves by a method of its own beside contacts (:class:`physicslab.tethers.Tethers`).
     """
@@ -43,6 +45,7 @@ class Bodies(System):
 
     def __init__(self) -> None:
         self._resize(0)
+        self.unequal = False
 
     def _resize(self, rows: int) -> None:
         self.force: NDArray[np.float64] = np.zeros((rows, 2))
@@ -63,7 +66,7 @@ class Bodies(System):
             self._resize(len(world.roster))
             world.schedule.compile((motion.derive_masses,))
         mass, shape, velocity = world.table(Mass), world.table(Shape), world.table(Velocity)
-        infinite = motion.derive_masses(
+        ratio, infinite = motion.derive_masses(
             velocity.present, mass.present, world.table(Held).present,
             mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
             shape["kind"], shape["radius"], shape["width"], shape["height"], velocity["angular"],
@@ -74,9 +77,9 @@ class Bodies(System):
                 world.label(int(world.roster.entities[infinite])),
                 float(mass["inertia"][infinite]),
             )
-            raise InvalidValue(
-                f"{label}: Mass", "inertia", inertia, f"{_INERTIA.allowed}, of mass and Shape too"
-            )
+            allowed = f"{_INERTIA.allowed}, of mass and Shape too"
+            raise InvalidValue(f"{label}: Mass", "inertia", inertia, allowed)
+        self.unequal = ratio > impulse.UNEQUAL
 
     def attach(self, world: World) -> None:
         """Forget the forces of systems that may run no more."""

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import NoReturn
 
-from physicslab.commands import COMMANDS, NOT_BUILT, CommandError
+from physicslab.commands import COMMANDS, CommandError
 from physicslab.commands.command_error import FAILED, USAGE
 from physicslab.scene import SceneError, load_scene
 from physicslab.scene_checks import printable
@@ -73,8 +73,6 @@ def _dispatch(arguments: list[str]) -> int:
         parser = _Parser(f"physicslab {name}", command.__doc__)
         command.add_arguments(parser)
         return command.execute(parser.parse_args(rest))
-    if arguments and arguments[0] in NOT_BUILT:
-        raise CommandError(f"the command {arguments[0]} is not there yet; there are {', '.join(COMMANDS)}")
     return _open(arguments)
 
 

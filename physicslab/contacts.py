@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform
-from physicslab.kernels import compile_kernels, grid, impulse
+from physicslab.blocks import Blocks
+from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.kernels import block_contact, block_lanes, compile_kernels, grid, impulse
+from physicslab.kernels.block_layout import WIDE
+from physicslab.kernels.pair import NEAR, STILL
 from physicslab.kernels.records import IMPACT, MANIFOLD, POINT
 from physicslab.vector import Vector2
 
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Contact", "ContactPoint", "Contacts"]
 
-_NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap")
+_NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap", "lane")
 _KEPT = tuple(name for name in MANIFOLD.names or () if name not in _NO_ROWS)
 _WARM = ("feature", "normal_impulse", "tangent_impulse")
 
@@ -90,11 +93,17 @@ class Contacts:
         One for each near pair; the first ``candidate_pairs`` are in use.
     points : array of POINT (2 capacity,)
         Points 2 p and 2 p + 1 belong to pair p; the first ``manifolds[p]["count"]`` are in use.
+    blocks : Blocks
+        The settled contacts, eight side by side; what their records say is as old as the last :meth:`sync`.
+    loose : int64 array (capacity,)
+        The near pairs that are in no block; the first ``loose_count`` are in use.
+    unordered : bool
+        Whether pairs were set loose since those were last listed in order.
     touching : int64 array (capacity,)
-        The pairs with points, in order; the first ``count`` are in use. Points may have positive separation:
+        The loose pairs with points; the first ``active`` are in use. Points may have positive separation:
         they would meet within a substep.
     candidate_pairs, count : int
-        How many pairs are near each other, and how many have points.
+        How many pairs are near each other, and how many have points, loose or not.
     left : int
         How many pairs the impacts of this substep have left to the solver.
     span : float
@@ -111,8 +120,12 @@ class Contacts:
     """How many impacts are kept."""
 
     def __init__(self) -> None:
-        self.candidate_pairs = 0
-        self.count = self.left = 0
+        self.candidate_pairs = self.loose_count = 0
+        self.active = self.left = 0
+        self.blocks = Blocks()
+        self._opened = np.zeros(block_lanes.COLOURS, np.int64)
+        self._synced, self._seats = True, False
+        self.unordered = False
         self.span = 0.0
         self.stale = True
         self.log: NDArray[Any] = np.zeros(self.LOGGED, IMPACT)
@@ -134,14 +147,85 @@ class Contacts:
         self.manifolds: NDArray[Any] = np.zeros(capacity, MANIFOLD)
         self.points: NDArray[Any] = np.zeros(2 * capacity, POINT)
         self.touching: NDArray[np.int64] = np.zeros(capacity, np.int64)
+        self.loose: NDArray[np.int64] = np.zeros(capacity, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.
         self._spare_manifolds, self._spare_points = self.manifolds.copy(), self.points.copy()
 
-    def relist(self, pairs: NDArray[np.int64], count: int, entities: NDArray[np.int64]) -> None:
+    @property
+    def count(self) -> int:
+        """How many near pairs have points."""
+        return self.active + self.blocks.lanes
+
+    def changed(self) -> None:
+        """Note that lanes hold what their records do not say."""
+        self._synced = not self.blocks.lanes
+
+    def sync(self) -> None:
+        """Write what lanes hold into the records of their pairs, if that is not there already."""
+        if not self._synced:
+            for lanes in self.blocks.kinds:
+                block_lanes.store(
+                    lanes.data, lanes.rows, lanes.count, lanes.pair, self.manifolds, self.points
+                )
+            self._synced = True
+
+    def dissolve(self, rows: int) -> None:
+        """Give every contact back to its record, in a world of so many rows."""
+        if self.blocks.lanes:
+            self.sync()
+            self.manifolds["lane"] = -1
+            self._list_loose()
+        self.blocks.reset(rows)
+
+    def in_order(self) -> None:
+        """List the loose pairs in order, where some were set loose since: a file tells no other order."""
+        if self.unordered:
+            self._list_loose()
+
+    def _list_loose(self) -> None:
+        self.unordered = False
+        self.loose_count = int(block_lanes.list_loose(self.manifolds, self.candidate_pairs, self.loose))
+
+    def admit(self, world: World, h: float) -> None:
+        """Take what has settled into blocks."""
+        blocks = self.blocks
+        blocks.trim()
+        if blocks.sparse:
+            return self.dissolve(len(world.roster))
+        if not blocks.worthwhile(self.active):
+            return None
+        world.schedule.compile(blocks.kernels)
+        shape, linear, bodies = world.table(Shape)["kind"], world.table(Velocity)["linear"], world.bodies
+        material = world.table(Material)
+        came = 0
+        for lanes in blocks.kinds:
+            lanes.make_room(lanes.count + self.active // WIDE + block_lanes.COLOURS)
+            lanes.count, more = block_lanes.admit(
+                *lanes.layout, self._opened, self.manifolds, self.points, self.touching, self.active,
+                shape, world.table(Shape)["radius"], material["restitution"], material["friction"], linear,
+                bodies.inverse_mass, bodies.inverse_inertia,
+                h, 0.25 * STILL, 0.25 * NEAR,  # half of what sets them loose
+            )  # fmt: skip
+            came += more
+        if came:
+            if not blocks.lanes:
+                blocks.remember(world)
+            blocks.lanes += came
+            self.active = int(block_lanes.keep_loose(self.manifolds, self.touching, self.active))
+            self._list_loose()
+        return None
+
+    def relist(self, world: World, pairs: NDArray[np.int64], count: int) -> None:
         """Take a new sorted list of ``count`` near pairs (a, b, wall); pairs known before stay as they are.
 
-        ``entities`` holds the entity of each row. What touches is still to be found out.
+        What touches is still to be found out.
         """
+        entities = world.roster.entities
+        if self.stale:
+            self.sync()
+            # Rows may be others now: what had a lane takes its seat again.
+            self._seats |= self.blocks.lanes > 0
+            self.blocks.reset(len(entities))
         if len(self._spare_manifolds) < count:
             room = 2 * count
             self._spare_manifolds, self._spare_points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
@@ -151,26 +235,52 @@ class Contacts:
         )  # fmt: skip
         self.manifolds, self._spare_manifolds = self._spare_manifolds, self.manifolds
         self.points, self._spare_points = self._spare_points, self.points
-        self.candidate_pairs, self.count, self.stale = count, 0, False
+        self.candidate_pairs, self.active, self.stale = count, 0, False
         if len(self.touching) < count:
-            self.touching = np.zeros(2 * count, np.int64)
+            self.touching, self.loose = np.zeros((2, 2 * count), np.int64)
+        if self._seats:
+            self._seat_again(world)
+        elif self.blocks.lanes:
+            self.blocks.lanes = sum(
+                block_lanes.follow_pairs(*lanes.layout, self.manifolds, count) for lanes in self.blocks.kinds
+            )
+        self._list_loose()
+
+    def _seat_again(self, world: World) -> None:
+        """Put the contacts of a file back into the lanes in which they lay."""
+        self._seats, material = False, world.table(Material)
+        world.schedule.compile(self.blocks.kernels)
+        for lanes in self.blocks.kinds:
+            lanes.count, seated = block_lanes.seat_again(
+                lanes.kind, lanes.data, lanes.a, lanes.b, lanes.pair, lanes.colour, lanes.used,
+                self.manifolds, self.points, self.candidate_pairs, world.table(Shape)["radius"],
+                material["restitution"], material["friction"],
+                world.bodies.inverse_mass, world.bodies.inverse_inertia,
+            )  # fmt: skip
+            self.blocks.lanes += seated
+        if not self.blocks.known:
+            self.blocks.remember(world)
 
     def clear(self) -> None:
         """Forget every pair."""
-        self.candidate_pairs = self.count = 0
-        self.stale = True
+        self.blocks.reset(1)
+        self.candidate_pairs = self.loose_count = self.active = 0
+        self.stale = self._synced = True
 
     @property
     def max_penetration(self) -> float:
         """The deepest overlap now [m]."""
         compile_kernels((impulse.deepest,))
-        return float(impulse.deepest(self.manifolds, self.points, self.touching, self.count))
+        depth = float(impulse.deepest(self.manifolds, self.points, self.touching, self.active))
+        lanes = [block_contact.deepest_lane(k.kind, k.data, k.count) for k in self.blocks.kinds if k.count]
+        return max(depth, *lanes) if lanes else depth
 
     def listed(self, world: World) -> tuple[Contact, ...]:
         """Return every contact and every impact of the last step, in the order of entities."""
         return tuple(self._describe(world, p) for p in self._told())
 
     def _told(self) -> list[int]:
+        self.sync()
         near = self.manifolds[: self.candidate_pairs]
         pairs: list[int] = np.flatnonzero((near["count"] > 0) | (near["struck"] > 0)).tolist()
         return pairs
@@ -214,10 +324,14 @@ class Contacts:
 
     def copied(self) -> Contacts:
         """Return what :meth:`remembered` needs, in copies that no step changes."""
+        self.sync()
         held = Contacts.__new__(Contacts)
         held.candidate_pairs = self.candidate_pairs
         held.manifolds = self.manifolds[: self.candidate_pairs].copy()
         held.points = self.points[: 2 * self.candidate_pairs].copy()
+        held.blocks = Blocks()
+        for mine, copy in zip(self.blocks.kinds, held.blocks.kinds, strict=True):
+            copy.colour = mine.colour.copy()
         return held
 
     def remembered(self) -> Iterator[list[float] | None]:
@@ -225,23 +339,26 @@ class Contacts:
 
         A row starts with the two entities (0 for the world's bounds) and the wall. Points that will be found
         anew leave their features and impulses; those that will be kept, everything; ``None`` stands for a
-        pair of which nothing is kept.
+        pair of which nothing is kept. A settled contact adds its lane, and the colour of its block.
         """
         for p in range(self.candidate_pairs):
             manifold = self.manifolds[p]
             pair = [int(manifold["entity_a"]), int(manifold["entity_b"]), int(manifold["wall"])]
+            lane = int(manifold["lane"])
+            seat = [lane, int(self.blocks.kinds[lane % 2].colour[lane // 2 // WIDE])] if lane >= 0 else []
             if manifold["count"] <= 0:
                 yield None
             elif manifold["found"] == 2:
                 kept = [manifold[name].item() for name in _KEPT[1:]]
                 both = [value for j in (2 * p, 2 * p + 1) for value in self.points[j].item()]
-                yield [*pair, *kept, *both]
+                yield [*pair, *kept, *both, *seat]
             else:
                 warm = [self.points[j][name].item() for j in (2 * p, 2 * p + 1) for name in _WARM]
-                yield [*pair, *warm] if any(warm[1:3] + warm[4:]) else None
+                yield [*pair, *warm, *seat] if seat or any(warm[1:3] + warm[4:]) else None
 
     def export(self) -> list[list[float]]:
         """Return all that is :meth:`remembered`."""
+        self.sync()
         return [row for row in self.remembered() if row is not None]
 
     def restore(self, world: World, rows: Sequence[Sequence[float]]) -> None:
@@ -256,11 +373,12 @@ class Contacts:
         light, heavy = 3 + 2 * len(_WARM), 2 + len(_KEPT) + 2 * len(POINT.names or ())
         ordered = sorted(rows, key=lambda row: tuple(row[:3]))
         for p, row in enumerate(ordered):
-            if len(row) not in (light, heavy):
-                raise ValueError(f"a contact has {light} or {heavy} values, not {len(row)}")
+            if len(row) not in (light, heavy, light + 2, heavy + 2):
+                raise ValueError(f"a contact has {light} or {heavy} values, or two more, not {len(row)}")
             manifold = self.manifolds[p]
+            manifold["lane"] = self._take_seat(*row[-2:]) if len(row) in (light + 2, heavy + 2) else -1
             manifold["entity_a"], manifold["entity_b"], manifold["wall"] = row[:3]
-            if len(row) == heavy:
+            if len(row) >= heavy:
                 for name, value in zip(_KEPT[1:], row[3:], strict=False):
                     manifold[name] = value
                 values = iter(row[2 + len(_KEPT) :])
@@ -271,4 +389,16 @@ class Contacts:
             for j in (2 * p, 2 * p + 1):
                 for name in names:
                     self.points[j][name] = next(values)
-        self.candidate_pairs, self.count, self.stale = len(ordered), 0, True
+        self.candidate_pairs, self.active, self.stale = len(ordered), 0, True
+
+    def _take_seat(self, lane: float, colour: float) -> int:
+        """Note that a lane is that of a contact that will be found again, in a block of a colour."""
+        if not (lane == int(lane) and 0 <= lane < 16 * len(self.manifolds) * block_lanes.COLOURS):
+            raise ValueError(f"a lane of {lane!r}: must be a whole number >= 0, and no larger than there are")
+        if not (colour == int(colour) and 0 <= colour < block_lanes.COLOURS):
+            raise ValueError(f"a colour of {colour!r}: must be a whole number from 0 to 63")
+        lanes, block = self.blocks.kinds[int(lane) % 2], int(lane) // 2 // WIDE
+        lanes.make_room(block + 1)
+        lanes.colour[block] = int(colour)
+        self._seats = True
+        return int(lane)

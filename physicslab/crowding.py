@@ -94,7 +94,8 @@ def near_pairs(world: World) -> Near:
     """Return the near pairs of the last step."""
     contacts = world.contacts
     manifolds = contacts.manifolds[: contacts.candidate_pairs]
-    touching = contacts.touching[: contacts.count]
+    contacts.sync()
+    touching = np.flatnonzero(contacts.manifolds["count"][: contacts.candidate_pairs] > 0)
     held = manifolds[touching]
     separation = contacts.points["separation"]
     first, second = separation[2 * touching], separation[2 * touching + 1]

@@ -12,7 +12,7 @@ from physicslab.schedule import ForceSystem
 from physicslab.vector import Vector2
 from physicslab.world import World
 
-__all__ = ["Drift", "Energy", "Momentum", "measure_energy", "measure_momentum"]
+__all__ = ["Drift", "Energy", "Momentum", "measure_energy", "measure_momentum", "summation"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,3 +107,9 @@ class Drift:
         """The largest departure as a share of |E0|; of the largest kinetic energy seen where E0 is zero."""
         scale = abs(self.initial.total) or self._scale
         return self.largest / scale if scale > 0.0 else 0.0
+
+
+def summation(world: World) -> str:
+    """Return how the running forces are summed, where one has something to say of it."""
+    forces = (system for system in world.schedule.running if isinstance(system, ForceSystem))
+    return "; ".join(said for force in forces if (said := force.summation(world)))

@@ -17,7 +17,7 @@ from physicslab.schedule import ForceSystem, Stage
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["Equations", "PackedForce", "Slots", "spring_ends", "tethered_rows", "why_not_smooth"]
+__all__ = ["Equations", "PackedForce", "Slots", "spring_ends", "why_not_smooth"]
 
 _REAL = ctypes.POINTER(ctypes.c_double)
 _WHOLE = ctypes.POINTER(ctypes.c_int64)
@@ -34,11 +34,15 @@ class PackedForce:
         What adds to the forces.
     numbers, whole : float64 array, int64 array
         Whatever the kernel wants to know; it gets pointers to them.
+    resistance : ForceKernel, optional
+        What the force answers to another velocity than that of the moment, where it resists motion (see
+        :mod:`physicslab.kernels.resistance`).
     """
 
     kernel: ForceKernel
     numbers: NDArray[np.float64]
     whole: NDArray[np.int64]
+    resistance: ForceKernel | None = None
 
 
 class Slots:
@@ -51,6 +55,8 @@ class Slots:
     ----------
     moving, turning, fixed : int64 arrays
         The rows in that order.
+    steady : int64 array
+        The rows that move and no force turns.
     place, turn : int64 arrays (rows,)
         Where x of a row stands, and where its angle; -1 for a row that has none, or takes no part.
     """
@@ -66,6 +72,7 @@ class Slots:
             turns[_swung(world)] = True
             turns &= transform & velocity
         self.turning = np.flatnonzero(turns)
+        self.steady = np.setdiff1d(self.moving, self.turning, assume_unique=True)
         fixed = transform & ~velocity
         fixed[0] = True
         self.fixed = np.flatnonzero(fixed)
@@ -116,8 +123,11 @@ class Equations:
         Of what moves: inverse masses [1/kg] and inverse moments of inertia [1/(kg m^2)].
     damping : float64 array
         Rates of damping [1/s]; empty where nothing is damped.
-    calls : int64 array (n, 3)
-        What kernels call.
+    calls, resistances : int64 arrays (n, 3)
+        What kernels call for the forces, and for what of them resists motion.
+    near : int64 array and int, optional
+        An order of the coordinates in which those that forces couple are near, and how near; whoever needs
+        it finds it once, as it hangs on the layout alone.
     forces, interpreted : tuple of str
         The force systems, and those of them that are not compiled.
 
@@ -135,6 +145,7 @@ class Equations:
         self.interpreted = tuple(system.name for system in interpreted)
         self.forces = tuple(system.name for system in self._forces)
         self.slots = Slots(world, part, all_turn=bool(interpreted))
+        self.near: tuple[NDArray[np.int64], int] | None = None
         self._error: BaseException | None = None
         self._settings = self._look(world)
 
@@ -180,7 +191,7 @@ class Equations:
             raise error
         slots, transform, velocity = self.slots, world.table(Transform), world.table(Velocity)
         self._write(world, self.q, self.v)
-        steady = np.setdiff1d(slots.moving, slots.turning, assume_unique=True)
+        steady = slots.steady
         if len(steady):
             spin, c = velocity["angular"][steady], world.physics.angular_damping
             free = world.bodies.inverse_mass[steady] > 0.0
@@ -201,11 +212,20 @@ class Equations:
             (system, system.packed(world, self.slots) if type(system).packs() else None)
             for system in self._forces
         ]
-        self._kept: list[Any] = [force for _, force in packed if force is not None]  # while C may read them
-        world.schedule.compile(force.kernel for force in self._kept)
-        rows = [
-            (force.kernel.address, force.numbers.ctypes.data, force.whole.ctypes.data) for force in self._kept
+        forces = [force for _, force in packed if force is not None]
+        # Behind how many coordinates there are, as resistances get several velocities in one.
+        resisting = [
+            (force.resistance, force.numbers, np.concatenate(([len(self.q)], force.whole)))
+            for force in forces
+            if force.resistance is not None
         ]
+        self._kept: list[Any] = [*forces, *resisting]  # while C may read them
+        world.schedule.compile([*(force.kernel for force in forces), *(kernel for kernel, _, _ in resisting)])
+        rows = [
+            (force.kernel.address, force.numbers.ctypes.data, force.whole.ctypes.data) for force in forces
+        ]
+        against = [(kernel.address, n.ctypes.data, whole.ctypes.data) for kernel, n, whole in resisting]
+        self.resistances = np.array(against, np.int64).reshape(-1, 3)
         python = [system for system, force in packed if force is None]
         if python:
             callback = _CALLBACK(self._caller(world, python))
@@ -257,22 +277,3 @@ def why_not_smooth(world: World) -> str | None:
     if (world.table(Velocity).present & ~world.table(Transform).present).any():
         return "something moves that is nowhere"
     return None
-
-
-def tethered_rows(world: World) -> NDArray[np.bool_]:
-    """Return for each row whether a force acts on it that tells bodies apart, or it is an end of one.
-
-    Where another force couples any body with any, all are.
-    """
-    forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
-    rows = np.zeros(len(world.roster), np.bool_)
-    for force in forces:
-        rates = force.rates(world)
-        pairs = force.couples(world)
-        if rates is not None:
-            rows |= rates > 0.0
-            if pairs is not None:
-                rows[pairs.ravel()] = True
-    if rows.any() and any(force.couples(world) is None for force in forces):
-        rows[:] = True
-    return rows & world.table(Transform).present

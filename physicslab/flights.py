@@ -99,7 +99,7 @@ class Flights:
         """Find out what each row does, and forget the impacts of the step before."""
         contacts = world.contacts
         if contacts.stale or not self._listed:
-            contacts.relist(self._pairs, len(self._pairs), world.roster.entities)
+            contacts.relist(world, self._pairs, len(self._pairs))
             self._list_touching(world)
             self._listed = True
         near = contacts.manifolds[: contacts.candidate_pairs]
@@ -126,7 +126,7 @@ class Flights:
     def _list_touching(self, world: World) -> None:
         contacts = world.contacts
         touching = np.flatnonzero(contacts.manifolds["count"][: contacts.candidate_pairs] > 0)
-        contacts.count = len(touching)
+        contacts.active = len(touching)
         contacts.touching[: len(touching)] = touching
 
     def _pressed(self, world: World) -> NDArray[np.bool_]:

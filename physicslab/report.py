@@ -9,7 +9,7 @@ from typing import Any
 
 from physicslab.advice import Advice, WorstAdvice
 from physicslab.components import Transform, Velocity
-from physicslab.diagnostics import Drift, Energy, measure_momentum
+from physicslab.diagnostics import Drift, Energy, measure_momentum, summation
 from physicslab.scene_writer import unique_name
 from physicslab.world import World
 
@@ -70,6 +70,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "integrator_reason": world.method.reason,
         "collision_method": world.method.collisions,
         "collision_reason": world.method.collision_reason,
+        "summation": summation(world),
         "interpreted": list(world.interpreted),
         "force_evaluations": world.force_evaluations,
         "wall_s": record.wall_s,
@@ -158,6 +159,8 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         f"{report['collisions']} collisions, deepest overlap {report['max_penetration']:.3g} m",
         f"  systems     {systems or 'none'}",
     ]
+    if report["summation"]:
+        lines.append(f"  summed      {report['summation']}")
     if report["interpreted"]:
         lines.append(f"  slower      {', '.join(report['interpreted'])}: computed by Python, call by call")
     lines += [f"  advice      {words}" for words in (Advice(**found) for found in report["advice"])]

@@ -145,6 +145,10 @@ class ForceSystem(System):
         """Return the fastest angular frequency [rad/s] that this force gives any body; 0 if it gives none."""
         return 0.0
 
+    def summation(self, world: World) -> str:
+        """Return how the force is summed, where that bears on what it is worth; shown beside the figures."""
+        return ""
+
     def rates(self, world: World) -> NDArray[np.float64] | None:
         """Return for each row the fastest angular frequency [rad/s] or rate of decay [1/s] it is given.
 

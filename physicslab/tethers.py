@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from physicslab.bodies import Diverged
 from physicslab.components import Velocity
-from physicslab.equations import Equations, tethered_rows
+from physicslab.equations import Equations
 from physicslab.integrators import Integrator, StepTooSmall
 from physicslab.schedule import ForceSystem
+from physicslab.tethered import tethered_rows
 
 if TYPE_CHECKING:
     from physicslab.world import World

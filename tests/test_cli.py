@@ -47,9 +47,9 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
     report = document(capsys, "run", "drop", "--seconds", "1")
     assert list(report) == [
         "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason",
-        "collision_method", "collision_reason", "interpreted", "force_evaluations", "wall_s", "compile_s",
-        "systems", "left_out", "energy", "momentum", "angular_momentum", "candidate_pairs", "contacts",
-        "collisions", "max_penetration", "divided", "advice", "entities",
+        "collision_method", "collision_reason", "summation", "interpreted", "force_evaluations", "wall_s",
+        "compile_s", "systems", "left_out", "energy", "momentum", "angular_momentum", "candidate_pairs",
+        "contacts", "collisions", "max_penetration", "divided", "advice", "entities",
     ]  # fmt: skip
     assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
     assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "exact")
@@ -211,8 +211,7 @@ USAGE = [
     (["newtons_crade"], 'did you mean "newtons_cradle"?'),
     (["nowhere.json"], "nowhere.json: no such file"),
     (["drop", "--fast"], "unrecognized arguments: --fast"),
-    (["bench"], "the command bench is not there yet; there are run, accuracy, stability, scenes"),
-    (["bench", "pile"], "the command bench is not there yet"),
+    (["bench", "pilez"], '"pilez": is no scene; did you mean "pile"'),
     (["stability", "springz"], '"springz": is no case; did you mean "springs"?'),
     (["stability", "qqqq"], '"qqqq": is no case; there are the groups springs, dampers, chains, stacks, '),
     (["stability", "--json", "none/x.json", "far"], "--json none/x.json: cannot be written"),

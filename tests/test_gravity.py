@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.diagnostics import measure_energy, measure_momentum, summation
+from physicslab.kernels.gravity import MANY
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.vector import Vector2
@@ -178,3 +179,17 @@ def test_modes_switch_while_running() -> None:
     world.physics = PhysicsConfig(gravity_mode="none")
     world.step(0.1)
     assert velocity.linear == Vector2()
+
+
+@pytest.mark.parametrize(
+    ("n", "said"), [(100, ""), (101, "each pair of 101"), (MANY, "Barnes-Hut tree of 8000")]
+)
+def test_how_it_sums_is_said(n: int, said: str) -> None:
+    world = planets(1e-6, 0.1, "plummer")
+    for x, y in np.random.default_rng(8).uniform(-10.0, 10.0, (n, 2)):
+        world.spawn(Transform((x, y)), Velocity(), Mass(1.0))
+    world.synchronise()
+    assert summation(world).startswith(said) and bool(summation(world)) == bool(said)
+    world.physics = PhysicsConfig(gravity_mode="linear")
+    world.synchronise()
+    assert summation(world) == ""

@@ -1,12 +1,13 @@
 """The implicit midpoint rule: bounded however stiff, and the same whatever the order of the coordinates."""
 
+import itertools
 import math
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.diagnostics import measure_energy, measure_momentum
 from physicslab.equations import Equations
@@ -174,3 +175,79 @@ def test_over_no_time_the_pull_is_that_of_the_instant() -> None:
     state = (0.3, -0.7, 0.2, 0.9)
     mean = springs.mean_spring_pull.py_func(*state, 0.0, 1.0, 40.0, 3.0)  # type: ignore[attr-defined]
     assert mean == pytest.approx(springs.spring_pull.py_func(*state, 1.0, 40.0, 3.0))  # type: ignore[attr-defined]
+
+
+def falling(speed: float, component: object, **physics: object) -> World:
+    """Return a world of one point of 1 kg that falls at a speed [m/s], 1 m below where springs are fixed."""
+    world = World(*standard_systems(), physics=PhysicsConfig(**physics), simulation=MIDPOINT)  # type: ignore[arg-type]
+    world.spawn(Transform((0, -1)), Velocity((0, -speed)), Mass(1), component)
+    return world
+
+
+@pytest.mark.parametrize("rate", [0.1, 10.0, 1e3, 1e6, 1e12])
+@pytest.mark.parametrize("speed", [0.0, 1.0])
+@pytest.mark.parametrize("kind", ["drag", "quadratic", "damper", "damping"])
+def test_what_resists_leads_to_the_limit_velocity_and_never_past_it(
+    kind: str, speed: float, rate: float
+) -> None:
+    if kind == "damping":
+        world = falling(speed, Drag(linear=0.0), linear_damping=rate)
+    else:
+        brake = {
+            "drag": Drag(linear=rate),
+            "quadratic": Drag(quadratic=rate),
+            "damper": Spring(rest_length=0, stiffness=0, damping=rate),
+        }
+        world = falling(speed, brake[kind])
+    limit = math.sqrt(9.81 / rate) if kind == "quadratic" else 9.81 / rate
+    side = math.copysign(1.0, speed - limit)
+    fell = []
+    for _ in world.stepping(steps=120):
+        fell.append(-float(world.table(Velocity)["linear"][1, 1]))
+    assert all(side * (v - limit) >= -1e-12 for v in fell)
+    assert all(side * (b - a) <= 1e-12 for a, b in itertools.pairwise(fell))
+    if rate > 100.0:
+        assert fell[-1] == pytest.approx(limit, rel=1e-3)
+
+
+def test_decay_is_by_the_approximant_of_second_order() -> None:
+    world = falling(1.0, Drag(linear=30.0), gravity_mode="none")
+    z = 30.0 * MIDPOINT.dt / MIDPOINT.substeps
+    world.step()
+    expected = -1.0 / (1.0 + z + 0.5 * z * z) ** MIDPOINT.substeps
+    assert world.table(Velocity)["linear"][1, 1] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_spin_that_is_damped_hard_stops() -> None:
+    world = falling(0.0, Spring(anchor_a=(0, 0.5), stiffness=0), gravity_mode="none", angular_damping=1e6)
+    world.component(1, Velocity).angular = 3.0
+    world.step()
+    assert 0.0 <= world.table(Velocity)["angular"][1] < 1e-9
+
+
+@pytest.mark.parametrize("damping", [1e3, 1e6, 1e9, 1e12])
+@pytest.mark.parametrize("held", [(0.0, 0.0), (0.0, 0.2)])
+def test_a_bob_swings_on_at_the_end_of_a_damper(damping: float, held: tuple[float, float]) -> None:
+    world = World(*standard_systems(), simulation=MIDPOINT)
+    spring = Spring(anchor_a=held, anchor_b=(0, 1), rest_length=1, stiffness=1e6, damping=damping)
+    world.spawn(Transform((0.8, 0.4 - held[1])), Velocity(), Mass(1, 0.1), spring)
+    before, length = measure_energy(world).total, []
+    for _ in world.stepping(seconds=3.0, stride=4):
+        assert before - 0.02 <= measure_energy(world).total <= before + 1e-5
+        spot, turn = world.table(Transform)["position"][1], world.table(Transform)["angle"][1]
+        length.append(math.hypot(spot[0] - held[1] * math.sin(turn), spot[1] + held[1] * math.cos(turn) - 1))
+    assert length == pytest.approx([1.0] * len(length), abs=1e-4)
+
+
+def test_a_chain_of_dampers_stops_stretching_and_keeps_its_momentum() -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"), simulation=MIDPOINT)
+    balls = [world.spawn(Transform((i, 0)), Velocity((i % 3, 0)), Mass(1.0 + i)) for i in range(10)]
+    for a, b in itertools.pairwise(balls):
+        world.spawn(Spring(a, b, rest_length=1, stiffness=0, damping=1e9))
+    before, mass = measure_momentum(world).linear.x, sum(1.0 + i for i in range(10))
+    centre = sum((1.0 + i) * i for i in range(10)) / mass
+    world.step()
+    at, v = world.table(Transform)["position"][1:11, 0], world.table(Velocity)["linear"][1:11, 0]
+    assert v == pytest.approx(np.full(10, before / mass), abs=1e-4)
+    weights = np.arange(1.0, 11.0)
+    assert weights @ at / mass == pytest.approx(centre + before / mass * MIDPOINT.dt, abs=1e-12)

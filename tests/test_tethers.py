@@ -37,6 +37,7 @@ def hung(stiffness: float, damping: float = 0.0) -> tuple[World, int]:
 def test_the_method_goes_by_the_stiffness_and_the_reason_says_so(stiffness: float, method: object) -> None:
     world, _ = hung(stiffness)
     world.synchronise()
+    assert world.method.tethers is not None
     assert world.method.tethers is method
     assert "between contacts what springs or drag act on goes by" in world.method.reason
     assert ("too fast to be followed" in world.method.reason) == (method is IMPLICIT_MIDPOINT)

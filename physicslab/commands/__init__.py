@@ -9,10 +9,10 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from typing import Protocol
 
-from physicslab.commands import accuracy, run, scenes, stability
+from physicslab.commands import accuracy, bench, run, scenes, stability
 from physicslab.commands.command_error import CommandError
 
-__all__ = ["COMMANDS", "NOT_BUILT", "Command", "CommandError"]
+__all__ = ["COMMANDS", "Command", "CommandError"]
 
 
 class Command(Protocol):
@@ -25,8 +25,11 @@ class Command(Protocol):
         """Do it, and return the exit status."""
 
 
-COMMANDS: dict[str, Command] = {"run": run, "accuracy": accuracy, "stability": stability, "scenes": scenes}
+COMMANDS: dict[str, Command] = {
+    "run": run,
+    "accuracy": accuracy,
+    "stability": stability,
+    "bench": bench,
+    "scenes": scenes,
+}
 """Every command by name."""
-
-NOT_BUILT = ("bench",)
-"""Names that are kept for commands to come, so that no scene is mistaken for one."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import sys
 from argparse import ArgumentParser, Namespace
@@ -18,6 +17,7 @@ from physicslab.accuracy.study import Study, study
 from physicslab.accuracy.tables import left_out_text, study_text, summary_text
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.output import Output
+from physicslab.commands.pictures import picture_directory
 from physicslab.commands.progress import Progress
 from physicslab.json_text import json_text
 from physicslab.scene import load_scene
@@ -40,7 +40,7 @@ def execute(arguments: Namespace) -> int:
     """Study what was named, print a table of each, and write what was asked for."""
     problems, scenes = _chosen(arguments.problems)
     output = None if arguments.json is None else Output("--json", arguments.json)
-    pictures = None if arguments.plot is None else _directory(arguments.plot)
+    pictures = None if arguments.plot is None else picture_directory(arguments.plot, "accuracy.png")
     quiet = output is not None and output.to_stdout
     whole = len(problems) == 1
     jobs: list[Iterator[float | Study] | Iterator[float | SceneStudy]] = [
@@ -95,20 +95,6 @@ def _chosen(wanted: Sequence[str]) -> tuple[list[Problem], list[str]]:
             load_scene(name)  # a bad scene is refused before work is begun
             scenes[name] = None
     return list(problems.values()), list(scenes)
-
-
-def _directory(path: str) -> Path:
-    """Return where pictures go, made if it was not there; refuse it if nothing can draw or write them."""
-    if importlib.util.find_spec("matplotlib") is None:
-        raise CommandError("--plot: needs matplotlib, which is not installed: pip install 'physicslab[plot]'")
-    directory = Path(path)
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except (OSError, ValueError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise CommandError(f"--plot {shown(path)}: cannot be written: {reason}") from error
-    Output("--plot", str(directory / "accuracy.png"))  # whether files can be written there
-    return directory
 
 
 def _results(jobs: Sequence[Iterator[float | Study | SceneStudy]]) -> Iterator[Study | SceneStudy]:

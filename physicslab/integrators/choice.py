@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from physicslab.closed_form import NoClosedForm, closed_form
-from physicslab.equations import tethered_rows, why_not_smooth
+from physicslab.equations import why_not_smooth
 from physicslab.exact_collisions import why_not_exact, why_not_worthwhile
 from physicslab.integrators import INTEGRATORS, Integrator
 from physicslab.integrators.blanes_moan import BLANES_MOAN
@@ -16,6 +16,7 @@ from physicslab.integrators.exact import EXACT
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
 from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_BESIDE_TETHERS
 from physicslab.schedule import ForceSystem, Stage
+from physicslab.tethered import tethered_rows
 
 if TYPE_CHECKING:
     from physicslab.config import SimulationConfig

@@ -27,8 +27,15 @@ __all__ = ["IMPLICIT_MIDPOINT"]
 
 def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
     eq = equations
-    order, band = _banded(world, eq.slots)
-    made = implicit_midpoint(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, order, band, h, steps)
+    if eq.near is None:
+        eq.near = _banded(world, eq.slots)
+    order, band = eq.near
+    if len(eq.damping) or len(eq.resistances):
+        # Beside each coordinate of the mean velocity stands that of what the end's has more.
+        order, band = np.stack((order, order + len(order)), axis=1).ravel(), 2 * band + 1
+    made = implicit_midpoint(
+        eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, eq.resistances, order, band, h, steps
+    )
     if made < 0:
         raise StepTooSmall(
             f"no part of the implicit step of {h:.3g} s has a solution; more substeps may help"
@@ -82,13 +89,14 @@ def _cuthill_mckee(neighbours: dict[int, set[int]]) -> list[int]:
 
 IMPLICIT_MIDPOINT = Integrator(
     name="implicit_midpoint",
-    title="Implicit midpoint, spring energy kept (Newton)",
+    title="Implicit midpoint, spring energy kept, L-stable beside dampers (Newton)",
     order=2,
     evaluations=3,
     stability_limit=float("inf"),
     symplectic=False,
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, II.1.1 and VIII.6; "
-    "LaBudde & Greenspan, J. Comput. Phys. 15 (1974) 134",
+    "LaBudde & Greenspan, J. Comput. Phys. 15 (1974) 134; "
+    "Hairer & Wanner, Solving Ordinary Differential Equations II, 1996, IV.3",
     flow=_flow,
     kernels=(implicit_midpoint,),
 )

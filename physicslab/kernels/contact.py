@@ -6,11 +6,11 @@ from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.pair import NEAR, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
-__all__ = ["effective_masses", "find_contacts", "mix"]
+__all__ = ["KEEP", "KEEP_TURN", "effective_masses", "find_contacts", "mix"]
 
-_KEEP = 0.004
+KEEP = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found anew."""
-_KEEP_TURN = 0.002
+KEEP_TURN = 0.002
 """How far [rad] either may turn."""
 
 
@@ -53,6 +53,7 @@ def effective_masses(
 def find_contacts(
     manifolds: Manifolds,
     points: Points,
+    loose: Rows,
     count: int,
     touching: Rows,
     position: Vectors,
@@ -75,7 +76,7 @@ def find_contacts(
     start: float,
     fall: float,
 ) -> int:
-    """Find or refresh the contact points of every near pair; return how many pairs have any.
+    """Find or refresh the contact points of the near pairs that are ``loose``; return how many have any.
 
     Their numbers are written to ``touching``, in order. A pair of boxes that has hardly moved keeps its
     points. The substep spans ``h`` seconds from ``start`` h before or after now: a pair that meets within it
@@ -85,7 +86,8 @@ def find_contacts(
     substep.
     """
     found, held = 0, count
-    for p in range(count):
+    for number in range(count):
+        p = loose[number]
         manifold = manifolds[p]
         if manifold.count < 0:
             continue
@@ -124,9 +126,9 @@ def find_contacts(
             if (
                 known
                 and had_points
-                and abs(moved_x) + abs(moved_y) <= _KEEP * size
-                and abs(turn_a) <= _KEEP_TURN
-                and abs(turn_b) <= _KEEP_TURN
+                and abs(moved_x) + abs(moved_y) <= KEEP * size
+                and abs(turn_a) <= KEEP_TURN
+                and abs(turn_b) <= KEEP_TURN
                 and travel <= 0.5 * NEAR * size
             ):
                 _refresh(manifold, points, p, moved_x, moved_y, turn_a, turn_b)

@@ -344,7 +344,7 @@ def carry_over(
             points[2 * p + 1] = old_points[2 * q + 1]
         else:
             manifold.entity_a, manifold.entity_b, manifold.wall = entity_a, entity_b, wall
-            manifold.count, manifold.found, manifold.struck = 0, 0, 0
+            manifold.count, manifold.found, manifold.struck, manifold.lane = 0, 0, 0, -1
             points[2 * p].feature = points[2 * p + 1].feature = 0
             points[2 * p].normal_impulse = points[2 * p + 1].normal_impulse = 0.0
             points[2 * p].tangent_impulse = points[2 * p + 1].tangent_impulse = 0.0

@@ -1,4 +1,4 @@
-"""The implicit midpoint rule, by Newton's method with a banded matrix."""
+"""The implicit midpoint rule, leaning to the end where something resists, by Newton's method."""
 
 import math
 
@@ -16,6 +16,8 @@ _PARTS = 1024
 """Into how many parts a step may be divided, by halves, where Newton's method finds no end."""
 _SLOW = 2
 """After so many iterations with an old matrix it is worked out anew in each: stiff rods turn as they go."""
+_FAR = 1e-6
+"""Beyond such a change, as a share, the old matrix is not used again beside dampers: they turn as they go."""
 _SMALL = 1e-3
 """The size of things [m] where all coordinates are zero."""
 _EPSILON = 2.220446049250313e-16
@@ -58,100 +60,128 @@ def _solve(matrix: Vectors, pivots: Rows, band: int, right: Numbers) -> None:
 
 
 @inlined
-def _at_middle(
-    q: Numbers, u: Numbers, stage_q: Numbers, acceleration: Numbers,
-    inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float,
+def _miss(
+    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
+    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
 ) -> None:  # fmt: skip
-    """Work out the acceleration over the step, in whose middle the velocity is ``u``."""
-    for i in range(len(inverse_mass)):
-        stage_q[i] = q[i] + 0.5 * h * u[i]
-    accelerate_over(stage_q, u, h, acceleration, inverse_mass, damping, calls)
+    """Work out by how much ``x`` misses the equations of the step.
+
+    It holds the mean velocity u; where something resists motion, behind it y, by which the end's is more.
+    ``stack`` holds y, u and v one behind the other, each as long as q.
+    """
+    n, size = len(inverse_mass), len(q)
+    mean = stack[size : 2 * size]
+    for i in range(n):
+        mean[i] = x[i]
+        stage_q[i] = q[i] + 0.5 * h * x[i]
+    accelerate_over(stage_q, mean, h, acceleration, inverse_mass, damping, calls)
+    if len(x) == n:
+        for i in range(n):
+            miss[i] = v[i] + 0.5 * h * acceleration[i] - x[i]
+        return
+    for i in range(n):
+        miss[n + i] = h * acceleration[i] - (x[i] - v[i]) - x[n + i]
+        stack[i], stack[2 * size + i] = x[n + i], v[i]
+    accelerate_over(stage_q, stack, h, acceleration, inverse_mass, damping, resistances)
+    for i in range(n):
+        miss[i] = x[n + i] - h * acceleration[i] - (x[i] - v[i])
 
 
 @inlined
 def _differentiate(
-    q: Numbers, u: Numbers, stage_q: Numbers, acceleration: Numbers, shifted: Numbers,
-    inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float,
-    order: Rows, band: int, matrix: Vectors,
+    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
+    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
+    shifted: Numbers, order: Rows, band: int, matrix: Vectors,
 ) -> int:  # fmt: skip
-    """Fill in d(u - h/2 a)/du by differences, and return the evaluations.
+    """Fill in minus the slope of :func:`_miss` by differences, and return the evaluations.
 
     Columns further apart than the band is wide share no row, so they are shifted together (Curtis, Powell &
     Reid, J. Inst. Maths Applics 13 (1974) 117).
     """
     n = len(order)
     # Places move by sqrt(epsilon) of themselves.
-    shift = 1.5e-8 * max(largest(u, n) + largest(q, n) / h, _SMALL / h)
+    shift = 1.5e-8 * max(largest(x, n) + largest(q, len(inverse_mass)) / h, _SMALL / h)
     stride = min(2 * band + 1, n)
-    moved = u.copy()
+    # One that turns bends so much within the shift that strong dampers need both sides.
+    both = n > len(inverse_mass)
+    moved, below = x.copy(), miss.copy()
     for first in range(stride):
         for j in range(first, n, stride):
-            moved[order[j]] += shift
-        _at_middle(q, moved, stage_q, shifted, inverse_mass, damping, calls, h)
+            moved[order[j]] = x[order[j]] + shift
+        _miss(
+            q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, shifted
+        )
+        if both:
+            for j in range(first, n, stride):
+                moved[order[j]] = x[order[j]] - shift
+            _miss(
+                q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, below
+            )
         for j in range(first, n, stride):
-            moved[order[j]] = u[order[j]]
+            moved[order[j]] = x[order[j]]
             for i in range(max(j - 2 * band, 0), min(j + 2 * band + 1, n)):
                 matrix[i, j] = 0.0
             for i in range(max(j - band, 0), min(j + band + 1, n)):
-                slope = (shifted[order[i]] - acceleration[order[i]]) / shift
-                matrix[i, j] = (1.0 if i == j else 0.0) - 0.5 * h * slope
-    return stride
+                matrix[i, j] = (below[order[i]] - shifted[order[i]]) / (2.0 * shift if both else shift)
+    return 2 * stride if both else stride
 
 
 @inlined
 def _newton(
-    q: Numbers, v: Numbers, u: Numbers, stage_q: Numbers, acceleration: Numbers, shifted: Numbers,
-    residual: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float,
-    order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool,
+    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
+    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
+    shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool,
 ) -> tuple[int, int]:  # fmt: skip
-    """Solve for ``u``, beginning with what is in it; return the iterations (-1: no end) and evaluations.
+    """Solve for ``x``, beginning with what is in it; return the iterations (-1: no end) and evaluations.
 
     ``known`` says that ``matrix`` and ``pivots`` hold factors that may still do.
     """
-    n = len(inverse_mass)
-    before, evaluations = math.inf, 0
+    n = len(order)
+    residual = shifted
+    before, evaluations, far = math.inf, 0, False
     for iteration in range(1, _MOST_ITERATIONS + 1):
-        _at_middle(q, u, stage_q, acceleration, inverse_mass, damping, calls, h)
+        _miss(q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss)
         evaluations += 1
-        if (iteration == 1 and not known) or iteration > _SLOW:
+        if (iteration == 1 and not known) or iteration > _SLOW or far:
             evaluations += _differentiate(
-                q, u, stage_q, acceleration, shifted, inverse_mass, damping, calls, h, order, band, matrix
-            )
+                q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss,
+                shifted, order, band, matrix,
+            )  # fmt: skip
             _factorise(matrix, pivots, band)
         for i in range(n):
-            j = order[i]
-            residual[i] = v[j] + 0.5 * h * acceleration[j] - u[j]
+            residual[i] = miss[order[i]]
         _solve(matrix, pivots, band, residual)
         change = largest(residual, n)
         for i in range(n):
-            u[order[i]] += residual[i]
-        size = largest(u, n) + largest(q, n) / h  # below this times epsilon, places cannot tell
+            x[order[i]] += residual[i]
+        # Below this times epsilon, places cannot tell.
+        size = largest(x, n) + largest(q, len(inverse_mass)) / h
         if change <= 4.0 * _EPSILON * size or (change >= 0.5 * before and change <= 1e-10 * size):
             return iteration, evaluations
         if not math.isfinite(change):
             break
-        before = change
+        before, far = change, n > len(inverse_mass) and change > _FAR * size
     return -1, evaluations
 
 
 @inlined
 def _search(
-    q: Numbers, v: Numbers, u: Numbers, stage_q: Numbers, acceleration: Numbers, shifted: Numbers,
-    residual: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float,
-    order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool,
+    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
+    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
+    shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool,
 ) -> tuple[int, int]:  # fmt: skip
-    """Solve for ``u`` as :func:`_newton` does, from where there is a solution nearby.
+    """Solve for ``x`` as :func:`_newton` does, from where there is a solution nearby.
 
     Where a spring swings many times a step, v is another way at the end of each and leads far away: the
     search begins where the bodies are. Where that finds nothing, v may, as on a rod that turns fast.
     """
     evaluations = 0
     for guess in range(2):
-        for i in range(len(inverse_mass)):
-            u[i] = guess * v[i]
+        for i in range(len(order)):
+            x[i] = guess * v[i] if i < len(inverse_mass) else 0.0
         iterations, tried = _newton(
-            q, v, u, stage_q, acceleration, shifted, residual, inverse_mass, damping, calls, h,
-            order, band, matrix, pivots, known and guess == 0,
+            q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss,
+            shifted, order, band, matrix, pivots, known and guess == 0,
         )  # fmt: skip
         evaluations += tried
         if iterations > 0:
@@ -161,20 +191,22 @@ def _search(
 
 @kernel
 def implicit_midpoint(
-    q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
+    q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls,
     order: Rows, band: int, h: float, steps: int,
 ) -> int:  # fmt: skip
     """Advance by ``steps`` steps of ``h`` seconds.
 
     Returns the number of force evaluations, or -1 if Newton's method finds no solution, not even of a small
-    part of a step. The velocity u at the middle solves u = v + h/2 a(q + h/2 u, u), where a is the
-    acceleration over the step. ``order`` (n,) is the order of the coordinates in which those that hang
-    together lie within ``band`` of each other. Sums are compensated.
+    part of a step. With the mean velocity u of the step and a, the acceleration over it, the velocity goes
+    from v to v + h a and the place from q to q + h u, where u - v = (1 + Z) (v + h a - u). Z = h W C is what
+    ``resistances`` and ``damping`` make of the matrix C of damping and the inverse masses W; with none,
+    u = v + h/2 a. ``order`` is the order of u, and of y = v + h a - u behind it where there is a Z, in which
+    those that hang together lie within ``band`` of each other. Sums are compensated.
     """
-    n = len(inverse_mass)
-    stage_q, u, residual = q.copy(), v.copy(), np.empty(n)
-    acceleration, shifted = np.empty(len(q)), np.empty(len(q))
-    matrix, pivots = np.zeros((n, n)), np.zeros(n, np.int64)
+    n, m = len(inverse_mass), len(order)
+    stage_q, x, miss, shifted = q.copy(), np.zeros(m), np.empty(m), np.empty(m)
+    acceleration, stack = np.empty(len(q)), np.zeros(3 * len(q))
+    matrix, pivots = np.zeros((m, m)), np.zeros(m, np.int64)
     q_low, v_low = np.zeros(n), np.zeros(n)
     evaluations, known = 0, False
     for _ in range(steps):
@@ -182,8 +214,8 @@ def implicit_midpoint(
         while done < _PARTS:
             span = h * part / _PARTS
             iterations, tried = _search(
-                q, v, u, stage_q, acceleration, shifted, residual, inverse_mass, damping, calls, span,
-                order, band, matrix, pivots, known,
+                q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, span, miss,
+                shifted, order, band, matrix, pivots, known,
             )  # fmt: skip
             evaluations += tried
             if iterations < 0 and part == 1:
@@ -193,8 +225,8 @@ def implicit_midpoint(
                 part //= 2
                 continue
             for i in range(n):
-                q[i], q_low[i] = add(q[i], q_low[i], span * u[i])
-                v[i], v_low[i] = add(v[i], v_low[i], 2.0 * (u[i] - v[i]))
+                q[i], q_low[i] = add(q[i], q_low[i], span * x[i])
+                v[i], v_low[i] = add(v[i], v_low[i], x[i] - v[i] + (x[n + i] if m > n else x[i] - v[i]))
             done += part
             if done % (2 * part) == 0:
                 part *= 2

@@ -3,23 +3,18 @@
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.block_impulse import DEEPER, SOFT, start_lanes, sweep_lanes
 from physicslab.kernels.records import Manifolds, Point, Points
 
 __all__ = [
-    "apply_impulse", "deepest", "follow_drift", "heaviest_load", "relative_velocity", "relax", "separate",
-    "solve",
+    "UNEQUAL", "apply_impulse", "deepest", "follow_drift", "heaviest_load", "relative_velocity", "relax",
+    "separate", "solve",
 ]  # fmt: skip
 
 
-_SOFT = 0.01
-"""Share of the smaller body's size that the contact spring takes away at its full rate; the load on it comes
-on top."""
 _DEEP = 0.1
 """Share beyond which overlap is taken away by moving."""
-_DEEPER = 0.15
-"""Share beyond which it is taken away by nothing else: of a thousand pushes on one body, speed would be
-left."""
-_UNEQUAL = 10.0
+UNEQUAL = 10.0
 """From such a ratio of masses on, the lighter body of a pair may have to carry many times its weight."""
 
 
@@ -95,9 +90,9 @@ def _sweep(
                 # No faster than what balances twice the load, or a pile of overlapping bodies would fly
                 # apart.
                 load = min(point.normal_impulse, heaviest) * impulse_scale / (mass_scale * point.normal_mass)
-                limit = push_rate * _SOFT * manifold.size + 2.0 * load
+                limit = push_rate * SOFT * manifold.size + 2.0 * load
                 bias = max(push_rate * min(separation + slop * manifold.size, 0.0), -limit)
-                if separation < -_DEEPER * manifold.size:
+                if separation < -DEEPER * manifold.size:
                     bias = 0.0
                 hardness, softness = mass_scale, impulse_scale
             change = -point.normal_mass * hardness * (vn + bias) - softness * point.normal_impulse
@@ -129,6 +124,14 @@ def solve(
     points: Points,
     touching: Rows,
     count: int,
+    discs: Numbers,
+    disc_blocks: int,
+    disc_a: Rows,
+    disc_b: Rows,
+    boxes: Numbers,
+    box_blocks: int,
+    box_a: Rows,
+    box_b: Rows,
     linear: Vectors,
     angular: Numbers,
     inverse_mass: Numbers,
@@ -166,6 +169,8 @@ def solve(
             apply_impulse(
                 point, px, py, manifold.a, manifold.b, linear, angular, inverse_mass, inverse_inertia
             )
+    lanes = discs, disc_blocks, disc_a, disc_b, boxes, box_blocks, box_a, box_b
+    start_lanes(*lanes, linear, angular, carried)
     heaviest = 0.0
     if has_forces:
         for i in range(len(inverse_mass)):
@@ -176,6 +181,10 @@ def solve(
     for _ in range(iterations):
         _sweep(
             manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
+            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, heaviest,
+        )  # fmt: skip
+        sweep_lanes(
+            *lanes, linear, angular, 0.0,
             1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, heaviest,
         )  # fmt: skip
 
@@ -206,6 +215,14 @@ def relax(
     points: Points,
     touching: Rows,
     count: int,
+    discs: Numbers,
+    disc_blocks: int,
+    disc_a: Rows,
+    disc_b: Rows,
+    boxes: Numbers,
+    box_blocks: int,
+    box_a: Rows,
+    box_b: Rows,
     linear: Vectors,
     angular: Numbers,
     inverse_mass: Numbers,
@@ -218,11 +235,15 @@ def relax(
     ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call.
     """
     follow_drift(manifolds, points, touching, count, linear, angular, h)
+    lanes = discs, disc_blocks, disc_a, disc_b, boxes, box_blocks, box_a, box_b
+    drift = h
     for _ in range(iterations):
         _sweep(
             manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
             1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0,
         )  # fmt: skip
+        sweep_lanes(*lanes, linear, angular, drift, 1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0)
+        drift = 0.0
 
 
 @kernel
@@ -302,21 +323,21 @@ def deepest(manifolds: Manifolds, points: Points, touching: Rows, count: int) ->
 
 
 @kernel
-def heaviest_load(
-    manifolds: Manifolds, touching: Rows, count: int, force: Vectors, inverse_mass: Numbers
-) -> float:
+def heaviest_load(manifolds: Manifolds, pairs: int, force: Vectors, inverse_mass: Numbers) -> float:
     """Return how many times its own weight a body carries, at the most, of one that is far heavier.
 
     By the forces that act on both, as they stand: whatever lies beside or below presses nothing.
     """
     heaviest = 0.0
-    for k in range(count):
-        manifold = manifolds[touching[k]]
+    for p in range(pairs):
+        manifold = manifolds[p]
+        if manifold.count <= 0:
+            continue
         a, b = manifold.a, manifold.b
         ma, mb = inverse_mass[a], inverse_mass[b]
-        if _UNEQUAL * ma < mb and ma > 0.0:
+        if UNEQUAL * ma < mb and ma > 0.0:
             heavy, light, sign = a, b, 1.0
-        elif _UNEQUAL * mb < ma and mb > 0.0:
+        elif UNEQUAL * mb < ma and mb > 0.0:
             heavy, light, sign = b, a, -1.0
         else:
             continue

@@ -13,17 +13,16 @@ def derive_masses(
     mass: Numbers, inertia: Numbers, inertia_given: Flags, fixed_rotation: Flags,
     kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
-) -> int:  # fmt: skip
+) -> tuple[float, int]:  # fmt: skip
     """Work out each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
 
-    Return the first row of which the moment of inertia is not finite, or -1.
+    Returns the ratio of the greatest mass that can be moved to the least, of what has a shape, 1 if none has;
+    and the first row of which the moment of inertia is not finite, or -1.
 
     A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. What has no velocity, no mass or is held weighs
     infinitely much; what is too small to have an inverse inertia does not turn.
-
-    Return the first row of which the moment of inertia is not finite, or -1.
     """
-    infinite = -1
+    lightest, heaviest, infinite = 0.0, math.inf, -1
     for i in range(len(mass)):
         if not inertia_given[i]:
             if kind[i] == 1:
@@ -39,9 +38,11 @@ def derive_masses(
         inverse_inertia[i] = inverse if math.isfinite(inverse) else 0.0  # too small to be turned
         if fixed_rotation[i]:
             angular[i] = 0.0
+        if inverse_mass[i] > 0.0 and kind[i] != 0:
+            lightest, heaviest = max(lightest, inverse_mass[i]), min(heaviest, inverse_mass[i])
         if infinite < 0 and not math.isfinite(inertia[i]):
             infinite = i
-    return infinite
+    return (lightest / heaviest if lightest > 0.0 else 1.0), infinite
 
 
 @kernel

@@ -3,9 +3,12 @@
 Each works by the same formulas as the loop over columns in the module of that force.
 """
 
+import numpy as np
+
+from physicslab.kernels import inlined
 from physicslab.kernels.drag import drag_factor
 from physicslab.kernels.force_calls import force_kernel
-from physicslab.kernels.gravity import inverse_cube
+from physicslab.kernels.gravity import FEW, attract, inverse_cube
 from physicslab.kernels.springs import mean_spring_pull, spring_pull, turn_over, turned
 
 __all__ = ["drag", "planet_gravity", "springs", "uniform_gravity"]
@@ -20,15 +23,34 @@ def uniform_gravity(q, v, span, force, numbers, whole):  # type: ignore[no-untyp
         force[i + 1] += numbers[2 + p] * numbers[1]
 
 
+@inlined
+def _attract_packed(q, force, numbers, whole):  # type: ignore[no-untyped-def]
+    """Add the attraction of more than a few, as :func:`planet_gravity` has it, by columns of them."""
+    n = whole[0]
+    x, y, mass, ax, ay = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    for p in range(n):
+        i = whole[2 + p]
+        x[p], y[p], mass[p] = q[i], q[i + 1], numbers[2 + p]
+    attract(x, y, mass, numbers[1], whole[1] != 0, ax, ay)
+    for p in range(n):
+        i = whole[2 + p]
+        force[i] += numbers[0] * mass[p] * ax[p]
+        force[i + 1] += numbers[0] * mass[p] * ay[p]
+
+
 @force_kernel
 def planet_gravity(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
     """Add the attraction of every pair.
 
-    ``numbers``: G, softening^2, then the masses; ``whole``: how many, whether Plummer's law holds, then where
+    ``numbers``: G, softening, then the masses; ``whole``: how many, whether Plummer's law holds, then where
     x of each is.
     """
     n, plummer = whole[0], whole[1] != 0
-    G, softening2 = numbers[0], numbers[1]
+    G, softening = numbers[0], numbers[1]
+    if n > FEW:
+        _attract_packed(q, force, numbers, whole)  # type: ignore[no-untyped-call]
+        return
+    softening2 = softening * softening
     for p in range(n):
         i = whole[2 + p]
         x, y, weight = q[i], q[i + 1], G * numbers[2 + p]

@@ -7,14 +7,14 @@ from physicslab.kernels.manifold import box_box, circle_box, circle_circle, wall
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.sweep import MISS, sweep_box_box, sweep_circle_box, sweep_circle_circle
 
-__all__ = ["NEAR", "touch_boxes", "touch_wall", "touch_with_circle"]
+__all__ = ["NEAR", "STILL", "touch_boxes", "touch_wall", "touch_with_circle"]
 
 NEAR = 0.02
 """Share of the smaller body's size within which a pair counts as near: its points are kept though they do
 not touch."""
 _ROUNDING = 1e-6
 """Share of the size within which two surfaces count as just meeting."""
-_STILL = 0.002
+STILL = 0.002
 """Share of the smaller body's size below which a substep's motion is not swept at all."""
 _FAST = 0.25
 """Share of the smaller box's size beyond which a substep's motion of boxes is swept."""
@@ -115,7 +115,7 @@ def touch_with_circle(
     near = NEAR * size + fall
     if separation > max(reach, near):
         return
-    if reach > _STILL * size:
+    if reach > STILL * size:
         # The normal is that of the moment of contact, if there is one in this substep.
         x, y = dx + start * ux, dy + start * uy
         if a_box:

@@ -40,6 +40,7 @@ MANIFOLD = np.dtype(
         # known not to meet within it, 0 where normal and separation are those of now.
         ("swept", np.int64),
         ("size", np.float64),  # of the smaller body
+        ("lane", np.int64),  # twice the number of its lane, plus the kind of block; -1 for a loose pair
     ]
 )
 """A pair that the broad phase found near each other, and where it touches."""

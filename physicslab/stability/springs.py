@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 
 from physicslab.components import Drag, Spring, Velocity
@@ -59,22 +60,57 @@ def _energy(stiffness: float, touches: bool) -> float:
     return 0.0 if "too fast to be followed" in world.method.reason else changed
 
 
-def _past_limit(damping: float, drag: bool) -> float:
+def _past_limit(damping: float, kind: str, touches: bool) -> float:
     """Return how far a body's velocity goes past that at which a damper carries its weight.
 
     As a share of the 1 m/s that it starts with; or how far it is from there at the end, if that is more.
     """
     world = open_space(dt=_DT)
-    brake = Drag(linear=damping) if drag else Spring(rest_length=0.0, stiffness=0.0, damping=damping)
-    bob = spawn_point(world, (0.0, -1.0), (0.0, -1.0), brake)
-    falls, end = -_G / damping, 0.0
+    brake = {
+        "damper": Spring(rest_length=0.0, stiffness=0.0, damping=damping),
+        "drag": Drag(linear=damping),
+        "drag_quadratic": Drag(quadratic=damping),
+    }[kind]
+    if touches:
+        floor(world, Vector2(0.0, -10.0))
+        bob = circle(world, (0.0, -1.0), radius=0.1, mass=1.0, velocity=(0.0, -1.0))
+        world.add(bob, brake)
+    else:
+        bob = spawn_point(world, (0.0, -1.0), (0.0, -1.0), brake)
+    falls = -math.sqrt(_G / damping) if kind == "drag_quadratic" else -_G / damping
 
     def past() -> float:
         return world.component(bob, Velocity).linear.y - falls
 
     most = largest(world, _STEPS, past)
-    end = abs(past())
-    return max(0.0, most, end)
+    return max(0.0, most, abs(past()))
+
+
+def _swing(touches: bool, stiffness: float) -> tuple[World, int]:
+    """Return a world with a bob of 1 kg let go aside, on a spring of 1 m with a strong damper."""
+    world, where = open_space(dt=_DT), (0.8, -0.6)
+    if touches:
+        floor(world, Vector2(0.0, -10.0))
+        bob = circle(world, where, radius=0.1, mass=1.0)
+    else:
+        bob = spawn_point(world, where)
+    world.add(bob, Spring(rest_length=1.0, stiffness=stiffness, damping=1e9))
+    return world, bob
+
+
+def _swing_change(touches: bool, stiffness: float) -> float:
+    world, _ = _swing(touches, stiffness)
+    return energy_change(world, _STEPS)
+
+
+def _along_the_rod(touches: bool, stiffness: float) -> float:
+    world, bob = _swing(touches, stiffness)
+
+    def rate() -> float:
+        arm, velocity = place(world, bob), world.component(bob, Velocity).linear
+        return abs(arm.x * velocity.x + arm.y * velocity.y) / arm.magnitude
+
+    return largest(world, _STEPS, rate)
 
 
 def _of_spring(name: str, stiffness: float, *, touches: bool) -> list[Case]:
@@ -104,16 +140,38 @@ def _of_spring(name: str, stiffness: float, *, touches: bool) -> list[Case]:
     ]  # fmt: skip
 
 
-def _damper(damping: float, *, drag: bool) -> Case:
-    kind, name = ("drag", "drag") if drag else ("damper", "damper")
+def _damper(damping: float, kind: str, *, touches: bool) -> Case:
+    unit = {"damper": "N s/m", "drag": "kg/s", "drag_quadratic": "kg/m"}[kind]
+    scene = ", in a scene with contacts" if touches else ""
+    prefix = f"{kind}_touching" if touches else kind
     return Case(
-        name=f"{name}_{damping:.0e}".replace("+", "").replace("e0", "e"),
-        title=f"{kind} of {damping:g} {'kg/s' if drag else 'N s/m'} on a falling body of 1 kg",
+        name=f"{prefix}_{damping:.0e}".replace("+", "").replace("e0", "e"),
+        title=f"{kind.replace('_', ', ')} of {damping:g} {unit} on a falling body of 1 kg{scene}",
         group="dampers",
         right="the velocity goes to the one at which the weight is carried, never past it",
         figure="how far past, or off at the end", unit="m/s", limit=1e-9,
-        measure=partial(_past_limit, damping, drag),
+        measure=partial(_past_limit, damping, kind, touches),
     )  # fmt: skip
+
+
+def _swings(stiffness: float, *, touches: bool) -> list[Case]:
+    scene = "in a scene with contacts" if touches else "alone"
+    prefix = f"swing{'_touching' if touches else ''}_damped_{stiffness:.0e}".replace("+", "")
+    title = f"bob swinging on a spring of {stiffness:g} N/m with a damper of 1e9 N s/m, {scene}"
+    return [
+        Case(
+            name=f"{prefix}_energy", title=title, group="dampers",
+            right="a damper takes nothing from what only swings across it, and never gives",
+            figure="largest change of energy", limit=1e-4,
+            measure=partial(_swing_change, touches, stiffness),
+        ),
+        Case(
+            name=f"{prefix}_along", title=title, group="dampers",
+            right="the velocity stays across the rod: nothing rings along it",
+            figure="largest velocity along the rod", unit="m/s", limit=1e-3,
+            measure=partial(_along_the_rod, touches, stiffness),
+        ),
+    ]  # fmt: skip
 
 
 SPRINGS = [
@@ -121,4 +179,13 @@ SPRINGS = [
     for touches in (False, True)
     for name, stiffness in _STIFFNESS.items()
     for case in _of_spring(name, stiffness, touches=touches)
-] + [_damper(damping, drag=drag) for drag in (False, True) for damping in (1e6, 1e12)]
+] + [
+    case
+    for touches in (False, True)
+    for case in (
+        *(_damper(damping, kind, touches=touches) for kind in ("damper", "drag") for damping in (1e6, 1e12)),
+        _damper(1e9, "drag_quadratic", touches=touches),
+        *_swings(1e6, touches=touches),
+        *_swings(1e12, touches=touches),
+    )
+]

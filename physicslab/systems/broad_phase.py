@@ -71,7 +71,7 @@ class BroadPhaseSystem(System):
         grid.fat_boxes(position, angle, linear, *sizes, inverse_mass, self._fat, self._boxes, h)
         bounded = world.physics.bounds is not None
         count = self._count_pairs(shape["kind"], inverse_mass, bounded)
-        world.contacts.relist(self._pairs, count, world.roster.entities)
+        world.contacts.relist(world, self._pairs, count)
 
     def _count_pairs(self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool) -> int:
         """Fill the list of pairs, made larger where it is too small, and return their number."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from physicslab.components import Material, Shape, Transform, Velocity
-from physicslab.kernels import contact
+from physicslab.kernels import block_contact, contact
+from physicslab.kernels.pair import NEAR, STILL
 from physicslab.schedule import Stage, System, at
 from physicslab.systems.broad_phase import nothing_to_touch
 
@@ -48,13 +49,36 @@ class ContactSystem(System):
         transform, velocity = world.table(Transform), world.table(Velocity)
         shape, material = world.table(Shape), world.table(Material)
         contacts, bodies, physics = world.contacts, world.bodies, world.physics
-        contacts.count = contact.find_contacts(
-            contacts.manifolds, contacts.points, contacts.candidate_pairs, contacts.touching,
+        fall = 0.5 * physics.gravity.magnitude * h * h if physics.gravity_mode == "linear" else 0.0
+        if self._first:
+            contacts.in_order()
+        if contacts.blocks.lanes:
+            self._refresh(world, h, fall)
+            contacts.changed()
+        contacts.active = contact.find_contacts(
+            contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count, contacts.touching,
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
             shape["kind"], shape["radius"], shape["width"], shape["height"],
             material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
             self._bounds, physics.bounds_restitution, physics.bounds_friction, self._first, h,
-            world.method.stages.window[0],
-            0.5 * physics.gravity.magnitude * h * h if physics.gravity_mode == "linear" else 0.0,
+            world.method.stages.window[0], fall,
         )  # fmt: skip
+        if self._first and world.method.collisions == "step":
+            contacts.admit(world, h)
+            contacts.changed()
         self._first = False
+
+    def _refresh(self, world: World, h: float, fall: float) -> None:
+        """Find where settled contacts touch now; those that are settled no longer join the loose ones."""
+        contacts, transform, velocity = world.contacts, world.table(Transform), world.table(Velocity)
+        if self._first and contacts.blocks.outdated(world):
+            contacts.dissolve(len(world.roster))
+        before = contacts.loose_count
+        for lanes in contacts.blocks.kinds:
+            contacts.loose_count = block_contact.refresh(
+                *lanes.layout, contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
+                transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
+                self._first, h, STILL, NEAR, fall, contact.KEEP, contact.KEEP_TURN,
+            )  # fmt: skip
+        contacts.blocks.lanes -= contacts.loose_count - before
+        contacts.unordered |= contacts.loose_count > before

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from physicslab.components import Drag, Mass, Velocity
 from physicslab.equations import PackedForce
 from physicslab.kernels import drag, packed_forces
+from physicslab.kernels.resistance import drag_resistance
 from physicslab.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
@@ -37,7 +38,8 @@ class DragSystem(ForceSystem):
         """Return the drag for compiled integrators."""
         table, rows = world.table(Drag), world.batch(*self.needs).rows
         numbers = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
-        return PackedForce(packed_forces.drag, numbers, np.concatenate(([len(rows)], slots.place[rows])))
+        whole = np.concatenate(([len(rows)], slots.place[rows]))
+        return PackedForce(packed_forces.drag, numbers, whole, drag_resistance)
 
     def rates(self, world: World) -> NDArray[np.float64]:
         """Return for each row the rate at which it slows down at its present speed [1/s]."""

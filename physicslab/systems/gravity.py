@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.equations import PackedForce
 from physicslab.kernels import gravity, packed_forces
+from physicslab.kernels.tree_pull import LARGEST_ERROR, RMS_ERROR, THETA
 from physicslab.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ class GravitySystem(ForceSystem):
     """Pulls every body with Mass: by m g, or towards every other by G m_a m_b / d^2.
 
     In planet mode a static body with Mass pulls and is not moved; a held one neither pulls nor is pulled.
+    Very many are pulled by groups of others: :meth:`summation` says so, and how far off that is.
     """
 
     kernels = (
@@ -80,7 +82,7 @@ class GravitySystem(ForceSystem):
             return PackedForce(packed_forces.uniform_gravity, numbers, whole)
         rows = self._attracting
         whole = np.concatenate(([len(rows), physics.softening_law == "plummer"], slots.place[rows]))
-        numbers = np.concatenate(((physics.G, physics.softening * physics.softening), mass[rows]))
+        numbers = np.concatenate(((physics.G, physics.softening), mass[rows]))
         return PackedForce(packed_forces.planet_gravity, numbers, whole)
 
     def strongest_rate(self, world: World) -> float:
@@ -101,6 +103,18 @@ class GravitySystem(ForceSystem):
     def attractors(self) -> int:
         """How many bodies attract each other."""
         return len(self._attracting)
+
+    def summation(self, world: World) -> str:
+        """Return how pairs are summed, which :mod:`physicslab.kernels.gravity` decides by their number."""
+        n = self.attractors
+        if world.physics.gravity_mode != "planet" or n <= gravity.FEW:
+            return ""
+        if n < gravity.MANY:
+            return f"each pair of {n} bodies, in vectors"
+        return (
+            f"Barnes-Hut tree of {n} bodies, theta {THETA:g}: forces within {RMS_ERROR:g} of the mean one by "
+            f"root mean square, {LARGEST_ERROR:g} at most; momentum is kept as well as they are right"
+        )
 
     def potential_energy(self, world: World) -> float:
         """Return the sum of -m g . x [J], zero at the origin, or the pairs' energy, zero at infinity."""

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from physicslab.components import Transform, Velocity
-from physicslab.kernels import impact, impulse
+from physicslab.kernels import block_lanes, impact, impulse
 from physicslab.schedule import Stage, System, at
 from physicslab.systems.broad_phase import nothing_to_touch
 
@@ -52,10 +54,10 @@ class ResolveSystem(System):
         more. A frequency that is higher by the root of that takes it back.
         """
         contacts, bodies = world.contacts, world.bodies
-        if not (contacts.count and world.has_forces):
+        if not (contacts.count and world.has_forces and bodies.unequal):
             return 1
         load = impulse.heaviest_load(
-            contacts.manifolds, contacts.touching, contacts.count, bodies.force, bodies.inverse_mass
+            contacts.manifolds, contacts.candidate_pairs, bodies.force, bodies.inverse_mass
         )
         parts = 1
         while parts < _MOST_PARTS and parts * parts * _LIGHT_LOAD < load:
@@ -68,25 +70,47 @@ class ResolveSystem(System):
         contacts, bodies = world.contacts, world.bodies
         transform, velocity = world.table(Transform), world.table(Velocity)
         start, end = world.method.stages.window
-        if contacts.count:
+        contacts.left = 0
+        while contacts.active:
             impacts, contacts.left = impact.strike(
-                contacts.manifolds, contacts.points, contacts.touching, contacts.count,
+                contacts.manifolds, contacts.points, contacts.touching, contacts.active,
                 transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
                 bodies.force, bodies.inverse_mass, bodies.inverse_inertia, world.has_forces,
                 h, start * h, end * h,
             )  # fmt: skip
             world.collisions += impacts
+            if not (impacts and self._wake(world, h)):
+                break
+
+    def _wake(self, world: World, h: float) -> bool:
+        """After impacts, let settled contacts that may bounce take part in them; return whether any does."""
+        contacts, velocity, force = world.contacts, world.table(Velocity), world.bodies.force
+        before = contacts.active
+        if contacts.blocks.lanes:
+            strongest = np.hypot(force[:, 0], force[:, 1]) * world.bodies.inverse_mass
+            resting_speed = 2.0 * h * float(strongest.max()) if world.has_forces else 0.0
+            for lanes in contacts.blocks.kinds:
+                contacts.loose_count, contacts.active = block_lanes.wake(
+                    *lanes.layout, contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
+                    contacts.touching, contacts.active, velocity["linear"], velocity["angular"],
+                    resting_speed,
+                )  # fmt: skip
+            contacts.blocks.lanes -= contacts.active - before
+            contacts.unordered |= contacts.active > before
+        return contacts.active > before
 
     @at(Stage.SOLVE)
     def solve(self, world: World, h: float) -> None:
         """Find the impulses that keep bodies apart, taking some of the overlap away."""
         contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
-        if contacts.count and contacts.left:
+        if contacts.left or contacts.blocks.lanes:
             # What an instant left behind is mostly rounding, which is not to be blown up.
-            carried, contacts.span = h / max(contacts.span, h / _MOST_PARTS), h
+            carried = h / max(contacts.span, h / _MOST_PARTS) if contacts.span > 0.0 else 1.0
+            contacts.span = h
             finer = world.substeps / world.simulation.substeps
             impulse.solve(
-                contacts.manifolds, contacts.points, contacts.touching, contacts.count,
+                contacts.manifolds, contacts.points, contacts.touching, contacts.active,
+                *contacts.blocks.discs.solved, *contacts.blocks.boxes.solved,
                 velocity["linear"], velocity["angular"], bodies.inverse_mass, bodies.inverse_inertia,
                 bodies.force, world.has_forces, h, carried, world.simulation.iterations or 1,
                 self.hertz * finer, self.damping_ratio, self.slop,
@@ -96,13 +120,14 @@ class ResolveSystem(System):
     def relax(self, world: World, h: float) -> None:
         """Take back the velocity that came from taking overlap away."""
         contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
-        if contacts.count and contacts.left:
+        if contacts.left or contacts.blocks.lanes:
             impulse.relax(
-                contacts.manifolds, contacts.points, contacts.touching, contacts.count,
+                contacts.manifolds, contacts.points, contacts.touching, contacts.active,
+                *contacts.blocks.discs.solved, *contacts.blocks.boxes.solved,
                 velocity["linear"], velocity["angular"], bodies.inverse_mass, bodies.inverse_inertia,
                 h, world.simulation.iterations or 1,
             )  # fmt: skip
             impulse.separate(
-                contacts.manifolds, contacts.points, contacts.touching, contacts.count,
+                contacts.manifolds, contacts.points, contacts.touching, contacts.active,
                 world.table(Transform)["position"], bodies.inverse_mass, self.max_push * h,
             )  # fmt: skip

@@ -13,6 +13,7 @@ from physicslab.components import Mass, Name, Spring, Transform, Velocity
 from physicslab.components.spring import OTHER_END
 from physicslab.equations import PackedForce, spring_ends
 from physicslab.kernels import packed_forces, springs
+from physicslab.kernels.resistance import damper_resistance
 from physicslab.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
@@ -87,7 +88,8 @@ class SpringSystem(ForceSystem):
             numbers[:, column + 1] = sine * anchor[:, 0] + cosine * anchor[:, 1]
         for column, name in enumerate(("rest_length", "stiffness", "damping"), 4):
             numbers[:, column] = spring[name][rows]
-        return PackedForce(packed_forces.springs, numbers.ravel(), whole)
+        resistance = damper_resistance if self.sees_velocity(world) else None
+        return PackedForce(packed_forces.springs, numbers.ravel(), whole, resistance)
 
     def rates(self, world: World) -> NDArray[np.float64]:
         """Return for each row a bound on its fastest oscillation or decay [rad/s].

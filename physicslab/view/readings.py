@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from physicslab.diagnostics import summation
 from physicslab.view.figures import FrameMeter, WorldFigures
 from physicslab.view.panels import Line
 from physicslab.view.quantities import percentage, quantity, vector_quantity
@@ -25,6 +26,7 @@ def figure_lines(world: World, figures: WorldFigures, frame_rate: float) -> list
         Line("as a vector", vector_quantity(figures.momentum.linear, "kg m/s"), "detail"),
         Line("Angular momentum", quantity(figures.momentum.angular, "kg m²/s")),
         Line("Gravity", _gravity(world)),
+        *(Line(said, kind="remark") for said in [summation(world)] if said),
     ]
 
 

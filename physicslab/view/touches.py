@@ -54,7 +54,8 @@ def _touches(world: World, chosen: NDArray[np.int64], normal: str, tangent: str)
 def resting_of(world: World) -> Touches:
     """Return where bodies touch, with the impulses of the last substep that held them apart."""
     contacts = world.contacts
-    pairs = contacts.touching[: contacts.count]
+    contacts.sync()
+    pairs = np.flatnonzero(contacts.manifolds["count"][: contacts.candidate_pairs] > 0)
     both = np.stack((2 * pairs, 2 * pairs + 1), axis=1)
     in_use = np.arange(2) < contacts.manifolds["count"][pairs][:, None]
     chosen = both[in_use]

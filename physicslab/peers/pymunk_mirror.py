@@ -1,16 +1,17 @@
-"""Build a world's scene in pymunk."""
+"""Build a world's scene in self.engine."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import override
+from typing import Any, override
 
 import numpy as np
-import pymunk
-from peer import Peer
 
 from physicslab.components import Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.peers.peer import Peer
+
+__all__ = ["PymunkMirror"]
 
 ITERATIONS = 10
 SLOP = 0.005
@@ -22,13 +23,15 @@ class PymunkMirror(Peer):
     Masses, moments of inertia, outlines, springs and dampers, friction and restitution are the world's.
     """
 
+    title, module = "pymunk", "pymunk"
+
     @override
     def make_space(self) -> None:
-        self.space = pymunk.Space()
+        self.space = self.engine.Space()
         self.space.iterations = ITERATIONS
         self.space.collision_slop = SLOP
         self.space.gravity = self.gravity.x, self.gravity.y
-        self._bodies: dict[int, pymunk.Body] = {}
+        self._bodies: dict[int, Any] = {}
         materials = self.world.batch(Material).rows
         self._one_restitution = len(np.unique(self.world.table(Material)["restitution"][materials])) < 2
         self._bounds()
@@ -41,9 +44,13 @@ class PymunkMirror(Peer):
         corners = ((xmin, ymin), (xmax, ymin), (xmax, ymax), (xmin, ymax))
         for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
             # pymunk's walls have a thickness; this puts their inner face on the bound.
-            outward = pymunk.Vec2d(end[1] - start[1], start[0] - end[0]).normalized() * 1.0
-            wall = pymunk.Segment(
-                self.space.static_body, pymunk.Vec2d(*start) + outward, pymunk.Vec2d(*end) + outward, 1.0
+            vector = self.engine.Vec2d
+            outward = vector(end[1] - start[1], start[0] - end[0]).normalized() * 1.0
+            wall = self.engine.Segment(
+                self.space.static_body,
+                self.engine.Vec2d(*start) + outward,
+                self.engine.Vec2d(*end) + outward,
+                1.0,
             )
             wall.elasticity, wall.friction = physics.bounds_restitution, physics.bounds_friction
             self.space.add(wall)
@@ -53,13 +60,13 @@ class PymunkMirror(Peer):
         world = self.world
         pose = world.component(entity, Transform)
         if not world.has(entity, Velocity):
-            body = pymunk.Body(body_type=pymunk.Body.STATIC)
+            body = self.engine.Body(body_type=self.engine.Body.STATIC)
         elif not world.has(entity, Mass):
-            body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+            body = self.engine.Body(body_type=self.engine.Body.KINEMATIC)
         else:
             mass = world.component(entity, Mass)
             turns = world.has(entity, Shape) and not mass.fixed_rotation
-            body = pymunk.Body(mass.mass, float(mass.inertia or math.inf) if turns else math.inf)
+            body = self.engine.Body(mass.mass, float(mass.inertia or math.inf) if turns else math.inf)
         body.position, body.angle = (pose.position.x, pose.position.y), pose.angle
         self.space.add(body)
         self._bodies[entity] = body
@@ -76,11 +83,11 @@ class PymunkMirror(Peer):
         """
         outline = self.world.component(entity, Shape)
         body = self._bodies[entity]
-        made: pymunk.Shape
+        made: Any
         if outline.kind == "circle":
-            made = pymunk.Circle(body, outline.radius)
+            made = self.engine.Circle(body, outline.radius)
         else:
-            made = pymunk.Poly.create_box(body, (outline.width, outline.height))
+            made = self.engine.Poly.create_box(body, (outline.width, outline.height))
         material = self.world.component(entity, Material)
         e = material.restitution
         made.elasticity = math.sqrt(e) if self._one_restitution else e
@@ -93,12 +100,22 @@ class PymunkMirror(Peer):
         b = self._bodies[spring.b] if spring.b else self.space.static_body
         anchors = [(anchor.x, anchor.y) for anchor in (spring.anchor_a, spring.anchor_b)]
         self.space.add(
-            pymunk.DampedSpring(a, b, *anchors, spring.rest_length, spring.stiffness, spring.damping)
+            self.engine.DampedSpring(a, b, *anchors, spring.rest_length, spring.stiffness, spring.damping)
         )
 
     @override
     def step(self, dt: float) -> None:
         self.space.step(dt)
+
+    @override
+    def run(self, dt: float, steps: int) -> None:
+        step = self.space.step  # as its user would call it, without this class between
+        for _ in range(steps):
+            step(dt)
+
+    @override
+    def positions(self) -> list[tuple[float, float]]:
+        return [body.position for body in self._bodies.values()]
 
     @override
     def state(self, entity: int) -> Sequence[float]:

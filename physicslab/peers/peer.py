@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import importlib
+import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from typing import Any, ClassVar
 
 import numpy as np
 
-from physicslab import World
 from physicslab.bodies import Diverged
 from physicslab.components import Drag, Shape, Spring, Transform, Velocity
+from physicslab.schedule import Stage
 from physicslab.vector import Vector2
+from physicslab.world import World
+
+__all__ = ["CannotBuild", "Peer", "find_contacts"]
 
 
 class CannotBuild(Exception):
@@ -18,9 +24,31 @@ class CannotBuild(Exception):
 
 
 class Peer(ABC):
-    """A world's bodies, as they are when this is made, in another engine."""
+    """A world's bodies, as they are when this is made, in another engine.
+
+    Attributes
+    ----------
+    title, module : str
+        The engine's name, and that of its package.
+    world : World
+        Where the bodies came from, and go with :meth:`bring_back`.
+
+    Raises
+    ------
+    CannotBuild
+        If the engine has nothing of the kind that the world holds.
+    ImportError
+        If the engine is not installed.
+    """
+
+    title: ClassVar[str]
+    module: ClassVar[str]
 
     def __init__(self, world: World) -> None:
+        with warnings.catch_warnings():
+            # Box2D's binding has types without modules, which Python 3.12 tells of; as an error it crashes.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            self.engine: Any = importlib.import_module(self.module)  # here: most users have no peers
         world.synchronise()
         self.world = world
         if world.physics.gravity_mode == "planet" or world.batch(Drag).entities.size:
@@ -56,6 +84,15 @@ class Peer(ABC):
     def step(self, dt: float) -> None:
         """Advance by one step [s]."""
 
+    def run(self, dt: float, steps: int) -> None:
+        """Advance by so many steps [s]."""
+        for _ in range(steps):
+            self.step(dt)
+
+    @abstractmethod
+    def positions(self) -> list[tuple[float, float]]:
+        """Return where every body is [m], as a user of the engine reads it: in a loop."""
+
     @abstractmethod
     def state(self, entity: int) -> Sequence[float]:
         """Return a body's place [m], velocity [m/s], angle [rad] and angular velocity [rad/s]."""
@@ -74,3 +111,12 @@ class Peer(ABC):
         rows, transform, velocity = self._rows, self.world.table(Transform), self.world.table(Velocity)
         transform["position"][rows], velocity["linear"][rows] = state[:, :2], state[:, 2:4]
         transform["angle"][rows], velocity["angular"][rows] = state[:, 4], state[:, 5]
+
+
+def find_contacts(world: World) -> None:
+    """See to it that the world's contacts are those of where its bodies are now."""
+    world.synchronise()
+    with world.active():
+        world.contacts.stale = True
+        for stage in (Stage.BROAD_PHASE, Stage.CONTACT):
+            world.schedule.run(stage, world, 0.0)

@@ -1,0 +1,48 @@
+"""On what the times were taken: the processor and the versions, and nothing that tells whose it is."""
+
+from __future__ import annotations
+
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+__all__ = ["machine", "machine_text"]
+
+_PACKAGES = ("physicslab", "numpy", "numba", "esper")
+_PEERS = ("pymunk", "box2d")
+
+
+def machine(*, peers: bool) -> dict[str, str | int]:
+    """Return the processor's model, how many there are, and the versions of what was timed."""
+    found: dict[str, str | int] = {
+        "cpu": _model(),
+        "cpus": os.cpu_count() or 1,
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": f"{platform.python_implementation()} {platform.python_version()}",
+    }
+    for package in (*_PACKAGES, *(_PEERS if peers else ())):
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:  # run from its sources
+            continue
+    return found
+
+
+def machine_text(*, peers: bool) -> str:
+    """Return the same in a line."""
+    found = machine(peers=peers)
+    head = f"{found.pop('cpu')}, {found.pop('cpus')} CPUs, {found.pop('system')}, {found.pop('python')}"
+    return ", ".join([head, *(f"{package} {number}" for package, number in found.items())])
+
+
+def _model() -> str:
+    """Return the name that the processor gives itself."""
+    try:
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            key, _, value = line.partition(":")
+            if key.strip() == "model name" and value.strip():
+                return value.strip()
+    except OSError:
+        pass  # not Linux
+    return platform.processor() or platform.machine() or "unknown"

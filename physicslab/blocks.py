@@ -1,0 +1,153 @@
+"""Settled contacts of one world, eight side by side."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Material, Shape
+from physicslab.kernels import block_contact, block_lanes
+from physicslab.kernels.block_layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["Blocks", "Lanes"]
+
+type _Numbers = NDArray[np.float64]
+type _Rows = NDArray[np.int64]
+_FEW = 64
+"""So many contacts, at the least, are worth a block: fewer are done by the time that they are sorted."""
+_SPARSE = 0.5
+"""Blocks less full than that are sorted anew."""
+
+
+class Lanes:
+    """The blocks of one kind of contact.
+
+    Attributes
+    ----------
+    kind, rows : int
+        ``DISC`` or ``BOX``, and how many numbers a block has.
+    count : int
+        How many blocks there are.
+    data : float64 array (capacity * rows,)
+        What they hold, as :mod:`physicslab.kernels.block_layout` has it.
+    a, b, pair : int64 arrays (capacity * WIDE,)
+        Rows of the bodies in each lane, and which near pair it is; -1 for a free lane.
+    colour : int64 array (capacity,)
+        Which of a body's contacts each block holds.
+    used : uint64 array (rows of the world,)
+        The colours that each body has been given, bit by bit.
+    """
+
+    def __init__(self, kind: int) -> None:
+        self.kind, self.rows = kind, DISC_ROWS if kind == DISC else BOX_ROWS
+        self.data: NDArray[np.float64] = np.zeros(0)
+        self.a, self.b, self.pair, self.colour = (np.zeros(0, np.int64) for _ in range(4))
+        self.reset(1)
+
+    def reset(self, rows: int) -> None:
+        """Hold nothing, in a world of so many rows."""
+        self.count = 0
+        self.used: NDArray[np.uint64] = np.zeros(rows, np.uint64)
+
+    def make_room(self, blocks: int) -> None:
+        """See to it that so many blocks have room."""
+        if len(self.colour) < blocks:
+            room = 2 * blocks
+            data, colour = np.zeros(room * self.rows), np.zeros(room, np.int64)
+            data[: len(self.data)], colour[: len(self.colour)] = self.data, self.colour
+            lanes = np.zeros((3, room * WIDE), np.int64)
+            lanes[:, : len(self.pair)] = self.a, self.b, self.pair
+            self.data, self.colour = data, colour
+            self.a, self.b, self.pair = (np.ascontiguousarray(lane) for lane in lanes)
+
+    @property
+    def layout(self) -> tuple[int, _Numbers, int, _Rows, _Rows, _Rows, _Rows, NDArray[np.uint64]]:
+        """What kernels that take lanes in or give them back want to know."""
+        return self.kind, self.data, self.count, self.a, self.b, self.pair, self.colour, self.used
+
+    @property
+    def solved(self) -> tuple[_Numbers, int, _Rows, _Rows]:
+        """What kernels that only change impulses want to know."""
+        return self.data, self.count, self.a, self.b
+
+
+class Blocks:
+    """The settled contacts of a world, and what they were made of.
+
+    A contact is settled when its bodies move little for their size, it is not struck, and overlaps little.
+    Discs and boxes lie in blocks of their own; all else, and all in a world of few contacts, stays loose.
+
+    Attributes
+    ----------
+    discs, boxes : Lanes
+        The blocks.
+    lanes : int
+        How many contacts have one.
+    """
+
+    kernels = (
+        block_lanes.admit, block_lanes.store, block_lanes.list_loose, block_lanes.keep_loose,
+        block_lanes.follow_pairs, block_lanes.wake, block_lanes.seat_again,
+        block_contact.refresh, block_contact.deepest_lane,
+    )  # fmt: skip
+
+    def __init__(self) -> None:
+        self.discs, self.boxes = Lanes(DISC), Lanes(BOX)
+        self.lanes = 0
+        self._made_of: tuple[NDArray[Any], ...] = ()
+
+    @property
+    def kinds(self) -> tuple[Lanes, Lanes]:
+        """Both."""
+        return self.discs, self.boxes
+
+    def reset(self, rows: int) -> None:
+        """Forget every lane, in a world of so many rows."""
+        for lanes in self.kinds:
+            lanes.reset(rows)
+        self.lanes = 0
+
+    def worthwhile(self, loose: int) -> bool:
+        """Whether so many loose contacts should be looked through for settled ones."""
+        return self.lanes > 0 or loose >= _FEW
+
+    def trim(self) -> None:
+        """Drop the empty blocks at the end: what was there once makes no difference."""
+        for lanes in self.kinds:
+            taken = np.flatnonzero(lanes.pair[: lanes.count * WIDE] >= 0)
+            lanes.count = int(taken[-1]) // WIDE + 1 if len(taken) else 0
+
+    @property
+    def sparse(self) -> bool:
+        """Whether too many lanes stand empty."""
+        room = WIDE * (self.discs.count + self.boxes.count)
+        return room > 2 * block_lanes.COLOURS * WIDE and self.lanes < _SPARSE * room
+
+    @property
+    def known(self) -> bool:
+        """Whether it is known what the lanes were made of."""
+        return bool(self._made_of)
+
+    def remember(self, world: World) -> None:
+        """Keep the masses, sizes and materials that lanes hold as well."""
+        self._made_of = tuple(column.copy() for column in _columns(world))
+
+    def outdated(self, world: World) -> bool:
+        """Whether one of those has been changed."""
+        columns = _columns(world)
+        return len(columns) != len(self._made_of) or not all(
+            np.array_equal(kept, column) for kept, column in zip(self._made_of, columns, strict=True)
+        )
+
+
+def _columns(world: World) -> tuple[NDArray[Any], ...]:
+    shape, material, bodies = world.table(Shape), world.table(Material), world.bodies
+    return (
+        bodies.inverse_mass, bodies.inverse_inertia, material["friction"], material["restitution"],
+        shape["radius"], shape["width"], shape["height"],
+    )  # fmt: skip

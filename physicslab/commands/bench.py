@@ -1,0 +1,141 @@
+"""Measure speed: how long a step takes and how that grows, alone or beside other engines."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from physicslab.bench.catalogue import SCENES, groups, names, opened, select
+from physicslab.bench.document import document
+from physicslab.bench.engine import PEERS, missing_peers
+from physicslab.bench.measure import measure_scene
+from physicslab.bench.memory import measure_memory
+from physicslab.bench.report import BenchReport
+from physicslab.bench.result import SceneResult
+from physicslab.bench.scene import BenchScene
+from physicslab.bench.tables import report_text, scene_text
+from physicslab.bench.unused import UNUSED, Unused, measure_unused
+from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands.output import Output
+from physicslab.commands.pictures import picture_directory
+from physicslab.commands.progress import Progress
+from physicslab.json_text import json_text
+from physicslab.scene_checks import shown, suggestion
+from physicslab.scenes import SCENES as BUILT_IN
+
+__all__ = ["add_arguments", "execute"]
+
+_MEMORY, _UNUSED = "memory", "unused"
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Declare what the command takes."""
+    what = "a scene of the benchmark, a group of them, a built-in scene or a scene file; everything if none"
+    parser.add_argument("scenes", metavar="SCENE", nargs="*", help=what)
+    peers = "time pymunk and Box2D on the same scenes, in turn (needs the dependency group peers)"
+    parser.add_argument("--peers", action="store_true", help=peers)
+    parser.add_argument("--json", metavar="FILE", help="write everything that was measured (- for stdout)")
+    parser.add_argument("--plot", metavar="DIR", help="draw growth and ratios, as bench.png")
+    parser.epilog = (
+        f"groups: {', '.join(groups())}; scenes: {', '.join(SCENES)}; {_UNUSED}: what a step costs more "
+        f"for systems that the scene does not use; {_MEMORY}: bytes a body. dt is 1/60 s, 4 substeps, one "
+        "thread, nothing sleeps; pymunk takes 10 iterations with a slop of 5 mm, Box2D 8 and 3. The exit "
+        "status is 0 whether targets are met or not, and 1 if a run diverges."
+    )
+
+
+def execute(arguments: Namespace) -> int:
+    """Time what was named, print the tables, and write what was asked for."""
+    scenes, extras = _chosen(arguments.scenes)
+    if arguments.peers and (missing := missing_peers()):
+        verb = "is" if len(missing) == 1 else "are"
+        raise CommandError(
+            f"--peers: {' and '.join(missing)} {verb} not installed: uv sync --group peers, or "
+            f"uv run --group peers physicslab bench --peers"
+        )
+    output = None if arguments.json is None else Output("--json", arguments.json)
+    pictures = None if arguments.plot is None else picture_directory(arguments.plot, "bench.png")
+    quiet = output is not None and output.to_stdout
+    report = BenchReport(arguments.peers)
+    for found in _results(scenes, extras, arguments.peers):
+        if isinstance(found, SceneResult):
+            report.scenes.append(found)
+            _show(scene_text(found), quiet)
+        else:
+            report.unused.append(found)
+    if _MEMORY in extras:
+        report.memory = measure_memory()
+    _show("\n" + report_text(report), quiet)
+    if output is not None:
+        output.write(json_text(document(report)).encode("utf-8"))
+    if pictures is not None:
+        from physicslab.bench.plot import bench_picture  # matplotlib takes a while, and may not be there
+
+        Output("--plot", str(pictures / "bench.png")).write(bench_picture(report))
+    _check(report.scenes)
+    return 0
+
+
+def _chosen(wanted: Sequence[str]) -> tuple[list[BenchScene], list[str]]:
+    """Return the scenes of these names, each once, and what else was named; everything where none is.
+
+    Raises
+    ------
+    CommandError
+        If there is none of a name.
+    SceneError
+        If a scene cannot be read.
+    """
+    if not wanted:
+        return list(SCENES.values()), [_UNUSED, _MEMORY]
+    chosen: dict[str, BenchScene] = {}
+    extras: list[str] = []
+    for name in wanted:
+        if name in (_UNUSED, _MEMORY):
+            extras.append(name)
+        elif found := select(name):
+            chosen |= {scene.name: scene for scene in found}
+        elif name in BUILT_IN or Path(name).exists():
+            chosen[name] = opened(name)
+        else:
+            likely = suggestion(name, [*names(), _UNUSED, _MEMORY, *BUILT_IN])
+            there_is = f"the groups are {', '.join(groups())}; built-in scenes and files are taken as well"
+            raise CommandError(f"{shown(name)}: is no scene{likely or '; ' + there_is}")
+    return list(chosen.values()), extras
+
+
+def _results(
+    scenes: Sequence[BenchScene], extras: Sequence[str], peers: bool
+) -> Iterator[SceneResult | Unused]:
+    """Yield what comes of each, and keep the terminal told how far all are."""
+    jobs: list[tuple[int, Iterator[float | SceneResult | Unused]]] = [
+        (scene.size, measure_scene(scene, PEERS if peers else ())) for scene in scenes
+    ]
+    if _UNUSED in extras:
+        jobs += [(1_000, measure_unused(case)) for case in UNUSED]
+    whole, done = sum(size for size, _ in jobs), 0
+    progress = Progress("bench", sys.stderr)
+    try:
+        for size, job in jobs:
+            for found in job:
+                if isinstance(found, float):
+                    progress.show((done + found * size) / whole)
+                else:
+                    progress.clear()
+                    yield found
+            done += size
+    finally:
+        progress.clear()
+
+
+def _show(text: str, quiet: bool) -> None:
+    if not quiet:
+        print(text, flush=True)
+
+
+def _check(results: Sequence[SceneResult]) -> None:
+    for found in results:
+        if found.ours.failure:
+            raise CommandError(f"{found.scene.name}: {found.ours.failure}", FAILED)

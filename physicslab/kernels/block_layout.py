@@ -1,0 +1,41 @@
+"""How settled contacts lie in memory: eight side by side, so that the processor works on all of them at once.
+
+A block holds eight contacts of which no two move the same body. Every quantity is a row of eight float64
+values, one cache line; all rows of a block stand in one array at constant offsets, or LLVM would not see that
+they do not overlap, and not vectorise the loops over its lanes.
+"""
+
+__all__ = [
+    "ANGLE_A", "ANGLE_B", "ARM_AX", "ARM_AY", "ARM_BX", "ARM_BY", "BASE_X", "BASE_Y", "BOX", "BOX_ROWS",
+    "DISC", "DISC_ROWS", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS", "MASS_A", "MASS_B",
+    "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "RUB", "RUB_MASS", "SEPARATION", "SIZE", "TWO",
+    "WA", "WB", "WIDE", "XA", "XB", "YA", "YB",
+]  # fmt: skip
+
+WIDE = 8
+"""Lanes of a block."""
+DISC, BOX = 0, 1
+"""The kinds of blocks: pairs of discs, with one point, and pairs of boxes, with two."""
+
+# Of every pair: the normal from A to B, the friction coefficient, inverse masses and moments of inertia, the
+# size of the smaller body.
+NORMAL_X, NORMAL_Y, FRICTION, MASS_A, MASS_B, INERTIA_A, INERTIA_B, SIZE = (WIDE * i for i in range(8))
+# Where the bodies' places and angles, or velocities, are brought together.
+XA, YA, WA, XB, YB, WB = (WIDE * i for i in range(8, 14))
+
+# Of a point: impulses along the normal and across, effective masses, the separation; and its arms.
+IMPULSE, RUB, MASS, RUB_MASS, SEPARATION = (WIDE * i for i in range(5))
+ARM_AX, ARM_AY, ARM_BX, ARM_BY, FOUND = (WIDE * i for i in range(5, 10))
+ONE = 14 * WIDE
+"""Where the first point stands."""
+
+# The arms of discs lie along the normal.
+RADIUS_A, RADIUS_B = ONE + 5 * WIDE, ONE + 6 * WIDE
+DISC_ROWS = ONE + 7 * WIDE
+"""Numbers in a block of discs."""
+
+TWO = ONE + 10 * WIDE
+"""Where the second point of boxes stands."""
+BASE_X, BASE_Y, ANGLE_A, ANGLE_B = (TWO + WIDE * i for i in range(10, 14))
+BOX_ROWS = TWO + 14 * WIDE
+"""Numbers in a block of boxes."""

@@ -1,0 +1,219 @@
+"""The benchmark: what it measures, prints and writes. How fast anything is, is never asserted."""
+
+import dataclasses
+import importlib.util
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from physicslab import cli
+from physicslab.bench.catalogue import SCENES, gas_scene, pile_scene, select
+from physicslab.bench.clock import take_turns
+from physicslab.bench.engine import OurEngine, missing_peers
+from physicslab.bench.growth import exponent, growths
+from physicslab.bench.measure import measure_scene
+from physicslab.bench.memory import measure_memory
+from physicslab.bench.quality import Quality
+from physicslab.bench.result import SceneResult
+from physicslab.bench.scene import BenchScene
+from physicslab.bench.targets import Check
+from physicslab.bench.unused import UNUSED, Unused, measure_unused
+from physicslab.bodies import Diverged
+from physicslab.peers.pymunk_mirror import PymunkMirror
+from physicslab.world import World
+
+
+def tiny(scene: BenchScene, **changes: Any) -> BenchScene:
+    return dataclasses.replace(scene, seconds=0.1, steps=3, **changes)
+
+
+def measured(scene: BenchScene) -> SceneResult:
+    *shares, result = measure_scene(scene)
+    assert isinstance(result, SceneResult)
+    assert all(isinstance(share, float) and 0.0 < share <= 1.0 for share in shares)
+    return result
+
+
+@pytest.fixture
+def small_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
+    scenes = [tiny(pile_scene(count)) for count in (5, 10, 20)]
+    scenes += [tiny(gas_scene(10)), tiny(SCENES["circles_10"])]
+    monkeypatch.setattr("physicslab.bench.catalogue.SCENES", {scene.name: scene for scene in scenes})
+
+
+def test_the_exponent_is_that_of_a_power_law() -> None:
+    sizes = [1_000, 2_000, 4_000, 8_000, 16_000]
+    assert exponent(sizes, [3e-5 * n**1.07 for n in sizes]) == pytest.approx(1.07, abs=1e-12)
+    off = [3e-5 * n**1.5 * factor for n, factor in zip(sizes, (1.1, 0.9, 1.1, 0.9, 1.1), strict=True)]
+    assert exponent(sizes, off) == pytest.approx(1.5, abs=0.1)
+
+
+def test_growth_is_drawn_from_three_sizes_and_more() -> None:
+    results = [measured(tiny(pile_scene(count))) for count in (5, 10, 20)]
+    (growth,) = growths(results)
+    assert (growth.group, growth.engine, growth.sizes) == ("piles", "PhysicsLab", (5, 10, 20))
+    assert math.isfinite(growth.exponent)
+    assert growths(results[:2]) == []
+
+
+def test_a_scene_is_timed_and_looked_at() -> None:
+    result = measured(tiny(gas_scene(20)))
+    ours = result.ours
+    assert ours.step and ours.with_read and ours.begin and not ours.failure
+    assert 0.0 < ours.step.median_ms <= ours.step.p90_ms
+    assert (ours.ratio, ours.ratio_with_read) == (1.0, 1.0)
+    assert ours.quality["energy change"] == pytest.approx(0.0, abs=1e-9)
+    assert result.right
+    assert {"IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem"} <= set(result.systems)
+
+
+def test_fast_and_wrong_does_not_count() -> None:
+    wrong = Quality("wrong", "m", 0.5, lambda world, start: 1.0)
+    nothing = Quality("nothing", "m", 0.5, lambda world, start: math.nan)
+    for quality in (wrong, nothing):
+        assert not measured(tiny(gas_scene(10), quality=(quality,))).right
+    reached = Check("x", "faster", figure=9.0, limit=4.0, at_least=True)
+    assert (reached.met, reached.verdict) == (True, "met")
+    assert dataclasses.replace(reached, right=False).verdict == "not met: quality"
+    assert dataclasses.replace(reached, at_least=False).verdict == "not met"
+
+
+def test_every_engine_takes_every_place_in_the_order_and_as_many_steps() -> None:
+    calls: list[str] = []
+
+    class Noted(OurEngine):
+        def __init__(self, name: str) -> None:
+            super().__init__(World())
+            self.name = name
+
+        def step(self) -> None:
+            calls.append(self.name)
+
+        def read(self) -> object:
+            return None
+
+    for times in take_turns([Noted("a"), Noted("b"), Noted("c")], 12):
+        assert [len(spent.step) for spent in times] == [len(spent.read) for spent in times] == [12] * 3
+    orders = ["".join(calls[i : i + 3]) for i in range(0, 36, 3)]
+    assert sorted(orders) == sorted(2 * ["abc", "acb", "bac", "bca", "cab", "cba"])
+
+
+def test_what_a_scene_does_not_use_changes_no_bit() -> None:
+    *_, found = measure_unused(dataclasses.replace(UNUSED[0], steps=10))
+    assert isinstance(found, Unused)
+    assert found.same_bits
+    assert set(found.left_out) >= {"SpringSystem", "DragSystem", "TrailSystem"}
+
+
+def test_a_body_takes_memory() -> None:
+    memory = measure_memory((50, 200), steps=2)
+    assert 0.0 < memory.columns < memory.spawned
+
+
+def test_every_scene_is_built_awake_with_its_number_of_bodies() -> None:
+    scene = SCENES["pyramid_30"]
+    world = scene.build()
+    assert not world.simulation.sleeping
+    assert len(world.entities()) == scene.size + 1 == 466
+    assert [scene.name for scene in select("gases")] == [
+        "gas_1000", "gas_2000", "gas_4000", "gas_8000", "gas_16000",
+    ]  # fmt: skip
+    assert select("nothing") == []
+
+
+@pytest.mark.usefixtures("small_scenes")
+def test_the_command_prints_tables(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["bench", "piles", "gas_10", "circles_10"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert "ms a step" in out and "quality after" in out and "growth of a step's cost" in out
+    assert [line.split()[0] for line in out.splitlines()[:5]] == [
+        "pile_5:", "pile_10:", "pile_20:", "gas_10:", "circles_10:",
+    ]  # fmt: skip
+
+
+@pytest.mark.usefixtures("small_scenes")
+def test_the_document_alone_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["bench", "piles", "circles_10", "--json", "-"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    found = json.loads(out, parse_constant=lambda word: pytest.fail(f"{word} in JSON"))
+    assert list(found) == ["format", "machine", "scenes", "growth", "unused", "bytes_per_body", "targets"]
+    assert found["format"] == "physicslab-bench/1"
+    assert {"cpu", "python", "numpy", "numba"} <= set(found["machine"])
+    assert [scene["name"] for scene in found["scenes"]] == ["pile_5", "pile_10", "pile_20", "circles_10"]
+    (engine,) = found["scenes"][0]["engines"]
+    assert engine["name"] == "PhysicsLab"
+    assert set(engine["step_ms"]) == {"median", "p90"}
+    (growth,) = found["growth"]
+    assert (growth["group"], growth["sizes"]) == ("piles", [5, 10, 20])
+
+
+@pytest.mark.usefixtures("small_scenes")
+def test_the_plot_is_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    assert cli.main(["bench", "piles", "--plot", str(tmp_path)]) == 0
+    assert (tmp_path / "bench.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_run_that_diverges_is_told_in_the_end(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def diverge(engine: OurEngine) -> None:
+        raise Diverged("entity 5: Transform is no longer finite")
+
+    monkeypatch.setattr(OurEngine, "step", diverge)
+    assert cli.main(["bench", "pyramid_30", "--json", "-"]) == 1
+    out, err = capsys.readouterr()
+    assert err == "physicslab: pyramid_30: entity 5: Transform is no longer finite\n"
+    assert json.loads(out)["scenes"][0]["engines"][0]["failure"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["pile_4001"], '"pile_4001": is no scene; did you mean "pile_4000"?'),
+        (["qqqq"], '"qqqq": is no scene; the groups are pyramids, piles, gases, small; '),
+        (["pile_1000", "--json", "none/x.json"], "--json none/x.json: cannot be written"),
+    ],
+)
+def test_bad_usage_is_refused_in_one_line(
+    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["bench", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("physicslab: ") and line in err and err.count("\n") == 1
+
+
+def test_absent_peers_are_named_with_what_installs_them(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Absent(PymunkMirror):
+        title, module = "Absent", "no_such_engine"
+
+    assert missing_peers() in ([], ["pymunk"], ["Box2D"], ["pymunk", "Box2D"])
+    monkeypatch.setattr("physicslab.bench.engine.PEERS", (Absent,))
+    assert cli.main(["bench", "--peers"]) == 2
+    out, err = capsys.readouterr()
+    assert (out, err) == (
+        "",
+        "physicslab: --peers: Absent is not installed: uv sync --group peers, or "
+        "uv run --group peers physicslab bench --peers\n",
+    )
+
+
+@pytest.mark.usefixtures("small_scenes")
+def test_peers_are_timed_beside(capsys: pytest.CaptureFixture[str]) -> None:
+    if importlib.util.find_spec("pymunk") is None or importlib.util.find_spec("Box2D") is None:
+        pytest.skip("no peers installed")
+    assert cli.main(["bench", "pile_20", "circles_10", "--peers", "--json", "-"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    for scene in found["scenes"]:
+        assert [engine["name"] for engine in scene["engines"]] == ["PhysicsLab", "pymunk", "Box2D"]
+        for engine in scene["engines"]:
+            assert engine["step_ms"]["median"] > 0.0 and engine["times_ours"] > 0.0
+            assert engine["quality"]["deepest overlap"] >= 0.0
