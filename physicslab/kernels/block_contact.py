@@ -73,7 +73,7 @@ def _restless(block: Numbers, still: float, h: float) -> float:
 
 @inlined
 def _refresh_discs(block: Numbers, near: float, fall: float) -> float:
-    """Find normals and separations of a block of discs; row ``WA`` tells what is apart, or overlaps deeply."""
+    """Find normals and separations of a block of discs; ``WA`` tells what is apart, or overlaps deeply."""
     lost = 0.0
     for lane in range(WIDE):
         dx, dy = block[XB + lane] - block[XA + lane], block[YB + lane] - block[YA + lane]
