@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.columns import InvalidValue
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
 from physicslab.kernels import impulse, motion
 from physicslab.schedule import Stage, System, at
@@ -19,6 +20,9 @@ __all__ = ["Bodies", "Diverged"]
 
 class Diverged(ArithmeticError):
     """A value is no longer finite: the run cannot go on."""
+
+
+_INERTIA = next(spec for spec in Mass.FIELDS if spec.name == "inertia")
 
 
 class Bodies(System):
@@ -51,17 +55,30 @@ class Bodies(System):
         self.tethered: NDArray[np.bool_] = np.zeros(rows, np.bool_)
 
     def derive(self, world: World) -> None:
-        """Work out moments of inertia and inverse masses from the components as they are now."""
+        """Work out moments of inertia and inverse masses from the components as they are now.
+
+        Raises
+        ------
+        InvalidValue
+            If a body is so large and heavy that its moment of inertia is not finite.
+        """
         if len(self.torque) != len(world.roster):
             self._resize(len(world.roster))
             world.schedule.compile((motion.derive_masses,))
         mass, shape, velocity = world.table(Mass), world.table(Shape), world.table(Velocity)
-        ratio = motion.derive_masses(
+        ratio, infinite = motion.derive_masses(
             velocity.present, mass.present, world.table(Held).present,
             mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
             shape["kind"], shape["radius"], shape["width"], shape["height"], velocity["angular"],
             self.inverse_mass, self.inverse_inertia,
         )  # fmt: skip
+        if infinite >= 0:
+            label, inertia = (
+                world.label(int(world.roster.entities[infinite])),
+                float(mass["inertia"][infinite]),
+            )
+            allowed = f"{_INERTIA.allowed}, of mass and Shape too"
+            raise InvalidValue(f"{label}: Mass", "inertia", inertia, allowed)
         self.unequal = ratio > impulse.UNEQUAL
 
     def attach(self, world: World) -> None:

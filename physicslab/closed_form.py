@@ -78,6 +78,8 @@ def closed_form(world: World) -> ClosedForm:
     n = len(rows)
     bodies, physics, mass = world.bodies, world.physics, world.table(Mass)["mass"]
     inverse = bodies.inverse_mass[rows]
+    if not np.isfinite(inverse).all():
+        raise NoClosedForm("a mass is too small for its inverse to be a number")
     free = inverse > 0.0
     gravity = np.zeros((n, 2))
     if any(system.name == "GravitySystem" for system in world.schedule.running):

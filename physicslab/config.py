@@ -30,6 +30,8 @@ INTEGRATORS = (
     "implicit_midpoint",
 )
 COLLISIONS = ("auto", "step", "exact")
+SHORTEST = 1e-100
+"""The shortest step [s]: the parts of shorter ones, and their squares, are soon no more than zero."""
 
 
 def _settle(config: PhysicsConfig | SimulationConfig) -> None:
@@ -143,7 +145,7 @@ class SimulationConfig:
 
     section: ClassVar[str] = "simulation"
     FIELDS: ClassVar[tuple[Field, ...]] = (
-        Field("dt", "number", unit="s", above=0.0, meaning="length of a step"),
+        Field("dt", "number", unit="s", minimum=SHORTEST, meaning="length of a step"),
         Field("substeps", "whole", minimum=1, maximum=10_000, meaning="parts that a step is divided into"),
         Field("iterations", "whole", minimum=1, maximum=1_000, derived="from the solver", meaning="sweeps"),
         Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),

@@ -60,6 +60,7 @@ def _motion(world: World) -> tuple[float, float, float, float, float]:
     )  # fmt: skip
 
 
+@np.errstate(all="ignore")  # an energy may be infinite, and says so itself
 def measure_energy(world: World) -> Energy:
     """Return the energy of the world as it is now."""
     translation, rotation, *_ = _motion(world)

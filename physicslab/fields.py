@@ -16,6 +16,8 @@ __all__ = ["REQUIRED", "Field", "InvalidValue", "Kind", "field"]
 
 Kind = Literal["number", "whole", "vector", "flag", "entity", "choice"]
 
+_LONGEST = 100
+"""Characters of a value that a message shows."""
 REQUIRED: Any = object()
 """The default of a field that has none."""
 
@@ -39,6 +41,8 @@ class InvalidValue(ValueError):
             shown = repr(value)
         except (ValueError, RecursionError):  # a whole number of thousands of digits, or lists without end
             shown = f"<{type(value).__name__}>"
+        if len(shown) > _LONGEST:
+            shown = f"{shown[: _LONGEST - 3]}..."
         super().__init__(f"{component}.{field} = {shown}: must be {allowed}")
 
     def __reduce__(self) -> tuple[Any, ...]:

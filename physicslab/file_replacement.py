@@ -7,6 +7,7 @@ import glob
 import os
 import secrets
 import stat
+import tempfile
 import time
 from pathlib import Path
 
@@ -77,3 +78,7 @@ def check_writable(path: str | os.PathLike[str]) -> None:
         raise FileNotFoundError(f"there is no directory {parent}")
     if not os.access(parent, os.W_OK):
         raise PermissionError(f"nothing may be written in {parent}")
+    with contextlib.suppress(FileNotFoundError):
+        os.stat(path)  # a name may be too long
+    with tempfile.TemporaryFile(dir=parent):
+        pass  # some directories hold what they like, whatever their permissions say

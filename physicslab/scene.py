@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import math
 import os
-from pathlib import Path
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from physicslab.file_replacement import replace_file
 from physicslab.json_text import json_text
@@ -16,6 +19,13 @@ from physicslab.scenes import SCENES
 from physicslab.world import World
 
 __all__ = ["SceneError", "load_scene", "read_scene", "save_scene", "write_scene"]
+
+LARGEST_FILE = 100 * 2**20
+"""Bytes that a scene file may have."""
+MOST_BRACKETS = 1_000_000
+"""Objects and lists that a scene file may hold, 125,000 bodies: reading them takes up to 1.1 GB of memory."""
+MOST_VALUES = 8_000_000
+"""Values that it may hold, counted by the brackets and commas before them, those within texts included."""
 
 
 def load_scene(name_or_path: str | os.PathLike[str]) -> World:
@@ -45,7 +55,8 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> World:
     if isinstance(name_or_path, str) and name_or_path in SCENES:
         return SCENES[name_or_path].build()
     source = printable(os.fspath(name_or_path))
-    return read_scene(_parse(_read_text(name_or_path, source), source), source)
+    with _uncollected():
+        return read_scene(_parse(_read_text(name_or_path, source), source), source)
 
 
 def save_scene(world: World, path: str | os.PathLike[str]) -> None:
@@ -66,26 +77,66 @@ def save_scene(world: World, path: str | os.PathLike[str]) -> None:
     replace_file(path, json_text(document).encode("utf-8"))
 
 
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Let nobody look for garbage meanwhile: of the millions of objects of a large scene, none is any.
+
+    Looking takes half of the time that such a scene takes to load.
+    """
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
 def _read_text(path: str | os.PathLike[str], source: str) -> str:
     try:
-        return Path(path).read_bytes().decode("utf-8-sig")
+        return _read_bytes(path, source).decode("utf-8-sig")
     except FileNotFoundError as error:
         names = ", ".join(SCENES)
         likely = suggestion(os.fspath(path), SCENES)
         raise SceneError(
             f"{source}: no such file, and no built-in scene{likely or f'; the built-in scenes are {names}'}"
         ) from error
-    except IsADirectoryError as error:
-        raise SceneError(f"{source}: is a directory, not a scene file") from error
     except UnicodeDecodeError as error:
-        raise SceneError(f"{source}: is not UTF-8: byte {error.start} cannot be read") from error
+        raise SceneError(
+            f"{source}: is not UTF-8: byte {error.start} cannot be read; must be JSON in UTF-8"
+        ) from error
     except OSError as error:
         raise SceneError(f"{source}: cannot be read: {error.strerror}") from error
-    except ValueError as error:  # a null character in the name
+    except SceneError:
+        raise
+    except ValueError as error:  # a null character or half a surrogate pair in the name
         raise SceneError(f"{source}: is no file name: {error}") from error
 
 
+def _read_bytes(path: str | os.PathLike[str], source: str) -> bytes:
+    """Read a plain file, and never more of it than the limit: what is opened may grow, or have no end."""
+    # Without O_NONBLOCK, opening a pipe that nobody writes to would wait for ever.
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    if os.path.isdir(path):  # Windows would say "permission denied"
+        raise SceneError(f"{source}: is a directory, not a scene file")
+    with open(os.open(path, flags), "rb") as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise SceneError(f"{source}: is a pipe or a device; a scene must be a plain file")
+        content = file.read(LARGEST_FILE + 1)
+    if len(content) > LARGEST_FILE:
+        raise SceneError(f"{source}: is too large: a scene file must have at most {LARGEST_FILE:,} bytes")
+    return content
+
+
 def _parse(text: str, source: str) -> object:
+    # Counted before it is parsed: every one becomes a Python object, many times its size in the file.
+    brackets = text.count("{") + text.count("[")
+    if brackets > MOST_BRACKETS:
+        raise SceneError(
+            f"{source}: holds too much: a scene must have at most {MOST_BRACKETS:,} objects and lists"
+        )
+    if brackets + text.count(",") > MOST_VALUES:
+        raise SceneError(f"{source}: holds too much: a scene must have at most {MOST_VALUES:,} values")
     try:
         return json.loads(text, object_pairs_hook=JsonObject.of, parse_int=_whole)
     except json.JSONDecodeError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 import json
 import math
 import unicodedata
@@ -10,11 +11,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 __all__ = [
-    "JsonObject", "SceneError", "checked_keys", "checked_object", "checked_text", "is_number", "printable",
-    "refusal", "shown", "suggestion",
+    "JsonObject", "SceneError", "checked_keys", "checked_object", "checked_text", "is_line", "is_number",
+    "printable", "refusal", "shown", "suggestion",
 ]  # fmt: skip
 
 _LONGEST = 60
+_MOST_KNOWN = 2_000
+_BREAKS = dict.fromkeys(map(ord, "\n\t"), " ")
 
 
 class SceneError(ValueError):
@@ -57,12 +60,28 @@ def shown(value: object) -> str:
     >>> shown([1, None, "two\nlines"])
     '[1, null, "two\\nlines"]'
     """
+    if isinstance(value, str) and value.isalnum() and len(value) < _LONGEST:  # as most ids are, and soon told
+        return f'"{value}"'
     try:
-        text = json.dumps(value, ensure_ascii=False, default=repr)
+        text = json.dumps(_beginning(value), ensure_ascii=False, default=repr)
     except (ValueError, RecursionError):  # a whole number of thousands of digits, or lists without end
         text = f"<{type(value).__name__}>"
     text = printable(text)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+
+
+def _beginning(value: object) -> object:
+    """Return as much of a value as can be shown: a whole one may be as long as the file it stood in."""
+    if isinstance(value, str):
+        return value[: _LONGEST + 1]
+    if isinstance(value, list | tuple):
+        return [_beginning(item) for item in value[:_LONGEST]]
+    if isinstance(value, dict):
+        return {
+            key[:_LONGEST] if isinstance(key, str) else key: _beginning(item)
+            for key, item in itertools.islice(value.items(), _LONGEST)
+        }
+    return value
 
 
 def printable(text: str) -> str:
@@ -71,6 +90,8 @@ def printable(text: str) -> str:
     >>> print(printable("a\x1b[2Jb"))
     a\x1b[2Jb
     """
+    if text.isprintable():
+        return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
@@ -80,7 +101,8 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     >>> suggestion("Velocty", ["Transform", "Velocity"])
     '; did you mean "Velocity"?'
     """
-    likely = difflib.get_close_matches(word, list(known), n=1)
+    # Comparing takes time with the square of a word's length, and with the number of words.
+    likely = difflib.get_close_matches(word[:_LONGEST], list(itertools.islice(known, _MOST_KNOWN)), n=1)
     return f"; did you mean {shown(likely[0])}?" if likely else ""
 
 
@@ -97,7 +119,8 @@ def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequenc
     """Refuse the first key that is not ``known``; ``noun`` is what keys are called there."""
     for key, value in given.items():
         if key not in known:
-            name = key if isinstance(key, str) and key.isidentifier() else shown(key)
+            plain = isinstance(key, str) and key.isidentifier() and len(key) <= _LONGEST
+            name = key if plain else shown(key)
             likely = suggestion(str(key), known)
             allowed = ", ".join(known) or "none"
             raise SceneError(
@@ -105,12 +128,21 @@ def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequenc
             )
 
 
+def is_line(text: str) -> bool:
+    r"""Whether a text has neither half surrogate pairs nor control characters nor breaks of lines.
+
+    >>> is_line("caf\u00e9"), is_line("a\nb"), is_line("\u2028")
+    (True, False, False)
+    """
+    if text.isprintable():  # as nearly every text is, and soon told
+        return True
+    return not {unicodedata.category(c) for c in text} & {"Cc", "Cs", "Zl", "Zp"}
+
+
 def checked_text(value: object, where: str, *, lines: bool = False) -> str:
     """Return a text without half surrogate pairs or control characters (but new lines, if ``lines``)."""
-    if isinstance(value, str):
-        unwanted = {unicodedata.category(c) for c in value if not (lines and c in "\n\t")} & {"Cc", "Cs"}
-        if not unwanted:
-            return value
+    if isinstance(value, str) and is_line(value.translate(_BREAKS) if lines else value):
+        return value
     raise refusal(where, value, "a text" if lines else "a text on one line")
 
 

@@ -11,11 +11,12 @@ from typing import Any
 
 from physicslab.columns import COMPONENTS, Component, InvalidValue
 from physicslab.components import Held, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components.name import why_no_id
+from physicslab.components.spring import OTHER_END
 from physicslab.scene_checks import (
     SceneError,
     checked_keys,
     checked_object,
-    checked_text,
     is_number,
     refusal,
     shown,
@@ -27,6 +28,7 @@ __all__ = ["UNSAVED", "check_contacts", "check_entities", "check_ids"]
 UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
 
+type _Expected = tuple[tuple[str, ...], tuple[str, ...], str]
 _NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Trail)
 
 
@@ -40,9 +42,10 @@ def check_ids(entities: object, source: str) -> dict[str, int]:
         if "id" not in entity:
             continue
         where = f"{source}: entity {number}: id"
-        name = checked_text(entity["id"], where)
-        if not name.strip():
-            raise refusal(where, name, "a text that is not empty, or left out")
+        name = entity["id"]
+        allowed = why_no_id(name)
+        if allowed is not None:
+            raise refusal(where, name, allowed)
         if name in ids:
             raise refusal(where, name, f"an id of its own; entity {ids[name]} has this one")
         ids[name] = number
@@ -54,12 +57,13 @@ def check_entities(
 ) -> list[tuple[str | None, list[Component]]]:
     """Return each entity's id and components, in order; they refer to each other by place, from 1."""
     made: list[tuple[str | None, list[Component]]] = []
-    known = ["id", *(name for name, kind in COMPONENTS.items() if kind not in UNSAVED)]
+    expected = {name: _expected(kind) for name, kind in COMPONENTS.items() if kind not in UNSAVED}
+    known = ("id", *expected)
     for number, entity in enumerate(entities, start=1):
         where = _label(number, entity, source)
         checked_keys(entity, f"{where}: ", "component", known)
         components = [
-            _component(COMPONENTS[name], values, ids, where)
+            _component(COMPONENTS[name], expected[name], values, ids, where)
             for name, values in entity.items()
             if name != "id"
         ]
@@ -102,15 +106,24 @@ def _label(number: int, entity: object, source: str) -> str:
     return f"{source}: entity {shown(name) if isinstance(name, str) else number}"
 
 
-def _component(kind: type[Component], value: object, ids: Mapping[str, int], where: str) -> Component:
+def _expected(kind: type[Component]) -> _Expected:
+    """Return the names of a component's fields, of those that are entities, and what it must look like."""
+    names = tuple(spec.name for spec in kind.FIELDS)
+    ends = tuple(spec.name for spec in kind.FIELDS if spec.kind == "entity")
+    return names, ends, "an object {" + ", ".join(f'"{name}": ...' for name in names) + "}"
+
+
+def _component(
+    kind: type[Component], expected: _Expected, value: object, ids: Mapping[str, int], where: str
+) -> Component:
     place = f"{where}: {kind.__name__}"
-    fields = {spec.name: spec for spec in kind.FIELDS}
-    given = checked_object(value, place, "an object {" + ", ".join(f'"{name}": ...' for name in fields) + "}")
-    checked_keys(given, f"{place}.", "field", tuple(fields))
-    values = dict(given)
-    for name, end in given.items():
-        if fields[name].kind == "entity" and end is not None:
-            values[name] = _entity_of(end, ids, f"{place}.{name}")
+    names, ends, allowed = expected
+    given = checked_object(value, place, allowed)
+    checked_keys(given, f"{place}.", "field", names)
+    values = dict(given) if ends else given
+    for name in ends:
+        if given.get(name) is not None:
+            values = {**values, name: _entity_of(given[name], ids, f"{place}.{name}")}
     try:
         return kind(**values)
     except InvalidValue as error:
@@ -145,3 +158,5 @@ def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any
         if end is not None and "Transform" not in entities[end - 1]:
             value = entities[end - 1].get("id") if given else None
             raise refusal(f"{where}: Spring.{name}", value, "the id of an entity with a Transform")
+    if spring.b == (spring.a or number):
+        raise refusal(f"{where}: Spring.b", entities[spring.b - 1].get("id"), OTHER_END)

@@ -16,11 +16,13 @@ import numpy as np
 from physicslab.bodies import Bodies, Diverged
 from physicslab.checkpoint import Checkpoint
 from physicslab.closed_form import NoClosedForm
-from physicslab.columns import Batch, Table
+from physicslab.columns import Batch, InvalidValue, Table
 from physicslab.components import Name
-from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.components.name import why_no_id
+from physicslab.config import SHORTEST, PhysicsConfig, SimulationConfig
 from physicslab.contacts import Contacts
 from physicslab.equations import Equations
+from physicslab.fields import Field
 from physicslab.flights import Flights
 from physicslab.integrators import StepTooSmall
 from physicslab.integrators.choice import choose, provisional
@@ -31,10 +33,16 @@ from physicslab.tethers import Tethers
 __all__ = ["World"]
 
 _numbers = itertools.count(1)
+_quiet = np.errstate(all="ignore")
+"""What overflows becomes infinite, which is found and told as :class:`Diverged`: numpy need not warn."""
 _MOST = 2**62
 """More steps than there can be."""
 _MOST_PARTS = 100_000
 """Into so many parts, at the most, a step is divided that is longer than the scene's own."""
+_STEP = Field("dt", "number", minimum=SHORTEST, unit="s", owner="step")
+_STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
+_SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
+"""What the methods of a world may be given."""
 _TOO_LONG = 0.01
 """By which share a step may exceed the scene's own undivided: the last one of a run may take in a rest."""
 
@@ -91,6 +99,8 @@ class World:
         self.time = 0.0
         self.steps = 0
         self.divided = 1
+        # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
+        self._names: set[str] = set()
         self.substeps = self._simulation.substeps
         self.revision = 0
         self.force_evaluations = 0
@@ -144,6 +154,8 @@ class World:
             if kinds.count(kind) > 1:
                 raise ValueError(f"an entity has one {kind.__name__}, not {kinds.count(kind)}")
         with self.active():
+            for component in components:
+                self._check_name(component)
             return esper.create_entity(*components)
 
     def remove(self, entity: int) -> None:
@@ -164,6 +176,7 @@ class World:
         with self.active():
             self._require(entity)
             _kind(component)
+            self._check_name(component, entity)
             esper.add_component(entity, component)
 
     def discard[C](self, entity: int, component: type[C]) -> C | None:
@@ -208,9 +221,9 @@ class World:
     def entity(self, name: str) -> int:
         """Return the entity with this id, or raise ``KeyError``."""
         with self.active():
-            for entity, named in esper.get_component(Name):
-                if named.id == name and esper.entity_exists(entity):
-                    return entity
+            entity = self._holder(name)
+        if entity is not None:
+            return entity
         raise KeyError(f"no entity has the id {name!r}")
 
     def label(self, entity: int) -> str:
@@ -218,6 +231,25 @@ class World:
         with self.active():
             named = esper.try_component(entity, Name)
         return named.id if named is not None else f"entity {entity}"
+
+    def _check_name(self, component: Any, entity: int = 0) -> None:
+        """Refuse a Name that no scene file may hold, or that another entity than this one has."""
+        if not isinstance(component, Name):
+            return
+        allowed = why_no_id(component.id)
+        if allowed is not None:
+            raise InvalidValue("Name", "id", component.id, allowed)
+        if component.id in self._names and self._holder(component.id) not in (None, entity):
+            allowed = f"an id of its own; entity {self._holder(component.id)} has this one"
+            raise InvalidValue("Name", "id", component.id, allowed)
+        self._names.add(component.id)
+
+    def _holder(self, name: str) -> int | None:
+        """Return the entity with this id, if there is one."""
+        for entity, named in esper.get_component(Name):
+            if named.id == name and esper.entity_exists(entity):
+                return entity
+        return None
 
     def _require(self, entity: int) -> None:
         if not esper.entity_exists(entity):
@@ -263,6 +295,7 @@ class World:
 
     # ---- time ----------------------------------------------------------------------------------------------
 
+    @_quiet
     def synchronise(self) -> None:
         """Follow what entities and components there are now, and weigh them.
 
@@ -280,6 +313,7 @@ class World:
                 if self.tethers is not None and self.tethers.outdated(self):
                     self._choose()
 
+    @_quiet
     def _follow(self) -> None:
         """Follow what changed in the structure of the world since the last call, if anything did."""
         if self._stepping:
@@ -307,6 +341,7 @@ class World:
             self.schedule.compile(self._flights.kernels)
         self.contacts.stale |= had_flights or self._flights is not None
 
+    @_quiet
     def step(self, dt: float | None = None) -> None:
         """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps.
 
@@ -318,9 +353,7 @@ class World:
         Diverged
             If a value would not be finite; the world then stands where it stood before the step.
         """
-        dt = self._simulation.dt if dt is None else dt
-        if not (math.isfinite(dt) and dt > 0.0):
-            raise ValueError(f"dt = {dt!r}: must be a finite number > 0 s")
+        dt = self._simulation.dt if dt is None else _STEP.check(dt)
         if self._stepping:
             raise RuntimeError("a system cannot step the world that is calling it")
         with self.active():
@@ -414,6 +447,7 @@ class World:
         for _ in self.stepping(seconds=seconds, steps=steps, stride=_MOST):
             pass
 
+    @_quiet
     def add_up_forces(self) -> None:
         """See to it that ``bodies.force`` and ``.torque`` hold the forces that act.
 
@@ -428,6 +462,7 @@ class World:
                     getattr(system, system.marked()[Stage.FORCE])(self, 0.0)
             self.force_evaluations -= self.has_forces  # looking at them is no work of the method
 
+    @_quiet
     def _leap(self, dt: float, parts: int, steps: int) -> None:
         """Advance by ``parts`` times ``dt``, which nobody looks at and which count as ``steps``.
 
@@ -472,6 +507,8 @@ class World:
         seconds, whole, rest = self._plan(seconds, steps)
         dt, start, done = self._simulation.dt, self.time, 0
         last = whole + 1 if rest else whole
+        if not last:
+            self.time += seconds  # which is nothing, or too short for anything to move
         while done < last:
             self.synchronise()
             by_step = self._equations is None and self._flights is None
@@ -495,11 +532,11 @@ class World:
             raise TypeError("give either seconds or steps")
         dt = self._simulation.dt
         if seconds is None:
-            if not isinstance(steps, int) or isinstance(steps, bool) or steps < 0:
-                raise ValueError(f"steps = {steps!r}: must be a whole number >= 0")
-            return steps * dt, steps, 0.0
-        if not (math.isfinite(seconds) and seconds >= 0.0):
-            raise ValueError(f"seconds = {seconds!r}: must be a finite number >= 0 s")
+            count: int = _STEPS.check(steps)
+            if not math.isfinite(self.time + count * dt):
+                raise InvalidValue("run", "steps", steps, f"so few that {dt!r} s each lead to a finite time")
+            return count * dt, count, 0.0
+        seconds = _SECONDS.check(seconds)
         return seconds, *_whole_steps(seconds, dt)
 
     def install(self, *systems: System) -> None:
@@ -531,7 +568,9 @@ def _whole_steps(seconds: float, dt: float) -> tuple[int, float]:
     its own is taken together with the last whole step.
     """
     if not seconds / dt < 2**53:
-        raise ValueError(f"seconds = {seconds!r}: too many steps of dt = {dt!r} s")
+        raise InvalidValue("run", "seconds", seconds, f"less than 2**53 steps of dt = {dt!r} s")
+    if seconds < SHORTEST:
+        return 0, 0.0
     whole = round(seconds / dt)
     if whole and abs(seconds - whole * dt) <= 4.0 * math.ulp(seconds):
         return whole, 0.0

@@ -18,4 +18,6 @@ os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 
 # No deadline: the first example of a test may load kernels.
 settings.register_profile("physicslab", deadline=None, max_examples=40)
+# All that is fuzzed, once: pytest tests/test_fuzz_*.py --hypothesis-profile=thorough (10,000 examples)
+settings.register_profile("thorough", deadline=None, max_examples=2500)
 settings.load_profile("physicslab")

@@ -112,7 +112,7 @@ def test_files_that_cannot_be_read_are_refused(tmp_path: Path) -> None:
     assert "cannot be read: File name too long" in line(5000 * "a")
     latin = tmp_path / "latin.json"
     latin.write_bytes(b'{"format": "\xe9"}')
-    assert line(latin) == f"{latin}: is not UTF-8: byte 12 cannot be read"
+    assert line(latin) == f"{latin}: is not UTF-8: byte 12 cannot be read; must be JSON in UTF-8"
     if os.geteuid():
         latin.chmod(0)
         assert "cannot be read: Permission denied" in line(latin)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import esper
 import numpy as np
 import pytest
 from hypothesis import given
@@ -16,7 +17,7 @@ from hypothesis import strategies as st
 
 from physicslab import SceneError, World, load_scene, save_scene
 from physicslab.bodies import Diverged
-from physicslab.components import Held, Mass, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Held, Mass, Name, Shape, Spring, Trail, Transform, Velocity
 from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.json_text import json_text
 from physicslab.prefabs import box, circle, pendulum, stack
@@ -59,7 +60,8 @@ def worlds(draw: st.DrawFn) -> World:
             parts.append(draw(st.builds(Shape.circle, positive) | st.builds(Shape.box, positive, positive)))
         bodies.append(world.spawn(*parts, name=draw(st.none() | st.just(f"body {i}"))))
     for _ in range(draw(st.integers(0, 2))):
-        a, b = draw(st.sampled_from(bodies)), draw(st.none() | st.sampled_from(bodies))
+        a = draw(st.sampled_from(bodies))
+        b = draw(st.sampled_from([None, *(body for body in bodies if body != a)]))
         spring = Spring(a, b, draw(pairs), draw(pairs), draw(positive), draw(share), draw(share))
         world.spawn(spring)
     return world
@@ -188,8 +190,14 @@ SPOILT: list[tuple[Callable[[World], Any], str]] = [
         'entity "bob": Transform.position',
     ),
     (lambda w: w.table(Mass)["mass"].__setitem__(1, -1.0), 'entity "bob": Mass.mass = -1.0: must be'),
-    (lambda w: w.spawn(Transform(), name="bob"), 'entity 2: id = "bob": must be an id of its own'),
-    (lambda w: w.spawn(Transform(), name=""), 'entity 2: id = "": must be a text that is not empty'),
+    (
+        lambda w: esper.create_entity(Transform(), Name("bob")),
+        'entity 2: id = "bob": must be an id of its own',
+    ),
+    (
+        lambda w: esper.create_entity(Transform(), Name("")),
+        'entity 2: id = "": must be a text that is not empty',
+    ),
     (lambda w: w.spawn(Transform(), Spring(1, 99)), "Spring.b = 99: must be an entity of this world"),
     (lambda w: setattr(w, "time", math.nan), "time = NaN: must be a finite number >= 0 s"),
     (lambda w: setattr(w, "title", "\ud800"), 'title = "\\ud800": must be a text'),

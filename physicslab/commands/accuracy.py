@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Sequence
@@ -85,7 +86,7 @@ def _chosen(wanted: Sequence[str]) -> tuple[list[Problem], list[str]]:
     scenes: dict[str, None] = {}
     for name in wanted:
         found = select(name)
-        if not found and name not in SCENES and not Path(name).exists():
+        if not found and name not in SCENES and not os.path.exists(name):
             likely = suggestion(name, [*names(), *SCENES])
             there_is = f"the problems are {', '.join(families())}; scenes are taken as well"
             raise CommandError(f"{shown(name)}: is no problem, scene or file{likely or '; ' + there_is}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import io
+import math
 import os
 import sys
 import time
@@ -123,6 +124,10 @@ def _configure(world: World, arguments: Namespace) -> None:
         raise CommandError(f"{scene}: {error}") from error
     if world.method.refused and arguments.integrator is not None:
         raise CommandError(f"--integrator {arguments.integrator}: {world.method.refused}")
+    if arguments.steps is not None and not math.isfinite(arguments.steps * world.simulation.dt):
+        raise CommandError(
+            f"--steps {arguments.steps}: must take a finite time at {world.simulation.dt:g} s each"
+        )
     seconds = _DEFAULT_S if arguments.seconds is None else arguments.seconds
     if arguments.steps is None and seconds / world.simulation.dt > MOST_STEPS:
         raise CommandError(f"--seconds {seconds:g}: must be at most {MOST_STEPS:g} steps of dt")

@@ -2,16 +2,19 @@
 
 from physicslab.columns import Component, Derived, component, field
 
+LEAST = 1e-300
+"""The smallest mass [kg] and moment of inertia [kg m^2]: of much smaller ones the inverse is infinite."""
+
 
 @component
 class Mass(Component):
     """How a body resists forces and torques. A moving entity without it is kinematic: infinitely heavy."""
 
-    mass: float = field(default=1.0, unit="kg", above=0.0, meaning="resistance to force")
+    mass: float = field(default=1.0, unit="kg", minimum=LEAST, meaning="resistance to force")
     inertia: Derived = field(
         default=None,
         unit="kg m^2",
-        above=0.0,
+        minimum=LEAST,
         derived="from the Shape",
         meaning="moment of inertia about the centre of mass",
     )

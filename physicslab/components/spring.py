@@ -2,6 +2,9 @@
 
 from physicslab.columns import Component, Vector, component, field
 
+OTHER_END = "another entity than a"
+"""What ``b`` must be: a pull between two points of one body moves nothing."""
+
 
 @component
 class Spring(Component):

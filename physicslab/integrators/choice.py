@@ -148,7 +148,7 @@ def _best(world: World) -> Choice:
     attractors = max((getattr(system, "attractors", 0) for system in forces), default=0)
     planets = world.physics.gravity_mode == "planet" and attractors > 1
     rate = _fastest(world, [f for f in forces if not (planets and hasattr(f, "attractors"))])
-    needed = max(1, math.ceil(rate * h / _WELL_RESOLVED))
+    needed = _steps(rate, h)
     if needed > _MOST_STEPS:
         return Choice(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
     if planets and attractors >= _MANY and world.physics.softening > 0.0:
@@ -183,7 +183,7 @@ def _beside_contacts(world: World, obstacle: str) -> Choice:
     if max((getattr(system, "attractors", 0) for system in forces), default=0) >= _MANY and planets:
         return kicks
     rate, half = _fastest(world, forces), 0.5 * world.simulation.dt / substeps
-    needed = max(1, math.ceil(rate * half / _WELL_RESOLVED))
+    needed = _steps(rate, half)
     if needed * 2 * substeps > _MOST_STEPS:
         method, needed, how = IMPLICIT_MIDPOINT, 1, _too_fast(rate)
     elif planets or _sees_velocity(world, forces) or any(f.may_be_singular(world) for f in forces):
@@ -198,6 +198,12 @@ def _fastest(world: World, forces: list[ForceSystem]) -> float:
     """Return the fastest rate that forces and damping give any body [rad/s]."""
     rate = max((system.strongest_rate(world) for system in forces), default=0.0)
     return max(rate, world.physics.linear_damping, world.physics.angular_damping)
+
+
+def _steps(rate: float, h: float) -> int:
+    """Return into how many steps a time h must be divided for a rate, of no more than need be told apart."""
+    phase = rate * h / _WELL_RESOLVED
+    return max(1, math.ceil(phase)) if phase <= _MOST_STEPS else _MOST_STEPS + 1
 
 
 def _sees_velocity(world: World, forces: list[ForceSystem]) -> bool:

@@ -9,10 +9,24 @@ from physicslab.kernels.compensated import add
 from physicslab.kernels.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, LAST_LOW, WEIGHTS
 from physicslab.kernels.force_calls import Calls, accelerate
 
-__all__ = ["NOT_FINITE", "dop853", "first_step", "largest", "make_stages", "step_error", "total"]
+__all__ = [
+    "EXHAUSTED",
+    "NOT_FINITE",
+    "TOO_SHORT",
+    "dop853",
+    "first_step",
+    "largest",
+    "make_stages",
+    "step_error",
+    "total",
+]
 
+TOO_SHORT = -1
+"""What is returned where no step is short enough."""
 NOT_FINITE = -2
 """What is returned where the forces at the start are not finite."""
+EXHAUSTED = -3
+"""What is returned where more force evaluations were made than are allowed."""
 _SAFETY, _MOST, _LEAST = 0.9, 6.0, 0.2
 """How far a step keeps below what the estimate allows, and how much it may grow or shrink at once."""
 _LEADS = 1e-4
@@ -119,9 +133,12 @@ def _all_finite(q: Numbers, v: Numbers, n: int) -> bool:
 @kernel
 def dop853(
     q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
-    span: float, tolerance: float,
+    span: float, tolerance: float, period: float, most: int,
 ) -> int:  # fmt: skip
-    """Advance by ``span`` seconds; return the number of force evaluations, or -1 if no step is short enough.
+    """Advance by ``span`` seconds; return the number of force evaluations, or why it cannot be (negative).
+
+    Within any ``period`` seconds of it at most ``most`` force evaluations are made: a long span may take
+    many, but none of its parts may take for ever.
 
     A step is made again, shorter, where its error is estimated to be more than ``tolerance`` of the largest
     coordinate or speed. Sums are compensated.
@@ -137,6 +154,7 @@ def dop853(
     evaluations, done, done_low = 1, 0.0, 0.0
     h = first_step(pushes, q_scale, v_scale, span, tolerance)
     grow, last_error, last_taken = _MOST, math.inf, 1.0
+    spent, mark = 0, 0.0
     while True:
         left = (span - done) - done_low
         if left <= 0.0:
@@ -144,12 +162,17 @@ def dop853(
         last = h >= left
         taken = left if last else min(h, 0.5 * left) if h > 0.9 * left else h
         if taken < _SHORTEST * span and not last:
-            return -1
+            return TOO_SHORT
+        if done - mark >= period:
+            spent, mark = 0, done
+        if spent > most - LAST:
+            return EXHAUSTED
         make_stages(
             q, v, stage_q, stage_v, acceleration, rates, pushes,
             inverse_mass, damping, calls, taken, 1, LAST + 1,
         )  # fmt: skip
         evaluations += LAST
+        spent += LAST
         q_reach, v_reach = max(q_scale, largest(stage_q, n)), max(v_scale, largest(stage_v, n))
         # Where all is at rest, what counts is how far an error of the speed leads within the step.
         error = step_error(rates, pushes, taken, q_reach, max(v_reach, _LEADS * q_reach / taken), tolerance)

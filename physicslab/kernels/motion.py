@@ -13,15 +13,16 @@ def derive_masses(
     mass: Numbers, inertia: Numbers, inertia_given: Flags, fixed_rotation: Flags,
     kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
-) -> float:  # fmt: skip
+) -> tuple[float, int]:  # fmt: skip
     """Work out each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
 
-    Returns the ratio of the greatest mass that can be moved to the least, of what has a shape; 1 if none has.
+    Returns the ratio of the greatest mass that can be moved to the least, of what has a shape, 1 if none has;
+    and the first row of which the moment of inertia is not finite, or -1.
 
     A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. What has no velocity, no mass or is held weighs
-    infinitely much.
+    infinitely much; what is too small to have an inverse inertia does not turn.
     """
-    lightest, heaviest = 0.0, math.inf
+    lightest, heaviest, infinite = 0.0, math.inf, -1
     for i in range(len(mass)):
         if not inertia_given[i]:
             if kind[i] == 1:
@@ -33,12 +34,15 @@ def derive_masses(
         moves_freely = has_velocity[i] and has_mass[i] and not held[i]
         inverse_mass[i] = 1.0 / mass[i] if moves_freely else 0.0
         turns_freely = moves_freely and inertia[i] > 0.0 and not fixed_rotation[i]
-        inverse_inertia[i] = 1.0 / inertia[i] if turns_freely else 0.0
+        inverse = 1.0 / inertia[i] if turns_freely else 0.0
+        inverse_inertia[i] = inverse if math.isfinite(inverse) else 0.0  # too small to be turned
         if fixed_rotation[i]:
             angular[i] = 0.0
         if inverse_mass[i] > 0.0 and kind[i] != 0:
             lightest, heaviest = max(lightest, inverse_mass[i]), min(heaviest, inverse_mass[i])
-    return lightest / heaviest if lightest > 0.0 else 1.0
+        if infinite < 0 and not math.isfinite(inertia[i]):
+            infinite = i
+    return (lightest / heaviest if lightest > 0.0 else 1.0), infinite
 
 
 @kernel

@@ -37,6 +37,7 @@ class DragSystem(ForceSystem):
     def packed(self, world: World, slots: Slots) -> PackedForce:
         """Return the drag for compiled integrators."""
         table, rows = world.table(Drag), world.batch(*self.needs).rows
+        rows = rows[slots.place[rows] >= 0]  # what rests may not take part, and has no coordinates
         numbers = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
         whole = np.concatenate(([len(rows)], slots.place[rows]))
         return PackedForce(packed_forces.drag, numbers, whole, drag_resistance)

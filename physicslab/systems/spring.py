@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from physicslab.columns import InvalidValue
 from physicslab.components import Mass, Name, Spring, Transform, Velocity
+from physicslab.components.spring import OTHER_END
 from physicslab.equations import PackedForce, spring_ends
 from physicslab.kernels import packed_forces, springs
 from physicslab.kernels.resistance import damper_resistance
@@ -42,12 +43,15 @@ class SpringSystem(ForceSystem):
         Raises
         ------
         InvalidValue
-            If an end never was an entity, or is one without a Transform.
+            If an end never was an entity, or is one without a Transform; or if both are the same.
         """
         self._rows, self._a, self._b = rows, a, b = spring_ends(world)
         placed = world.table(Transform).present
         lost_a, lost_b = (a < 0) | ~placed[a], (b < 0) | ~(placed[b] | (b == 0))
         spring, entities = world.table(Spring), world.batch(Spring).entities
+        for i in np.flatnonzero((a == b) & (a > 0)).tolist():
+            end = int(world.roster.entities[b[i]])
+            raise InvalidValue(f"{world.label(int(entities[i]))}: Spring", "b", end, OTHER_END)
         for i in np.flatnonzero(lost_a | lost_b).tolist():
             entity, name = int(entities[i]), "a" if lost_a[i] else "b"
             end = int(spring[name][rows[i]]) or entity
@@ -95,11 +99,14 @@ class SpringSystem(ForceSystem):
         """
         spring, bodies = world.table(Spring), world.bodies
         stiff, damped = (np.zeros(len(bodies.inverse_mass)) for _ in range(2))
-        for end, anchors in ((self._a, "anchor_a"), (self._b, "anchor_b")):
-            arm2 = np.square(spring[anchors][self._rows]).sum(axis=1)
-            give = bodies.inverse_mass[end] + arm2 * bodies.inverse_inertia[end]
-            np.add.at(stiff, end, 2.0 * spring["stiffness"][self._rows] * give)
-            np.add.at(damped, end, 2.0 * spring["damping"][self._rows] * give)
+        # What overflows is a rate beyond all bounds, and so is infinity that nothing can be turned by.
+        with np.errstate(over="ignore", invalid="ignore"):
+            for end, anchors in ((self._a, "anchor_a"), (self._b, "anchor_b")):
+                arm2 = np.square(spring[anchors][self._rows]).sum(axis=1)
+                give = bodies.inverse_mass[end] + arm2 * bodies.inverse_inertia[end]
+                np.add.at(stiff, end, 2.0 * spring["stiffness"][self._rows] * give)
+                np.add.at(damped, end, 2.0 * spring["damping"][self._rows] * give)
+            stiff, damped = (np.where(np.isnan(bound), np.inf, bound) for bound in (stiff, damped))
         fixed = (bodies.inverse_mass[self._a] == 0.0) | (bodies.inverse_mass[self._b] == 0.0)
         share = 0.5 if fixed.all() else 1.0  # no pair of bodies moves against each other
         return np.maximum(np.sqrt(share * stiff), share * damped)
