@@ -178,9 +178,10 @@ class Contacts:
         self.blocks.reset(rows)
 
     def in_order(self) -> None:
-        """List the loose pairs in order, where some were set loose since: a file tells no other order."""
+        """Put the loose pairs in order, where some were set loose since: a file tells no other order."""
         if self.unordered:
-            self._list_loose()
+            block_lanes.sort_loose(self.loose, self.loose_count)
+            self.unordered = False
 
     def _list_loose(self) -> None:
         self.unordered = False

@@ -128,6 +128,8 @@ class Equations:
     near : int64 array and int, optional
         An order of the coordinates in which those that forces couple are near, and how near; whoever needs
         it finds it once, as it hangs on the layout alone.
+    tolerance : float
+        Relative error a step for methods that choose their steps.
     forces, interpreted : tuple of str
         The force systems, and those of them that are not compiled.
 
@@ -146,6 +148,7 @@ class Equations:
         self.forces = tuple(system.name for system in self._forces)
         self.slots = Slots(world, part, all_turn=bool(interpreted))
         self.near: tuple[NDArray[np.int64], int] | None = None
+        self.tolerance = world.simulation.tolerance
         self._error: BaseException | None = None
         self._settings = self._look(world)
 

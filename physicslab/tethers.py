@@ -21,6 +21,8 @@ __all__ = ["Tethers"]
 
 _GENTLE = 1.0
 """omega h up to which a force hardly changes within a substep, and contacts are told what it will do."""
+_TOLERANCE = 1e-12
+"""Relative error of a step of methods that choose their steps, at the least."""
 
 
 class Tethers:
@@ -53,6 +55,8 @@ class Tethers:
         self._method, self._steps = method, steps
         rows = tethered_rows(world)
         self._equations = Equations(world, rows)
+        # Contacts are good to far fewer digits than a free flight: more would only cost time.
+        self._equations.tolerance = max(world.simulation.tolerance, _TOLERANCE)
         world.bodies.tethered[:] = rows & world.table(Velocity).present
         h = world.simulation.dt / world.simulation.substeps
         self.gentle: NDArray[np.bool_] = world.bodies.tethered & (world.bodies.inverse_mass > 0.0)

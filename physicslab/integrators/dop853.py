@@ -19,7 +19,7 @@ _MOST = 1_000_000
 
 
 def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
-    eq, tolerance = equations, world.simulation.tolerance
+    eq, tolerance = equations, equations.tolerance
     made = dop853(
         eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, steps * h, tolerance, world.simulation.dt, _MOST
     )

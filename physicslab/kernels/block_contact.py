@@ -103,7 +103,8 @@ def _separation(
     rbx, rby = block[point + ARM_BX + lane], block[point + ARM_BY + lane]
     ax, ay = turn_a * (-ray - 0.5 * turn_a * rax), turn_a * (rax - 0.5 * turn_a * ray)
     bx, by = turn_b * (-rby - 0.5 * turn_b * rbx), turn_b * (rbx - 0.5 * turn_b * rby)
-    return block[point + FOUND + lane] + (x + bx - ax) * nx + (y + by - ay) * ny
+    separation: float = block[point + FOUND + lane] + (x + bx - ax) * nx + (y + by - ay) * ny
+    return separation
 
 
 @inlined

@@ -77,7 +77,8 @@ def _pushed(
         slop, heaviest,
     )  # fmt: skip
     block[point + IMPULSE + lane] = total
-    return total - impulse
+    change: float = total - impulse
+    return change
 
 
 @fused
@@ -86,7 +87,8 @@ def _rubbed(block: Numbers, point: int, lane: int, v: float) -> float:
     limit, rub = block[FRICTION + lane] * block[point + IMPULSE + lane], block[point + RUB + lane]
     total = min(max(rub - block[point + RUB_MASS + lane] * v, -limit), limit)
     block[point + RUB + lane] = total
-    return total - rub
+    change: float = total - rub
+    return change
 
 
 @inlined

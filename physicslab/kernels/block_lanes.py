@@ -44,7 +44,7 @@ from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 
 __all__ = [
     "COLOURS", "Masks", "admit", "empty_lane", "follow_pairs", "give_up", "keep_loose", "list_loose",
-    "seat_again", "sort_blocks", "store",
+    "seat_again", "sort_blocks", "sort_loose", "store",
     "store_lane", "wake",
 ]  # fmt: skip
 
@@ -317,6 +317,17 @@ def list_loose(manifolds: Manifolds, pairs: int, loose: Rows) -> int:
 
 
 @kernel
+def sort_loose(loose: Rows, count: int) -> None:
+    """Put the loose pairs in order, of which all but the last few are."""
+    for k in range(1, count):
+        p, place = loose[k], k
+        while place > 0 and loose[place - 1] > p:
+            loose[place] = loose[place - 1]
+            place -= 1
+        loose[place] = p
+
+
+@kernel
 def follow_pairs(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, pairs: int,
@@ -370,7 +381,8 @@ def _resting_speed(a: int, b: int, linear: Vectors, force: Vectors, inverse_mass
     speed = abs(linear[a, 0]) + abs(linear[a, 1]) + abs(linear[b, 0]) + abs(linear[b, 1])
     pull_a = math.sqrt(force[a, 0] * force[a, 0] + force[a, 1] * force[a, 1]) * inverse_mass[a]
     pull_b = math.sqrt(force[b, 0] * force[b, 0] + force[b, 1] * force[b, 1]) * inverse_mass[b]
-    return 1e-9 * speed + 2.0 * h * max(pull_a, pull_b)
+    resting: float = 1e-9 * speed + 2.0 * h * max(pull_a, pull_b)
+    return resting
 
 
 @kernel

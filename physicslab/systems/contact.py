@@ -50,11 +50,10 @@ class ContactSystem(System):
         shape, material = world.table(Shape), world.table(Material)
         contacts, bodies, physics = world.contacts, world.bodies, world.physics
         fall = 0.5 * physics.gravity.magnitude * h * h if physics.gravity_mode == "linear" else 0.0
-        if self._first:
-            contacts.in_order()
         if contacts.blocks.lanes:
             self._refresh(world, h, fall)
             contacts.changed()
+        contacts.in_order()
         contacts.active = contact.find_contacts(
             contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count, contacts.touching,
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
