@@ -19,11 +19,11 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import pygame
 
-from physicslab.app import Sandbox
 from physicslab.config import PhysicsConfig
 from physicslab.kernels import KERNELS, compile_kernels
 from physicslab.kernels.warm import load_all
 from physicslab.prefabs import container, gas, pile
+from physicslab.sandbox import Sandbox
 from physicslab.scene import load_scene
 from physicslab.systems.standard import standard_systems
 from physicslab.view.pygame_canvas import PygameCanvas

@@ -267,8 +267,9 @@ class Schedule:
                 left_out.append(LeftOut(system.name, reason))
         self.running, self.left_out = tuple(running), tuple(left_out)
         self._calls = {stage: [] for stage in Stage}
+        # All at once: where other processes compile, they are then told of all that is waited for.
+        self.compile([needed for system in running for needed in system.kernels])
         for system in running:
-            self.compile(system.kernels)
             timing = self.timings.setdefault(system.name, Timing())
             for stage, method in self._marked[system].items():
                 self._calls[stage].append((getattr(system, method), timing))

@@ -13,7 +13,7 @@ import os
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, cast, get_args, get_origin, get_type_hints
@@ -26,7 +26,8 @@ from numpy.typing import NDArray
 
 __all__ = [
     "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
-    "cache_directory", "cached", "compile_kernels", "inlined", "inlined_exactly", "kernel",
+    "ask_before_compiling", "cache_directory", "cached", "compile_kernels", "inlined", "inlined_exactly",
+    "kernel",
 ]  # fmt: skip
 
 Numbers = Annotated[NDArray[np.float64], float64[::1]]
@@ -130,11 +131,28 @@ def _numba_type(hint: Any) -> Any:
     return {float: float64, int: int64, bool: boolean, type(None): void}[hint]
 
 
+def ask_before_compiling(ask: Callable[[Sequence[Any]], None] | None) -> None:
+    """Have ``ask`` called with kernels that are needed and not there, before they are compiled; or nothing.
+
+    When it returns they are compiled, or loaded: so a window can wait for other processes, and stay awake.
+    """
+    global _ask
+    _ask = ask
+
+
+_ask: Callable[[Sequence[Any]], None] | None = None
+
+
 def compile_kernels(kernels: Iterable[Any]) -> float:
     """Compile the given kernels, or load them from the cache; return the seconds it took."""
+    missing = [jitted for jitted in kernels if not jitted.compiled]
+    if not missing:
+        return 0.0
+    if _ask is not None:
+        _ask(missing)
     start = time.perf_counter()
-    for jitted in kernels:
-        if not jitted.compiled:
+    for jitted in missing:
+        if not jitted.compiled:  # it may be named twice
             jitted.compile(jitted.declared_signature)
             jitted.disable_compile()
             jitted.compiled = True  # asking numba takes longer than many a kernel runs
