@@ -66,5 +66,7 @@ def _load(display: Display, module: str) -> bool:
 def _import(module: str) -> None:
     try:
         import_module(module)
+        import_module("physicslab.kernels.warm").load_all()
+        import_module("physicslab.kernels").prepare()
     except Exception:  # it is raised once more where the window can be closed and the reason told
         return

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from types import TracebackType
 from typing import Any
 
-from physicslab.kernels import KERNELS, ask_before_compiling, compile_kernels
+from physicslab.kernels import KERNELS, ask_before_compiling, load
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.view.display import Display, wants_to_leave
 from physicslab.view.progress import draw_corner, draw_progress, draw_waiting
@@ -81,6 +81,7 @@ class Compiling:
             if wants_to_leave():
                 raise Left
             self._show_waiting(time.perf_counter() - start)
+            self._load_one(missing)  # all at once would be a long frame when the last is there
             self._display.show()
             self._progress = warmup.poll()
 
@@ -102,13 +103,13 @@ class Compiling:
             share = self._progress.done / self._progress.total
             draw_corner(self._display.canvas, theme, share)
         if self._display.left > _ROOM or self._frames % _AT_LEAST == 0:
-            self.load_next()
+            self._load_one(KERNELS)
 
-    def load_next(self) -> None:
-        """Load the next kernel that is in the cache and was not needed yet; do nothing if there is none."""
-        for jitted in KERNELS:
+    def _load_one(self, kernels: Sequence[Any]) -> None:
+        """Load the first of some kernels that is in the cache and not loaded yet, if there is one."""
+        for jitted in kernels:
             if not jitted.compiled and self._is_kept(jitted):
-                compile_kernels((jitted,))
+                load(jitted)
                 return
 
     def _is_kept(self, jitted: Any) -> bool:

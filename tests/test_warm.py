@@ -20,8 +20,23 @@ from physicslab.view.progress import draw_progress
 from physicslab.view.theme import DARK
 
 ECHO = (sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line.strip(), flush=True)")
+_SLOWLY = "import sys, time\nfor line in sys.stdin: time.sleep(0.02); print(line, end='', flush=True)"
+SLOW = (sys.executable, "-c", _SLOWLY)
 ASLEEP = (sys.executable, "-c", "import time; time.sleep(60)")
 BROKEN = (sys.executable, "-c", "import sys; sys.stdin.readline(); sys.exit(1)")
+
+
+class Waiting:
+    """A kernel that takes no time to load, and notes that it was."""
+
+    declared_signature = None
+
+    def __init__(self, name: str) -> None:
+        self.__name__, self.__module__, self.compiled = name, "test", False
+
+    def compile(self, signature: object) -> None: ...
+
+    def disable_compile(self) -> None: ...
 
 
 @pytest.fixture
@@ -93,9 +108,10 @@ def test_a_worker_compiles_what_it_is_told() -> None:
 
 
 def test_the_window_shows_progress_and_stays_awake(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, ECHO))
+    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, SLOW))
+    asleep = [Waiting("no kernel that is there")]
     with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
-        waiting._wait([motion.clear])
+        waiting._wait(asleep)
         assert DARK.accent in {tuple(display.canvas.surface.get_at((x, 367)))[:3] for x in range(300, 980)}
 
 
@@ -142,27 +158,13 @@ def test_what_is_asked_for_is_compiled_first(mark: Path) -> None:
 
 def test_what_is_waited_for_is_there_before_the_rest(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The window goes on as soon as it has what it asked for, and says in a corner how far the rest is."""
-    slow = "import sys, time\nfor line in sys.stdin: time.sleep(0.05); print(line.strip(), flush=True)"
-    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, (sys.executable, "-c", slow)))
+    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, SLOW))
     with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
         waiting._wait([motion.clear])
         assert not waiting.finished
         waiting.advance(DARK)
         corner = {tuple(display.canvas.surface.get_at((x, 690)))[:3] for x in range(1000, 1270)}
         assert DARK.panel in corner
-
-
-class Waiting:
-    """A kernel that takes no time to load, and notes that it was."""
-
-    declared_signature = None
-
-    def __init__(self, name: str) -> None:
-        self.__name__, self.__module__, self.compiled = name, "test", False
-
-    def compile(self, signature: object) -> None: ...
-
-    def disable_compile(self) -> None: ...
 
 
 def test_kernels_are_loaded_in_frames_that_have_time_left(
@@ -181,3 +183,18 @@ def test_kernels_are_loaded_in_frames_that_have_time_left(
         assert [kernel.compiled for kernel in asleep] == [True, False, False]
         waiting.advance(DARK)
         assert [kernel.compiled for kernel in asleep] == [True, True, False]
+
+
+def test_the_window_knows_every_kernel_from_the_start() -> None:
+    """What is in no imported module could not be loaded while there is time for it."""
+    code = """
+from physicslab import app
+app._import("physicslab.session_window")
+from physicslab.kernels import KERNELS
+before = len(KERNELS)
+from physicslab.kernels.warm import load_all
+print(before, len(load_all()))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    before, after = done.stdout.split()
+    assert before == after

@@ -22,12 +22,13 @@ import numba
 import numba.core.config
 import numpy as np
 from numba import boolean, float64, int64, void
+from numba.core.registry import cpu_target
 from numpy.typing import NDArray
 
 __all__ = [
     "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
     "ask_before_compiling", "cache_directory", "cached", "compile_kernels", "inlined", "inlined_exactly",
-    "kernel",
+    "kernel", "load", "prepare",
 ]  # fmt: skip
 
 Numbers = Annotated[NDArray[np.float64], float64[::1]]
@@ -93,7 +94,9 @@ def cached() -> Iterator[None]:
 
 def _jit[F: Callable[..., Any]](function: F, fastmath: Any = FASTMATH) -> F:
     with cached():
-        return cast(F, numba.njit(cache=True, error_model="numpy", fastmath=fastmath)(function))
+        return cast(
+            F, numba.njit(cache=True, error_model="numpy", fastmath=fastmath, no_cfunc_wrapper=True)(function)
+        )
 
 
 def inlined[F: Callable[..., Any]](function: F) -> F:
@@ -145,15 +148,24 @@ _ask: Callable[[Sequence[Any]], None] | None = None
 
 def compile_kernels(kernels: Iterable[Any]) -> float:
     """Compile the given kernels, or load them from the cache; return the seconds it took."""
-    missing = [jitted for jitted in kernels if not jitted.compiled]
-    if not missing:
-        return 0.0
-    if _ask is not None:
-        _ask(missing)
     start = time.perf_counter()
+    missing = [jitted for jitted in kernels if not jitted.compiled]
+    if missing and _ask is not None:
+        _ask(missing)
     for jitted in missing:
-        if not jitted.compiled:  # it may be named twice
-            jitted.compile(jitted.declared_signature)
-            jitted.disable_compile()
-            jitted.compiled = True  # asking numba takes longer than many a kernel runs
+        load(jitted)
     return time.perf_counter() - start
+
+
+def load(jitted: Any) -> None:
+    """Load one kernel from the cache, or compile it here and now."""
+    if not jitted.compiled:
+        jitted.compile(jitted.declared_signature)
+        jitted.disable_compile()
+        jitted.compiled = True  # asking numba takes longer than many a kernel runs
+
+
+def prepare() -> None:
+    """Let numba learn what it knows of types, as it would before the first kernel: 0.2 s and more."""
+    cpu_target.typing_context.refresh()
+    cpu_target.target_context.refresh()

@@ -9,7 +9,7 @@ import time
 from physicslab.kernels import KERNELS, compile_kernels
 from physicslab.kernels.warm import Progress, Warmup, load_all
 
-_YIELDING = 5
+_YIELDING = 15
 """By how much others come first, as Unix counts it."""
 
 
