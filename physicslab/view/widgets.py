@@ -57,9 +57,12 @@ class Button(pygame_gui.elements.UIButton):
     def put(self, rect: Rect) -> None:
         """Show it at a place [px]."""
         if tuple(self.rect) != rect:
+            grown = tuple(self.rect.size) != rect[2:]
             self.set_relative_position(rect[:2])
-            self.set_dimensions(rect[2:])
-            self.remake()
+            self.widgets.stir()
+            if grown:  # what is only moved looks as before, and drawing it anew takes a millisecond
+                self.set_dimensions(rect[2:])
+                self.remake()
         self.reveal(True)
 
     def remake(self) -> None:
