@@ -1,8 +1,9 @@
 """Time whole frames of the window: simulation, drawing and HUD, with every overlay on.
 
-``uv run python benchmarks/frames.py [--frames N] [--keys vte]`` prints the median and 99th percentile [ms]
-and maximum of each part. No screen is needed: SDL's dummy driver takes the picture, 1280 x 720 pixels. A frame of 60 Hz
-has 16.7 ms. Each step of a frame is 1/60 s of the world, so "total" is what a frame costs that keeps up.
+``uv run python benchmarks/frames.py [--frames N] [--keys vte]`` prints the median, the 99th percentile and
+the maximum [ms] of each part. No screen is needed: SDL's dummy driver takes the picture, 1280 x 720 pixels. A
+frame of 60 Hz has 16.7 ms. Each step of a frame is 1/60 s of the world, so "total" is what a frame costs that
+keeps up.
 """
 
 from __future__ import annotations
