@@ -9,9 +9,38 @@ Examples
 1.0
 """
 
-from physicslab.fields import InvalidValue
-from physicslab.scene import SceneError, load_scene, save_scene
-from physicslab.vector import Vector2
-from physicslab.world import World
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from physicslab.fields import InvalidValue
+    from physicslab.scene import SceneError, load_scene, save_scene
+    from physicslab.vector import Vector2
+    from physicslab.world import World
 
 __all__ = ["InvalidValue", "SceneError", "Vector2", "World", "load_scene", "save_scene"]
+
+_HOMES = {
+    "InvalidValue": "fields",
+    "SceneError": "scene_checks",
+    "Vector2": "vector",
+    "World": "world",
+    "load_scene": "scene",
+    "save_scene": "scene",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name when it is first asked for.
+
+    A world brings numba with it, which takes as long to import as all else together; on the first launch,
+    before Python has kept its bytecode, seconds. The window must not wait for that.
+    """
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

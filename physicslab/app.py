@@ -1,142 +1,22 @@
-"""The desktop sandbox: the window and its loop."""
+"""Opens the window at once; what is to be shown in it, and numba with it, is imported while it is there."""
 
 from __future__ import annotations
 
+import threading
 import time
-from collections.abc import Callable
-from pathlib import Path
+from importlib import import_module
 
-import pygame
-
-from physicslab.autosave import Autosave
-from physicslab.bodies import Diverged
 from physicslab.config import WindowConfig
-from physicslab.kernels.warm import Warmup, is_warm
-from physicslab.rescue import save_last_good
-from physicslab.scene import SceneError, load_scene
-from physicslab.schedule import Stage
-from physicslab.sessions import Session, session_folder
-from physicslab.systems.hud import HudSystem
-from physicslab.systems.input import InputSystem
-from physicslab.systems.render import RenderSystem
-from physicslab.view.display import Display
-from physicslab.view.progress import draw_progress
-from physicslab.view.recovery import Recovery
+from physicslab.view.display import Display, wants_to_leave
+from physicslab.view.progress import draw_loading
 from physicslab.view.theme import DARK
-from physicslab.view.toolbar import Toolbar
-from physicslab.view.window import Window
-from physicslab.world import World
 
-__all__ = ["Sandbox", "open_window"]
+__all__ = ["FIRST_SCENE", "open_window"]
 
 FIRST_SCENE = "sandbox"
 """The scene that is opened where none is named."""
-
-
-class Sandbox:
-    """A world in a window. A call of :meth:`frame` is one frame; no real window is needed for it.
-
-    Parameters
-    ----------
-    world : World
-        What is shown; the systems of a frame are installed in it.
-    window : Window
-        Where it is shown.
-    clock : callable
-        Returns the time [s]; it limits how long the steps of a frame may take.
-    autosave : Autosave, optional
-        What keeps the state for the case that the program ends badly.
-
-    Attributes
-    ----------
-    world : World
-        The world that is shown.
-    toolbar : Toolbar
-        The buttons over it.
-    """
-
-    def __init__(
-        self,
-        world: World,
-        window: Window,
-        clock: Callable[[], float] = time.perf_counter,
-        autosave: Autosave | None = None,
-    ) -> None:
-        self.window = window
-        self._clock = clock
-        self._autosave = autosave
-        self._told = False  # that the state cannot be kept
-        self._rescued: tuple[World, float] | None = None
-        self.toolbar = Toolbar(window)
-        hud = HudSystem(window, self.toolbar)
-        window.room = hud.room
-        self._systems = InputSystem(window, self.toolbar), RenderSystem(window), hud
-        self.show(world)
-        if autosave is not None:
-            autosave.settle(world)
-
-    def show(self, world: World) -> None:
-        """Show a world in place of the one that was shown, with nothing held and nothing begun."""
-        self.world = world
-        world.install(*self._systems)
-        window = self.window
-        window.spring_tool.cancel()
-        window.overlays.forget()
-        window.sparks.clear()
-        window.error, window.menu, window.next_world = "", "", None
-        window.go_home(world)
-
-    def frame(self, elapsed: float) -> None:
-        """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last."""
-        self.window.pace.begin(elapsed)
-        self.world.frame(Stage.INPUT, elapsed)
-        if self.window.next_world is not None:
-            self.window.hand.drop(self.world)
-            self.show(self.window.next_world)
-        self._advance()
-        self.world.frame(Stage.RENDER, elapsed)
-        self.world.frame(Stage.HUD, elapsed)
-        if self._autosave is not None:
-            self._keep(self._autosave)
-
-    def _keep(self, autosave: Autosave) -> None:
-        """Let the state be saved where that is due; say once where it cannot be."""
-        autosave.advance(self.world)
-        if autosave.failure and not self._told:
-            words = f"The state cannot be kept for the case of a crash: {autosave.failure}"
-            self.window.notify(words, 8.0, failed=True)
-        self._told = bool(autosave.failure)
-
-    def _advance(self) -> None:
-        """Make the steps that are due.
-
-        None is begun once they have taken as long as a frame may make up for: a world too heavy for the
-        machine runs slowly, and the window stays awake.
-        """
-        world, pace, dt = self.world, self.window.pace, self.world.simulation.dt
-        deadline = self._clock() + pace.max_dt
-        made, due = 0, pace.due(dt)
-        try:
-            while made < due and (made == 0 or self._clock() < deadline):
-                world.step(dt * pace.shortening)
-                self.window.sparks.advance(world, dt * pace.shortening, self.window.camera.scale)
-                made += 1
-        except Diverged as error:
-            pace.halt()
-            self.window.error = f"Stopped: {error}. {self._rescue()} R clears all."
-        else:
-            pace.done(made, dt)
-
-    def _rescue(self) -> str:
-        """Save the state before the step that failed, once, and return what to say of it."""
-        if self._rescued == (self.world, self.world.time):
-            return "The last good state is shown; it was saved before."
-        try:
-            path = save_last_good(self.world, self.world.name, Path.cwd())
-        except (OSError, SceneError) as error:
-            return f"The last good state is shown; it could not be saved: {error}."
-        self._rescued = self.world, self.world.time
-        return f"The last good state is shown, and saved as {path.name}."
+_PATIENCE = 0.5
+"""Time [s] after which it is said that something is being loaded: later starts are there sooner."""
 
 
 def open_window(scene: str | None) -> int:
@@ -150,80 +30,43 @@ def open_window(scene: str | None) -> int:
     Raises
     ------
     SceneError
-        If there is no such scene or it is not allowed; no window was opened then.
+        If there is no such scene or it is not allowed.
     OSError
         If there is no screen to open a window on.
     """
-    world = load_scene(FIRST_SCENE if scene is None else scene)
     config = WindowConfig()
-    with Display.open(config, _title(world)) as display:
-        if not is_warm() and not _warm_up(display):
+    with Display.open(config, "PhysicsLab") as display:
+        if not _load(display, "physicslab.session_window"):
             return 0
-        window = Window(display.canvas, config)
-        folder = session_folder()
-        abandoned = Session.abandoned(folder)
-        session: Session | None = None
-        autosave: Autosave | None = None
-        try:
-            session = Session.begin(folder)
-        except OSError as error:
-            words = f"The state cannot be kept for the case of a crash: {error}"
-            window.notify(words, 8.0, failed=True)
-        else:
-            autosave = Autosave(session.path)
-        window.recovery = Recovery(abandoned, None if session is None else session.path)
-        sandbox = Sandbox(world, window, autosave=autosave)
-        try:
-            _loop(sandbox, display)
-        finally:
-            window.error_study.stop()
-            window.recovery.leave()
-        # Only here, where the window was closed as it should be: an error leaves the state to the next start.
-        if autosave is not None and session is not None:
-            autosave.stop()
-            session.end()
-    return 0
+        from physicslab.session_window import run_window
+
+        return run_window(display, config, FIRST_SCENE if scene is None else scene)
 
 
-def _loop(sandbox: Sandbox, display: Display) -> None:
-    """Show frames until the window is to be closed."""
-    window = sandbox.window
-    sandbox.frame(0.0)
-    display.show()  # the time that the first frame took, with all that it loads, is not made up for
-    elapsed = 0.0
-    while not window.closing:
-        sandbox.frame(elapsed)
-        display.title = _title(sandbox.world)
-        if window.wants_screenshot:
-            window.wants_screenshot = False
-            window.notify(_keep_screenshot(display))
-        elapsed = display.show()
+def _load(display: Display, module: str) -> bool:
+    """Import a module in a thread while the window stays awake; return whether the user stayed.
 
-
-def _title(world: World) -> str:
-    return f"{world.title or world.name or 'A scene'} - PhysicsLab"
-
-
-def _keep_screenshot(display: Display) -> str:
-    """Save a picture of the window where the program was started, and return what to say of it."""
-    try:
-        return f"Saved {display.save_screenshot(Path.cwd())}"
-    except OSError as error:
-        return f"The screenshot could not be saved: {error.strerror or error}"
-
-
-def _warm_up(display: Display) -> bool:
-    """Compile all kernels while the window shows how far it is; return whether the user stayed."""
+    The first time takes seconds, as Python has not kept the bytecode of numba yet. The thread holds frames up
+    for some milliseconds each, which an empty window does not show.
+    """
+    thread = threading.Thread(target=_import, args=(module,), daemon=True)
     start = time.perf_counter()
-    with Warmup() as warmup:
-        while not warmup.finished:
-            for event in pygame.event.get():
-                escape = event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE
-                if escape or event.type == pygame.QUIT:
-                    return False
-            progress = warmup.poll()
-            seconds = int(time.perf_counter() - start)
-            remark = f"{progress.done} of {progress.total} parts, {seconds} s"
-            draw_progress(display.canvas, DARK, progress.done / progress.total, remark)
-            display.show()
+    draw_loading(display.canvas, DARK, "")
+    display.show()
+    thread.start()
+    while thread.is_alive():
+        if wants_to_leave():
+            return False
+        seconds = time.perf_counter() - start
+        draw_loading(display.canvas, DARK, f"Loading, {int(seconds)} s" if seconds > _PATIENCE else "")
+        display.show()
     return True
+
+
+def _import(module: str) -> None:
+    try:
+        import_module(module)
+        import_module("physicslab.kernels.warm").load_all()
+        import_module("physicslab.kernels").prepare()
+    except Exception:  # it is raised once more where the window can be closed and the reason told
+        return

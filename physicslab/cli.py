@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import NoReturn
 
-from physicslab.commands import COMMANDS, CommandError
+from physicslab.commands import COMMANDS, CommandError, command
 from physicslab.commands.command_error import FAILED, USAGE
-from physicslab.scene import SceneError, load_scene
-from physicslab.scene_checks import printable
+from physicslab.scene_checks import SceneError, printable
+from physicslab.scenes import SCENES
 
 __all__ = ["main"]
 
@@ -29,6 +29,15 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         raise CommandError(f"{message} (see {self.prog} --help)")
+
+
+class _WindowParser(_Parser):
+    """Says what commands there are, where help is asked for: a window does not wait for them."""
+
+    def format_help(self) -> str:
+        lines = (f"{name} - {(command(name).__doc__ or '').splitlines()[0]}" for name in COMMANDS)
+        self.epilog = "commands: " + "; ".join(lines)
+        return super().format_help()
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -69,23 +78,22 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _dispatch(arguments: list[str]) -> int:
     if arguments and arguments[0] in COMMANDS:
         name, *rest = arguments
-        command = COMMANDS[name]
-        parser = _Parser(f"physicslab {name}", command.__doc__)
-        command.add_arguments(parser)
-        return command.execute(parser.parse_args(rest))
+        named = command(name)
+        parser = _Parser(f"physicslab {name}", named.__doc__)
+        named.add_arguments(parser)
+        return named.execute(parser.parse_args(rest))
     return _open(arguments)
 
 
 def _open(arguments: list[str]) -> int:
     """Open the window, on a scene if one is named."""
-    parser = _Parser("physicslab", "Open the desktop sandbox, or do one of the commands.")
+    parser = _WindowParser("physicslab", "Open the desktop sandbox, or do one of the commands.")
     parser.add_argument("scene", metavar="SCENE", nargs="?", help="a built-in scene's name, or a path")
-    parser.epilog = "commands: " + "; ".join(
-        f"{name} - {(command.__doc__ or '').splitlines()[0]}" for name, command in COMMANDS.items()
-    )
     scene = parser.parse_args(arguments).scene
-    if scene is not None:
-        load_scene(scene)  # a bad scene is refused before a window flickers up
+    if scene is not None and scene not in SCENES:
+        from physicslab.scene import load_scene
+
+        load_scene(scene)  # a bad file is refused before a window flickers up
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     from physicslab.app import open_window  # no command without a window imports pygame
 

@@ -105,6 +105,10 @@ class System:
             return f"no {' and '.join(needed.__name__ for needed in absent)} in the scene"
         return None
 
+    def kernels_for(self, world: World) -> tuple[Any, ...]:
+        """Return which of ``kernels`` the world needs as it is; what it does not need is not waited for."""
+        return self.kernels
+
     def finer(self, world: World) -> int:
         """Return how many times as many substeps as asked for the coming step needs, as things stand."""
         return 1
@@ -267,8 +271,9 @@ class Schedule:
                 left_out.append(LeftOut(system.name, reason))
         self.running, self.left_out = tuple(running), tuple(left_out)
         self._calls = {stage: [] for stage in Stage}
+        # All at once: where other processes compile, they are then told of all that is waited for.
+        self.compile([needed for system in running for needed in system.kernels_for(world)])
         for system in running:
-            self.compile(system.kernels)
             timing = self.timings.setdefault(system.name, Timing())
             for stage, method in self._marked[system].items():
                 self._calls[stage].append((getattr(system, method), timing))

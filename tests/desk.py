@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pygame
 
-from physicslab.app import Sandbox
 from physicslab.components import Transform, Velocity
 from physicslab.config import PhysicsConfig, WindowConfig
+from physicslab.sandbox import Sandbox
 from physicslab.systems.standard import standard_systems
 from physicslab.vector import Vector2
 from physicslab.view.canvas import Canvas

@@ -1,6 +1,8 @@
 """The sandbox as a whole: frames of any length, a world that diverges, the window's loop."""
 
 import itertools
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -9,10 +11,11 @@ import pygame
 import pytest
 from desk import FRAME, Desk, bits, empty_world
 
-from physicslab import app
-from physicslab.app import Sandbox, open_window
+from physicslab import cli, compiling
+from physicslab.app import open_window
 from physicslab.components import Transform, Velocity
 from physicslab.prefabs import box, circle
+from physicslab.sandbox import Sandbox
 from physicslab.scene import SceneError, load_scene
 from physicslab.schedule import Stage, System, at
 from physicslab.view.canvas import RecordingCanvas
@@ -139,7 +142,7 @@ def test_installed_twice_is_refused() -> None:
 @pytest.fixture
 def each_frame(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[Callable[[Display, int], None]], None]]:
     """Have something done whenever a real window's frame is shown."""
-    monkeypatch.setattr(app, "is_warm", lambda: True)
+    monkeypatch.setattr(compiling, "is_warm", lambda: True)
     show, shown = Display.show, [0]
 
     def install(deed: Callable[[Display, int], None]) -> None:
@@ -173,7 +176,7 @@ def test_the_window_opens_on_the_playground_and_escape_closes_it(each_frame: Eac
     each_frame(deed)
     assert open_window(None) == 0
     assert len(captions) in (10, 11)
-    assert captions[0] == "Sandbox - PhysicsLab"
+    assert captions[0] == "PhysicsLab" and captions[-1] == "Sandbox - PhysicsLab"
     assert not pygame.display.get_init()
 
 
@@ -215,8 +218,9 @@ def test_a_bad_scene_is_refused_before_a_window_opens(monkeypatch: pytest.Monkey
         raise AssertionError("a window was opened")
 
     monkeypatch.setattr(pygame.display, "set_mode", no_window)
+    assert cli.main(["no_such_scene"]) == 2
     with pytest.raises(SceneError, match="no such file"):
-        open_window("no_such_scene")
+        load_scene("no_such_scene")
 
 
 def test_no_screen_is_an_os_error(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -238,3 +242,37 @@ def test_frames_come_at_the_rate_asked_for(each_frame: EachFrame) -> None:
     open_window("drop")
     elapsed = sorted(after - before for before, after in itertools.pairwise(times))
     assert 1 / 63 < elapsed[len(elapsed) // 2] < 1 / 40  # the median, for machines that are busy
+
+
+STARTS = """
+import sys, types
+from physicslab.view.display import Display
+show, seen = Display.show, []
+
+def watched(display):
+    seen.append("numba" in sys.modules)
+    if len(seen) == 1:
+        pixels = display.canvas.surface
+        seen.append(len({tuple(pixels.get_at((x, 270))) for x in range(500, 780)}) > 2)
+    return show(display)
+
+Display.show = watched
+sys.modules["physicslab.session_window"] = None  # nothing is to be run in it
+import physicslab.cli
+try:
+    physicslab.cli.main(["drop"])
+except ImportError:
+    pass
+print(seen[:2])
+"""
+
+
+def test_the_window_is_there_before_numba_is_imported() -> None:
+    done = subprocess.run([sys.executable, "-c", STARTS], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[False, True]"
+
+
+def test_the_package_alone_imports_neither_numba_nor_pygame() -> None:
+    code = "import sys, physicslab; print(sorted({'numba', 'numpy', 'pygame'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

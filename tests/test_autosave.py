@@ -12,10 +12,11 @@ import pygame
 import pytest
 from desk import FRAME, Desk, bits, empty_world
 
-from physicslab.app import Sandbox, open_window
+from physicslab.app import open_window
 from physicslab.autosave import Autosave
 from physicslab.components import Transform
 from physicslab.prefabs import circle
+from physicslab.sandbox import Sandbox
 from physicslab.scene import load_scene, save_scene
 from physicslab.sessions import Session, session_folder
 from physicslab.view.canvas import RecordingCanvas
@@ -246,8 +247,8 @@ def test_the_bar_lies_over_nothing(size: tuple[int, int], tmp_path: Path) -> Non
 
 
 def test_a_window_that_closes_leaves_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("physicslab.app.is_warm", lambda: True)
-    monkeypatch.setattr("physicslab.app.session_folder", lambda: tmp_path / "state")
+    monkeypatch.setattr("physicslab.compiling.is_warm", lambda: True)
+    monkeypatch.setattr("physicslab.session_window.session_folder", lambda: tmp_path / "state")
     pygame.init()
     pygame.event.clear()
     frames = 0
@@ -268,8 +269,8 @@ def test_a_window_that_closes_leaves_nothing(monkeypatch: pytest.MonkeyPatch, tm
 
 def test_a_folder_that_cannot_be_made_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "state").write_text("a file, no folder")
-    monkeypatch.setattr("physicslab.app.is_warm", lambda: True)
-    monkeypatch.setattr("physicslab.app.session_folder", lambda: tmp_path / "state")
+    monkeypatch.setattr("physicslab.compiling.is_warm", lambda: True)
+    monkeypatch.setattr("physicslab.session_window.session_folder", lambda: tmp_path / "state")
     said: list[str] = []
     usual = Sandbox.frame
 

@@ -193,3 +193,12 @@ def test_how_it_sums_is_said(n: int, said: str) -> None:
     world.physics = PhysicsConfig(gravity_mode="linear")
     world.synchronise()
     assert summation(world) == ""
+
+
+@pytest.mark.parametrize("mode", ["linear", "planet"])
+def test_no_kernel_of_the_other_mode_is_waited_for(mode: str) -> None:
+    world = World(GravitySystem(), physics=PhysicsConfig(gravity_mode=mode))
+    [system] = (each for each in world.schedule.systems if isinstance(each, GravitySystem))
+    names = [kernel.__name__ for kernel in system.kernels_for(world)]
+    assert ("planet_gravity" in names) == (mode == "planet")
+    assert ("uniform_gravity" in names) == (mode == "linear")

@@ -9,18 +9,34 @@ from pathlib import Path
 import pygame
 import pytest
 
-from physicslab import app
+from physicslab import compiling
+from physicslab.compiling import Compiling, Left
 from physicslab.config import WindowConfig
-from physicslab.kernels import warm
+from physicslab.kernels import motion, warm
 from physicslab.kernels.warm import Progress, Warmup, is_warm, load_all
 from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.display import Display
+from physicslab.view.display import Display, wants_to_leave
 from physicslab.view.progress import draw_progress
 from physicslab.view.theme import DARK
 
 ECHO = (sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line.strip(), flush=True)")
+_SLOWLY = "import sys, time\nfor line in sys.stdin: time.sleep(0.02); print(line, end='', flush=True)"
+SLOW = (sys.executable, "-c", _SLOWLY)
 ASLEEP = (sys.executable, "-c", "import time; time.sleep(60)")
 BROKEN = (sys.executable, "-c", "import sys; sys.stdin.readline(); sys.exit(1)")
+
+
+class Waiting:
+    """A kernel that takes no time to load, and notes that it was."""
+
+    declared_signature = None
+
+    def __init__(self, name: str) -> None:
+        self.__name__, self.__module__, self.compiled = name, "test", False
+
+    def compile(self, signature: object) -> None: ...
+
+    def disable_compile(self) -> None: ...
 
 
 @pytest.fixture
@@ -92,9 +108,10 @@ def test_a_worker_compiles_what_it_is_told() -> None:
 
 
 def test_the_window_shows_progress_and_stays_awake(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(app, "Warmup", lambda: Warmup(1, ECHO))
-    with Display.open(WindowConfig(), "test") as display:
-        assert app._warm_up(display)
+    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, SLOW))
+    asleep = [Waiting("no kernel that is there")]
+    with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
+        waiting._wait(asleep)
         assert DARK.accent in {tuple(display.canvas.surface.get_at((x, 367)))[:3] for x in range(300, 980)}
 
 
@@ -102,13 +119,14 @@ def test_the_window_shows_progress_and_stays_awake(mark: Path, monkeypatch: pyte
 def test_the_user_may_leave_while_it_compiles(
     mark: Path, monkeypatch: pytest.MonkeyPatch, event: str
 ) -> None:
-    monkeypatch.setattr(app, "Warmup", lambda: Warmup(1, ASLEEP))
-    with Display.open(WindowConfig(), "test") as display:
+    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, ASLEEP))
+    with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
         if event == "escape":
             pygame.event.post(pygame.Event(pygame.KEYDOWN, key=pygame.K_ESCAPE, mod=0))
         else:
             pygame.event.post(pygame.Event(pygame.QUIT))
-        assert not app._warm_up(display)
+        with pytest.raises(Left):
+            waiting._wait([motion.clear])
 
 
 @pytest.mark.parametrize("size", [(1280, 720), (480, 320), (200, 100)])
@@ -118,3 +136,65 @@ def test_the_bar_is_as_long_as_what_is_done(size: tuple[int, int]) -> None:
     frame, filled = (call["rect"] for call in canvas.called("panel"))
     assert filled[2] == round(0.25 * frame[2])
     assert "5 of 20" in canvas.words
+
+
+def test_while_it_waits_the_mouse_is_not_forgotten() -> None:
+    with Display.open(WindowConfig(), "test"):
+        pygame.event.clear()
+        pygame.event.post(pygame.Event(pygame.MOUSEBUTTONUP, button=1, pos=(1, 1)))
+        pygame.event.post(pygame.Event(pygame.KEYDOWN, key=pygame.K_p, mod=0))
+        assert not wants_to_leave()
+        assert [event.type for event in pygame.event.get()] == [pygame.MOUSEBUTTONUP]
+
+
+def test_what_is_asked_for_is_compiled_first(mark: Path) -> None:
+    with Warmup(1, ECHO) as warmup:
+        pass
+    last = list(warmup._jobs)[-1]
+    warmup.hurry([last, "no such kernel"])
+    assert warmup._jobs[0] == last
+    assert sorted(set(warmup._jobs)) == sorted(warmup._jobs)
+
+
+def test_what_is_waited_for_is_there_before_the_rest(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The window goes on as soon as it has what it asked for, and says in a corner how far the rest is."""
+    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, SLOW))
+    with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
+        waiting._wait([motion.clear])
+        assert not waiting.finished
+        waiting.advance(DARK)
+        corner = {tuple(display.canvas.surface.get_at((x, 690)))[:3] for x in range(1000, 1270)}
+        assert DARK.panel in corner
+
+
+def test_kernels_are_loaded_in_frames_that_have_time_left(
+    monkeypatch: pytest.MonkeyPatch, mark: Path
+) -> None:
+    mark.touch()
+    asleep = [Waiting(name) for name in "abc"]
+    monkeypatch.setattr(compiling, "KERNELS", asleep)
+    with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
+        display.show()
+        waiting.advance(DARK)
+        assert [kernel.compiled for kernel in asleep] == [True, False, False]
+        monkeypatch.setattr(Display, "left", property(lambda self: 0.001))
+        for _ in range(28):
+            waiting.advance(DARK)
+        assert [kernel.compiled for kernel in asleep] == [True, False, False]
+        waiting.advance(DARK)
+        assert [kernel.compiled for kernel in asleep] == [True, True, False]
+
+
+def test_the_window_knows_every_kernel_from_the_start() -> None:
+    """What is in no imported module could not be loaded while there is time for it."""
+    code = """
+from physicslab import app
+app._import("physicslab.session_window")
+from physicslab.kernels import KERNELS
+before = len(KERNELS)
+from physicslab.kernels.warm import load_all
+print(before, len(load_all()))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    before, after = done.stdout.split()
+    assert before == after

@@ -7,12 +7,12 @@ status or raises :class:`CommandError`. To add one, write its file and name it h
 from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
-from typing import Protocol
+from importlib import import_module
+from typing import Protocol, cast
 
-from physicslab.commands import accuracy, bench, run, scenes, stability
 from physicslab.commands.command_error import CommandError
 
-__all__ = ["COMMANDS", "Command", "CommandError"]
+__all__ = ["COMMANDS", "Command", "CommandError", "command"]
 
 
 class Command(Protocol):
@@ -25,11 +25,10 @@ class Command(Protocol):
         """Do it, and return the exit status."""
 
 
-COMMANDS: dict[str, Command] = {
-    "run": run,
-    "accuracy": accuracy,
-    "stability": stability,
-    "bench": bench,
-    "scenes": scenes,
-}
-"""Every command by name."""
+COMMANDS = ("run", "accuracy", "stability", "bench", "scenes")
+"""Every command, by the name of its module."""
+
+
+def command(name: str) -> Command:
+    """Return a command by name; only now is it imported, and the physics with it."""
+    return cast(Command, import_module(f"{__name__}.{name}"))

@@ -13,7 +13,7 @@ import os
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, cast, get_args, get_origin, get_type_hints
@@ -22,11 +22,13 @@ import numba
 import numba.core.config
 import numpy as np
 from numba import boolean, float64, int64, void
+from numba.core.registry import cpu_target
 from numpy.typing import NDArray
 
 __all__ = [
     "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
-    "cache_directory", "cached", "compile_kernels", "inlined", "inlined_exactly", "kernel",
+    "ask_before_compiling", "cache_directory", "cached", "compile_kernels", "inlined", "inlined_exactly",
+    "kernel", "load", "prepare",
 ]  # fmt: skip
 
 Numbers = Annotated[NDArray[np.float64], float64[::1]]
@@ -91,8 +93,11 @@ def cached() -> Iterator[None]:
 
 
 def _jit[F: Callable[..., Any]](function: F, fastmath: Any = FASTMATH) -> F:
+    njit: Any = numba.njit  # its types know no option of the target
+    # No wrapper for C: nothing calls one, and compiling them takes four to seven per cent of the time.
+    make = njit(cache=True, error_model="numpy", fastmath=fastmath, no_cfunc_wrapper=True)
     with cached():
-        return cast(F, numba.njit(cache=True, error_model="numpy", fastmath=fastmath)(function))
+        return cast(F, make(function))
 
 
 def inlined[F: Callable[..., Any]](function: F) -> F:
@@ -140,12 +145,38 @@ def _numba_type(hint: Any) -> Any:
     return {float: float64, int: int64, bool: boolean, type(None): void}[hint]
 
 
+def ask_before_compiling(ask: Callable[[Sequence[Any]], None] | None) -> None:
+    """Have ``ask`` called with kernels that are needed and not there, before they are compiled; or nothing.
+
+    When it returns they are compiled, or loaded: so a window can wait for other processes, and stay awake.
+    """
+    global _ask
+    _ask = ask
+
+
+_ask: Callable[[Sequence[Any]], None] | None = None
+
+
 def compile_kernels(kernels: Iterable[Any]) -> float:
     """Compile the given kernels, or load them from the cache; return the seconds it took."""
     start = time.perf_counter()
-    for jitted in kernels:
-        if not jitted.compiled:
-            jitted.compile(jitted.declared_signature)
-            jitted.disable_compile()
-            jitted.compiled = True  # asking numba takes longer than many a kernel runs
+    missing = [jitted for jitted in kernels if not jitted.compiled]
+    if missing and _ask is not None:
+        _ask(missing)
+    for jitted in missing:
+        load(jitted)
     return time.perf_counter() - start
+
+
+def load(jitted: Any) -> None:
+    """Load one kernel from the cache, or compile it here and now."""
+    if not jitted.compiled:
+        jitted.compile(jitted.declared_signature)
+        jitted.disable_compile()
+        jitted.compiled = True  # asking numba takes longer than many a kernel runs
+
+
+def prepare() -> None:
+    """Let numba learn what it knows of types, as it would before the first kernel: 0.2 s and more."""
+    cpu_target.typing_context.refresh()
+    cpu_target.target_context.refresh()

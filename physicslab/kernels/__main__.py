@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 
 from physicslab.kernels import KERNELS, compile_kernels
 from physicslab.kernels.warm import Progress, Warmup, load_all
+
+_YIELDING = 15
+"""By how much others come first, as Unix counts it."""
 
 
 def _fill() -> int:
@@ -23,6 +27,8 @@ def _fill() -> int:
 
 def _work() -> int:
     """Compile the kernels whose names come in, a line each, and say so when one is done."""
+    if hasattr(os, "nice"):
+        os.nice(_YIELDING)  # a scene may run by now in the process that waits for the rest
     names = load_all()
     for line in sys.stdin:
         compile_kernels((KERNELS[names.index(line.strip())],))

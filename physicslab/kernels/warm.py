@@ -10,17 +10,32 @@ import queue
 import subprocess
 import sys
 import threading
+from collections import deque
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import llvmlite.binding
 
 from physicslab import kernels
 
-__all__ = ["Progress", "Warmup", "is_warm", "load_all"]
+__all__ = ["Progress", "Warmup", "is_warm", "load_all", "name_of"]
 
 _MOST_WORKERS = 4
+_FIRST = (
+    "raster",
+    "motion",
+    "energy",
+    "grid",
+    "contact",
+    "impact",
+    "impulse",
+    "block_lanes",
+    "block_contact",
+)
+"""Modules whose kernels almost every scene needs; they are compiled first."""
 _WORKER = (sys.executable, "-m", "physicslab.kernels", "worker")
 
 
@@ -47,7 +62,18 @@ def load_all() -> list[str]:
     for module in pkgutil.iter_modules(kernels.__path__):
         if module.name not in ("__main__", "warm"):
             importlib.import_module(f"{kernels.__name__}.{module.name}")
-    return [f"{jitted.__module__}.{jitted.__name__}" for jitted in kernels.KERNELS]
+    return [name_of(jitted) for jitted in kernels.KERNELS]
+
+
+def name_of(jitted: Any) -> str:
+    """Return a kernel's full name."""
+    return f"{jitted.__module__}.{jitted.__name__}"
+
+
+def _rank(name: str) -> int:
+    """Return how late a kernel is to be compiled, as far as that is known before there is a scene."""
+    module = name.split(".")[-2]
+    return _FIRST.index(module) if module in _FIRST else len(_FIRST)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,10 +109,10 @@ class Warmup:
         self._command = command
         self._mark = _mark()  # of the sources as they are now, whatever is saved meanwhile
         self._names = load_all()
-        self._jobs: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._jobs = deque(sorted(self._names, key=_rank))
+        self._lock = threading.Lock()
         self._answers: queue.SimpleQueue[str] = queue.SimpleQueue()
-        for name in self._names:
-            self._jobs.put(name)
+        self._compiled: set[str] = set()
         self._workers = workers or min(os.cpu_count() or 1, _MOST_WORKERS)
         self._processes: list[subprocess.Popen[str]] = []
         self._threads: list[threading.Thread] = []
@@ -118,15 +144,31 @@ class Warmup:
             assert process.stdin is not None
             assert process.stdout is not None
             try:
-                while not self._jobs.empty():
-                    process.stdin.write(f"{self._jobs.get_nowait()}\n")
+                while job := self._next():
+                    process.stdin.write(f"{job}\n")
                     name = process.stdout.readline().strip()
                     if not name:
                         break
                     self._answers.put(name)
                 process.stdin.close()
-            except (queue.Empty, OSError):
+            except OSError:
                 return
+
+    def _next(self) -> str:
+        with self._lock:
+            return self._jobs.popleft() if self._jobs else ""
+
+    def hurry(self, names: Iterable[str]) -> None:
+        """Let these kernels be compiled before all others, except for those that are being compiled."""
+        with self._lock:
+            wanted = [name for name in names if name in self._jobs]
+            for name in wanted:
+                self._jobs.remove(name)
+            self._jobs.extendleft(reversed(wanted))
+
+    def has(self, names: Iterable[str]) -> bool:
+        """Whether these kernels were in the cache at the last :meth:`poll`."""
+        return self._compiled.issuperset(names)
 
     def poll(self) -> Progress:
         """Return how far it is now, without waiting."""
@@ -134,6 +176,7 @@ class Warmup:
         ended = not any(thread.is_alive() for thread in self._threads)
         while not self._answers.empty():
             done, name = done + 1, self._answers.get()
+            self._compiled.add(name)
         self._progress = Progress(done, len(self._names), name)
         if done == len(self._names) and not self.finished:
             self._mark.touch()

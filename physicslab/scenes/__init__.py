@@ -4,46 +4,61 @@ They are Python and not JSON: ten lines that call prefabs say what a scene of tw
 read and varied (the pyramid's base, the gas's seed), and are the examples that a contributor starts from.
 ``save_scene`` makes a file of any of them.
 
-To add one: write a file with a :class:`Scene`, and name it here.
+To add one: write a file with a :class:`Scene` of the file's name in capitals, and name it here.
 """
 
-from physicslab.scenes.billiards import BILLIARDS
-from physicslab.scenes.bounces import BOUNCES
-from physicslab.scenes.dominoes import DOMINOES
-from physicslab.scenes.drop import DROP
-from physicslab.scenes.gas import GAS
-from physicslab.scenes.newtons_cradle import NEWTONS_CRADLE
-from physicslab.scenes.pendulum import PENDULUM
-from physicslab.scenes.pile import PILE
-from physicslab.scenes.pyramid import PYRAMID
-from physicslab.scenes.sandbox import SANDBOX
-from physicslab.scenes.scene import Scene
-from physicslab.scenes.slope import SLOPE
-from physicslab.scenes.solar_system import SOLAR_SYSTEM
-from physicslab.scenes.spring_chain import SPRING_CHAIN
-from physicslab.scenes.stack import STACK
-from physicslab.scenes.two_planets import TWO_PLANETS
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from physicslab.scenes.scene import Scene
 
 __all__ = ["SCENES", "Scene"]
 
-SCENES: dict[str, Scene] = {
-    scene.name: scene
-    for scene in (
-        SANDBOX,
-        DROP,
-        BOUNCES,
-        SLOPE,
-        STACK,
-        PYRAMID,
-        DOMINOES,
-        PILE,
-        GAS,
-        BILLIARDS,
-        NEWTONS_CRADLE,
-        PENDULUM,
-        SPRING_CHAIN,
-        TWO_PLANETS,
-        SOLAR_SYSTEM,
-    )
-}
+_NAMES = (
+    "sandbox",
+    "drop",
+    "bounces",
+    "slope",
+    "stack",
+    "pyramid",
+    "dominoes",
+    "pile",
+    "gas",
+    "billiards",
+    "newtons_cradle",
+    "pendulum",
+    "spring_chain",
+    "two_planets",
+    "solar_system",
+)
+
+
+class _Scenes(Mapping[str, "Scene"]):
+    """Scenes by name, each imported when it is looked up: names are known before there is a world."""
+
+    def __getitem__(self, name: str) -> "Scene":
+        if name not in _NAMES:
+            raise KeyError(name)
+        scene: Scene = getattr(import_module(f"{__name__}.{name}"), name.upper())
+        return scene
+
+    def __contains__(self, name: object) -> bool:
+        return name in _NAMES
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_NAMES)
+
+    def __len__(self) -> int:
+        return len(_NAMES)
+
+
+SCENES = _Scenes()
 """Every built-in scene by name: the playground that opens by itself, then from the simplest on."""
+
+
+def __getattr__(name: str) -> object:
+    if name != "Scene":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return import_module(f"{__name__}.scene").Scene

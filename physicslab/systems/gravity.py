@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +58,10 @@ class GravitySystem(ForceSystem):
         if mode == "planet" and world.physics.G == 0.0:
             return "G is 0"
         return None
+
+    def kernels_for(self, world: World) -> tuple[Any, ...]:
+        """Return the kernels of one mode: those of planets take long to compile."""
+        return self.kernels[:2] if world.physics.gravity_mode == "linear" else self.kernels[2:]
 
     @at(Stage.FORCE)
     def pull(self, world: World, h: float) -> None:

@@ -16,7 +16,7 @@ from physicslab.config import WindowConfig
 from physicslab.view.pygame_canvas import PygameCanvas
 from physicslab.view.theme import DARK, Theme
 
-__all__ = ["Display"]
+__all__ = ["Display", "wants_to_leave"]
 
 
 class Display:
@@ -70,6 +70,11 @@ class Display:
         if title != self.title:
             pygame.display.set_caption(title)
 
+    @property
+    def left(self) -> float:
+        """Time [s] until the frame that is being made is due; negative once it is late."""
+        return self._next + self._period - time.perf_counter()
+
     def show(self) -> float:
         """Show what was drawn, wait until the next frame is due, and return the time since the last [s].
 
@@ -94,6 +99,18 @@ class Display:
         with path.open("wb") as stream:
             pygame.image.save(self.canvas.surface, stream, path.name)
         return path
+
+
+def wants_to_leave() -> bool:
+    """Whether Escape was pressed or the window closed, where nothing else is asked of the user.
+
+    Keys that are pressed are dropped. What the mouse does, and keys let go, is kept for who asks next:
+    nothing must seem held that is not.
+    """
+    return any(
+        event.type == pygame.QUIT or event.key == pygame.K_ESCAPE
+        for event in pygame.event.get((pygame.QUIT, pygame.KEYDOWN))
+    )
 
 
 def _limit(size: tuple[int, int]) -> None:

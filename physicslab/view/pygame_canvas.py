@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import functools
 import importlib.util
 from collections import OrderedDict
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.kernels import compile_kernels, raster
 from physicslab.view.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle
 from physicslab.view.theme import Colour
 
@@ -83,34 +84,34 @@ class PygameCanvas:
 
     def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
         """Draw discs, each with a rim and a line that shows its angle, or hatched."""
-        compile_kernels((raster.paint_discs,))
+        paint_discs = _painter("paint_discs")
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         centre, radius, angle = _plain(centre), _plain(radius), _plain(angle)
-        raster.paint_discs(self._pixels(), centre, radius, angle, fill, rim, look.hatched, _RIM)
+        paint_discs(self._pixels(), centre, radius, angle, fill, rim, look.hatched, _RIM)
 
     def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
         """Draw boxes of the given widths and heights, each with a rim and a notch, or hatched."""
-        compile_kernels((raster.paint_boxes,))
+        paint_boxes = _painter("paint_boxes")
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         centre, half, angle = _plain(centre), _plain(0.5 * extent), _plain(angle)
-        raster.paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.hatched, _RIM)
+        paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.hatched, _RIM)
 
     def lines(
         self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
     ) -> None:
         """Draw straight lines of one kind, with round ends; each may have an opacity of its own."""
-        compile_kernels((raster.paint_lines,))
+        paint_lines = _painter("paint_lines")
         packed = self._colours.get(colour)
         if packed is None:
             packed = self._colours[colour] = int(self._packed(np.array([colour], np.uint8))[0])
         shares = np.full(len(start), opacity) if isinstance(opacity, float) else _plain(opacity)
-        raster.paint_lines(self._pixels(), _plain(start), _plain(end), width, packed, shares)
+        paint_lines(self._pixels(), _plain(start), _plain(end), width, packed, shares)
 
     def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
         """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
-        compile_kernels((raster.paint_strokes,))
+        paint_strokes = _painter("paint_strokes")
         paint = self._packed(colour)
-        raster.paint_strokes(self._pixels(), _plain(start), _plain(end), _plain(width), paint)
+        paint_strokes(self._pixels(), _plain(start), _plain(end), _plain(width), paint)
 
     def _keep(self, key: tuple[object, ...], make: Callable[[], pygame.Surface]) -> pygame.Surface:
         surface = self._kept.get(key)
@@ -157,6 +158,19 @@ class PygameCanvas:
             pygame.font.init()  # where there is no window, nobody did
             self._fonts[key] = _load_font(*key)
         return self._fonts[key]
+
+
+@functools.cache
+def _painter(name: str) -> Any:
+    """Return a loop of the rasteriser, ready to be called.
+
+    numba is imported here and not above: words and bars are drawn before it is there.
+    """
+    from physicslab.kernels import compile_kernels, raster
+
+    painter = getattr(raster, name)
+    compile_kernels((painter,))
+    return painter
 
 
 def _plain(numbers: NDArray[np.float64]) -> NDArray[np.float64]:

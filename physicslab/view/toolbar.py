@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Toolbar"]
 
+_STILL = 0.2
+"""Time [s] that the window keeps its size before its text follows."""
 _PERIOD = 0.1
 """Time [s] between two looks at what is on."""
 _PATIENCE = 0.35
@@ -43,6 +45,8 @@ class Toolbar:
 
     def __init__(self, window: Window) -> None:
         self._window = window
+        self._text_size = text_size(window.canvas)
+        self._sized = (window.canvas.size, window.now)
         self._widgets = Widgets(window.canvas.size, window.theme, self._text_size)
         self._asked: list[Control | Choice] = []
         self._plate = self._widgets.plate()
@@ -75,9 +79,13 @@ class Toolbar:
         """Where the buttons of the recovery bar are, by what they say [px]."""
         return self._bar.places
 
-    @property
-    def _text_size(self) -> int:
-        return text_size(self._window.canvas)
+    def _settle(self) -> None:
+        """Let text grow or shrink with the window once its border is let go: that draws everything anew."""
+        window = self._window
+        if window.canvas.size != self._sized[0]:
+            self._sized = (window.canvas.size, window.now)
+        if window.now - self._sized[1] >= _STILL or window.now == 0.0:
+            self._text_size = text_size(window.canvas)
 
     @property
     def places(self) -> dict[str, Rect]:
@@ -100,7 +108,8 @@ class Toolbar:
     def lay_out(self) -> None:
         """Put the buttons where they belong in a window of this size, in the colours of its theme."""
         window, size = self._window, self._window.canvas.size
-        now = (size, window.theme)
+        self._settle()
+        now = (size, window.theme, self._text_size)
         if now == self._laid_out:
             self._bar.lay_out(self._height, self._text_size)
             return

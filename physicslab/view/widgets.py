@@ -57,9 +57,12 @@ class Button(pygame_gui.elements.UIButton):
     def put(self, rect: Rect) -> None:
         """Show it at a place [px]."""
         if tuple(self.rect) != rect:
+            grown = tuple(self.rect.size) != rect[2:]
             self.set_relative_position(rect[:2])
-            self.set_dimensions(rect[2:])
-            self.remake()
+            self.widgets.stir()
+            if grown:  # what is only moved looks as before, and drawing it anew takes a millisecond
+                self.set_dimensions(rect[2:])
+                self.remake()
         self.reveal(True)
 
     def remake(self) -> None:
@@ -193,12 +196,15 @@ class Widgets:
         """Take on other colours, and another height of text [px]."""
         if (theme, text_size) == self._look:
             return
+        recoloured = theme != self._look[0]
         self._look = (theme, text_size)
-        self._icons.clear()
+        if recoloured:
+            self._icons.clear()
         style = self._manager.create_new_theme(_style(theme, text_size))
         self._manager.set_ui_theme(style, update_all_sprites=True)
-        for button in self._buttons:
-            button.remake()
+        if recoloured:  # where the text alone grows, buttons are drawn anew as they are put in their places
+            for button in self._buttons:
+                button.remake()
 
     def covers(self, place: tuple[float, float]) -> bool:
         """Whether a widget is at a place [px]."""

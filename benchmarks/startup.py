@@ -1,0 +1,130 @@
+"""Time the start of the window: from the command to the first picture, and to the first simulated frame.
+
+``uv run python benchmarks/startup.py [SCENE] [--runs N] [--cold] [--seconds S]`` starts ``python main.py``
+as a user does, and prints for each run and as medians, wall and CPU time [s] since the process was started:
+
+- window: the first picture is in the window, a bar of progress or the scene
+- first step: a picture of the world is shown that has made a step
+- slowest: the longest time [ms] between two pictures from then on, and how many exceeded 33 ms
+
+``--cold`` gives each run a cache of its own that is empty, as on the first launch: of kernels, and of
+Python's bytecode, numba's included. Without it a run before the counted ones fills both. SDL's dummy driver
+takes the picture unless SDL_VIDEODRIVER says otherwise.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+HOOK = """
+import atexit, importlib.abc, importlib.machinery, json, os, sys, time
+
+moments, state = {"flips": []}, {"stepped": False, "until": None}
+SECONDS = float(os.environ["STARTUP_SECONDS"])
+
+def now():
+    return time.time() - float(os.environ["STARTUP_BEGAN"]), time.process_time()
+
+def watch_display():
+    import pygame
+    flip = pygame.display.flip
+    def watched():
+        flip()
+        wall, cpu = now()
+        moments.setdefault("window", (wall, cpu))
+        if state["stepped"]:
+            moments.setdefault("first_step", (wall, cpu))
+            moments["flips"].append(wall)
+            if wall > moments["first_step"][0] + SECONDS:
+                pygame.event.post(pygame.Event(pygame.QUIT))
+    pygame.display.flip = watched
+
+def watch_world():
+    world = sys.modules["physicslab.world"].World
+    step = world.step
+    def watched(self, *arguments, **named):
+        state["stepped"] = True
+        return step(self, *arguments, **named)
+    world.step = watched
+
+HOOKS = {"physicslab.view.display": watch_display, "physicslab.world": watch_world}
+
+class Finder(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name not in HOOKS:
+            return None
+        spec = importlib.machinery.PathFinder.find_spec(name, path)
+        execute = spec.loader.exec_module
+        def execute_and_watch(module):
+            execute(module)
+            HOOKS[name]()
+        spec.loader.exec_module = execute_and_watch
+        return spec
+
+sys.meta_path.insert(0, Finder())
+atexit.register(lambda: json.dump(moments, open(os.environ["STARTUP_FILE"], "w")))
+"""
+"""Put into the started program as its ``sitecustomize``: it notes when pictures are shown."""
+
+
+def start(scene: str, cache: Path, seconds: float) -> dict[str, float]:
+    """Start the program once, let it run, and return what came when [s] and the slowest frame [ms]."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "sitecustomize.py").write_text(HOOK)
+        told = Path(folder) / "moments.json"
+        environment = {"SDL_VIDEODRIVER": "dummy", **os.environ} | {
+            "PYTHONPATH": folder, "XDG_CACHE_HOME": str(cache), "XDG_STATE_HOME": folder,
+            "PYTHONPYCACHEPREFIX": str(cache / "bytecode"), "PYTHONDONTWRITEBYTECODE": "",
+            "STARTUP_BEGAN": repr(time.time()), "STARTUP_FILE": str(told), "STARTUP_SECONDS": str(seconds),
+        }  # fmt: skip
+        command = (sys.executable, str(ROOT / "main.py"), scene)
+        subprocess.run(command, env=environment, check=True, cwd=folder)
+        moments = json.loads(told.read_text())
+    flips = moments["flips"]
+    gaps = [1e3 * (after - before) for before, after in itertools.pairwise(flips)]
+    return {
+        "window": moments["window"][0],
+        "window CPU": moments["window"][1],
+        "first step": moments["first_step"][0],
+        "first step CPU": moments["first_step"][1],
+        "slowest, ms": max(gaps),
+        "above 33 ms": sum(gap > 33.4 for gap in gaps),
+    }
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("scene", nargs="?", default="sandbox")
+    parser.add_argument("--runs", type=int, default=5, help="how many are counted")
+    parser.add_argument("--seconds", type=float, default=3.0, help="how long each simulates")
+    parser.add_argument("--cold", action="store_true", help="with an empty cache, as on a first launch")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as kept:
+        if not options.cold:
+            command = (sys.executable, "-m", "physicslab.kernels")
+            environment = os.environ | {"XDG_CACHE_HOME": kept}
+            subprocess.run(command, env=environment, stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
+            start(options.scene, Path(kept), 0.5)
+        rows = []
+        for number in range(options.runs):
+            cache = Path(kept) / f"run-{number}" if options.cold else Path(kept)
+            rows.append(start(options.scene, cache, options.seconds))
+            print("  ".join(f"{name} {value:.3f}" for name, value in rows[-1].items()), flush=True)
+    print(
+        "median:  " + "  ".join(f"{name} {statistics.median(r[name] for r in rows):.3f}" for name in rows[0])
+    )
+
+
+if __name__ == "__main__":
+    main()
