@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
 
 from physicslab.blocks import FEW
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.kernels import contact_steps
-from physicslab.kernels.contact_steps import BEGIN, CROWDED, DIVERGED, FIND, STRIKE, UNLISTED
+from physicslab.kernels.contact_steps import BEGIN, CROWDED, DIVERGED, FIND, STRIKE, SYSTEMS, UNLISTED
 from physicslab.schedule import Stage
 
 if TYPE_CHECKING:
@@ -76,6 +79,7 @@ class CompiledSteps:
         self._broad_phase = cast("BroadPhaseSystem", running["BroadPhaseSystem"])
         self._contact = cast("ContactSystem", running["ContactSystem"])
         self._resolve = cast("ResolveSystem", running["ResolveSystem"])
+        self._cost = np.zeros(len(SYSTEMS), np.int64)
         self._once: dict[str, int] = {}
         self._within: dict[str, list[int]] = {}
         for name, system in running.items():
@@ -99,7 +103,6 @@ class CompiledSteps:
         Diverged
             If a value is not finite; all steps before that one are made and counted.
         """
-        began = time.perf_counter_ns()
         h = world.simulation.dt / world.simulation.substeps
         contacts = world.contacts
         contacts.in_order()
@@ -107,30 +110,40 @@ class CompiledSteps:
         self._contact.begin(world, h)
         made, substep, stage, steps = 0, 0, BEGIN, min(steps, _MOST)
         while made < steps:
-            why, done, substep, contacts.active, contacts.left, struck_before, struck, contacts.span = (
-                contact_steps.advance(
-                    steps - made, world.simulation.substeps, substep, stage, h, *self._numbers(world, before, h)
-                )
-            )
+            why, done, substep = self._advance(world, before, steps - made, substep, stage, h)
             made += done
-            self._count(world, done, struck_before, before)
-            world.collisions += struck - struck_before
             if why == DIVERGED:
-                self._note(world, made, time.perf_counter_ns() - began)
                 world.bodies.check_finite(world, world.simulation.dt)
             elif why == UNLISTED:
-                self._broad_phase.search(world, h)
+                self._timed("BroadPhaseSystem", self._broad_phase.search, world, h)
                 stage = FIND
             elif why == CROWDED:
-                self._contact.settle(world, h)
+                self._timed("ContactSystem", self._contact.settle, world, h)
                 stage = STRIKE
                 if contacts.blocks.lanes:
-                    break
-        self._note(world, made, time.perf_counter_ns() - began)
-        if made < steps:
-            self._finish(world, h)
-            made += 1
+                    self._finish(world, h)
+                    return made + 1
         return made
+
+    def _advance(
+        self, world: World, before: Checkpoint, steps: int, substep: int, stage: int, h: float
+    ) -> tuple[int, int, int]:
+        """Let the loop go as far as it gets; return why it came back, after how many steps, and where."""
+        began = time.perf_counter_ns()
+        contacts, substeps = world.contacts, world.simulation.substeps
+        self._cost[:] = 0
+        why, done, substep, contacts.active, contacts.left, struck_before, struck, contacts.span = (
+            contact_steps.advance(steps, substeps, substep, stage, h, *self._numbers(world, before, h))
+        )
+        world.steps += done
+        world.time += done * world.simulation.dt
+        world.collisions += struck_before
+        if done:
+            world.force_evaluations += done * substeps * world.has_forces
+            before.count(world)
+        world.collisions += struck - struck_before
+        self._note(world, done, time.perf_counter_ns() - began)
+        return why, done, substep
 
     def _numbers(self, world: World, before: Checkpoint, h: float) -> tuple[Any, ...]:
         """Return what the loop works on."""
@@ -151,18 +164,8 @@ class CompiledSteps:
             contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
             contacts.touching, contacts.active,
             (*contacts.blocks.discs.solved, *contacts.blocks.boxes.solved),
-            (resolve.hertz, resolve.damping_ratio, resolve.slop, resolve.max_push), contacts.span,
+            (resolve.hertz, resolve.damping_ratio, resolve.slop, resolve.max_push), contacts.span, self._cost,
         )  # fmt: skip
-
-    def _count(self, world: World, steps: int, struck: int, before: Checkpoint) -> None:
-        """Count steps that are made."""
-        world.steps += steps
-        world.time += steps * world.simulation.dt
-        world.collisions += struck
-        if world.has_forces:
-            world.force_evaluations += steps * world.simulation.substeps
-        if steps:
-            before.count(world)
 
     def _finish(self, world: World, h: float) -> None:
         """Make the rest of a step, from its first impacts on, stage by stage: contacts have settled."""
@@ -176,8 +179,15 @@ class CompiledSteps:
         world.time += world.simulation.dt
 
     def _note(self, world: World, steps: int, nanoseconds: int) -> None:
-        """Note as many calls as stepping would make; the time, which none has to itself, is that of moving."""
-        for name, places in self._within.items():
-            calls = steps * (self._once[name] + world.simulation.substeps * len(places))
-            world.schedule.note(name, calls, nanoseconds if name == "IntegrateSystem" else 0)
+        """Note as many calls as stepping would make; the time is shared out by the loop's own clock."""
+        whole = max(1, int(self._cost.sum()))
+        for name, cost in zip(SYSTEMS, self._cost.tolist(), strict=True):
+            if name in self._within:
+                calls = self._once[name] + world.simulation.substeps * len(self._within[name])
+                world.schedule.note(name, steps * calls, nanoseconds * cost // whole)
 
+    def _timed(self, name: str, call: Callable[[World, float], None], world: World, h: float) -> None:
+        """Call a system's method, whose call is counted with the step, and note what it cost."""
+        began = time.perf_counter_ns()
+        call(world, h)
+        world.schedule.note(name, 0, time.perf_counter_ns() - began)

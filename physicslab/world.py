@@ -328,6 +328,10 @@ class World:
             raise RuntimeError("a system cannot step the world that is calling it")
         with self.active():
             self.synchronise()
+            compiled = self._compiled
+            if compiled is not None and dt == self._simulation.dt and compiled.ready(self):
+                self._run_compiled(compiled, 1)
+                return
             self.divided = parts = self._parts(dt)
             self._before.take(self)
             self._stepping = True
@@ -493,8 +497,13 @@ class World:
             self.synchronise()
             by_step = self._equations is None and self._flights is None
             unseen = min(stride - done % stride, whole - done)
-            if self._compiled is not None and unseen > 1 and self._compiled.ready(self):
-                done += self._run_compiled(self._compiled, unseen)
+            if self._compiled is not None and unseen > 0 and self._compiled.ready(self):
+                before = self.steps
+                try:
+                    done += self._run_compiled(self._compiled, unseen)
+                except Diverged:
+                    self.time = start + (done + self.steps - before) * dt
+                    raise
             elif by_step or self.schedule.observed:
                 self.step(dt if done < whole else rest)
                 done += 1
