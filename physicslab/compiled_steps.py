@@ -32,7 +32,7 @@ _COMPILED = {
     "ContactSystem": "physicslab.systems.contact",
     "ResolveSystem": "physicslab.systems.resolve",
 }
-"""Whose work the loop does, and the modules in which those are: a class of that name may be somebody's own."""
+"""Whose work the loop does, and in which modules those are: a class of that name may be somebody's own."""
 _NEEDED = ("Bodies", "IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem")
 _OF_FRAMES = {Stage.INPUT, Stage.RENDER, Stage.HUD}
 _MOST = 4096
@@ -63,8 +63,9 @@ def why_not_compiled(world: World) -> str | None:
 class CompiledSteps:
     """Makes steps of one world in a compiled loop, until its structure changes; the bits are those of steps.
 
-    The loop comes back where Python is needed: to list the near pairs anew, to look for settled contacts where
-    many touch, to report a divergence. A world that has settled contacts in blocks is stepped one by one.
+    The loop comes back where Python is needed: to list the near pairs anew, to look for settled contacts
+    where many touch, to report a divergence. A world that has settled contacts in blocks is stepped stage by
+    stage.
 
     Parameters
     ----------

@@ -374,9 +374,9 @@ class World:
         return max(1, math.ceil(dt / own - _TOO_LONG))
 
     def go_through(self, h: float, count: int, begun: int = 0) -> None:
-        """Go through the stages of ``count`` substeps of ``h`` seconds, of which some are ``begun`` already."""
-        run, stages = self.schedule.run, self.method.stages.substep
-        for stage, share in itertools.chain(stages[begun:], *itertools.repeat(stages, count - 1)):
+        """Go through the stages of ``count`` substeps of ``h`` seconds, of which so many are ``begun``."""
+        run, stages = self.schedule.run, itertools.repeat(self.method.stages.substep, count)
+        for stage, share in itertools.islice(itertools.chain.from_iterable(stages), begun, None):
             run(stage, self, share * h)
 
     def _flow(self, equations: Equations, dt: float, steps: int) -> None:

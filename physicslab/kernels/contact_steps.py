@@ -97,6 +97,7 @@ def advance(
     the points' impulses stand for. ``kept`` is the state in which the last step began.
     """
     position, angle, linear, angular = state
+    walls, bounds_restitution, bounds_friction = bounds
     kicked = forces[3] or damping[0] != 0.0 or damping[1] != 0.0
     done, left, impacts, impacts_done = 0, 0, 0, 0
     now = ticks()
@@ -116,8 +117,8 @@ def advance(
                 return UNLISTED, done, substep, active, left, impacts_done, impacts, span
         if stage != STRIKE:
             active = find_contacts(
-                manifolds, points, loose, loose_count, touching, *state, *sizes, *materials, *inverse, *bounds,
-                substep == 0, h, -0.5, fall,
+                manifolds, points, loose, loose_count, touching, *state, *sizes, *materials, *inverse,
+                walls, bounds_restitution, bounds_friction, substep == 0, h, -0.5, fall,
             )  # fmt: skip
             now = charge(cost, _CONTACT, now)
             if substep == 0 and active >= few:

@@ -121,7 +121,7 @@ def _take(
     across_j, up_j = boxes[j, 2] - boxes[j, 0] - 2.0 * fat[j, 4], boxes[j, 3] - boxes[j, 1] - 2.0 * fat[j, 4]
     dx = abs(boxes[i, 0] + boxes[i, 2] - boxes[j, 0] - boxes[j, 2])
     dy = abs(boxes[i, 1] + boxes[i, 3] - boxes[j, 1] - boxes[j, 3])
-    if dx < across_i + across_j and dy < up_i + up_j:
+    if (dx < across_i + across_j) & (dy < up_i + up_j):
         larger, smaller = max(across_i, up_i), min(across_j, up_j)
         if larger <= _OWN_SIZE * smaller and max(across_j, up_j) <= _OWN_SIZE * min(across_i, up_i):
             if company[i] >= _CROWD or company[j] >= _CROWD:
@@ -205,16 +205,21 @@ def _level(
         for side in range(4):
             near[entry, side] = boxes[small[k], side]
 
+    met = np.empty(smalls, np.int64)
     for p in range(smalls):
         ix, iy = home[p, 0], home[p, 1]
         if dense:  # buckets one above the other are next to each other: two stretches hold all five cells
             at = (ix - low_x) * up + iy - low_y
+            # Every neighbour is written down, and kept by counting: whether two overlap cannot be foretold.
+            meetings = 0
             for q in range(p + 1, first[at + 2]):
-                if _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], body[q])
+                met[meetings] = body[q]
+                meetings += _overlap(near, p, near, q)
             for q in range(first[at + up - 1], first[at + up + 2]):
-                if _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], body[q])
+                met[meetings] = body[q]
+                meetings += _overlap(near, p, near, q)
+            for k in range(meetings):
+                found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], met[k])
             continue
         for neighbour in range(5):
             jx = ix if neighbour < 2 else ix + 1

@@ -7,8 +7,8 @@ from physicslab.kernels.block_impulse import DEEPER, SOFT, start_lanes, sweep_la
 from physicslab.kernels.records import Manifolds, Point, Points
 
 __all__ = [
-    "MOST_PARTS", "UNEQUAL", "apply_impulse", "deepest", "follow_drift", "heaviest_load", "relative_velocity", "relax",
-    "separate", "solve",
+    "MOST_PARTS", "UNEQUAL", "apply_impulse", "deepest", "follow_drift", "heaviest_load", "relative_velocity",
+    "relax", "separate", "solve",
 ]  # fmt: skip
 
 

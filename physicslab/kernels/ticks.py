@@ -11,9 +11,7 @@ from physicslab.kernels import Rows, inlined
 __all__ = ["charge", "ticks"]
 
 
-@intrinsic
-def ticks(_typing: Any) -> Any:
-    """Return the processor's own clock, in ticks of it; 0 on a processor that has none."""
+def _read_clock(_typing: Any) -> Any:
 
     def read(_context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
         counter = ir.FunctionType(ir.IntType(64), [])
@@ -22,9 +20,13 @@ def ticks(_typing: Any) -> Any:
     return int64(), read
 
 
+ticks: Any = intrinsic(_read_clock)
+"""Called by a kernel, returns the processor's own clock, in ticks of it; 0 on one that has none."""
+
+
 @inlined
 def charge(cost: Rows, whose: int, since: int) -> int:
     """Add the ticks since then to what ``whose`` work has cost; return the clock."""
-    now = ticks()
+    now: int = ticks()
     cost[whose] += now - since
     return now

@@ -84,9 +84,7 @@ class BroadPhaseSystem(System):
         """Fill the list of pairs, made larger where it is too small, and return their number."""
         while True:
             count = int(
-                grid.find_pairs(
-                    self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs
-                )
+                grid.find_pairs(self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs)
             )
             if count <= len(self._pairs):
                 return count
