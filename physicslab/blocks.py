@@ -14,11 +14,11 @@ from physicslab.kernels.block_layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["Blocks", "Lanes"]
+__all__ = ["FEW", "Blocks", "Lanes"]
 
 type _Numbers = NDArray[np.float64]
 type _Rows = NDArray[np.int64]
-_FEW = 64
+FEW = 64
 """So many contacts, at the least, are worth a block: fewer are done by the time that they are sorted."""
 _SPARSE = 0.5
 """Blocks less full than that are sorted anew."""
@@ -120,7 +120,7 @@ class Blocks:
 
     def worthwhile(self, loose: int) -> bool:
         """Whether so many loose contacts should be looked through for settled ones."""
-        return self.lanes > 0 or loose >= _FEW
+        return self.lanes > 0 or loose >= FEW
 
     def trim(self) -> None:
         """Drop the empty blocks at the end: what was there once makes no difference."""

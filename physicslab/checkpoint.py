@@ -21,30 +21,39 @@ class Checkpoint:
     It is taken before every step, so it holds no more than what a step may make infinite: places, velocities
     and a few counts (7 us for 4,000 bodies, of a step of some milliseconds). What contacts remember is not
     copied, which would cost ten times as much; going back forgets it, and the contacts are found anew.
+
+    Attributes
+    ----------
+    columns : tuple of float64 arrays
+        Positions, angles, velocities and angular velocities of then.
     """
 
     def __init__(self) -> None:
-        self._columns: list[NDArray[np.float64]] = []
+        self.columns: tuple[NDArray[np.float64], ...] = ()
         self._counts = 0, 0, 0
 
     def take(self, world: World) -> None:
         """Keep the state as it is now."""
         columns = _moving(world)
-        if len(self._columns) != len(columns) or len(self._columns[0]) != len(columns[0]):
-            self._columns = [column.copy() for column in columns]
+        if not self.columns or len(self.columns[0]) != len(columns[0]):
+            self.columns = tuple(column.copy() for column in columns)
         else:
-            for kept, column in zip(self._columns, columns, strict=True):
+            for kept, column in zip(self.columns, columns, strict=True):
                 np.copyto(kept, column)
+        self.count(world)
+
+    def count(self, world: World) -> None:
+        """Keep the counts as they are now, where a compiled loop has kept the state."""
         self._counts = world.force_evaluations, world.collisions, world.contacts.logged
 
     def restore(self, world: World) -> None:
         """Go back to the state that was kept; no body may have come or gone since."""
-        for kept, column in zip(self._columns, _moving(world), strict=True):
+        for kept, column in zip(self.columns, _moving(world), strict=True):
             np.copyto(column, kept)
         world.force_evaluations, world.collisions, world.contacts.logged = self._counts
         world.contacts.clear()  # what a failed step left there may not be finite either
 
 
-def _moving(world: World) -> list[NDArray[np.float64]]:
+def _moving(world: World) -> tuple[NDArray[np.float64], ...]:
     transform, velocity = world.table(Transform), world.table(Velocity)
-    return [transform["position"], transform["angle"], velocity["linear"], velocity["angular"]]
+    return transform["position"], transform["angle"], velocity["linear"], velocity["angular"]

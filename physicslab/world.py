@@ -17,6 +17,7 @@ from physicslab.bodies import Bodies, Diverged
 from physicslab.checkpoint import Checkpoint
 from physicslab.closed_form import NoClosedForm
 from physicslab.columns import Batch, InvalidValue, Table
+from physicslab.compiled_steps import CompiledSteps, why_not_compiled
 from physicslab.components import Name
 from physicslab.components.name import why_no_id
 from physicslab.config import SHORTEST, PhysicsConfig, SimulationConfig
@@ -112,6 +113,7 @@ class World:
         self.has_forces = False
         self._equations: Equations | None = None
         self._flights: Flights | None = None
+        self._compiled: CompiledSteps | None = None
         self.tethers: Tethers | None = None
         self._stale = True
         self._stepping = False
@@ -339,6 +341,7 @@ class World:
         if self.method.collisions == "exact":
             self._flights = Flights(self)
             self.schedule.compile(self._flights.kernels)
+        self._compiled = CompiledSteps(self) if why_not_compiled(self) is None else None
         self.contacts.stale |= had_flights or self._flights is not None
 
     @_quiet
@@ -358,6 +361,10 @@ class World:
             raise RuntimeError("a system cannot step the world that is calling it")
         with self.active():
             self.synchronise()
+            compiled = self._compiled
+            if compiled is not None and dt == self._simulation.dt and compiled.ready(self):
+                self._run_compiled(compiled, 1)
+                return
             self.divided = parts = self._parts(dt)
             self._before.take(self)
             self._stepping = True
@@ -370,7 +377,7 @@ class World:
                 elif self._flights is None:
                     finer = max((system.finer(self) for system in self.schedule.running), default=1)
                     self.substeps = finer * self._simulation.substeps
-                    self._substeps(dt / parts / self.substeps, parts * self.substeps)
+                    self.go_through(dt / parts / self.substeps, parts * self.substeps)
                 elif parts > 1:
                     self._flights.run(self, dt / parts, parts)
                 else:
@@ -399,12 +406,11 @@ class World:
             raise ValueError(f"dt = {dt!r}: must be at most {_MOST_PARTS} times simulation.dt = {own!r} s")
         return max(1, math.ceil(dt / own - _TOO_LONG))
 
-    def _substeps(self, h: float, count: int) -> None:
-        """Go through the stages of a step, substep by substep."""
-        run = self.schedule.run
-        for _ in range(count):
-            for stage, share in self.method.stages.substep:
-                run(stage, self, share * h)
+    def go_through(self, h: float, count: int, begun: int = 0) -> None:
+        """Go through the stages of ``count`` substeps of ``h`` seconds, of which so many are ``begun``."""
+        run, stages = self.schedule.run, itertools.repeat(self.method.stages.substep, count)
+        for stage, share in itertools.islice(itertools.chain.from_iterable(stages), begun, None):
+            run(stage, self, share * h)
 
     def _flow(self, equations: Equations, dt: float, steps: int) -> None:
         """Advance by ``steps`` steps of ``dt`` in one compiled loop; nothing but forces acts."""
@@ -497,6 +503,21 @@ class World:
             self._leap(first * self._simulation.dt, 1, first)
             self._leap(dt - first * self._simulation.dt, 1, steps - first)
 
+    def _run_compiled(self, compiled: CompiledSteps, steps: int) -> int:
+        """Make ``steps`` steps or fewer in one compiled call; return how many."""
+        with self.active():
+            self.divided, self.substeps = 1, self._simulation.substeps
+            self.schedule.compile(compiled.kernels)
+            self._before.take(self)
+            self._stepping = True
+            try:
+                return compiled.run(self, steps, self._before)
+            except Diverged:
+                self._go_back()
+                raise
+            finally:
+                self._stepping = False
+
     def stepping(
         self, *, seconds: float | None = None, steps: int | None = None, stride: int = 1
     ) -> Iterator[int]:
@@ -512,7 +533,15 @@ class World:
         while done < last:
             self.synchronise()
             by_step = self._equations is None and self._flights is None
-            if by_step or self.schedule.observed:
+            unseen = min(stride - done % stride, whole - done)
+            if self._compiled is not None and unseen > 0 and self._compiled.ready(self):
+                before = self.steps
+                try:
+                    done += self._run_compiled(self._compiled, unseen)
+                except Diverged:
+                    self.time = start + (done + self.steps - before) * dt
+                    raise
+            elif by_step or self.schedule.observed:
                 self.step(dt if done < whole else rest)
                 done += 1
             elif self._equations and self.method.integrator.chooses_steps and stride >= last - done:

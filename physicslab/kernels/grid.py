@@ -91,6 +91,8 @@ def fat_boxes(
 
 _CROWD = 32
 """So many bodies of a body's own size, at the most, that overlap with it make pairs with it."""
+_FARTHEST = 1e15
+"""Number of the farthest cell: beyond it, float64 does not tell one from the next."""
 _OWN_SIZE = 2.0
 """What is no more than so many times larger is of a body's own size: beside it, few have room."""
 
@@ -121,7 +123,7 @@ def _take(
     across_j, up_j = boxes[j, 2] - boxes[j, 0] - 2.0 * fat[j, 4], boxes[j, 3] - boxes[j, 1] - 2.0 * fat[j, 4]
     dx = abs(boxes[i, 0] + boxes[i, 2] - boxes[j, 0] - boxes[j, 2])
     dy = abs(boxes[i, 1] + boxes[i, 3] - boxes[j, 1] - boxes[j, 3])
-    if dx < across_i + across_j and dy < up_i + up_j:
+    if (dx < across_i + across_j) & (dy < up_i + up_j):
         larger, smaller = max(across_i, up_i), min(across_j, up_j)
         if larger <= _OWN_SIZE * smaller and max(across_j, up_j) <= _OWN_SIZE * min(across_i, up_i):
             if company[i] >= _CROWD or company[j] >= _CROWD:
@@ -131,6 +133,12 @@ def _take(
     if found < len(pairs):
         pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, j), max(i, j), -1
     return found + 1
+
+
+@inlined
+def _cell(x: float) -> int:
+    """Return the number of a cell; what is not finite, or too far out for one, is in the last."""
+    return math.floor(x) if abs(x) < _FARTHEST else int(_FARTHEST)
 
 
 @inlined
@@ -171,8 +179,8 @@ def _level(
             larges[large_count] = i
             large_count += 1
             continue
-        ix = math.floor(half_per_cell * (boxes[i, 0] + boxes[i, 2]))
-        iy = math.floor(half_per_cell * (boxes[i, 1] + boxes[i, 3]))
+        ix = _cell(half_per_cell * (boxes[i, 0] + boxes[i, 2]))
+        iy = _cell(half_per_cell * (boxes[i, 1] + boxes[i, 3]))
         if smalls == 0:
             low_x, high_x, low_y, high_y = ix, ix, iy, iy
         low_x, high_x, low_y, high_y = min(low_x, ix), max(high_x, ix), min(low_y, iy), max(high_y, iy)
@@ -205,16 +213,21 @@ def _level(
         for side in range(4):
             near[entry, side] = boxes[small[k], side]
 
+    met = np.empty(smalls, np.int64)
     for p in range(smalls):
         ix, iy = home[p, 0], home[p, 1]
         if dense:  # buckets one above the other are next to each other: two stretches hold all five cells
             at = (ix - low_x) * up + iy - low_y
+            # Every neighbour is written down, and kept by counting: whether two overlap cannot be foretold.
+            meetings = 0
             for q in range(p + 1, first[at + 2]):
-                if _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], body[q])
+                met[meetings] = body[q]
+                meetings += _overlap(near, p, near, q)
             for q in range(first[at + up - 1], first[at + up + 2]):
-                if _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], body[q])
+                met[meetings] = body[q]
+                meetings += _overlap(near, p, near, q)
+            for k in range(meetings):
+                found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], met[k])
             continue
         for neighbour in range(5):
             jx = ix if neighbour < 2 else ix + 1
@@ -226,8 +239,8 @@ def _level(
 
     for k in range(large_count):
         i = larges[k]
-        from_x, to_x = math.floor(boxes[i, 0] / cell - 0.5), math.floor(boxes[i, 2] / cell + 0.5)
-        from_y, to_y = math.floor(boxes[i, 1] / cell - 0.5), math.floor(boxes[i, 3] / cell + 0.5)
+        from_x, to_x = _cell(boxes[i, 0] / cell - 0.5), _cell(boxes[i, 2] / cell + 0.5)
+        from_y, to_y = _cell(boxes[i, 1] / cell - 0.5), _cell(boxes[i, 3] / cell + 0.5)
         from_x, to_x = max(from_x, low_x), min(to_x, high_x)
         from_y, to_y = max(from_y, low_y), min(to_y, high_y)
         if from_x > to_x or from_y > to_y:

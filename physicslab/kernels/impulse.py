@@ -7,8 +7,8 @@ from physicslab.kernels.block_impulse import pressed, start_lanes, sweep_lanes
 from physicslab.kernels.records import Manifolds, Point, Points
 
 __all__ = [
-    "UNEQUAL", "apply_impulse", "deepest", "follow_drift", "heaviest_load", "relative_velocity", "relax",
-    "separate", "solve",
+    "MOST_PARTS", "UNEQUAL", "apply_impulse", "deepest", "follow_drift", "heaviest_load", "relative_velocity",
+    "relax", "separate", "solve",
 ]  # fmt: skip
 
 
@@ -16,6 +16,8 @@ _DEEP = 0.1
 """Share beyond which overlap is taken away by moving."""
 UNEQUAL = 10.0
 """From such a ratio of masses on, the lighter body of a pair may have to carry many times its weight."""
+MOST_PARTS = 16
+"""So many times more substeps than asked for are made, at the most, where one does."""
 
 
 @inlined

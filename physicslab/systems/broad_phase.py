@@ -33,21 +33,28 @@ class BroadPhaseSystem(System):
     """Keeps the list of near pairs: those whose fat boxes overlap, found with a uniform grid.
 
     The list holds, and nothing is done, until a body leaves the fat box that was made for it.
+
+    Attributes
+    ----------
+    fat : float64 array (rows, 5)
+        Where each body was (x, y, angle), its bounding radius then, and the margin around it [m].
+    bounds : float64 array (4,)
+        Of the world: xmin, ymin, xmax, ymax [m].
     """
 
     kernels = (grid.still_holds, grid.fat_boxes, grid.find_pairs, grid.carry_over)
 
     def __init__(self) -> None:
-        self._fat: NDArray[np.float64] = np.zeros((0, 5))
+        self.fat: NDArray[np.float64] = np.zeros((0, 5))
         self._boxes: NDArray[np.float64] = np.zeros((0, 4))
         self._pairs: NDArray[np.int64] = np.zeros((256, 3), np.int64)
-        self._bounds: NDArray[np.float64] = np.zeros(4)
+        self.bounds: NDArray[np.float64] = np.zeros(4)
 
     def attach(self, world: World) -> None:
         """Find the pairs anew: bodies came, went or changed."""
         world.contacts.stale = True
         if world.physics.bounds is not None:
-            self._bounds[:] = world.physics.bounds
+            self.bounds[:] = world.physics.bounds
 
     def why_left_out(self, world: World) -> str | None:
         """Needed where two things could ever meet."""
@@ -62,13 +69,13 @@ class BroadPhaseSystem(System):
         transform, shape = world.table(Transform), world.table(Shape)
         position, angle, linear = transform["position"], transform["angle"], world.table(Velocity)["linear"]
         sizes = shape["kind"], shape["radius"], shape["width"], shape["height"]
-        if len(self._fat) != len(angle):
-            self._fat, self._boxes = np.zeros((len(angle), 5)), np.zeros((len(angle), 4))
+        if len(self.fat) != len(angle):
+            self.fat, self._boxes = np.zeros((len(angle), 5)), np.zeros((len(angle), 4))
             world.contacts.stale = True
-        if not world.contacts.stale and grid.still_holds(position, angle, linear, *sizes, self._fat, h):
+        if not world.contacts.stale and grid.still_holds(position, angle, linear, *sizes, self.fat, h):
             return
         inverse_mass = world.bodies.inverse_mass
-        grid.fat_boxes(position, angle, linear, *sizes, inverse_mass, self._fat, self._boxes, h)
+        grid.fat_boxes(position, angle, linear, *sizes, inverse_mass, self.fat, self._boxes, h)
         bounded = world.physics.bounds is not None
         count = self._count_pairs(shape["kind"], inverse_mass, bounded)
         world.contacts.relist(world, self._pairs, count)
@@ -77,9 +84,7 @@ class BroadPhaseSystem(System):
         """Fill the list of pairs, made larger where it is too small, and return their number."""
         while True:
             count = int(
-                grid.find_pairs(
-                    self._boxes, self._fat, kind, inverse_mass, bounded, self._bounds, self._pairs
-                )
+                grid.find_pairs(self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs)
             )
             if count <= len(self._pairs):
                 return count

@@ -49,7 +49,7 @@ class ContactSystem(System):
         transform, velocity = world.table(Transform), world.table(Velocity)
         shape, material = world.table(Shape), world.table(Material)
         contacts, bodies, physics = world.contacts, world.bodies, world.physics
-        fall = 0.5 * physics.gravity.magnitude * h * h if physics.gravity_mode == "linear" else 0.0
+        fall = self.fall(world, h)
         if contacts.blocks.lanes:
             self._refresh(world, h, fall)
             contacts.changed()
@@ -62,9 +62,18 @@ class ContactSystem(System):
             self._bounds, physics.bounds_restitution, physics.bounds_friction, self._first, h,
             world.method.stages.window[0], fall,
         )  # fmt: skip
+        self.settle(world, h)
+
+    def fall(self, world: World, h: float) -> float:
+        """Return how far [m] uniform gravity may bring two bodies together within a time h."""
+        physics = world.physics
+        return 0.5 * physics.gravity.magnitude * h * h if physics.gravity_mode == "linear" else 0.0
+
+    def settle(self, world: World, h: float) -> None:
+        """Once a step, take what has settled into blocks."""
         if self._first and world.method.collisions == "step":
-            contacts.admit(world, h)
-            contacts.changed()
+            world.contacts.admit(world, h)
+            world.contacts.changed()
         self._first = False
 
     def _refresh(self, world: World, h: float, fall: float) -> None:

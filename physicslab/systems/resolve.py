@@ -16,8 +16,6 @@ __all__ = ["ResolveSystem"]
 
 _LIGHT_LOAD = 12.0
 """So many times its own weight a body carries without further ado."""
-_MOST_PARTS = 16
-"""So many times more substeps than asked for are made, at the most."""
 
 
 class ResolveSystem(System):
@@ -58,7 +56,7 @@ class ResolveSystem(System):
             contacts.manifolds, contacts.candidate_pairs, bodies.force, bodies.inverse_mass
         )
         parts = 1
-        while parts < _MOST_PARTS and parts * parts * _LIGHT_LOAD < load:
+        while parts < impulse.MOST_PARTS and parts * parts * _LIGHT_LOAD < load:
             parts *= 2
         return parts
 
@@ -101,7 +99,7 @@ class ResolveSystem(System):
         contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
         if contacts.left or contacts.blocks.lanes:
             # What an instant left behind is mostly rounding, which is not to be blown up.
-            carried = h / max(contacts.span, h / _MOST_PARTS) if contacts.span > 0.0 else 1.0
+            carried = h / max(contacts.span, h / impulse.MOST_PARTS) if contacts.span > 0.0 else 1.0
             contacts.span = h
             finer = world.substeps / world.simulation.substeps
             impulse.solve(

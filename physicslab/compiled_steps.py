@@ -1,0 +1,194 @@
+"""Runs of whole steps in one compiled call, for worlds whose bodies touch and which nobody looks at."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from physicslab.blocks import FEW
+from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.integrators.leapfrog import LEAPFROG
+from physicslab.kernels import contact_steps
+from physicslab.kernels.contact_steps import BEGIN, CROWDED, DIVERGED, FIND, STRIKE, SYSTEMS, UNLISTED
+from physicslab.schedule import Stage
+
+if TYPE_CHECKING:
+    from physicslab.checkpoint import Checkpoint
+    from physicslab.systems.broad_phase import BroadPhaseSystem
+    from physicslab.systems.contact import ContactSystem
+    from physicslab.systems.resolve import ResolveSystem
+    from physicslab.world import World
+
+__all__ = ["CompiledSteps", "why_not_compiled"]
+
+_COMPILED = {
+    "Bodies": "physicslab.bodies",
+    "GravitySystem": "physicslab.systems.gravity",
+    "IntegrateSystem": "physicslab.systems.integrate",
+    "BroadPhaseSystem": "physicslab.systems.broad_phase",
+    "ContactSystem": "physicslab.systems.contact",
+    "ResolveSystem": "physicslab.systems.resolve",
+}
+"""Whose work the loop does, and in which modules those are: a class of that name may be somebody's own."""
+_NEEDED = ("Bodies", "IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem")
+_OF_FRAMES = {Stage.INPUT, Stage.RENDER, Stage.HUD}
+_MOST = 4096
+"""So many steps, at the most, are one call: whoever wants to stop a run waits for it."""
+_PLAN = [stage for stage, _ in LEAPFROG.substep]
+_BEFORE_IMPACTS = _PLAN.index(Stage.IMPACT)
+"""How many stages of a substep there are before that."""
+
+
+def why_not_compiled(world: World) -> str | None:
+    """Return why steps of this world cannot be made in a compiled loop, or ``None``."""
+    running = {system.name: system for system in world.schedule.running}
+    for name in _NEEDED:
+        if name not in running:
+            return f"{name} is not among the systems"
+    if world.method.collisions != "step":
+        return "collisions are not found within steps"
+    if world.method.stages is not LEAPFROG or world.tethers is not None:
+        return f"bodies are not moved by {LEAPFROG.name} alone"
+    if world.physics.gravity_mode == "planet" and "GravitySystem" in running:
+        return "planets attract each other"
+    for name, system in running.items():
+        if type(system).__module__ != _COMPILED.get(name) and not set(type(system).marked()) <= _OF_FRAMES:
+            return f"{name} acts or looks at every step"
+    return None
+
+
+class CompiledSteps:
+    """Makes steps of one world in a compiled loop, until its structure changes; the bits are those of steps.
+
+    The loop comes back where Python is needed: to list the near pairs anew, to look for settled contacts
+    where many touch, to report a divergence. A world that has settled contacts in blocks is stepped stage by
+    stage.
+
+    Parameters
+    ----------
+    world : World
+        One of which :func:`why_not_compiled` says nothing.
+    """
+
+    kernels = (contact_steps.advance,)
+
+    def __init__(self, world: World) -> None:
+        running = {system.name: system for system in world.schedule.running}
+        self._broad_phase = cast("BroadPhaseSystem", running["BroadPhaseSystem"])
+        self._contact = cast("ContactSystem", running["ContactSystem"])
+        self._resolve = cast("ResolveSystem", running["ResolveSystem"])
+        self._cost = np.zeros(len(SYSTEMS), np.int64)
+        self._once: dict[str, int] = {}
+        self._within: dict[str, list[int]] = {}
+        for name, system in running.items():
+            marked = type(system).marked()
+            self._once[name] = len({Stage.PREPARE, Stage.FINISH} & marked.keys())
+            self._within[name] = [place for place, stage in enumerate(_PLAN) if stage in marked]
+
+    def ready(self, world: World) -> bool:
+        """Whether the coming step can be made so, as things stand."""
+        contacts = world.contacts
+        heavy = world.bodies.unequal and world.has_forces
+        return not (heavy or contacts.stale or contacts.blocks.lanes)
+
+    def run(self, world: World, steps: int, before: Checkpoint) -> int:
+        """Make ``steps`` steps or fewer, at least one, and return how many; the clock goes with them.
+
+        ``before`` keeps the state in which the last of them began.
+
+        Raises
+        ------
+        Diverged
+            If a value is not finite; all steps before that one are made and counted.
+        """
+        h = world.simulation.dt / world.simulation.substeps
+        contacts = world.contacts
+        contacts.in_order()
+        contacts.blocks.trim()
+        self._contact.begin(world, h)
+        made, substep, stage, steps = 0, 0, BEGIN, min(steps, _MOST)
+        while made < steps:
+            why, done, substep = self._advance(world, before, steps - made, substep, stage, h)
+            made += done
+            if why == DIVERGED:
+                world.bodies.check_finite(world, world.simulation.dt)
+            elif why == UNLISTED:
+                self._timed("BroadPhaseSystem", self._broad_phase.search, world, h)
+                stage = FIND
+            elif why == CROWDED:
+                self._timed("ContactSystem", self._contact.settle, world, h)
+                stage = STRIKE
+                if contacts.blocks.lanes:
+                    self._finish(world, h)
+                    return made + 1
+        return made
+
+    def _advance(
+        self, world: World, before: Checkpoint, steps: int, substep: int, stage: int, h: float
+    ) -> tuple[int, int, int]:
+        """Let the loop go as far as it gets; return why it came back, after how many steps, and where."""
+        began = time.perf_counter_ns()
+        contacts, substeps = world.contacts, world.simulation.substeps
+        self._cost[:] = 0
+        why, done, substep, contacts.active, contacts.left, struck_before, struck, contacts.span = (
+            contact_steps.advance(steps, substeps, substep, stage, h, *self._numbers(world, before, h))
+        )
+        world.steps += done
+        world.time += done * world.simulation.dt
+        world.collisions += struck_before
+        if done:
+            world.force_evaluations += done * substeps * world.has_forces
+            before.count(world)
+        world.collisions += struck - struck_before
+        self._note(world, done, time.perf_counter_ns() - began)
+        return why, done, substep
+
+    def _numbers(self, world: World, before: Checkpoint, h: float) -> tuple[Any, ...]:
+        """Return what the loop works on."""
+        transform, velocity = world.table(Transform), world.table(Velocity)
+        shape, material, bodies = world.table(Shape), world.table(Material), world.bodies
+        contacts, physics, resolve = world.contacts, world.physics, self._resolve
+        return (
+            world.simulation.iterations or 1, FEW,
+            (transform["position"], transform["angle"], velocity["linear"], velocity["angular"]),
+            before.columns,
+            (shape["kind"], shape["radius"], shape["width"], shape["height"]),
+            (material["restitution"], material["friction"]),
+            (bodies.inverse_mass, bodies.inverse_inertia), bodies.tethered,
+            (bodies.force, bodies.torque, world.table(Mass)["mass"], world.has_forces, *physics.gravity),
+            (physics.linear_damping, physics.angular_damping), self._contact.fall(world, h),
+            self._broad_phase.fat,
+            (self._broad_phase.bounds, physics.bounds_restitution, physics.bounds_friction),
+            contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
+            contacts.touching, contacts.active,
+            (*contacts.blocks.discs.solved, *contacts.blocks.boxes.solved),
+            (resolve.hertz, resolve.damping_ratio, resolve.slop, resolve.max_push), contacts.span, self._cost,
+        )  # fmt: skip
+
+    def _finish(self, world: World, h: float) -> None:
+        """Make the rest of a step, from its first impacts on, stage by stage: contacts have settled."""
+        world.force_evaluations += world.has_forces
+        for name, places in self._within.items():
+            made = sum(place < _BEFORE_IMPACTS for place in places)
+            world.schedule.note(name, made + (name == "ContactSystem"), 0)
+        world.go_through(h, world.simulation.substeps, begun=_BEFORE_IMPACTS)
+        world.schedule.run(Stage.FINISH, world, world.simulation.dt)
+        world.steps += 1
+        world.time += world.simulation.dt
+
+    def _note(self, world: World, steps: int, nanoseconds: int) -> None:
+        """Note as many calls as stepping would make; the time is shared out by the loop's own clock."""
+        whole = max(1, int(self._cost.sum()))
+        for name, cost in zip(SYSTEMS, self._cost.tolist(), strict=True):
+            if name in self._within:
+                calls = self._once[name] + world.simulation.substeps * len(self._within[name])
+                world.schedule.note(name, steps * calls, nanoseconds * cost // whole)
+
+    def _timed(self, name: str, call: Callable[[World, float], None], world: World, h: float) -> None:
+        """Call a system's method, whose call is counted with the step, and note what it cost."""
+        began = time.perf_counter_ns()
+        call(world, h)
+        world.schedule.note(name, 0, time.perf_counter_ns() - began)

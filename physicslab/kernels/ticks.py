@@ -1,0 +1,32 @@
+"""What parts of a kernel cost."""
+
+from typing import Any
+
+from llvmlite import ir
+from numba import int64
+from numba.extending import intrinsic
+
+from physicslab.kernels import Rows, inlined
+
+__all__ = ["charge", "ticks"]
+
+
+def _read_clock(_typing: Any) -> Any:
+
+    def read(_context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
+        counter = ir.FunctionType(ir.IntType(64), [])
+        return builder.call(builder.module.declare_intrinsic("llvm.readcyclecounter", fnty=counter), [])
+
+    return int64(), read
+
+
+ticks: Any = intrinsic(_read_clock)
+"""Called by a kernel, returns the processor's own clock, in ticks of it; 0 on one that has none."""
+
+
+@inlined
+def charge(cost: Rows, whose: int, since: int) -> int:
+    """Add the ticks since then to what ``whose`` work has cost; return the clock."""
+    now: int = ticks()
+    cost[whose] += now - since
+    return now

@@ -1,0 +1,213 @@
+"""Runs of whole steps in one compiled call: the same bits as step by step, and the same figures."""
+
+import math
+
+import numpy as np
+import pytest
+from desk import bits
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from physicslab.bench.catalogue import SCENES as BENCH
+from physicslab.bodies import Diverged
+from physicslab.compiled_steps import why_not_compiled
+from physicslab.components import Drag, Transform, Velocity
+from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.prefabs import box, circle
+from physicslab.scene import load_scene
+from physicslab.scenes import SCENES
+from physicslab.schedule import Stage, System, at
+from physicslab.systems.gravity import GravitySystem
+from physicslab.systems.standard import standard_systems
+from physicslab.world import World
+
+STEPS = 150
+
+
+class Onlooker(System):
+    """Looks at every step, so that each is made by itself, stage by stage."""
+
+    @at(Stage.FINISH)
+    def look(self, world: World, h: float) -> None:
+        """See that it is there."""
+
+
+def watched(world: World) -> World:
+    """Return the world with somebody who looks at every step."""
+    world.install(Onlooker())
+    world.synchronise()
+    assert "Onlooker" in (why_not_compiled(world) or "")
+    return world
+
+
+def figures(world: World) -> tuple[object, ...]:
+    """Return what a run leaves behind, apart from the state of motion."""
+    calls = {name: timing.calls for name, timing in world.schedule.timings.items() if name != "Onlooker"}
+    counts = world.steps, world.collisions, world.force_evaluations, world.divided, world.substeps
+    contacts = world.contacts
+    near = contacts.candidate_pairs, contacts.count, contacts.left, contacts.span, contacts.max_penetration
+    return (*counts, *near, contacts.export(), world.bodies.force.tobytes(), calls)
+
+
+def assert_alike(stepped: World, ran: World) -> None:
+    """Assert that two worlds are in the same state, bit for bit, and have counted alike."""
+    assert bits(stepped) == bits(ran)
+    assert figures(stepped) == figures(ran)
+    assert ran.time == pytest.approx(stepped.time, rel=1e-12)
+
+
+def compiled_scenes() -> list[str]:
+    """Return the built-in scenes that qualify."""
+    names = []
+    for name in SCENES:
+        world = load_scene(name)
+        world.synchronise()
+        if why_not_compiled(world) is None:
+            names.append(name)
+    return names
+
+
+def test_scenes_that_touch_and_are_not_observed_qualify() -> None:
+    assert {"stack", "pyramid", "dominoes", "pile", "gas", "billiards", "slope"} <= set(compiled_scenes())
+
+
+@pytest.mark.parametrize("name", compiled_scenes())
+def test_a_run_gives_the_bits_of_single_steps(name: str) -> None:
+    stepped, ran = watched(load_scene(name)), load_scene(name)
+    for _ in range(STEPS):
+        stepped.step()
+    ran.run(steps=STEPS)
+    assert_alike(stepped, ran)
+
+
+def test_it_leaves_for_the_blocks_in_the_middle_of_a_step() -> None:
+    stepped, ran = watched(BENCH["pile_1000"].build()), BENCH["pile_1000"].build()
+    stepped.run(steps=STEPS)
+    ran.run(steps=STEPS)
+    assert ran.contacts.blocks.lanes > 0
+    assert_alike(stepped, ran)
+
+
+def test_single_steps_are_compiled_too() -> None:
+    stepped, ran = watched(BENCH["circles_10"].build()), BENCH["circles_10"].build()
+    for _ in range(STEPS):
+        stepped.step()
+        ran.step()
+    assert_alike(stepped, ran)
+
+
+bodies = st.tuples(
+    st.booleans(),
+    st.floats(-3.0, 3.0), st.floats(0.0, 4.0), st.floats(0.05, 0.6), st.floats(0.05, 0.6),
+    st.floats(-8.0, 8.0), st.floats(-8.0, 8.0), st.floats(0.0, 1.0), st.floats(0.0, 1.0),
+    st.floats(0.2, 4.0),
+)  # fmt: skip
+
+
+def scattered(given: list[tuple[float, ...]], pulled: bool, damping: float) -> World:
+    """Return bodies thrown together within bounds."""
+    laws = PhysicsConfig(
+        gravity_mode="linear" if pulled else "none", bounds=(-3.5, -0.5, 3.5, 5.0), linear_damping=damping
+    )
+    world = World(*standard_systems(), physics=laws, simulation=SimulationConfig(collisions="step"))
+    box(world, (0.0, -0.25), width=4.0, height=0.5, static=True)
+    for disc, x, y, width, height, vx, vy, restitution, friction, mass in given:
+        common = {"velocity": (vx, vy), "restitution": restitution, "friction": friction, "mass": mass}
+        if disc:
+            circle(world, (x, y), radius=width, **common)  # type: ignore[arg-type]
+        else:
+            box(world, (x, y), width=width, height=height, angle=vx, **common)  # type: ignore[arg-type]
+    return world
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    st.lists(bodies, min_size=2, max_size=14), st.booleans(), st.sampled_from((0.0, 0.3)), st.integers(1, 7)
+)
+def test_random_scenes_give_the_same_bits(
+    given: list[tuple[float, ...]], pulled: bool, damping: float, stride: int
+) -> None:
+    stepped, ran = watched(scattered(given, pulled, damping)), scattered(given, pulled, damping)
+    stepped.run(steps=40)
+    assert list(ran.stepping(steps=40, stride=stride))[-1] == 40
+    assert_alike(stepped, ran)
+
+
+def test_a_time_that_is_no_multiple_of_the_step() -> None:
+    stepped, ran = watched(load_scene("dominoes")), load_scene("dominoes")
+    stepped.run(seconds=0.7123)
+    ran.run(seconds=0.7123)
+    assert ran.time == stepped.time
+    assert_alike(stepped, ran)
+
+
+def test_a_run_that_diverges_stops_at_the_same_step() -> None:
+    def doomed() -> World:
+        world = BENCH["circles_10"].build()
+        circle(world, (0.0, 1.7e308), radius=0.1, velocity=(0.0, 1e308), name="comet")
+        return world
+
+    stepped, ran = watched(doomed()), doomed()
+    with pytest.raises(Diverged) as one:
+        stepped.run(steps=50)
+    with pytest.raises(Diverged) as other:
+        ran.run(steps=50)
+    assert str(one.value) == str(other.value) and "comet" in str(one.value)
+    assert ran.steps > 3
+    assert (stepped.steps, stepped.time, stepped.force_evaluations) == (
+        ran.steps,
+        ran.time,
+        ran.force_evaluations,
+    )
+    assert bits(stepped) == bits(ran) and np.isfinite(np.frombuffer(bits(ran))).all()
+
+
+class OwnGravity(GravitySystem):
+    """Somebody's own."""
+
+    @property
+    def name(self) -> str:
+        """The name of the one that it stands for."""
+        return "GravitySystem"
+
+
+def falling(*systems: System, **simulation: object) -> World:
+    world = World(*systems, simulation=SimulationConfig(collisions="step", **simulation))  # type: ignore[arg-type]
+    box(world, (0, -0.5), width=9.0, height=1.0, static=True)
+    circle(world, (0.0, 1.0), radius=0.25)
+    world.synchronise()
+    return world
+
+
+def test_it_says_who_does_not_qualify() -> None:
+    own = [OwnGravity() if isinstance(system, GravitySystem) else system for system in standard_systems()]
+    assert why_not_compiled(falling(*standard_systems())) is None
+    assert "GravitySystem" in (why_not_compiled(falling(*own)) or "")
+    assert "leapfrog" in (why_not_compiled(falling(*standard_systems(), integrator="symplectic_euler")) or "")
+    dragged = falling(*standard_systems())
+    dragged.add(dragged.entities()[-1], Drag(linear=0.1))
+    dragged.synchronise()
+    assert why_not_compiled(dragged) is not None
+    assert "not among" in (why_not_compiled(load_scene("two_planets")) or "")
+
+
+def test_what_is_changed_between_runs_is_seen() -> None:
+    stepped, ran = watched(BENCH["circles_10"].build()), BENCH["circles_10"].build()
+    for world in (stepped, ran):
+        world.run(steps=20)
+        disc = world.entities()[-1]
+        world.component(disc, Velocity).linear = (3.0, 2.0)
+        world.component(disc, Transform).position = (0.0, 3.0)
+        world.run(steps=20)
+        world.remove(disc)
+        world.physics = PhysicsConfig(gravity=(1.0, -3.0))  # type: ignore[arg-type]
+        world.run(steps=20)
+    assert_alike(stepped, ran)
+
+
+def test_the_cost_is_shared_out_among_the_systems() -> None:
+    world = BENCH["circles_10"].build()
+    world.run(steps=500)
+    timings = world.schedule.timings
+    assert math.isfinite(sum(timing.ms for timing in timings.values()))
+    assert timings["ResolveSystem"].ms > 0.0 and timings["ContactSystem"].ms > 0.0
