@@ -341,7 +341,10 @@ class World:
         if self.method.collisions == "exact":
             self._flights = Flights(self)
             self.schedule.compile(self._flights.kernels)
-        self._compiled = CompiledSteps(self) if why_not_compiled(self) is None else None
+        self._compiled = None
+        if why_not_compiled(self) is None:
+            self._compiled = CompiledSteps(self)
+            self.schedule.compile(self._compiled.kernels)
         self.contacts.stale |= had_flights or self._flights is not None
 
     @_quiet
@@ -507,7 +510,6 @@ class World:
         """Make ``steps`` steps or fewer in one compiled call; return how many."""
         with self.active():
             self.divided, self.substeps = 1, self._simulation.substeps
-            self.schedule.compile(compiled.kernels)
             self._before.take(self)
             self._stepping = True
             try:

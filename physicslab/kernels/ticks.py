@@ -26,7 +26,12 @@ ticks: Any = intrinsic(_read_clock)
 
 @inlined
 def charge(cost: Rows, whose: int, since: int) -> int:
-    """Add the ticks since then to what ``whose`` work has cost; return the clock."""
+    """Add the ticks since then to what ``whose`` work has cost; return the clock.
+
+    Where ``since`` is negative nothing is timed.
+    """
+    if since < 0:
+        return since
     now: int = ticks()
     cost[whose] += now - since
     return now
