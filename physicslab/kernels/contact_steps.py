@@ -38,7 +38,7 @@ _Bounds = tuple[Numbers, float, float]
 """Where they are [m], their restitution and friction."""
 _Touch = tuple[Manifolds, Points, Rows, int]
 """The records of near pairs, which of them touch, and how many."""
-_Lanes = tuple[Numbers, int, Rows, Rows, Numbers, int, Rows, Rows]
+_Lanes = tuple[Numbers, int, Rows, Rows, Rows, Numbers, int, Rows, Rows, Rows]
 """Blocks of discs and of boxes, of which none is in use."""
 _Spring = tuple[float, float, float, float]
 """Of contacts: frequency [Hz], damping ratio, slop, fastest push [m/s]."""
