@@ -74,8 +74,9 @@ def _solve(
     """Keep apart what the impacts have left; return the time that impulses now stand for [s]."""
     hertz, damping_ratio, slop, _ = spring
     carried = h / max(span, h / MOST_PARTS) if span > 0.0 else 1.0
+    both = touch + lanes
     solve(
-        *touch, *lanes, linear, angular, *inverse, forces[0], forces[3],
+        *both, linear, angular, *inverse, forces[0], forces[3],
         h, carried, iterations, hertz, damping_ratio, slop,
     )  # fmt: skip
     return h
@@ -141,7 +142,8 @@ def advance(
         drift(position, angle, linear, angular, tethered, 0.5 * h)
         now = charge(cost, _INTEGRATE, now)
         if left:
-            relax(*touch, *lanes, linear, angular, *inverse, 0.5 * h, iterations)
+            both = touch + lanes
+            relax(*both, linear, angular, *inverse, 0.5 * h, iterations)
             separate(*touch, position, inverse[0], spring[3] * (0.5 * h))
             now = charge(cost, _RESOLVE, now)
         substep += 1
