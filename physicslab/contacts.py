@@ -257,7 +257,8 @@ class Contacts:
         for lanes in self.blocks.kinds:
             lanes.count, seated = block_lanes.seat_again(
                 lanes.kind, lanes.data, lanes.a, lanes.b, lanes.pair, lanes.colour, lanes.used,
-                self.manifolds, self.points, self.candidate_pairs, world.table(Shape)["radius"],
+                self.manifolds, self.points, self.candidate_pairs,
+                world.table(Shape)["kind"], world.table(Shape)["radius"],
                 material["restitution"], material["friction"],
                 world.bodies.inverse_mass, world.bodies.inverse_inertia,
             )  # fmt: skip
@@ -398,11 +399,13 @@ class Contacts:
 
     def _take_seat(self, lane: float, colour: float) -> int:
         """Note that a lane is that of a contact that will be found again, in a block of a colour."""
-        if not (lane == int(lane) and 0 <= lane < 16 * len(self.manifolds) * block_lanes.COLOURS):
-            raise ValueError(f"a lane of {lane!r}: must be a whole number >= 0, and no larger than there are")
+        if not (lane == int(lane) and lane >= 0):
+            raise ValueError(f"a lane of {lane!r}: must be a whole number >= 0")
         if not (colour == int(colour) and 0 <= colour < block_lanes.COLOURS):
             raise ValueError(f"a colour of {colour!r}: must be a whole number from 0 to 63")
         lanes, block = self.blocks.kinds[int(lane) % 2], int(lane) // 2 // WIDE
+        if block > 2 * len(self.manifolds) + 1024:  # no world has so many: memory is not to hang on a file
+            return -1
         lanes.make_room(block + 1)
         lanes.colour[block] = int(colour)
         self._seats = True

@@ -153,3 +153,26 @@ def test_removing_a_body_lets_those_above_fall() -> None:
     after = max(place(world, entity).y for entity in world.entities() if world.has(entity, Mass))
     assert after < before - 0.5
     assert np.isfinite(world.table(Transform)["position"]).all()
+
+
+def test_lanes_that_a_file_makes_up_stay_loose() -> None:
+    """Two contacts in one lane, boxes in a lane of discs, a body twice in a block, a lane far out."""
+    for spoiled in ("one lane", "wrong kind", "one block", "far out"):
+        world = settled_boxes()
+        rows = [row for row in world.contacts.export() if len(row) > 20]
+        world.contacts.clear()
+        spoil = {
+            "one lane": [(1, 0) for _ in rows],
+            "wrong kind": [(row[-2] - 1, row[-1]) for row in rows],
+            "one block": [(2 * n + 1, 0) for n in range(len(rows))],
+            "far out": [(10**15 + 1, 0) for _ in rows],
+        }[spoiled]
+        world.contacts.restore(world, [[*row[:-2], *seat] for row, seat in zip(rows, spoil, strict=True)])
+        world.run(steps=30)
+        contacts = world.contacts
+        seated = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.blocks.kinds])
+        seated = seated[seated >= 0]
+        everyone = np.sort(np.concatenate((seated, contacts.loose[: contacts.loose_count])))
+        assert np.array_equal(everyone, np.arange(contacts.candidate_pairs))
+        assert len(seated) == contacts.blocks.lanes
+        assert contacts.max_penetration < 0.02

@@ -268,10 +268,13 @@ def admit(
 def seat_again(
     kind: int, data: Numbers, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, points: Points, pairs: int,
-    radius: Numbers, restitution: Numbers, friction: Numbers,
+    shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
-    """Put the pairs whose records name a lane back there; return how many blocks there are, and lanes."""
+    """Put the pairs whose records name a lane back there; return how many blocks there are, and lanes.
+
+    What has no business there, as a file may say that was written by hand, stays loose.
+    """
     rows, blocks, seated = (DISC_ROWS if kind == DISC else BOX_ROWS), 0, 0
     for p in range(pairs):
         if manifolds[p].lane >= 0 and manifolds[p].lane % 2 == kind:
@@ -282,7 +285,17 @@ def seat_again(
     for p in range(pairs):
         named = manifolds[p].lane
         if named >= 0 and named % 2 == kind:
-            lane = named // 2
+            lane, manifold = named // 2, manifolds[p]
+            i, j, wanted = manifold.a, manifold.b, 1 if kind == DISC else 2
+            bit = np.uint64(1) << np.uint64(colour[lane // WIDE])
+            taken = (used[i] if inverse_mass[i] > 0.0 else np.uint64(0)) | (
+                used[j] if inverse_mass[j] > 0.0 else np.uint64(0)
+            )
+            fits = pair[lane] < 0 and taken & bit == np.uint64(0) and manifold.wall < 0
+            fits = fits and shape[i] == wanted and shape[j] == wanted and manifold.count > 0
+            if not fits or inverse_mass[i] + inverse_mass[j] == 0.0:
+                manifold.lane = -1
+                continue
             _seat(
                 kind, data, lane, a, b, pair, used, colour[lane // WIDE], manifolds, points, p,
                 radius, restitution, friction, inverse_mass, inverse_inertia,
