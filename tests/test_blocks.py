@@ -161,13 +161,14 @@ def test_lanes_that_a_file_makes_up_stay_loose() -> None:
         world = settled_boxes()
         rows = [row for row in world.contacts.export() if len(row) > 20]
         world.contacts.clear()
-        spoil = {
+        seats: dict[str, list[tuple[float, float]]] = {
             "one lane": [(1, 0) for _ in rows],
             "wrong kind": [(row[-2] - 1, row[-1]) for row in rows],
             "one block": [(2 * n + 1, 0) for n in range(len(rows))],
             "far out": [(10**15 + 1, 0) for _ in rows],
-        }[spoiled]
-        world.contacts.restore(world, [[*row[:-2], *seat] for row, seat in zip(rows, spoil, strict=True)])
+        }
+        changed = [[*row[:-2], *seat] for row, seat in zip(rows, seats[spoiled], strict=True)]
+        world.contacts.restore(world, changed)
         world.run(steps=30)
         contacts = world.contacts
         seated = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.blocks.kinds])
