@@ -119,6 +119,7 @@ class CompiledSteps:
                 self._timed("BroadPhaseSystem", self._broad_phase.search, world, h)
                 stage = FIND
             elif why == CROWDED:
+                self._contact.begin(world, h)  # another step than the one before may have begun
                 self._timed("ContactSystem", self._contact.settle, world, h)
                 stage = STRIKE
                 if contacts.blocks.lanes:

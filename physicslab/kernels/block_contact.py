@@ -24,107 +24,95 @@ from physicslab.kernels.block_layout import (
     SEPARATION,
     SIZE,
     TWO,
-    WA,
-    WB,
     WIDE,
-    XA,
-    XB,
-    YA,
-    YB,
 )  # fmt: skip
 from physicslab.kernels.records import Manifolds, Points
+from physicslab.kernels.wide import (
+    Wide,
+    choose,
+    put,
+    root,
+    size_of,
+    take,
+    take_numbers,
+    take_vectors,
+    true_lanes,
+)
 
-__all__ = ["deepest_lane", "gather", "refresh", "scatter"]
+__all__ = ["deepest_lane", "refresh"]
 
 _DEEP = 0.1
 """Share of the smaller size: what overlaps more is taken apart by moving, which lanes know nothing of."""
+_ONE_SPOT = 1e-300
+"""Distance [m] below which there is no direction."""
 
 
 @fused
-def gather(block: Numbers, k: int, a: Rows, b: Rows, vectors: Vectors, numbers: Numbers) -> None:
-    """Bring together the places and angles, or the velocities, of the bodies of block k."""
-    rows_a, rows_b = a[k * WIDE : (k + 1) * WIDE], b[k * WIDE : (k + 1) * WIDE]
-    for lane in range(WIDE):
-        i, j = rows_a[lane], rows_b[lane]
-        block[XA + lane], block[YA + lane], block[WA + lane] = vectors[i, 0], vectors[i, 1], numbers[i]
-        block[XB + lane], block[YB + lane], block[WB + lane] = vectors[j, 0], vectors[j, 1], numbers[j]
+def _restless(
+    data: Numbers, at: int, a: Rows, b: Rows, lane: int, linear: Vectors, still: float, h: float
+) -> int:
+    """Return which lanes' bodies move too fast for their size, ``still`` of it a substep, bit by bit."""
+    vax, vay = take_vectors(linear, a, lane)
+    vbx, vby = take_vectors(linear, b, lane)
+    ux, uy, limit = (vbx - vax) * h, (vby - vay) * h, still * take(data, at + SIZE)
+    return true_lanes(ux * ux + uy * uy > limit * limit)
 
 
 @fused
-def scatter(block: Numbers, k: int, a: Rows, b: Rows, linear: Vectors, angular: Numbers) -> None:
-    """Give the bodies of block k their velocities back; what nothing moves has the one it had."""
-    rows_a, rows_b = a[k * WIDE : (k + 1) * WIDE], b[k * WIDE : (k + 1) * WIDE]
-    for lane in range(WIDE):
-        i, j = rows_a[lane], rows_b[lane]
-        linear[i, 0], linear[i, 1], angular[i] = block[XA + lane], block[YA + lane], block[WA + lane]
-        linear[j, 0], linear[j, 1], angular[j] = block[XB + lane], block[YB + lane], block[WB + lane]
-
-
-@inlined
-def _restless(block: Numbers, still: float, h: float) -> float:
-    """Mark in row ``WA`` the lanes whose bodies move too fast for their size, ``still`` of it a substep."""
-    moving = 0.0
-    for lane in range(WIDE):
-        ux, uy = (block[XB + lane] - block[XA + lane]) * h, (block[YB + lane] - block[YA + lane]) * h
-        limit = still * block[SIZE + lane]
-        fast = 1.0 if ux * ux + uy * uy > limit * limit else 0.0
-        block[WA + lane] = fast
-        moving += fast
-    return moving
-
-
-@inlined
-def _refresh_discs(block: Numbers, near: float, fall: float) -> float:
-    """Find normals and separations of a block of discs; mark what is apart or overlaps much in row ``WA``."""
-    lost = 0.0
-    for lane in range(WIDE):
-        dx, dy = block[XB + lane] - block[XA + lane], block[YB + lane] - block[YA + lane]
-        distance = (dx * dx + dy * dy) ** 0.5
-        size = block[SIZE + lane]
-        separation = distance - block[RADIUS_A + lane] - block[RADIUS_B + lane]
-        gone = separation > 0.5 * near * size + fall
-        bad = 1.0 if gone | (separation < -_DEEP * size) | (distance == 0.0) else 0.0
-        bad = bad if block[RADIUS_A + lane] > 0.0 else 0.0
-        scale = 1.0 / distance if distance > 0.0 else 0.0
-        block[NORMAL_X + lane], block[NORMAL_Y + lane] = dx * scale, dy * scale
-        block[ONE + SEPARATION + lane] = separation
-        block[WA + lane] = bad
-        lost += bad
-    return lost
+def _refresh_discs(
+    data: Numbers, at: int, a: Rows, b: Rows, lane: int, position: Vectors, near: float, fall: float
+) -> int:
+    """Find normals and separations of a block of discs; return which are apart or overlap much."""
+    xa, ya = take_vectors(position, a, lane)
+    xb, yb = take_vectors(position, b, lane)
+    dx, dy = xb - xa, yb - ya
+    distance = root(dx * dx + dy * dy)
+    size, ra, rb = take(data, at + SIZE), take(data, at + RADIUS_A), take(data, at + RADIUS_B)
+    separation = distance - ra - rb
+    scale = choose(distance > 0.0, 1.0 / distance, 0.0)
+    put(data, at + NORMAL_X, dx * scale)
+    put(data, at + NORMAL_Y, dy * scale)
+    put(data, at + ONE + SEPARATION, separation)
+    apart, on_one_spot = separation > 0.5 * near * size + fall, distance < _ONE_SPOT
+    return true_lanes((apart | on_one_spot | (separation < -_DEEP * size)) & (ra > 0.0))
 
 
 @fused
 def _separation(
-    block: Numbers, point: int, lane: int, x: float, y: float, nx: float, ny: float, turn_a: float,
-    turn_b: float,
-) -> float:  # fmt: skip
-    """Return the separation of a point, to second order in how far the pair has moved and turned."""
-    rax, ray = block[point + ARM_AX + lane], block[point + ARM_AY + lane]
-    rbx, rby = block[point + ARM_BX + lane], block[point + ARM_BY + lane]
+    data: Numbers, point: int, x: Wide, y: Wide, nx: Wide, ny: Wide, turn_a: Wide, turn_b: Wide
+) -> Wide:
+    """Return the separations of points, to second order in how far the pairs have moved and turned."""
+    rax, ray = take(data, point + ARM_AX), take(data, point + ARM_AY)
+    rbx, rby = take(data, point + ARM_BX), take(data, point + ARM_BY)
     ax, ay = turn_a * (-ray - 0.5 * turn_a * rax), turn_a * (rax - 0.5 * turn_a * ray)
     bx, by = turn_b * (-rby - 0.5 * turn_b * rbx), turn_b * (rbx - 0.5 * turn_b * rby)
-    separation: float = block[point + FOUND + lane] + (x + bx - ax) * nx + (y + by - ay) * ny
+    separation = take(data, point + FOUND) + (x + bx - ax) * nx + (y + by - ay) * ny
+    put(data, point + SEPARATION, separation)
     return separation
 
 
-@inlined
-def _refresh_boxes(block: Numbers, keep: float, keep_turn: float) -> float:
-    """Update the separations of a block of boxes; mark in row ``WA`` whose points must be found anew."""
-    lost = 0.0
-    for lane in range(WIDE):
-        nx, ny = block[NORMAL_X + lane], block[NORMAL_Y + lane]
-        x = block[XB + lane] - block[XA + lane] - block[BASE_X + lane]
-        y = block[YB + lane] - block[YA + lane] - block[BASE_Y + lane]
-        turn_a, turn_b = block[WA + lane] - block[ANGLE_A + lane], block[WB + lane] - block[ANGLE_B + lane]
-        size = block[SIZE + lane]
-        one = _separation(block, ONE, lane, x, y, nx, ny, turn_a, turn_b)
-        two = _separation(block, TWO, lane, x, y, nx, ny, turn_a, turn_b)
-        block[ONE + SEPARATION + lane], block[TWO + SEPARATION + lane] = one, two
-        moved = (abs(x) + abs(y) > keep * size) | (abs(turn_a) > keep_turn) | (abs(turn_b) > keep_turn)
-        bad = 1.0 if moved | (one < -_DEEP * size) | (two < -_DEEP * size) else 0.0
-        block[WA + lane] = bad
-        lost += bad
-    return lost
+@fused
+def _refresh_boxes(
+    data: Numbers, at: int, a: Rows, b: Rows, lane: int, position: Vectors, angle: Numbers,
+    keep: float, keep_turn: float,
+) -> int:  # fmt: skip
+    """Update the separations of a block of boxes; return which points must be found anew."""
+    xa, ya = take_vectors(position, a, lane)
+    xb, yb = take_vectors(position, b, lane)
+    nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
+    x, y = xb - xa - take(data, at + BASE_X), yb - ya - take(data, at + BASE_Y)
+    turn_a = take_numbers(angle, a, lane) - take(data, at + ANGLE_A)
+    turn_b = take_numbers(angle, b, lane) - take(data, at + ANGLE_B)
+    one = _separation(data, at + ONE, x, y, nx, ny, turn_a, turn_b)
+    two = _separation(data, at + TWO, x, y, nx, ny, turn_a, turn_b)
+    size = take(data, at + SIZE)
+    moved = (
+        (size_of(x) + size_of(y) > keep * size)
+        | (size_of(turn_a) > keep_turn)
+        | (size_of(turn_b) > keep_turn)
+    )
+    deep = -_DEEP * size
+    return true_lanes(moved | (one < deep) | (two < deep))
 
 
 @kernel
@@ -140,33 +128,30 @@ def refresh(
     points must be found anew is written to its records and added to ``loose``.
     """
     rows = DISC_ROWS if kind == DISC else BOX_ROWS
+    slow = 0.5 * still if kind == DISC else 0.5 * near
     for k in range(blocks):
-        block = data[k * rows : (k + 1) * rows]
-        if first:
-            gather(block, k, a, b, linear, angular)
-            slow = 0.5 * still if kind == DISC else 0.5 * near
-            if _restless(block, slow, h) > 0.0:
-                loose_count = _set_loose(
-                    data, rows, k, a, b, pair, colour, used, manifolds, points, loose, loose_count
-                )
-        gather(block, k, a, b, position, angle)
-        lost = _refresh_discs(block, near, fall) if kind == DISC else _refresh_boxes(block, keep, keep_turn)
-        if lost > 0.0:
+        at, lane = k * rows, k * WIDE
+        lost = _restless(data, at, a, b, lane, linear, slow, h) if first else 0
+        if kind == DISC:
+            lost |= _refresh_discs(data, at, a, b, lane, position, near, fall)
+        else:
+            lost |= _refresh_boxes(data, at, a, b, lane, position, angle, keep, keep_turn)
+        if lost != 0:
             loose_count = _set_loose(
-                data, rows, k, a, b, pair, colour, used, manifolds, points, loose, loose_count
+                data, rows, k, lost, a, b, pair, colour, used, manifolds, points, loose, loose_count
             )
     return loose_count
 
 
 @inlined
 def _set_loose(
-    data: Numbers, rows: int, k: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
+    data: Numbers, rows: int, k: int, lost: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, points: Points, loose: Rows, loose_count: int,
 ) -> int:  # fmt: skip
-    """Give the marked lanes of a block back to their records; return how many pairs are loose."""
+    """Give the lanes of a block that are ``lost`` back to their records; return how many pairs are loose."""
     for lane in range(WIDE):
         p = pair[k * WIDE + lane]
-        if p >= 0 and data[k * rows + WA + lane] > 0.0:
+        if p >= 0 and (lost >> lane) & 1:
             store_lane(data, rows, k * WIDE + lane, p, manifolds, points)
             manifolds[p].lane = -1
             loose[loose_count] = p

@@ -1,7 +1,6 @@
 """Impulses at settled contacts, eight at a time, by the formulas of :mod:`physicslab.kernels.impulse`."""
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
-from physicslab.kernels.block_contact import gather, scatter
 from physicslab.kernels.block_layout import (
     ARM_AX,
     ARM_AY,
@@ -26,14 +25,20 @@ from physicslab.kernels.block_layout import (
     SEPARATION,
     SIZE,
     TWO,
-    WA,
-    WB,
     WIDE,
-    XA,
-    XB,
-    YA,
-    YB,
 )  # fmt: skip
+from physicslab.kernels.wide import (
+    Wide,
+    choose,
+    greater,
+    least,
+    put,
+    put_numbers,
+    put_vectors,
+    take,
+    take_numbers,
+    take_vectors,
+)
 
 __all__ = ["DEEPER", "SOFT", "pressed", "start_lanes", "sweep_lanes"]
 
@@ -45,126 +50,129 @@ DEEPER = 0.15
 
 
 @fused
-def pressed(
-    impulse: float, mass: float, v: float, separation: float, size: float, inverse_h: float, push_rate: float,
+def pressed[N: (float, Wide)](
+    impulse: N, mass: N, v: N, separation: N, size: N, inverse_h: float, push_rate: float,
     mass_scale: float, impulse_scale: float, slop: float, heaviest: float,
-) -> float:  # fmt: skip
+) -> N:  # fmt: skip
     """Return the normal impulse [N s] after one more look at a point that approaches at -v [m/s].
 
     Below the slop the contact is a stiff, overdamped spring that takes ``push_rate`` of the overlap a second;
     no faster than what balances twice the load, or a pile of overlapping bodies would fly apart. A positive
     separation may be closed within the time that the impulses stand for, and not more.
     """
-    most = mass * push_rate * SOFT * size + 2.0 * min(impulse, heaviest) * impulse_scale / mass_scale
-    push = max(mass * push_rate * min(separation + slop * size, 0.0), -most)
-    push = 0.0 if separation < -DEEPER * size else push
+    load = least(impulse, heaviest) * (2.0 * impulse_scale / mass_scale)
+    most = mass * size * (push_rate * SOFT) + load
+    push = greater(mass * push_rate * least(separation + slop * size, 0.0), -most)
+    push = choose(separation < -DEEPER * size, 0.0, push)
     soft = impulse - mass_scale * (mass * v + push) - impulse_scale * impulse
     hard = impulse - mass * (v + separation * inverse_h)
-    return max(hard if separation > 0.0 else soft, 0.0)
+    total: N = greater(choose(separation > 0.0, hard, soft), 0.0)
+    return total
 
 
 @fused
 def _pushed(
-    block: Numbers, point: int, lane: int, v: float, drift: float, inverse_h: float,
+    data: Numbers, point: int, size: Wide, v: Wide, drift: float, inverse_h: float,
     push_rate: float, mass_scale: float, impulse_scale: float, slop: float, heaviest: float,
-) -> float:  # fmt: skip
-    """Let the separation follow the velocity, set the normal impulse anew; return its change [N s]."""
-    separation = block[point + SEPARATION + lane] + drift * v
-    block[point + SEPARATION + lane] = separation
-    impulse, mass = block[point + IMPULSE + lane], block[point + MASS + lane]
+) -> Wide:  # fmt: skip
+    """Let the separations follow the velocity, set the normal impulses anew; return their change [N s]."""
+    separation = take(data, point + SEPARATION)
+    if drift != 0.0:
+        separation = separation + drift * v
+        put(data, point + SEPARATION, separation)
+    impulse, mass = take(data, point + IMPULSE), take(data, point + MASS)
     total = pressed(
-        impulse, mass, v, separation, block[SIZE + lane], inverse_h, push_rate, mass_scale, impulse_scale,
-        slop, heaviest,
-    )  # fmt: skip
-    block[point + IMPULSE + lane] = total
-    change: float = total - impulse
-    return change
+        impulse, mass, v, separation, size, inverse_h, push_rate, mass_scale, impulse_scale, slop, heaviest
+    )
+    put(data, point + IMPULSE, total)
+    return total - impulse
 
 
 @fused
-def _rubbed(block: Numbers, point: int, lane: int, v: float) -> float:
-    """Set the impulse across anew, mu times the normal one at the most; return its change [N s]."""
-    limit, rub = block[FRICTION + lane] * block[point + IMPULSE + lane], block[point + RUB + lane]
-    total = min(max(rub - block[point + RUB_MASS + lane] * v, -limit), limit)
-    block[point + RUB + lane] = total
-    change: float = total - rub
-    return change
+def _rubbed(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide:
+    """Set the impulses across anew, mu times the normal ones at the most; return their change [N s]."""
+    limit, rub = friction * take(data, point + IMPULSE), take(data, point + RUB)
+    total: Wide = least(greater(rub - take(data, point + RUB_MASS) * v, -limit), limit)
+    put(data, point + RUB, total)
+    return total - rub
 
 
-@inlined
+@fused
 def _sweep_discs(
-    block: Numbers, drift: float, inverse_h: float, push_rate: float, mass_scale: float,
-    impulse_scale: float, slop: float, heaviest: float,
+    data: Numbers, at: int, a: Rows, b: Rows, lane: int, linear: Vectors, angular: Numbers,
+    drift: float, inverse_h: float, push_rate: float,
+    mass_scale: float, impulse_scale: float, slop: float, heaviest: float,
 ) -> None:  # fmt: skip
     """Go through a block of discs; pushes turn no disc, so that friction sees nothing of them."""
-    for lane in range(WIDE):
-        nx, ny = block[NORMAL_X + lane], block[NORMAL_Y + lane]
-        ra, rb = block[RADIUS_A + lane], block[RADIUS_B + lane]
-        vx, vy = block[XB + lane] - block[XA + lane], block[YB + lane] - block[YA + lane]
-        across = nx * vy - ny * vx - rb * block[WB + lane] - ra * block[WA + lane]
-        push = _pushed(
-            block, ONE, lane, nx * vx + ny * vy, drift, inverse_h, push_rate, mass_scale,
-            impulse_scale, slop, heaviest,
-        )  # fmt: skip
-        rub = _rubbed(block, ONE, lane, across)
-        px, py = push * nx - rub * ny, push * ny + rub * nx
-        block[XA + lane] -= block[MASS_A + lane] * px
-        block[YA + lane] -= block[MASS_A + lane] * py
-        block[XB + lane] += block[MASS_B + lane] * px
-        block[YB + lane] += block[MASS_B + lane] * py
-        block[WA + lane] -= block[INERTIA_A + lane] * ra * rub
-        block[WB + lane] -= block[INERTIA_B + lane] * rb * rub
+    vax, vay = take_vectors(linear, a, lane)
+    vbx, vby = take_vectors(linear, b, lane)
+    wa, wb = take_numbers(angular, a, lane), take_numbers(angular, b, lane)
+    nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
+    ra, rb = take(data, at + RADIUS_A), take(data, at + RADIUS_B)
+    vx, vy = vbx - vax, vby - vay
+    push = _pushed(
+        data, at + ONE, take(data, at + SIZE), nx * vx + ny * vy, drift, inverse_h, push_rate, mass_scale,
+        impulse_scale, slop, heaviest,
+    )  # fmt: skip
+    across = nx * vy - ny * vx - rb * wb - ra * wa
+    rub = _rubbed(data, at + ONE, take(data, at + FRICTION), across)
+    px, py = push * nx - rub * ny, push * ny + rub * nx
+    ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
+    put_vectors(linear, a, lane, vax - ma * px, vay - ma * py)
+    put_vectors(linear, b, lane, vbx + mb * px, vby + mb * py)
+    put_numbers(angular, a, lane, wa - take(data, at + INERTIA_A) * ra * rub)
+    put_numbers(angular, b, lane, wb - take(data, at + INERTIA_B) * rb * rub)
 
 
-@inlined
+@fused
+def _levers(data: Numbers, point: int, nx: Wide, ny: Wide) -> tuple[Wide, Wide, Wide, Wide]:
+    """Return how far normal and tangent pass by both centres [m]: r_a x n, r_b x n, r_a x t, r_b x t."""
+    ax, ay = take(data, point + ARM_AX), take(data, point + ARM_AY)
+    bx, by = take(data, point + ARM_BX), take(data, point + ARM_BY)
+    return ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny
+
+
+@fused
 def _sweep_boxes(
-    block: Numbers, drift: float, inverse_h: float, push_rate: float, mass_scale: float,
-    impulse_scale: float, slop: float, heaviest: float,
+    data: Numbers, at: int, a: Rows, b: Rows, lane: int, linear: Vectors, angular: Numbers,
+    drift: float, inverse_h: float, push_rate: float,
+    mass_scale: float, impulse_scale: float, slop: float, heaviest: float,
 ) -> None:  # fmt: skip
     """Go through a block of boxes: both pushes, then both points' friction.
 
     Velocities at the points are worked out once; what an impulse does to the next point's is added to it (the
     effective masses between them), for a processor waits less for that than for the bodies' velocities.
     """
-    for lane in range(WIDE):
-        nx, ny = block[NORMAL_X + lane], block[NORMAL_Y + lane]
-        ma, mb = block[MASS_A + lane], block[MASS_B + lane]
-        ia, ib = block[INERTIA_A + lane], block[INERTIA_B + lane]
-        vx, vy = block[XB + lane] - block[XA + lane], block[YB + lane] - block[YA + lane]
-        wa, wb = block[WA + lane], block[WB + lane]
-        ax, ay, bx, by = (
-            block[ONE + ARM_AX + lane], block[ONE + ARM_AY + lane],
-            block[ONE + ARM_BX + lane], block[ONE + ARM_BY + lane],
-        )  # fmt: skip
-        n1a, n1b, t1a, t1b = ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny
-        ax, ay, bx, by = (
-            block[TWO + ARM_AX + lane], block[TWO + ARM_AY + lane],
-            block[TWO + ARM_BX + lane], block[TWO + ARM_BY + lane],
-        )  # fmt: skip
-        n2a, n2b, t2a, t2b = ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny
-        along, across = nx * vx + ny * vy, nx * vy - ny * vx
-        push1 = _pushed(
-            block, ONE, lane, along + wb * n1b - wa * n1a, drift, inverse_h, push_rate, mass_scale,
-            impulse_scale, slop, heaviest,
-        )  # fmt: skip
-        felt = push1 * (ma + mb + ia * n1a * n2a + ib * n1b * n2b)
-        push2 = _pushed(
-            block, TWO, lane, along + wb * n2b - wa * n2a + felt, drift, inverse_h, push_rate,
-            mass_scale, impulse_scale, slop, heaviest,
-        )  # fmt: skip
-        turned_a, turned_b = ia * (n1a * push1 + n2a * push2), ib * (n1b * push1 + n2b * push2)
-        wa, wb = wa - turned_a, wb + turned_b
-        rub1 = _rubbed(block, ONE, lane, across + wb * t1b - wa * t1a)
-        felt = rub1 * (ma + mb + ia * t1a * t2a + ib * t1b * t2b)
-        rub2 = _rubbed(block, TWO, lane, across + wb * t2b - wa * t2a + felt)
-        push, rub = push1 + push2, rub1 + rub2
-        px, py = push * nx - rub * ny, push * ny + rub * nx
-        block[XA + lane] -= ma * px
-        block[YA + lane] -= ma * py
-        block[XB + lane] += mb * px
-        block[YB + lane] += mb * py
-        block[WA + lane] = wa - ia * (t1a * rub1 + t2a * rub2)
-        block[WB + lane] = wb + ib * (t1b * rub1 + t2b * rub2)
+    vax, vay = take_vectors(linear, a, lane)
+    vbx, vby = take_vectors(linear, b, lane)
+    wa, wb = take_numbers(angular, a, lane), take_numbers(angular, b, lane)
+    nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
+    ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
+    ia, ib = take(data, at + INERTIA_A), take(data, at + INERTIA_B)
+    size, friction = take(data, at + SIZE), take(data, at + FRICTION)
+    n1a, n1b, t1a, t1b = _levers(data, at + ONE, nx, ny)
+    n2a, n2b, t2a, t2b = _levers(data, at + TWO, nx, ny)
+    vx, vy = vbx - vax, vby - vay
+    along, across = nx * vx + ny * vy, nx * vy - ny * vx
+    push1 = _pushed(
+        data, at + ONE, size, along + wb * n1b - wa * n1a, drift, inverse_h, push_rate, mass_scale,
+        impulse_scale, slop, heaviest,
+    )  # fmt: skip
+    felt = push1 * (ma + mb + ia * n1a * n2a + ib * n1b * n2b)
+    push2 = _pushed(
+        data, at + TWO, size, along + wb * n2b - wa * n2a + felt, drift, inverse_h, push_rate,
+        mass_scale, impulse_scale, slop, heaviest,
+    )  # fmt: skip
+    wa, wb = wa - ia * (n1a * push1 + n2a * push2), wb + ib * (n1b * push1 + n2b * push2)
+    rub1 = _rubbed(data, at + ONE, friction, across + wb * t1b - wa * t1a)
+    felt = rub1 * (ma + mb + ia * t1a * t2a + ib * t1b * t2b)
+    rub2 = _rubbed(data, at + TWO, friction, across + wb * t2b - wa * t2a + felt)
+    push, rub = push1 + push2, rub1 + rub2
+    px, py = push * nx - rub * ny, push * ny + rub * nx
+    put_vectors(linear, a, lane, vax - ma * px, vay - ma * py)
+    put_vectors(linear, b, lane, vbx + mb * px, vby + mb * py)
+    put_numbers(angular, a, lane, wa - ia * (t1a * rub1 + t2a * rub2))
+    put_numbers(angular, b, lane, wb + ib * (t1b * rub1 + t2b * rub2))
 
 
 @inlined
@@ -177,53 +185,71 @@ def sweep_lanes(
     """Go once through all blocks. Separations first follow ``drift`` s of the velocities that are found."""
     for number in range(disc_blocks):
         k = disc_order[number]
-        block = discs[k * DISC_ROWS : (k + 1) * DISC_ROWS]
-        gather(block, k, disc_a, disc_b, linear, angular)
-        _sweep_discs(block, drift, inverse_h, push_rate, mass_scale, impulse_scale, slop, heaviest)
-        scatter(block, k, disc_a, disc_b, linear, angular)
+        _sweep_discs(
+            discs, k * DISC_ROWS, disc_a, disc_b, k * WIDE, linear, angular,
+            drift, inverse_h, push_rate, mass_scale, impulse_scale, slop, heaviest,
+        )  # fmt: skip
     for number in range(box_blocks):
         k = box_order[number]
-        block = boxes[k * BOX_ROWS : (k + 1) * BOX_ROWS]
-        gather(block, k, box_a, box_b, linear, angular)
-        _sweep_boxes(block, drift, inverse_h, push_rate, mass_scale, impulse_scale, slop, heaviest)
-        scatter(block, k, box_a, box_b, linear, angular)
+        _sweep_boxes(
+            boxes, k * BOX_ROWS, box_a, box_b, k * WIDE, linear, angular,
+            drift, inverse_h, push_rate, mass_scale, impulse_scale, slop, heaviest,
+        )  # fmt: skip
 
 
-@inlined
-def _start_discs(block: Numbers, carried: float) -> None:
-    for lane in range(WIDE):
-        nx, ny = block[NORMAL_X + lane], block[NORMAL_Y + lane]
-        impulse, rub = carried * block[ONE + IMPULSE + lane], carried * block[ONE + RUB + lane]
-        block[ONE + IMPULSE + lane], block[ONE + RUB + lane] = impulse, rub
-        px, py = impulse * nx - rub * ny, impulse * ny + rub * nx
-        ma, mb = block[MASS_A + lane], block[MASS_B + lane]
-        block[XA + lane] -= ma * px
-        block[YA + lane] -= ma * py
-        block[XB + lane] += mb * px
-        block[YB + lane] += mb * py
-        block[WA + lane] -= block[INERTIA_A + lane] * block[RADIUS_A + lane] * rub
-        block[WB + lane] -= block[INERTIA_B + lane] * block[RADIUS_B + lane] * rub
+@fused
+def _started(data: Numbers, point: int, nx: Wide, ny: Wide, carried: float) -> tuple[Wide, Wide, Wide]:
+    """Carry over the impulses of a point; return both together [N s], and the one across."""
+    impulse, rub = take(data, point + IMPULSE), take(data, point + RUB)
+    if carried != 1.0:
+        impulse, rub = carried * impulse, carried * rub
+        put(data, point + IMPULSE, impulse)
+        put(data, point + RUB, rub)
+    return impulse * nx - rub * ny, impulse * ny + rub * nx, rub
 
 
-@inlined
-def _start_boxes(block: Numbers, carried: float) -> None:
-    for lane in range(WIDE):
-        nx, ny = block[NORMAL_X + lane], block[NORMAL_Y + lane]
-        x, y, turn_a, turn_b = 0.0, 0.0, 0.0, 0.0
-        for point in (ONE, TWO):
-            impulse, rub = carried * block[point + IMPULSE + lane], carried * block[point + RUB + lane]
-            block[point + IMPULSE + lane], block[point + RUB + lane] = impulse, rub
-            px, py = impulse * nx - rub * ny, impulse * ny + rub * nx
-            turn_a += block[point + ARM_AX + lane] * py - block[point + ARM_AY + lane] * px
-            turn_b += block[point + ARM_BX + lane] * py - block[point + ARM_BY + lane] * px
-            x, y = x + px, y + py
-        ma, mb = block[MASS_A + lane], block[MASS_B + lane]
-        block[XA + lane] -= ma * x
-        block[YA + lane] -= ma * y
-        block[WA + lane] -= block[INERTIA_A + lane] * turn_a
-        block[XB + lane] += mb * x
-        block[YB + lane] += mb * y
-        block[WB + lane] += block[INERTIA_B + lane] * turn_b
+@fused
+def _start_discs(
+    data: Numbers, at: int, a: Rows, b: Rows, lane: int, linear: Vectors, angular: Numbers, carried: float
+) -> None:
+    vax, vay = take_vectors(linear, a, lane)
+    vbx, vby = take_vectors(linear, b, lane)
+    wa, wb = take_numbers(angular, a, lane), take_numbers(angular, b, lane)
+    px, py, rub = _started(data, at + ONE, take(data, at + NORMAL_X), take(data, at + NORMAL_Y), carried)
+    ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
+    ra, rb = take(data, at + RADIUS_A), take(data, at + RADIUS_B)
+    put_vectors(linear, a, lane, vax - ma * px, vay - ma * py)
+    put_vectors(linear, b, lane, vbx + mb * px, vby + mb * py)
+    put_numbers(angular, a, lane, wa - take(data, at + INERTIA_A) * ra * rub)
+    put_numbers(angular, b, lane, wb - take(data, at + INERTIA_B) * rb * rub)
+
+
+@fused
+def _turning(data: Numbers, point: int, px: Wide, py: Wide) -> tuple[Wide, Wide]:
+    """Return the moments of an impulse about both centres [N m s]."""
+    turn_a = take(data, point + ARM_AX) * py - take(data, point + ARM_AY) * px
+    turn_b = take(data, point + ARM_BX) * py - take(data, point + ARM_BY) * px
+    return turn_a, turn_b
+
+
+@fused
+def _start_boxes(
+    data: Numbers, at: int, a: Rows, b: Rows, lane: int, linear: Vectors, angular: Numbers, carried: float
+) -> None:
+    vax, vay = take_vectors(linear, a, lane)
+    vbx, vby = take_vectors(linear, b, lane)
+    wa, wb = take_numbers(angular, a, lane), take_numbers(angular, b, lane)
+    nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
+    x1, y1, _ = _started(data, at + ONE, nx, ny, carried)
+    x2, y2, _ = _started(data, at + TWO, nx, ny, carried)
+    turn1_a, turn1_b = _turning(data, at + ONE, x1, y1)
+    turn2_a, turn2_b = _turning(data, at + TWO, x2, y2)
+    px, py = x1 + x2, y1 + y2
+    ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
+    put_vectors(linear, a, lane, vax - ma * px, vay - ma * py)
+    put_vectors(linear, b, lane, vbx + mb * px, vby + mb * py)
+    put_numbers(angular, a, lane, wa - take(data, at + INERTIA_A) * (turn1_a + turn2_a))
+    put_numbers(angular, b, lane, wb + take(data, at + INERTIA_B) * (turn1_b + turn2_b))
 
 
 @inlined
@@ -235,13 +261,7 @@ def start_lanes(
     """Apply the impulses of the last substep, ``carried`` times as large, at all blocks."""
     for number in range(disc_blocks):
         k = disc_order[number]
-        block = discs[k * DISC_ROWS : (k + 1) * DISC_ROWS]
-        gather(block, k, disc_a, disc_b, linear, angular)
-        _start_discs(block, carried)
-        scatter(block, k, disc_a, disc_b, linear, angular)
+        _start_discs(discs, k * DISC_ROWS, disc_a, disc_b, k * WIDE, linear, angular, carried)
     for number in range(box_blocks):
         k = box_order[number]
-        block = boxes[k * BOX_ROWS : (k + 1) * BOX_ROWS]
-        gather(block, k, box_a, box_b, linear, angular)
-        _start_boxes(block, carried)
-        scatter(block, k, box_a, box_b, linear, angular)
+        _start_boxes(boxes, k * BOX_ROWS, box_a, box_b, k * WIDE, linear, angular, carried)

@@ -9,7 +9,7 @@ __all__ = [
     "ANGLE_A", "ANGLE_B", "ARM_AX", "ARM_AY", "ARM_BX", "ARM_BY", "BASE_X", "BASE_Y", "BOX", "BOX_ROWS",
     "DISC", "DISC_ROWS", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS", "MASS_A", "MASS_B",
     "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "RUB", "RUB_MASS", "SEPARATION", "SIZE", "TWO",
-    "WA", "WB", "WIDE", "XA", "XB", "YA", "YB",
+    "WIDE",
 ]  # fmt: skip
 
 WIDE = 8
@@ -20,13 +20,11 @@ DISC, BOX = 0, 1
 # Of every pair: the normal from A to B, the friction coefficient, inverse masses and moments of inertia, the
 # size of the smaller body.
 NORMAL_X, NORMAL_Y, FRICTION, MASS_A, MASS_B, INERTIA_A, INERTIA_B, SIZE = (WIDE * i for i in range(8))
-# Where the bodies' places and angles, or velocities, are brought together.
-XA, YA, WA, XB, YB, WB = (WIDE * i for i in range(8, 14))
 
 # Of a point: impulses along the normal and across, effective masses, the separation; and its arms.
 IMPULSE, RUB, MASS, RUB_MASS, SEPARATION = (WIDE * i for i in range(5))
 ARM_AX, ARM_AY, ARM_BX, ARM_BY, FOUND = (WIDE * i for i in range(5, 10))
-ONE = 14 * WIDE
+ONE = 8 * WIDE
 """Where the first point stands."""
 
 # The arms of discs lie along the normal.

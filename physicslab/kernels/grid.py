@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
 from physicslab.kernels.records import Manifolds, Pairs, Points
 
 __all__ = ["carry_over", "fat_boxes", "find_pairs", "still_holds"]
@@ -149,7 +149,7 @@ def _bucket(ix: int, iy: int, low_x: int, low_y: int, up: int, buckets: int, den
     return ((ix * 73856093) ^ (iy * 19349663)) & (buckets - 1)
 
 
-@inlined
+@allocating
 def _level(
     boxes: Vectors,
     fat: Vectors,
@@ -302,7 +302,7 @@ def find_pairs(
     return found
 
 
-@inlined
+@allocating
 def _sort_pairs(pairs: Pairs, start: int, end: int, n: int) -> None:
     """Sort pairs by a, then b: by counting, twice, the last significant key first."""
     spare = np.empty((end - start, 2), np.int64)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
 from physicslab.kernels.compensated import add
 from physicslab.kernels.dop853 import largest
 from physicslab.kernels.force_calls import Calls, accelerate_over
@@ -87,7 +87,7 @@ def _miss(
         miss[i] = x[n + i] - h * acceleration[i] - (x[i] - v[i])
 
 
-@inlined
+@allocating
 def _differentiate(
     q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
     inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,

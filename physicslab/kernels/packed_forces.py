@@ -5,7 +5,7 @@ Each works by the same formulas as the loop over columns in the module of that f
 
 import numpy as np
 
-from physicslab.kernels import inlined
+from physicslab.kernels import allocating
 from physicslab.kernels.drag import drag_factor
 from physicslab.kernels.force_calls import force_kernel
 from physicslab.kernels.gravity import FEW, attract, inverse_cube
@@ -23,7 +23,7 @@ def uniform_gravity(q, v, span, force, numbers, whole):  # type: ignore[no-untyp
         force[i + 1] += numbers[2 + p] * numbers[1]
 
 
-@inlined
+@allocating
 def _attract_packed(q, force, numbers, whole):  # type: ignore[no-untyped-def]
     """Add the attraction of more than a few, as :func:`planet_gravity` has it, by columns of them."""
     n = whole[0]

@@ -18,7 +18,7 @@ from llvmlite import ir
 from numba import float64, int64, types
 from numba.extending import intrinsic
 
-from physicslab.kernels import Numbers, inlined
+from physicslab.kernels import Numbers, allocating, inlined
 
 __all__ = [
     "attract_pairwise", "depth_of", "depth_of_pairs", "depth_terms", "inverse_root", "pull_of", "pull_terms",
@@ -132,7 +132,7 @@ def depth_of(
     return total
 
 
-@inlined
+@allocating
 def attract_pairwise(
     x: Numbers, y: Numbers, mass: Numbers, softening: float, plummer: bool, ax: Numbers, ay: Numbers
 ) -> None:

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined
 
 __all__ = [
     "COLUMNS", "HIGH_X", "HIGH_Y", "LOW_X", "LOW_Y", "MASS", "RADIUS", "X", "Y", "grow", "levels_of",
@@ -87,7 +87,7 @@ def _measure(node: Numbers, x: Numbers, y: Numbers, mass: Numbers, order: Rows) 
     node[XX], node[XY], node[YY], node[RADIUS] = xx, xy, yy, math.sqrt(furthest)
 
 
-@inlined
+@allocating
 def grow(x: Numbers, y: Numbers, mass: Numbers, order: Rows, nodes: Vectors, levels: int) -> None:
     """Sort ``order`` (n,) into the tree, and set ``nodes`` (2^(levels + 1) - 1, 11), the root first."""
     n = len(x)

@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined
 from physicslab.kernels.pairwise import depth_of, depth_terms, inverse_root, pull_of, pull_terms
 from physicslab.kernels.tree import COLUMNS, HIGH_X, HIGH_Y, LOW_X, LOW_Y, MASS, RADIUS, X, Y, grow, levels_of
 
@@ -88,7 +88,7 @@ def _depth_of_nodes(far: Vectors, count: int, at_x: float, at_y: float, added: f
     return total
 
 
-@inlined
+@allocating
 def _room(n: int, levels: int) -> tuple[Rows, Vectors, Vectors, Vectors, Rows]:
     """Return room for the tree of n bodies, the two lists of what pulls on a leaf, and the search for it."""
     leaves = 1 << levels
@@ -120,7 +120,7 @@ def _collect(
     return wholes, count, own
 
 
-@inlined
+@allocating
 def attract_by_tree(
     x: Numbers, y: Numbers, mass: Numbers, softening: float, plummer: bool, ax: Numbers, ay: Numbers
 ) -> None:
@@ -140,7 +140,7 @@ def attract_by_tree(
             ax[i], ay[i] = fx + gx, fy + gy
 
 
-@inlined
+@allocating
 def depth_by_tree(x: Numbers, y: Numbers, mass: Numbers, softening: float, plummer: bool) -> float:
     """Return the sum of m_a m_b times the depth [kg^2/m] over every pair of (n,) bodies."""
     added, near2, inverse = depth_terms(softening, plummer)

@@ -1,0 +1,106 @@
+"""Eight numbers as one: every operation gives, lane by lane, what it gives of plain numbers."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from physicslab.kernels import inlined
+from physicslab.kernels.block_layout import WIDE
+from physicslab.kernels.wide import (
+    choose,
+    greater,
+    least,
+    put,
+    put_numbers,
+    put_vectors,
+    root,
+    size_of,
+    take,
+    take_numbers,
+    take_vectors,
+    true_lanes,
+)
+
+type Numbers = NDArray[np.float64]
+
+
+@inlined
+def arithmetic(x: Numbers, y: Numbers, scale: float, out: Numbers) -> None:
+    a, b = take(x, 0), take(y, 0)
+    put(out, 0, a + b)
+    put(out, 8, a - scale)
+    put(out, 16, scale * a * b)
+    put(out, 24, a / b)
+    put(out, 32, -a)
+    put(out, 40, 1.0 / size_of(b) + root(size_of(a)))
+
+
+@inlined
+def comparisons(x: Numbers, y: Numbers, limit: float, out: Numbers) -> int:
+    a, b = take(x, 0), take(y, 0)
+    inside = (a < b) & (a > limit)
+    put(out, 0, least(a, b))
+    put(out, 8, greater(a, limit))
+    put(out, 16, choose(inside | (b > 1.0), a, limit))
+    return true_lanes(inside)
+
+
+@inlined
+def plain(x: float, y: float) -> tuple[float, float, float]:
+    return least(x, y), greater(x, y), choose(x < y, x, 0.0)
+
+
+@inlined
+def moved(vectors: Numbers, numbers: Numbers, rows: NDArray[np.int64], first: int) -> None:
+    x, y = take_vectors(vectors, rows, first)
+    n = take_numbers(numbers, rows, first)
+    put_vectors(vectors, rows, first, y, x + n)
+    put_numbers(numbers, rows, first, 2.0 * n)
+
+
+finite = st.floats(-1e100, 1e100).filter(lambda x: x == 0.0 or abs(x) > 1e-100)
+eight = st.lists(finite, min_size=WIDE, max_size=WIDE).map(np.array)
+
+
+@settings(max_examples=200)
+@given(eight, eight.filter(lambda y: bool(np.all(y != 0.0))), finite)
+def test_arithmetic_is_that_of_each_lane(x: Numbers, y: Numbers, scale: float) -> None:
+    out = np.zeros(48)
+    arithmetic(x, y, scale, out)
+    with np.errstate(over="ignore"):
+        expected = [x + y, x - scale, scale * x * y, x / y, -x, 1.0 / abs(y) + np.sqrt(abs(x))]
+    for found, wanted in zip(out.reshape(6, WIDE), expected, strict=True):
+        np.testing.assert_allclose(found, wanted, rtol=5e-16)
+
+
+@settings(max_examples=200)
+@given(eight, eight, finite)
+def test_comparisons_are_those_of_each_lane(x: Numbers, y: Numbers, limit: float) -> None:
+    out = np.zeros(24)
+    inside = (x < y) & (x > limit)
+    assert comparisons(x, y, limit, out) == sum(int(yes) << lane for lane, yes in enumerate(inside))
+    expected = [np.minimum(x, y), np.maximum(x, limit), np.where(inside | (y > 1.0), x, limit)]
+    assert np.array_equal(out.reshape(3, WIDE), expected)
+
+
+def test_what_is_not_a_number_stays_so() -> None:
+    out, x, y = np.zeros(48), np.full(WIDE, np.nan), np.ones(WIDE)
+    arithmetic(x, y, 1.0, out)
+    assert np.isnan(out).all()
+
+
+@given(finite, finite)
+def test_choices_are_the_same_of_plain_numbers(x: float, y: float) -> None:
+    assert plain(x, y) == (min(x, y), max(x, y), x if x < y else 0.0)
+
+
+@given(st.permutations(range(20)), st.integers(0, 12))
+def test_rows_are_gathered_and_given_back(order: list[int], first: int) -> None:
+    vectors, numbers = np.arange(40.0).reshape(20, 2), np.arange(100.0, 120.0)
+    rows = np.array(order)[first : first + WIDE]
+    expected, doubled = vectors.copy(), numbers.copy()
+    expected[rows, 0], expected[rows, 1] = vectors[rows, 1], vectors[rows, 0] + numbers[rows]
+    doubled[rows] *= 2.0
+    moved(vectors, numbers, np.array(order), first)
+    assert np.array_equal(vectors, expected) and np.array_equal(numbers, doubled)
