@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape
-from physicslab.kernels import block_contact, block_lanes
+from physicslab.kernels import block_admission, block_contact, block_lanes, block_seats
+from physicslab.kernels.block_lanes import Seats
 from physicslab.kernels.block_layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE
 
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["FEW", "Blocks", "Lanes"]
+__all__ = ["Blocks", "Lanes"]
 
 type _Numbers = NDArray[np.float64]
 type _Rows = NDArray[np.int64]
-FEW = 64
-"""So many contacts, at the least, are worth a block: fewer are done by the time that they are sorted."""
-_SPARSE = 0.5
-"""Blocks less full than that are sorted anew."""
 
 
 class Lanes:
@@ -69,7 +66,12 @@ class Lanes:
 
     def sort(self) -> None:
         """Put the blocks in the order in which they are solved."""
-        block_lanes.sort_blocks(self.count, self.colour, self.order)
+        block_admission.sort_blocks(self.count, self.colour, self.order)
+
+    @property
+    def seats(self) -> Seats:
+        """What kernels want to know that count the blocks themselves."""
+        return self.data, self.a, self.b, self.pair, self.colour, self.used, self.order
 
     @property
     def layout(self) -> tuple[int, _Numbers, int, _Rows, _Rows, _Rows, _Rows, NDArray[np.uint64]]:
@@ -97,15 +99,16 @@ class Blocks:
     """
 
     kernels = (
-        block_lanes.admit, block_lanes.store, block_lanes.list_loose, block_lanes.keep_loose,
-        block_lanes.follow_pairs, block_lanes.wake, block_lanes.seat_again, block_lanes.sort_blocks,
+        block_admission.settle, block_seats.seat_again, block_admission.sort_blocks,
+        block_seats.remember, block_seats.outdated,
+        block_lanes.store, block_lanes.list_loose, block_lanes.follow_pairs, block_lanes.wake,
         block_lanes.sort_loose, block_contact.refresh, block_contact.deepest_lane,
     )  # fmt: skip
 
     def __init__(self) -> None:
         self.discs, self.boxes = Lanes(DISC), Lanes(BOX)
         self.lanes = 0
-        self._made_of: tuple[NDArray[Any], ...] = ()
+        self._made_of: NDArray[np.float64] = np.zeros((0, 7))
 
     @property
     def kinds(self) -> tuple[Lanes, Lanes]:
@@ -118,37 +121,20 @@ class Blocks:
             lanes.reset(rows)
         self.lanes = 0
 
-    def worthwhile(self, loose: int) -> bool:
-        """Whether so many loose contacts should be looked through for settled ones."""
-        return self.lanes > 0 or loose >= FEW
-
-    def trim(self) -> None:
-        """Drop the empty blocks at the end: what was there once makes no difference."""
-        for lanes in self.kinds:
-            taken = np.flatnonzero(lanes.pair[: lanes.count * WIDE] >= 0)
-            lanes.count = int(taken[-1]) // WIDE + 1 if len(taken) else 0
-
-    @property
-    def sparse(self) -> bool:
-        """Whether too many lanes stand empty."""
-        room = WIDE * (self.discs.count + self.boxes.count)
-        return room > 2 * block_lanes.COLOURS * WIDE and self.lanes < _SPARSE * room
-
     @property
     def known(self) -> bool:
         """Whether it is known what the lanes were made of."""
-        return bool(self._made_of)
+        return len(self._made_of) > 0
 
     def remember(self, world: World) -> None:
         """Keep the masses, sizes and materials that lanes hold as well."""
-        self._made_of = tuple(column.copy() for column in _columns(world))
+        columns = _columns(world)
+        self._made_of = np.zeros((len(columns[0]), len(columns)))
+        block_seats.remember(self._made_of, *columns)
 
     def outdated(self, world: World) -> bool:
         """Whether one of those has been changed."""
-        columns = _columns(world)
-        return len(columns) != len(self._made_of) or not all(
-            np.array_equal(kept, column) for kept, column in zip(self._made_of, columns, strict=True)
-        )
+        return bool(block_seats.outdated(self._made_of, *_columns(world)))
 
 
 def _in_lines(size: int) -> NDArray[np.float64]:
@@ -159,9 +145,9 @@ def _in_lines(size: int) -> NDArray[np.float64]:
     return room[start : start + size]
 
 
-def _columns(world: World) -> tuple[NDArray[Any], ...]:
+def _columns(world: World) -> tuple[_Numbers, ...]:
     shape, material, bodies = world.table(Shape), world.table(Material), world.bodies
     return (
-        bodies.inverse_mass, bodies.inverse_inertia, material["friction"], material["restitution"],
+        bodies.inverse_mass, bodies.inverse_inertia, material["restitution"], material["friction"],
         shape["radius"], shape["width"], shape["height"],
     )  # fmt: skip

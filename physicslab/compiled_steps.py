@@ -7,8 +7,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
-from physicslab.blocks import FEW
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.kernels import contact_steps
@@ -38,8 +38,6 @@ _OF_FRAMES = {Stage.INPUT, Stage.RENDER, Stage.HUD}
 _MOST = 4096
 """So many steps, at the most, are one call: whoever wants to stop a run waits for it."""
 _PLAN = [stage for stage, _ in LEAPFROG.substep]
-_BEFORE_IMPACTS = _PLAN.index(Stage.IMPACT)
-"""How many stages of a substep there are before that."""
 
 
 def why_not_compiled(world: World) -> str | None:
@@ -63,9 +61,8 @@ def why_not_compiled(world: World) -> str | None:
 class CompiledSteps:
     """Makes steps of one world in a compiled loop, until its structure changes; the bits are those of steps.
 
-    The loop comes back where Python is needed: to list the near pairs anew, to look for settled contacts
-    where many touch, to report a divergence. A world that has settled contacts in blocks is stepped stage by
-    stage.
+    The loop comes back where Python is needed: to list the near pairs anew, to make the first blocks or room
+    for more, to report a divergence.
 
     Parameters
     ----------
@@ -92,7 +89,7 @@ class CompiledSteps:
         """Whether the coming step can be made so, as things stand."""
         contacts = world.contacts
         heavy = world.bodies.unequal and world.has_forces
-        return not (heavy or contacts.stale or contacts.blocks.lanes)
+        return not (heavy or contacts.stale)
 
     def run(self, world: World, steps: int, before: Checkpoint) -> int:
         """Make ``steps`` steps or fewer, at least one, and return how many; the clock goes with them.
@@ -107,7 +104,8 @@ class CompiledSteps:
         h = world.simulation.dt / world.simulation.substeps
         contacts = world.contacts
         contacts.in_order()
-        contacts.blocks.trim()
+        if contacts.blocks.lanes and contacts.blocks.outdated(world):
+            contacts.dissolve(len(world.roster))
         self._contact.begin(world, h)
         made, substep, stage, steps = 0, 0, BEGIN, min(steps, _MOST)
         while made < steps:
@@ -122,9 +120,6 @@ class CompiledSteps:
                 self._contact.begin(world, h)  # another step than the one before may have begun
                 self._timed("ContactSystem", self._contact.settle, world, h)
                 stage = STRIKE
-                if contacts.blocks.lanes:
-                    self._finish(world, h)
-                    return made + 1
         return made
 
     def _advance(
@@ -134,9 +129,12 @@ class CompiledSteps:
         began = time.perf_counter_ns()
         contacts, substeps = world.contacts, world.simulation.substeps
         self._cost[:] = 0
-        why, done, substep, contacts.active, contacts.left, struck_before, struck, contacts.span = (
-            contact_steps.advance(steps, substeps, substep, stage, h, *self._numbers(world, before, h))
+        counts = contacts.counted()
+        why, done, substep, struck_before, struck, contacts.span = contact_steps.advance(
+            steps, substeps, substep, stage, h, *self._numbers(world, before, h, counts)
         )
+        contacts.recount(counts)
+        contacts.changed()
         world.steps += done
         world.time += done * world.simulation.dt
         world.collisions += struck_before
@@ -147,13 +145,15 @@ class CompiledSteps:
         self._note(world, done, time.perf_counter_ns() - began)
         return why, done, substep
 
-    def _numbers(self, world: World, before: Checkpoint, h: float) -> tuple[Any, ...]:
+    def _numbers(
+        self, world: World, before: Checkpoint, h: float, counts: NDArray[np.int64]
+    ) -> tuple[Any, ...]:
         """Return what the loop works on."""
         transform, velocity = world.table(Transform), world.table(Velocity)
         shape, material, bodies = world.table(Shape), world.table(Material), world.bodies
         contacts, physics, resolve = world.contacts, world.physics, self._resolve
         return (
-            world.simulation.iterations or 1, FEW,
+            world.simulation.iterations or 1,
             (transform["position"], transform["angle"], velocity["linear"], velocity["angular"]),
             before.columns,
             (shape["kind"], shape["radius"], shape["width"], shape["height"]),
@@ -163,22 +163,13 @@ class CompiledSteps:
             (physics.linear_damping, physics.angular_damping), self._contact.fall(world, h),
             self._broad_phase.fat,
             (self._broad_phase.bounds, physics.bounds_restitution, physics.bounds_friction),
-            contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
-            contacts.touching, contacts.active,
-            (*contacts.blocks.discs.solved, *contacts.blocks.boxes.solved),
+            (
+                contacts.manifolds, contacts.points, contacts.candidate_pairs,
+                contacts.loose, contacts.touching,
+            ),
+            counts, contacts.blocks.discs.seats, contacts.blocks.boxes.seats, contacts.opened,
             (resolve.hertz, resolve.damping_ratio, resolve.slop, resolve.max_push), contacts.span, self._cost,
         )  # fmt: skip
-
-    def _finish(self, world: World, h: float) -> None:
-        """Make the rest of a step, from its first impacts on, stage by stage: contacts have settled."""
-        world.force_evaluations += world.has_forces
-        for name, places in self._within.items():
-            made = sum(place < _BEFORE_IMPACTS for place in places)
-            world.schedule.note(name, made + (name == "ContactSystem"), 0)
-        world.go_through(h, world.simulation.substeps, begun=_BEFORE_IMPACTS)
-        world.schedule.run(Stage.FINISH, world, world.simulation.dt)
-        world.steps += 1
-        world.time += world.simulation.dt
 
     def _note(self, world: World, steps: int, nanoseconds: int) -> None:
         """Note as many calls as stepping would make; the time is shared out by the loop's own clock."""

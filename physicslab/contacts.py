@@ -11,9 +11,17 @@ from numpy.typing import NDArray
 
 from physicslab.blocks import Blocks
 from physicslab.components import Material, Shape, Transform, Velocity
-from physicslab.kernels import block_contact, block_lanes, compile_kernels, grid, impulse
+from physicslab.kernels import (
+    block_admission,
+    block_contact,
+    block_lanes,
+    block_seats,
+    compile_kernels,
+    grid,
+    impulse,
+)
+from physicslab.kernels.block_admission import FEW
 from physicslab.kernels.block_layout import WIDE
-from physicslab.kernels.pair import NEAR, STILL
 from physicslab.kernels.records import IMPACT, MANIFOLD, POINT
 from physicslab.vector import Vector2
 
@@ -106,6 +114,8 @@ class Contacts:
         How many pairs are near each other, and how many have points, loose or not.
     left : int
         How many pairs the impacts of this substep have left to the solver.
+    opened : int64 array (COLOURS,)
+        Room in which blocks with free lanes are noted.
     span : float
         The time [s] that the points' impulses stand for; 0 before there were any.
     stale : bool
@@ -123,7 +133,8 @@ class Contacts:
         self.candidate_pairs = self.loose_count = 0
         self.active = self.left = 0
         self.blocks = Blocks()
-        self._opened = np.zeros(block_lanes.COLOURS, np.int64)
+        self.opened = np.zeros(block_lanes.COLOURS, np.int64)
+        self._counts = np.zeros(7, np.int64)
         self._synced, self._seats = True, False
         self.unordered = False
         self.span = 0.0
@@ -187,37 +198,48 @@ class Contacts:
         self.unordered = False
         self.loose_count = int(block_lanes.list_loose(self.manifolds, self.candidate_pairs, self.loose))
 
-    def admit(self, world: World, h: float) -> None:
+    def settle(self, world: World, h: float) -> None:
         """Take what has settled into blocks."""
-        blocks = self.blocks
-        blocks.trim()
-        if blocks.sparse:
-            return self.dissolve(len(world.roster))
-        if not blocks.worthwhile(self.active):
-            return None
+        blocks, bodies, material, shape = self.blocks, world.bodies, world.table(Material), world.table(Shape)
+        if not blocks.lanes and self.active < FEW:
+            return
         world.schedule.compile(blocks.kernels)
-        shape, linear, bodies = world.table(Shape)["kind"], world.table(Velocity)["linear"], world.bodies
-        material = world.table(Material)
-        came = 0
-        for lanes in blocks.kinds:
-            lanes.make_room(lanes.count + self.active // WIDE + block_lanes.COLOURS)
-            before = lanes.count
-            lanes.count, more = block_lanes.admit(
-                *lanes.layout, self._opened, self.manifolds, self.points, self.touching, self.active,
-                shape, world.table(Shape)["radius"], material["restitution"], material["friction"], linear,
-                bodies.inverse_mass, bodies.inverse_inertia,
-                h, 0.25 * STILL, 0.25 * NEAR,  # half of what sets them loose
+        known = blocks.lanes > 0
+        while True:
+            counts = self.counted()
+            came = block_admission.settle(
+                counts, blocks.discs.seats, blocks.boxes.seats, self.opened,
+                self.manifolds, self.points, self.candidate_pairs, self.loose, self.touching,
+                shape["kind"], shape["radius"], material["restitution"], material["friction"],
+                world.table(Velocity)["linear"], bodies.inverse_mass, bodies.inverse_inertia, h,
             )  # fmt: skip
-            if more or lanes.count != before:
-                lanes.sort()
-            came += more
-        if came:
-            if not blocks.lanes:
-                blocks.remember(world)
-            blocks.lanes += came
-            self.active = int(block_lanes.keep_loose(self.manifolds, self.touching, self.active))
-            self._list_loose()
-        return None
+            self.recount(counts)
+            if came != block_admission.FULL:
+                break
+            for lanes in blocks.kinds:
+                lanes.make_room(lanes.count + self.active // WIDE + block_lanes.COLOURS)
+        if came == block_admission.SPARSE:
+            self.dissolve(len(world.roster))
+        if blocks.lanes and not known:
+            blocks.remember(world)
+
+    def counted(self) -> NDArray[np.int64]:
+        """Return the counts that kernels change, in the order of :mod:`physicslab.kernels.block_lanes`."""
+        discs, boxes = self.blocks.kinds
+        self._counts[:] = (
+            self.loose_count, self.active, self.left,
+            self.blocks.lanes, discs.count, boxes.count, self.unordered,
+        )  # fmt: skip
+        return self._counts
+
+    def recount(self, counts: NDArray[np.int64]) -> None:
+        """Take over the counts that a kernel has changed."""
+        discs, boxes = self.blocks.kinds
+        (
+            self.loose_count, self.active, self.left,
+            self.blocks.lanes, discs.count, boxes.count, unordered,
+        ) = counts.tolist()  # fmt: skip
+        self.unordered = bool(unordered)
 
     def relist(self, world: World, pairs: NDArray[np.int64], count: int) -> None:
         """Take a new sorted list of ``count`` near pairs (a, b, wall); pairs known before stay as they are.
@@ -255,7 +277,7 @@ class Contacts:
         self._seats, material = False, world.table(Material)
         world.schedule.compile(self.blocks.kernels)
         for lanes in self.blocks.kinds:
-            lanes.count, seated = block_lanes.seat_again(
+            lanes.count, seated = block_seats.seat_again(
                 lanes.kind, lanes.data, lanes.a, lanes.b, lanes.pair, lanes.colour, lanes.used,
                 self.manifolds, self.points, self.candidate_pairs,
                 world.table(Shape)["kind"], world.table(Shape)["radius"],

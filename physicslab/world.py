@@ -380,7 +380,7 @@ class World:
                 elif self._flights is None:
                     finer = max((system.finer(self) for system in self.schedule.running), default=1)
                     self.substeps = finer * self._simulation.substeps
-                    self.go_through(dt / parts / self.substeps, parts * self.substeps)
+                    self._go_through(dt / parts / self.substeps, parts * self.substeps)
                 elif parts > 1:
                     self._flights.run(self, dt / parts, parts)
                 else:
@@ -409,11 +409,12 @@ class World:
             raise ValueError(f"dt = {dt!r}: must be at most {_MOST_PARTS} times simulation.dt = {own!r} s")
         return max(1, math.ceil(dt / own - _TOO_LONG))
 
-    def go_through(self, h: float, count: int, begun: int = 0) -> None:
-        """Go through the stages of ``count`` substeps of ``h`` seconds, of which so many are ``begun``."""
-        run, stages = self.schedule.run, itertools.repeat(self.method.stages.substep, count)
-        for stage, share in itertools.islice(itertools.chain.from_iterable(stages), begun, None):
-            run(stage, self, share * h)
+    def _go_through(self, h: float, count: int) -> None:
+        """Go through the stages of ``count`` substeps of ``h`` seconds."""
+        run, stages = self.schedule.run, self.method.stages.substep
+        for _ in range(count):
+            for stage, share in stages:
+                run(stage, self, share * h)
 
     def _flow(self, equations: Equations, dt: float, steps: int) -> None:
         """Advance by ``steps`` steps of ``dt`` in one compiled loop; nothing but forces acts."""

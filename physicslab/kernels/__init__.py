@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 __all__ = [
     "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
     "allocating", "ask_before_compiling", "cache_directory", "cached", "compile_kernels", "fused", "inlined",
-    "inlined_exactly", "kernel", "load", "prepare",
+    "inlined_loosely", "kernel", "load", "prepare",
 ]  # fmt: skip
 
 Numbers = Annotated[NDArray[np.float64], float64[::1]]
@@ -43,8 +43,8 @@ Flags = Annotated[NDArray[np.bool_], boolean[::1]]
 KERNELS: list[Any] = []
 """Every kernel of the modules imported so far, in the order of definition."""
 
-# NaN must survive ("nnan" and "ninf" are left out), so that a diverging run is seen.
 FASTMATH = {"contract", "nsz", "arcp", "reassoc"}
+"""What :func:`inlined_loosely` allows. NaN must survive, so that a diverging run is seen."""
 
 
 def cache_directory() -> Path:
@@ -92,7 +92,7 @@ def cached() -> Iterator[None]:
         settings.CACHE_DIR = before
 
 
-def _jit[F: Callable[..., Any]](function: F, fastmath: Any = FASTMATH, counts: bool = True) -> F:
+def _jit[F: Callable[..., Any]](function: F, counts: bool = True, fastmath: Any = False) -> F:
     njit: Any = numba.njit  # its types know no option of the target
     # No wrapper for C: nothing calls one, and compiling them takes four to seven per cent of the time.
     make = njit(cache=True, error_model="numpy", fastmath=fastmath, no_cfunc_wrapper=True, _nrt=counts)
@@ -101,7 +101,7 @@ def _jit[F: Callable[..., Any]](function: F, fastmath: Any = FASTMATH, counts: b
 
 
 def inlined[F: Callable[..., Any]](function: F) -> F:
-    """Make a function that kernels call, and that makes no arrays.
+    """Make a function that kernels call, and that makes and returns no arrays.
 
     Nobody counts who refers to those it is given: for five arrays that takes as long as the work on eight
     contacts.
@@ -110,7 +110,7 @@ def inlined[F: Callable[..., Any]](function: F) -> F:
 
 
 def allocating[F: Callable[..., Any]](function: F) -> F:
-    """Make a function that kernels call, and that makes arrays of its own."""
+    """Make a function that kernels call, and that makes or returns arrays."""
     return _jit(function)
 
 
@@ -121,13 +121,17 @@ def fused[F: Callable[..., Any]](function: F) -> F:
     takes as long as a third of the work.
     """
     with cached():
-        make = numba.njit(cache=True, error_model="numpy", fastmath=FASTMATH, inline="always")
+        make = numba.njit(cache=True, error_model="numpy", inline="always")
         return cast(F, make(function))
 
 
-def inlined_exactly[F: Callable[..., Any]](function: F) -> F:
-    """Make a function that kernels call, in which sums are made in the order in which they are written."""
-    return _jit(function, fastmath=False, counts=False)
+def inlined_loosely[F: Callable[..., Any]](function: F) -> F:
+    """Make an ``@inlined`` function in which sums are made in whatever order is fastest.
+
+    Elsewhere every operation is rounded by itself, in the order in which it is written: a formula gives the
+    same bits wherever LLVM puts it, be it in a kernel of its own or in a loop of whole steps.
+    """
+    return _jit(function, counts=False, fastmath=FASTMATH)
 
 
 def kernel[F: Callable[..., Any]](function: F) -> F:

@@ -45,6 +45,8 @@ __all__ = ["DEEPER", "SOFT", "pressed", "start_lanes", "sweep_lanes"]
 SOFT = 0.01
 """Share of the smaller body's size that the contact spring takes away at its full rate; the load on it comes
 on top."""
+_ROUNDING = 1e-12
+"""Share that is no overlap: of the corners of a box that is put on a floor, one may lie in it by rounding."""
 DEEPER = 0.15
 """Share beyond which overlap is not taken away by impulses."""
 
@@ -57,8 +59,8 @@ def pressed[N: (float, Wide)](
     """Return the normal impulse [N s] after one more look at a point that approaches at -v [m/s].
 
     Below the slop the contact is a stiff, overdamped spring that takes ``push_rate`` of the overlap a second;
-    no faster than what balances twice the load, or a pile of overlapping bodies would fly apart. A positive
-    separation may be closed within the time that the impulses stand for, and not more.
+    no faster than what balances twice the load, or a pile of overlapping bodies would fly apart. What is
+    apart may close the separation within the time that the impulses stand for, and not more.
     """
     load = least(impulse, heaviest) * (2.0 * impulse_scale / mass_scale)
     most = mass * size * (push_rate * SOFT) + load
@@ -66,7 +68,7 @@ def pressed[N: (float, Wide)](
     push = choose(separation < -DEEPER * size, 0.0, push)
     soft = impulse - mass_scale * (mass * v + push) - impulse_scale * impulse
     hard = impulse - mass * (v + separation * inverse_h)
-    total: N = greater(choose(separation > 0.0, hard, soft), 0.0)
+    total: N = greater(choose(separation > -_ROUNDING * size, hard, soft), 0.0)
     return total
 
 

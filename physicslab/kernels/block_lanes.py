@@ -9,51 +9,42 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.block_layout import (
-    ANGLE_A,
-    ANGLE_B,
     ARM_AX,
     ARM_AY,
     ARM_BX,
     ARM_BY,
-    BASE_X,
-    BASE_Y,
     BOX_ROWS,
     DISC,
     DISC_ROWS,
     FOUND,
-    FRICTION,
     IMPULSE,
-    INERTIA_A,
-    INERTIA_B,
-    MASS,
-    MASS_A,
-    MASS_B,
     NORMAL_X,
     NORMAL_Y,
     ONE,
     RADIUS_A,
     RADIUS_B,
     RUB,
-    RUB_MASS,
     SEPARATION,
     SIZE,
     TWO,
     WIDE,
 )  # fmt: skip
-from physicslab.kernels.records import Manifold, Manifolds, Point, Points
+from physicslab.kernels.records import Manifolds, Points
 
 __all__ = [
-    "COLOURS", "Masks", "admit", "empty_lane", "follow_pairs", "give_up", "keep_loose", "list_loose",
-    "seat_again", "sort_blocks", "sort_loose", "store",
-    "store_lane", "wake",
+    "ACTIVE", "BOX_BLOCKS", "COLOURS", "DISC_BLOCKS", "LANES", "LEFT", "LOOSE", "UNORDERED", "Masks", "Seats",
+    "empty_lane", "follow_pairs", "give_up", "list_loose", "sort_loose", "store", "store_lane", "wake",
 ]  # fmt: skip
 
 COLOURS = 64
 """So many blocks, at the most, may move one body; what is left over stays loose."""
-_OF_FIXED = 48
-"""The first colour of contacts with what nothing moves: they are solved last, and so hold best."""
 Masks = Annotated[NDArray[np.uint64], uint64[::1]]
 """A uint64 array (n,), bit by bit."""
+Seats = tuple[Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
+"""The blocks of a kind: data, rows of A and B, pairs, colours, the colours of each body, their order."""
+LOOSE, ACTIVE, LEFT, LANES, DISC_BLOCKS, BOX_BLOCKS, UNORDERED = range(7)
+"""What kernels count that change it: loose pairs, those of them that touch, those that impacts have left to
+the solver, lanes in use, blocks, and whether loose pairs are out of order."""
 
 
 @inlined
@@ -69,31 +60,6 @@ def empty_lane(data: Numbers, rows: int, k: int, lane: int, a: Rows, b: Rows, pa
         block[TWO + SEPARATION + lane] = block[ONE + FOUND + lane] = block[TWO + FOUND + lane] = 1.0
     a[k * WIDE + lane] = b[k * WIDE + lane] = 0
     pair[k * WIDE + lane] = -1
-
-
-@inlined
-def _fill_common(
-    data: Numbers, at: int, manifold: Manifold, inverse_mass: Numbers, inverse_inertia: Numbers
-) -> None:
-    a, b = manifold.a, manifold.b
-    data[at + NORMAL_X], data[at + NORMAL_Y] = manifold.normal_x, manifold.normal_y
-    data[at + FRICTION], data[at + SIZE] = manifold.friction, manifold.size
-    data[at + MASS_A], data[at + MASS_B] = inverse_mass[a], inverse_mass[b]
-    data[at + INERTIA_A], data[at + INERTIA_B] = inverse_inertia[a], inverse_inertia[b]
-
-
-@inlined
-def _fill_point(data: Numbers, at: int, point: Point) -> None:
-    data[at + IMPULSE], data[at + RUB] = point.normal_impulse, point.tangent_impulse
-    data[at + MASS], data[at + RUB_MASS] = point.normal_mass, point.tangent_mass
-    data[at + SEPARATION] = point.separation
-
-
-@inlined
-def _fill_arms(data: Numbers, at: int, point: Point) -> None:
-    data[at + ARM_AX], data[at + ARM_AY] = point.arm_ax, point.arm_ay
-    data[at + ARM_BX], data[at + ARM_BY] = point.arm_bx, point.arm_by
-    data[at + FOUND] = point.found_separation
 
 
 @inlined
@@ -119,203 +85,6 @@ def store(data: Numbers, rows: int, blocks: int, pair: Rows, manifolds: Manifold
     for lane in range(blocks * WIDE):
         if pair[lane] >= 0:
             store_lane(data, rows, lane, pair[lane], manifolds, points)
-
-
-@inlined
-def _is_settled(
-    manifold: Manifold, one: Point, two: Point, linear: Vectors, h: float, still: float, near: float
-) -> bool:
-    """Whether a contact may lie in a block: it is slow for its size, and overlaps little."""
-    if manifold.swept != 0 or manifold.struck != 0 or one.ahead != 0:
-        return False
-    a, b, deep = manifold.a, manifold.b, -0.1 * manifold.size
-    if one.separation < deep or (manifold.count == 2 and (two.separation < deep or two.ahead != 0)):
-        return False
-    ux, uy = (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h
-    slow = still if manifold.found == 0 else near
-    return bool(ux * ux + uy * uy <= slow * slow * manifold.size * manifold.size)
-
-
-@inlined
-def _seat(
-    kind: int, data: Numbers, lane: int, a: Rows, b: Rows, pair: Rows, used: Masks, colour: int,
-    manifolds: Manifolds, points: Points, p: int,
-    radius: Numbers, restitution: Numbers, friction: Numbers,
-    inverse_mass: Numbers, inverse_inertia: Numbers,
-) -> None:  # fmt: skip
-    """Put a pair into a free lane of a block of that colour."""
-    rows = DISC_ROWS if kind == DISC else BOX_ROWS
-    at = lane // WIDE * rows + lane % WIDE
-    manifold, one, two = manifolds[p], points[2 * p], points[2 * p + 1]
-    i, j = manifold.a, manifold.b
-    manifold.restitution = min(restitution[i], restitution[j])
-    manifold.friction = math.sqrt(friction[i] * friction[j])
-    if kind == DISC:
-        manifold.size, manifold.swept = 2.0 * min(radius[i], radius[j]), 0
-    _fill_common(data, at, manifold, inverse_mass, inverse_inertia)
-    _fill_point(data, at + ONE, one)
-    if kind == DISC:
-        ra, rb, linear = radius[i], radius[j], inverse_mass[i] + inverse_mass[j]
-        data[at + RADIUS_A], data[at + RADIUS_B] = ra, rb
-        data[at + ONE + MASS] = 1.0 / linear
-        data[at + ONE + RUB_MASS] = 1.0 / (
-            linear + inverse_inertia[i] * ra * ra + inverse_inertia[j] * rb * rb
-        )
-    else:
-        data[at + BASE_X], data[at + BASE_Y] = manifold.base_x, manifold.base_y
-        data[at + ANGLE_A], data[at + ANGLE_B] = manifold.base_angle_a, manifold.base_angle_b
-        _fill_arms(data, at + ONE, one)
-        if manifold.count == 2:
-            _fill_point(data, at + TWO, two)
-            _fill_arms(data, at + TWO, two)
-    a[lane], b[lane], pair[lane] = i, j, p
-    bit = np.uint64(1) << np.uint64(colour)
-    used[i] |= bit
-    used[j] |= bit
-    manifold.lane = 2 * lane + kind
-
-
-@inlined
-def _survey(blocks: int, pair: Rows, colour: Rows, opened: Rows) -> tuple[int, int]:
-    """Find the first block of each colour that has room, the first empty one, and how many are needed.
-
-    Nothing of that hangs on what was before: a world read from a file goes on alike.
-    """
-    opened[:] = -1
-    last = 0
-    first_empty = -1
-    for k in range(blocks):
-        free = 0
-        for lane in range(k * WIDE, (k + 1) * WIDE):
-            free += 1 if pair[lane] < 0 else 0
-        if free == WIDE:
-            colour[k] = -1
-            if first_empty < 0:
-                first_empty = k
-            continue
-        last = k + 1
-        if free > 0 and opened[colour[k]] < 0:
-            opened[colour[k]] = k
-    return last, first_empty if 0 <= first_empty < last else last
-
-
-@inlined
-def _free_lane(home: int, blocks: int, c: int, pair: Rows, colour: Rows) -> int:
-    """Return the first free lane of the blocks of a colour from ``home`` on, or -1."""
-    for k in range(home, blocks):
-        if colour[k] == c:
-            for lane in range(k * WIDE, (k + 1) * WIDE):
-                if pair[lane] < 0:
-                    return lane
-    return -1
-
-
-@kernel
-def admit(
-    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    opened: Rows, manifolds: Manifolds, points: Points, touching: Rows, count: int,
-    shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
-    inverse_mass: Numbers, inverse_inertia: Numbers,
-    h: float, still: float, near: float,
-) -> tuple[int, int]:  # fmt: skip
-    """Take the settled contacts of one kind into blocks; return how many there are, and how many came.
-
-    Two contacts of a body never share a block: each has one of ``COLOURS``, the first that neither of its
-    bodies has been given. ``used`` (rows,) are the colours of each body's contacts, ``opened`` (COLOURS,) the
-    block of each colour that may have room. What finds no room in ``data`` stays loose.
-    """
-    rows, came = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
-    blocks, empty = _survey(blocks, pair, colour, opened)
-    for k in range(count):
-        p = touching[k]
-        manifold = manifolds[p]
-        i, j = manifold.a, manifold.b
-        discs, boxes = shape[i] == 1 and shape[j] == 1, shape[i] == 2 and shape[j] == 2
-        if manifold.wall >= 0 or not (discs if kind == DISC else boxes and manifold.found == 2):
-            continue
-        if not _is_settled(manifold, points[2 * p], points[2 * p + 1], linear, h, still, near):
-            continue
-        taken = used[i] if inverse_mass[i] > 0.0 else np.uint64(0)
-        if inverse_mass[j] > 0.0:
-            taken |= used[j]
-        c = 0 if inverse_mass[i] > 0.0 and inverse_mass[j] > 0.0 else _OF_FIXED
-        while c < COLOURS and (taken >> np.uint64(c)) & np.uint64(1) != np.uint64(0):
-            c += 1
-        if c == COLOURS:
-            continue
-        lane = _free_lane(opened[c], blocks, c, pair, colour) if opened[c] >= 0 else -1
-        if lane < 0:
-            home = empty
-            if (home + 1) * rows > len(data):
-                continue
-            for free in range(WIDE):
-                empty_lane(data, rows, home, free, a, b, pair)
-            colour[home], lane = c, home * WIDE
-            blocks = max(blocks, home + 1)
-            empty += 1
-            while empty < blocks and colour[empty] >= 0:
-                empty += 1
-        opened[c] = lane // WIDE
-        _seat(
-            kind, data, lane, a, b, pair, used, c, manifolds, points, p, radius, restitution, friction,
-            inverse_mass, inverse_inertia,
-        )  # fmt: skip
-        came += 1
-    return blocks, came
-
-
-@kernel
-def seat_again(
-    kind: int, data: Numbers, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    manifolds: Manifolds, points: Points, pairs: int,
-    shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers,
-    inverse_mass: Numbers, inverse_inertia: Numbers,
-) -> tuple[int, int]:  # fmt: skip
-    """Put the pairs whose records name a lane back there; return how many blocks there are, and lanes.
-
-    What has no business there, as a file may say that was written by hand, stays loose.
-    """
-    rows, blocks, seated = (DISC_ROWS if kind == DISC else BOX_ROWS), 0, 0
-    for p in range(pairs):
-        if manifolds[p].lane >= 0 and manifolds[p].lane % 2 == kind:
-            blocks = max(blocks, manifolds[p].lane // 2 // WIDE + 1)
-    for k in range(blocks):
-        for lane in range(WIDE):
-            empty_lane(data, rows, k, lane, a, b, pair)
-    for p in range(pairs):
-        named = manifolds[p].lane
-        if named >= 0 and named % 2 == kind:
-            lane, manifold = named // 2, manifolds[p]
-            i, j, wanted = manifold.a, manifold.b, 1 if kind == DISC else 2
-            bit = np.uint64(1) << np.uint64(colour[lane // WIDE])
-            taken = (used[i] if inverse_mass[i] > 0.0 else np.uint64(0)) | (
-                used[j] if inverse_mass[j] > 0.0 else np.uint64(0)
-            )
-            fits = pair[lane] < 0 and taken & bit == np.uint64(0) and manifold.wall < 0
-            fits = fits and shape[i] == wanted and shape[j] == wanted and manifold.count > 0
-            if not fits or inverse_mass[i] + inverse_mass[j] == 0.0:
-                manifold.lane = -1
-                continue
-            _seat(
-                kind, data, lane, a, b, pair, used, colour[lane // WIDE], manifolds, points, p,
-                radius, restitution, friction, inverse_mass, inverse_inertia,
-            )  # fmt: skip
-            seated += 1
-    return blocks, seated
-
-
-@kernel
-def sort_blocks(blocks: int, colour: Rows, order: Rows) -> None:
-    """Write the blocks in the order of their colours.
-
-    Blocks of one colour share no body that moves: one need not wait for what the last one came to.
-    """
-    found = 0
-    for c in range(-1, COLOURS):
-        for k in range(blocks):
-            if colour[k] == c:
-                order[found] = k
-                found += 1
 
 
 @kernel
@@ -374,18 +143,6 @@ def give_up(
     used[a[lane]] &= ~bit
     used[b[lane]] &= ~bit
     empty_lane(data, rows, k, lane % WIDE, a, b, pair)
-
-
-@kernel
-def keep_loose(manifolds: Manifolds, touching: Rows, count: int) -> int:
-    """Take the pairs that have lanes out of the list of those that touch; return how many are left."""
-    kept = 0
-    for k in range(count):
-        p = touching[k]
-        if manifolds[p].lane < 0:
-            touching[kept] = p
-            kept += 1
-    return kept
 
 
 @inlined

@@ -1,11 +1,11 @@
 """Sums that keep what rounding leaves out."""
 
-from physicslab.kernels import inlined_exactly
+from physicslab.kernels import inlined
 
 __all__ = ["add", "add_pair", "multiply"]
 
 
-@inlined_exactly
+@inlined
 def add(value: float, low: float, change: float) -> tuple[float, float]:
     """Return ``value + low + change`` as a number and the remainder that it cannot hold.
 
@@ -17,7 +17,7 @@ def add(value: float, low: float, change: float) -> tuple[float, float]:
     return total, (value - (total - part)) + (change - part)
 
 
-@inlined_exactly
+@inlined
 def add_pair(value: float, low: float, change: float, change_low: float) -> tuple[float, float]:
     """Return the sum of two numbers with remainders as a number and its remainder, to twice the digits.
 
@@ -30,7 +30,7 @@ def add_pair(value: float, low: float, change: float, change_low: float) -> tupl
     return summed, rest - (summed - total)
 
 
-@inlined_exactly
+@inlined
 def multiply(x: float, y: float) -> tuple[float, float]:
     """Return a product as a number and what rounding leaves out (Dekker, 1971); for factors below 1e150."""
     product = x * y

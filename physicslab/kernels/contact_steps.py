@@ -1,12 +1,28 @@
 """Whole steps of a world whose bodies touch, in one compiled loop: the stages of leapfrog, in their order."""
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.contact import find_contacts
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels.block_admission import FEW, SETTLED, settle
+from physicslab.kernels.block_contact import refresh
+from physicslab.kernels.block_lanes import (
+    ACTIVE,
+    BOX_BLOCKS,
+    DISC_BLOCKS,
+    LANES,
+    LEFT,
+    LOOSE,
+    UNORDERED,
+    Seats,
+    sort_loose,
+    wake,
+)
+from physicslab.kernels.block_layout import BOX, DISC
+from physicslab.kernels.contact import KEEP, KEEP_TURN, find_contacts
 from physicslab.kernels.gravity import uniform_gravity
 from physicslab.kernels.grid import still_holds
 from physicslab.kernels.impact import strike
 from physicslab.kernels.impulse import MOST_PARTS, relax, separate, solve
 from physicslab.kernels.motion import clear, drift, find_not_finite, kick
+from physicslab.kernels.pair import NEAR, STILL
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.ticks import charge, ticks
 
@@ -15,8 +31,8 @@ __all__ = [
 ]  # fmt: skip
 
 ALL, UNLISTED, CROWDED, DIVERGED = range(4)
-"""Why the loop ended: all steps are made; the near pairs must be listed anew; so many bodies touch that they
-may be worth blocks; the last step has left something that is not finite."""
+"""Why the loop ended: all steps are made; the near pairs must be listed anew; so many bodies touch that more
+blocks may be needed; the last step has left something that is not finite."""
 BEGIN, FIND, STRIKE = range(3)
 """Where in a substep the loop begins: at its start; where bodies touch; at the impacts."""
 SYSTEMS = ("Bodies", "GravitySystem", "IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem")
@@ -36,10 +52,10 @@ _Forces = tuple[Vectors, Numbers, Numbers, bool, float, float]
 """Forces [N], torques [N m], masses [kg]; whether any act, and gravity [m/s^2]."""
 _Bounds = tuple[Numbers, float, float]
 """Where they are [m], their restitution and friction."""
-_Touch = tuple[Manifolds, Points, Rows, int]
-"""The records of near pairs, which of them touch, and how many."""
+_Pairs = tuple[Manifolds, Points, int, Rows, Rows]
+"""The records of near pairs, how many those are, which of them are loose, and which of those touch."""
 _Lanes = tuple[Numbers, int, Rows, Rows, Rows, Numbers, int, Rows, Rows, Rows]
-"""Blocks of discs and of boxes, of which none is in use."""
+"""Blocks of discs and of boxes: data, how many, their order, rows of A and B."""
 _Spring = tuple[float, float, float, float]
 """Of contacts: frequency [Hz], damping ratio, slop, fastest push [m/s]."""
 
@@ -67,43 +83,105 @@ def _pull(forces: _Forces, inverse_mass: Numbers, cost: Rows, now: int) -> int:
 
 
 @inlined
-def _solve(
-    touch: _Touch, lanes: _Lanes, linear: Vectors, angular: Numbers, inverse: _Two, forces: _Forces,
-    h: float, span: float, iterations: int, spring: _Spring,
-) -> float:  # fmt: skip
-    """Keep apart what the impacts have left; return the time that impulses now stand for [s]."""
-    hertz, damping_ratio, slop, _ = spring
-    carried = h / max(span, h / MOST_PARTS) if span > 0.0 else 1.0
-    both = touch + lanes
-    solve(
-        *both, linear, angular, *inverse, forces[0], forces[3],
-        h, carried, iterations, hertz, damping_ratio, slop,
+def _find(
+    counts: Rows, discs: Seats, boxes: Seats, pairs: _Pairs, state: _State, sizes: _Sizes, materials: _Two,
+    inverse: _Two, bounds: _Bounds, first: bool, h: float, fall: float,
+) -> None:  # fmt: skip
+    """Find where settled contacts touch now, then where loose ones do, those set loose among them."""
+    manifolds, points, _, loose, touching = pairs
+    walls, bounds_restitution, bounds_friction = bounds
+    if counts[LANES] > 0:
+        before = counts[LOOSE]
+        for kind in (DISC, BOX):
+            data, a, b, pair, colour, used, _ = discs if kind == DISC else boxes
+            counts[LOOSE] = refresh(
+                kind, data, counts[DISC_BLOCKS if kind == DISC else BOX_BLOCKS], a, b, pair, colour, used,
+                manifolds, points, loose, counts[LOOSE], *state,
+                first, h, STILL, NEAR, fall, KEEP, KEEP_TURN,
+            )  # fmt: skip
+        came = counts[LOOSE] - before
+        counts[LANES] -= came
+        if came > 0 or counts[UNORDERED] != 0:
+            sort_loose(loose, counts[LOOSE])
+            counts[UNORDERED] = 0
+    counts[ACTIVE] = find_contacts(
+        manifolds, points, loose, counts[LOOSE], touching, *state, *sizes, *materials, *inverse,
+        walls, bounds_restitution, bounds_friction, first, h, -0.5, fall,
     )  # fmt: skip
-    return h
+
+
+@inlined
+def _strike(
+    counts: Rows, discs: Seats, boxes: Seats, pairs: _Pairs, state: _State, inverse: _Two, forces: _Forces,
+    h: float,
+) -> int:  # fmt: skip
+    """Bounce what meets, settled contacts that this wakes among it; return how many impacts there were."""
+    manifolds, points, _, loose, touching = pairs
+    impacts, counts[LEFT] = 0, 0
+    while counts[ACTIVE] > 0:
+        struck, counts[LEFT] = strike(
+            manifolds, points, touching, counts[ACTIVE], *state, forces[0], *inverse, forces[3],
+            h, -0.5 * h, 0.5 * h,
+        )  # fmt: skip
+        impacts += struck
+        before = counts[ACTIVE]
+        if struck > 0 and counts[LANES] > 0:
+            for kind in (DISC, BOX):
+                data, a, b, pair, colour, used, _ = discs if kind == DISC else boxes
+                counts[LOOSE], counts[ACTIVE] = wake(
+                    kind, data, counts[DISC_BLOCKS if kind == DISC else BOX_BLOCKS], a, b, pair, colour, used,
+                    manifolds, points, loose, counts[LOOSE], touching, counts[ACTIVE],
+                    state[2], state[3], forces[0], inverse[0], h,
+                )  # fmt: skip
+        if counts[ACTIVE] == before:
+            break
+        counts[LANES] -= counts[ACTIVE] - before
+        counts[UNORDERED] = 1
+    return impacts
+
+
+@inlined
+def _carried(h: float, span: float) -> float:
+    """Return how many times as long a substep is as the time that the points' impulses stand for.
+
+    What an instant left behind is mostly rounding, which is not to be blown up.
+    """
+    return h / max(span, h / MOST_PARTS) if span > 0.0 else 1.0
+
+
+@fused
+def _solved(counts: Rows, discs: Seats, boxes: Seats) -> _Lanes:
+    """Return what the solver wants to know of the blocks."""
+    return (
+        discs[0], counts[DISC_BLOCKS], discs[6], discs[1], discs[2],
+        boxes[0], counts[BOX_BLOCKS], boxes[6], boxes[1], boxes[2],
+    )  # fmt: skip
 
 
 @kernel
 def advance(
-    steps: int, substeps: int, substep: int, stage: int, h: float, iterations: int, few: int,
+    steps: int, substeps: int, substep: int, stage: int, h: float, iterations: int,
     state: _State, kept: _State, sizes: _Sizes, materials: _Two, inverse: _Two, tethered: Flags,
     forces: _Forces, damping: tuple[float, float], fall: float, fat: Vectors, bounds: _Bounds,
-    manifolds: Manifolds, points: Points, loose: Rows, loose_count: int, touching: Rows, active: int,
-    lanes: _Lanes, spring: _Spring, span: float, cost: Rows,
-) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
+    pairs: _Pairs, counts: Rows, discs: Seats, boxes: Seats, opened: Rows,
+    spring: _Spring, span: float, cost: Rows,
+) -> tuple[int, int, int, int, int, float]:  # fmt: skip
     """Make ``steps`` steps of ``substeps`` times ``h`` seconds, beginning at a stage of a substep.
 
     The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and what happens at each is what
     the systems do there. ``fall`` is how far [m] the forces may bring two bodies together within a substep;
-    ``few`` contacts or more end the loop. ``cost`` (6,) gets ticks added for each of ``SYSTEMS``.
+    ``counts`` are those of :mod:`physicslab.kernels.block_lanes`, and change. ``cost`` (6,) gets ticks added
+    for each of ``SYSTEMS``.
 
-    Returns why it ended, how many steps are done, the substep that it was in, how many pairs touch, how many
-    of them the impacts left, the impacts in the steps that are done and all impacts, and the time [s] that
-    the points' impulses stand for. ``kept`` is the state in which the last step began.
+    Returns why it ended, how many steps are done, the substep that it was in, the impacts in the steps that
+    are done and all impacts, and the time [s] that the points' impulses stand for. ``kept`` is the state in
+    which the last step began.
     """
     position, angle, linear, angular = state
-    walls, bounds_restitution, bounds_friction = bounds
+    manifolds, points, near, loose, touching = pairs
+    hertz, damping_ratio, slop, max_push = spring
     kicked = forces[3] or damping[0] != 0.0 or damping[1] != 0.0
-    done, left, impacts, impacts_done = 0, 0, 0, 0
+    done, impacts, impacts_done = 0, 0, 0
     now = ticks()
     while done < steps:
         if stage == BEGIN:
@@ -119,32 +197,40 @@ def advance(
             holds = still_holds(position, angle, linear, *sizes, fat, h)
             now = charge(cost, _BROAD_PHASE, now)
             if not holds:
-                return UNLISTED, done, substep, active, left, impacts_done, impacts, span
+                return UNLISTED, done, substep, impacts_done, impacts, span
         if stage != STRIKE:
-            active = find_contacts(
-                manifolds, points, loose, loose_count, touching, *state, *sizes, *materials, *inverse,
-                walls, bounds_restitution, bounds_friction, substep == 0, h, -0.5, fall,
-            )  # fmt: skip
+            _find(
+                counts, discs, boxes, pairs, state, sizes, materials, inverse, bounds, substep == 0, h, fall
+            )
+            if substep == 0 and (counts[LANES] > 0 or counts[ACTIVE] >= FEW):
+                came = settle(
+                    counts, discs, boxes, opened, manifolds, points, near, loose, touching,
+                    sizes[0], sizes[1], *materials, linear, *inverse, h,
+                ) if counts[LANES] > 0 else -1  # fmt: skip
+                if came != SETTLED:
+                    now = charge(cost, _CONTACT, now)
+                    return CROWDED, done, substep, impacts_done, impacts, span
             now = charge(cost, _CONTACT, now)
-            if substep == 0 and active >= few:
-                return CROWDED, done, substep, active, left, impacts_done, impacts, span
-        stage, left, touch = BEGIN, 0, (manifolds, points, touching, active)
-        if active:
-            struck, left = strike(*touch, *state, forces[0], *inverse, forces[3], h, -0.5 * h, 0.5 * h)
-            impacts += struck
-            now = charge(cost, _RESOLVE, now)
+        stage = BEGIN
+        impacts += _strike(counts, discs, boxes, pairs, state, inverse, forces, h)
+        now = charge(cost, _RESOLVE, now)
         if kicked:
             kick(linear, angular, forces[0], forces[1], *inverse, tethered, *damping, 0.5 * h)
             now = charge(cost, _BODIES, now)
-        if left:
-            span = _solve(touch, lanes, linear, angular, inverse, forces, h, span, iterations, spring)
+        touch = manifolds, points, touching, counts[ACTIVE]
+        both, pressed = touch + _solved(counts, discs, boxes), counts[LEFT] + counts[LANES] > 0
+        if pressed:
+            solve(
+                *both, linear, angular, *inverse, forces[0], forces[3],
+                h, _carried(h, span), iterations, hertz, damping_ratio, slop,
+            )  # fmt: skip
+            span = h
             now = charge(cost, _RESOLVE, now)
         drift(position, angle, linear, angular, tethered, 0.5 * h)
         now = charge(cost, _INTEGRATE, now)
-        if left:
-            both = touch + lanes
+        if pressed:
             relax(*both, linear, angular, *inverse, 0.5 * h, iterations)
-            separate(*touch, position, inverse[0], spring[3] * (0.5 * h))
+            separate(*touch, position, inverse[0], max_push * (0.5 * h))
             now = charge(cost, _RESOLVE, now)
         substep += 1
         if substep == substeps:
@@ -152,6 +238,6 @@ def advance(
             failed = find_not_finite(position, angle) >= 0 or find_not_finite(linear, angular) >= 0
             now = charge(cost, _BODIES, now)
             if failed:
-                return DIVERGED, done, substep, active, left, impacts_done, impacts, span
+                return DIVERGED, done, substep, impacts_done, impacts, span
             done, impacts_done = done + 1, impacts
-    return ALL, done, substep, active, left, impacts_done, impacts, span
+    return ALL, done, substep, impacts_done, impacts, span

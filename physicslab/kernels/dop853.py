@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Vectors, inlined, inlined_exactly, kernel
+from physicslab.kernels import Numbers, Vectors, inlined, kernel
 from physicslab.kernels.compensated import add
 from physicslab.kernels.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, LAST_LOW, WEIGHTS
 from physicslab.kernels.force_calls import Calls, accelerate
@@ -71,7 +71,7 @@ def make_stages(
             pushes[i, stage] = acceleration[i]
 
 
-@inlined_exactly
+@inlined
 def total(values: Numbers) -> tuple[float, float]:
     """Return the weighted sum of the stages, and what rounding leaves out of it."""
     whole, low = 0.0, 0.0

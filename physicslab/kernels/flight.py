@@ -5,7 +5,7 @@ and the acceleration. Only an impact begins a new one: however many impacts othe
 evaluated, and never added up.
 """
 
-from physicslab.kernels import Numbers, Vectors, inlined_exactly
+from physicslab.kernels import Numbers, Vectors, inlined
 from physicslab.kernels.compensated import add_pair, multiply
 
 __all__ = ["FIELDS", "begin", "fly_to", "place", "push", "seen_from", "velocity"]
@@ -20,7 +20,7 @@ _X, _VX, _A, _T = (
 )  # x and its remainder, y and its remainder; the same of velocities and the start
 
 
-@inlined_exactly
+@inlined
 def begin(flights: Vectors, i: int, x: float, y: float, vx: float, vy: float) -> None:
     """Let row i fly from time 0; its acceleration stays."""
     flights[i, _X], flights[i, _X + 1], flights[i, _X + 2], flights[i, _X + 3] = x, 0.0, y, 0.0
@@ -28,14 +28,14 @@ def begin(flights: Vectors, i: int, x: float, y: float, vx: float, vy: float) ->
     flights[i, _T], flights[i, _T + 1] = 0.0, 0.0
 
 
-@inlined_exactly
+@inlined
 def _flown(flights: Vectors, i: int, now: float, low: float) -> float:
     """Return how long row i has flown at the time ``now + low`` [s]."""
     flown: float = (now - flights[i, _T]) + (low - flights[i, _T + 1])
     return flown
 
 
-@inlined_exactly
+@inlined
 def place(flights: Vectors, i: int, now: float, low: float) -> tuple[float, float, float, float]:
     """Return where row i is: x and its remainder, y and its remainder [m]."""
     s = _flown(flights, i, now, low)
@@ -46,7 +46,7 @@ def place(flights: Vectors, i: int, now: float, low: float) -> tuple[float, floa
     return x, x_low, y, y_low
 
 
-@inlined_exactly
+@inlined
 def velocity(flights: Vectors, i: int, now: float, low: float) -> tuple[float, float, float, float]:
     """Return how fast row i is: vx and its remainder, vy and its remainder [m/s]."""
     s = _flown(flights, i, now, low)
@@ -55,7 +55,7 @@ def velocity(flights: Vectors, i: int, now: float, low: float) -> tuple[float, f
     return vx, vx_low, vy, vy_low
 
 
-@inlined_exactly
+@inlined
 def seen_from(
     flights: Vectors, a: int, b: int, now: float, low: float
 ) -> tuple[float, float, float, float, float, float]:
@@ -71,7 +71,7 @@ def seen_from(
     )  # fmt: skip
 
 
-@inlined_exactly
+@inlined
 def fly_to(flights: Vectors, i: int, angle: Numbers, angular: Numbers, now: float, low: float) -> None:
     """Begin a new flight of row i where the old one is at the time ``now + low``."""
     angle[i] += _flown(flights, i, now, low) * angular[i]
@@ -82,7 +82,7 @@ def fly_to(flights: Vectors, i: int, angle: Numbers, angular: Numbers, now: floa
     flights[i, _T], flights[i, _T + 1] = now, low
 
 
-@inlined_exactly
+@inlined
 def push(flights: Vectors, i: int, inverse_mass: float, px: float, py: float) -> None:
     """Change the velocity with which row i began its flight by an impulse (px, py) [N s]."""
     x, x_low = multiply(inverse_mass, px)

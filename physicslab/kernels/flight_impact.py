@@ -1,6 +1,6 @@
 """The impulse of an impact, as it changes two flights, with nothing lost to rounding."""
 
-from physicslab.kernels import Numbers, Vectors, inlined, inlined_exactly
+from physicslab.kernels import Numbers, Vectors, inlined
 from physicslab.kernels.compensated import add_pair, multiply
 from physicslab.kernels.flight import push
 from physicslab.kernels.impact import bounce, rub
@@ -9,7 +9,7 @@ from physicslab.kernels.records import Impacts, Manifold, Point
 __all__ = ["strike_flights", "write_impact"]
 
 
-@inlined_exactly
+@inlined
 def _speed_against(
     flights: Vectors, angular: Numbers, a: int, b: int, point: Point, along_x: float, along_y: float
 ) -> tuple[float, float]:
@@ -24,7 +24,7 @@ def _speed_against(
     return vx * along_x + vy * along_y, x_low * along_x + y_low * along_y
 
 
-@inlined_exactly
+@inlined
 def _short_of(v: float, v_low: float, before: float, before_low: float, restitution: float) -> float:
     """Return by how much a speed after an impact misses -e times that before."""
     wanted, wanted_low = multiply(restitution, before)

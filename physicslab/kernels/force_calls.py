@@ -24,7 +24,7 @@ from numba.core import types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from physicslab.kernels import FASTMATH, KERNELS, Numbers, cached, inlined
+from physicslab.kernels import KERNELS, Numbers, cached, inlined
 
 __all__ = ["Calls", "ForceKernel", "accelerate", "accelerate_over", "force_kernel"]
 
@@ -56,7 +56,7 @@ class ForceKernel:
     def compile(self, signature: Any) -> None:
         """Compile it, or load it from the cache."""
         with cached():
-            make = numba.cfunc(signature, cache=True, error_model="numpy", fastmath=FASTMATH)
+            make = numba.cfunc(signature, cache=True, error_model="numpy")
             self.overloads[signature.args] = make(self.py_func)
 
     def disable_compile(self) -> None:

@@ -8,7 +8,7 @@ acceleration is zero; else of fourth degree, found between the extrema, so that 
 
 import math
 
-from physicslab.kernels import inlined_exactly
+from physicslab.kernels import inlined
 
 __all__ = ["box_normal", "meet_box_box", "meet_circle_box", "meet_circle_circle", "meet_line"]
 
@@ -19,7 +19,7 @@ _SEAM = 1e-12
 left."""
 
 
-@inlined_exactly
+@inlined
 def meet_line(gap: float, speed: float, pull: float, least: float) -> float:
     """Return the first t >= 0 at which gap + speed t + pull t^2 / 2 is not positive and falls, or infinity.
 
@@ -38,7 +38,7 @@ def meet_line(gap: float, speed: float, pull: float, least: float) -> float:
     return -(speed + math.sqrt(square)) / pull
 
 
-@inlined_exactly
+@inlined
 def _height(
     dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, reach: float, t: float
 ) -> tuple[float, float]:
@@ -48,7 +48,7 @@ def _height(
     return 0.5 * (distance - reach) * (distance + reach), x * (ux + t * wx) + y * (uy + t * wy)
 
 
-@inlined_exactly
+@inlined
 def _rate(dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, t: float) -> tuple[float, float]:
     """Return the rate of |d(t)|^2 / 2 and its derivative."""
     x, y = dx + t * (ux + 0.5 * t * wx), dy + t * (uy + 0.5 * t * wy)
@@ -56,7 +56,7 @@ def _rate(dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, t: f
     return x * vx + y * vy, vx * vx + vy * vy + x * wx + y * wy
 
 
-@inlined_exactly
+@inlined
 def _root(
     dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, reach: float, low: float, high: float,
 ) -> float:  # fmt: skip
@@ -89,7 +89,7 @@ def _root(
     return t
 
 
-@inlined_exactly
+@inlined
 def _extrema(
     dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, span: float
 ) -> tuple[float, float, float]:
@@ -122,7 +122,7 @@ def _extrema(
     return t1, t2, t3
 
 
-@inlined_exactly
+@inlined
 def meet_circle_circle(
     dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, reach: float, span: float,
     quiet: float,
@@ -161,7 +161,7 @@ def meet_circle_circle(
     return math.inf
 
 
-@inlined_exactly
+@inlined
 def _falling(gap: float, speed: float, pull: float, size: float, least: float) -> float:
     """Return when a line is crossed from outside, or infinity: what lies beyond it does not cross it."""
     # It would have to come out before it can come in again.
@@ -171,7 +171,7 @@ def _falling(gap: float, speed: float, pull: float, size: float, least: float) -
     return meet_line(gap, speed, pull, least)
 
 
-@inlined_exactly
+@inlined
 def meet_circle_box(
     px: float, py: float, qx: float, qy: float, wx: float, wy: float,
     half_x: float, half_y: float, radius: float, span: float, quiet: float,
@@ -218,7 +218,7 @@ def meet_circle_box(
     return best
 
 
-@inlined_exactly
+@inlined
 def meet_box_box(
     dx: float, dy: float, ux: float, uy: float, wx: float, wy: float,
     ca: float, sa: float, cb: float, sb: float, ax: float, ay: float, bx: float, by: float,
@@ -261,7 +261,7 @@ def meet_box_box(
     return best, face
 
 
-@inlined_exactly
+@inlined
 def box_normal(
     k: int, ca: float, sa: float, cb: float, sb: float, ax: float, ay: float, bx: float, by: float
 ) -> tuple[float, float, float]:

@@ -18,7 +18,7 @@ from llvmlite import ir
 from numba import float64, int64, types
 from numba.extending import intrinsic
 
-from physicslab.kernels import Numbers, allocating, inlined
+from physicslab.kernels import Numbers, allocating, inlined_loosely
 
 __all__ = [
     "attract_pairwise", "depth_of", "depth_of_pairs", "depth_terms", "inverse_root", "pull_of", "pull_terms",
@@ -56,7 +56,7 @@ _number: Any = intrinsic(_number_type)
 _start: Any = intrinsic(_start_type)
 
 
-@inlined
+@inlined_loosely
 def inverse_root(d2: float) -> float:
     """Return 1 / sqrt(d2) to two units in the last place, and 0 on one spot.
 
@@ -71,7 +71,7 @@ def inverse_root(d2: float) -> float:
     return float(y) if not d2 < _ONE_SPOT else 0.0
 
 
-@inlined
+@inlined_loosely
 def pull_terms(softening: float, plummer: bool) -> tuple[float, float]:
     """Return what is added to r^2 [m^2] and the cap on 1/d^2 [1/m^2]."""
     if plummer:
@@ -79,7 +79,7 @@ def pull_terms(softening: float, plummer: bool) -> tuple[float, float]:
     return 0.0, 1.0 / (softening * softening) if softening > 0.0 else np.inf
 
 
-@inlined
+@inlined_loosely
 def depth_terms(softening: float, plummer: bool) -> tuple[float, float, float]:
     """Return what is added to r^2, below which d^2 the clamp law holds [m^2], and 1/s [1/m]."""
     if plummer:
@@ -87,14 +87,14 @@ def depth_terms(softening: float, plummer: bool) -> tuple[float, float, float]:
     return 0.0, softening * softening, 1.0 / softening if softening > 0.0 else 0.0
 
 
-@inlined
+@inlined_loosely
 def _strength(d2: float, cap: float) -> float:
     u = inverse_root(d2)
     u2 = u * u
     return u * (cap if u2 > cap else u2)
 
 
-@inlined
+@inlined_loosely
 def pull_of(
     x: Numbers, y: Numbers, mass: Numbers, at_x: float, at_y: float, added: float, cap: float
 ) -> tuple[float, float]:
@@ -108,7 +108,7 @@ def pull_of(
     return fx, fy
 
 
-@inlined
+@inlined_loosely
 def depth_of(
     x: Numbers,
     y: Numbers,
@@ -160,7 +160,7 @@ def attract_pairwise(
         ax[i], ay[i] = table[place + 3 * TILE], table[place + 4 * TILE]
 
 
-@inlined
+@inlined_loosely
 def _attract_within(table: Numbers, a: int, added: float, cap: float) -> None:
     p = _start(table)
     for i in range(TILE):
@@ -174,7 +174,7 @@ def _attract_within(table: Numbers, a: int, added: float, cap: float) -> None:
         p[a + 4 * TILE + i] += fy
 
 
-@inlined
+@inlined_loosely
 def _attract_between(table: Numbers, a: int, b: int, added: float, cap: float) -> None:
     p = _start(table)
     for i in range(TILE):
@@ -191,7 +191,7 @@ def _attract_between(table: Numbers, a: int, b: int, added: float, cap: float) -
         p[a + 4 * TILE + i] += fy
 
 
-@inlined
+@inlined_loosely
 def depth_of_pairs(x: Numbers, y: Numbers, mass: Numbers, softening: float, plummer: bool) -> float:
     """Return the sum of m_a m_b times the depth [kg^2/m] over every pair of (n,) bodies."""
     added, near2, inverse = depth_terms(softening, plummer)

@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined_loosely
 from physicslab.kernels.pairwise import depth_of, depth_terms, inverse_root, pull_of, pull_terms
 from physicslab.kernels.tree import COLUMNS, HIGH_X, HIGH_Y, LOW_X, LOW_Y, MASS, RADIUS, X, Y, grow, levels_of
 
@@ -29,7 +29,7 @@ THETA = 0.17
 RMS_ERROR, LARGEST_ERROR = 1e-4, 1e-3
 
 
-@inlined
+@inlined_loosely
 def _choose(
     nodes: Vectors, levels: int, leaf: int, clear: float, stack: Rows, whole: Rows, opened: Rows
 ) -> tuple[int, int]:
@@ -58,7 +58,7 @@ def _choose(
     return wholes, opens
 
 
-@inlined
+@inlined_loosely
 def _pull_of_nodes(far: Vectors, count: int, at_x: float, at_y: float, added: float) -> tuple[float, float]:
     """Return the pull [kg/m^2] of the first ``count`` nodes of ``far`` (6, n) on a unit mass."""
     fx, fy = 0.0, 0.0
@@ -75,7 +75,7 @@ def _pull_of_nodes(far: Vectors, count: int, at_x: float, at_y: float, added: fl
     return fx, fy
 
 
-@inlined
+@inlined_loosely
 def _depth_of_nodes(far: Vectors, count: int, at_x: float, at_y: float, added: float) -> float:
     """Return the depth [kg/m] that belongs to :func:`_pull_of_nodes`."""
     total = 0.0
@@ -96,7 +96,7 @@ def _room(n: int, levels: int) -> tuple[Rows, Vectors, Vectors, Vectors, Rows]:
     return np.arange(n), nodes, far, near, np.empty(levels + 2 + 2 * leaves, np.int64)
 
 
-@inlined
+@inlined_loosely
 def _collect(
     x: Numbers, y: Numbers, mass: Numbers, order: Rows, nodes: Vectors, levels: int, leaf: int, clear: float,
     scratch: Rows, far: Vectors, near: Vectors,

@@ -24,8 +24,6 @@ __all__ = [
     "size_of", "take", "take_numbers", "take_vectors", "true_lanes",
 ]  # fmt: skip
 
-_FAST = ("contract", "nsz", "arcp", "reassoc")  # as physicslab.kernels.FASTMATH has it: NaN survives
-
 
 class Wide:
     """Eight float64 values. A plain number beside one stands for eight that are alike."""
@@ -114,11 +112,11 @@ def _define(
             return emit(builder, *values)
 
 
-_define(operator.add, _wide, _BOTH, lambda build, x, y: build.fadd(x, y, flags=_FAST))
-_define(operator.sub, _wide, _BOTH, lambda build, x, y: build.fsub(x, y, flags=_FAST))
-_define(operator.mul, _wide, _BOTH, lambda build, x, y: build.fmul(x, y, flags=_FAST))
-_define(operator.truediv, _wide, _BOTH, lambda build, x, y: build.fdiv(x, y, flags=_FAST))
-_define(operator.neg, _wide, ((_wide,),), lambda build, x: build.fneg(x, flags=_FAST))
+_define(operator.add, _wide, _BOTH, lambda build, x, y: build.fadd(x, y))
+_define(operator.sub, _wide, _BOTH, lambda build, x, y: build.fsub(x, y))
+_define(operator.mul, _wide, _BOTH, lambda build, x, y: build.fmul(x, y))
+_define(operator.truediv, _wide, _BOTH, lambda build, x, y: build.fdiv(x, y))
+_define(operator.neg, _wide, ((_wide,),), lambda build, x: build.fneg(x))
 _define(operator.lt, _mask, _BOTH, lambda build, x, y: build.fcmp_ordered("<", x, y))
 _define(operator.gt, _mask, _BOTH, lambda build, x, y: build.fcmp_ordered(">", x, y))
 _define(operator.and_, _mask, ((_mask, _mask),), lambda build, x, y: build.and_(x, y))

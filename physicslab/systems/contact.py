@@ -72,7 +72,7 @@ class ContactSystem(System):
     def settle(self, world: World, h: float) -> None:
         """Once a step, take what has settled into blocks."""
         if self._first and world.method.collisions == "step":
-            world.contacts.admit(world, h)
+            world.contacts.settle(world, h)
             world.contacts.changed()
         self._first = False
 
