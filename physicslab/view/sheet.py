@@ -35,7 +35,7 @@ class Sheet:
         self._corner = (0, 0)
 
     def put(self, rect: Rect, version: object, draw: Callable[[Paper], None]) -> None:
-        """Put it down at ``rect`` [px], drawn anew if the size or the version is not that of the last time."""
+        """Put it down at ``rect`` [px], drawn anew where size or version are not those of the last time."""
         size = (max(rect[2], 1), max(rect[3], 1))
         if size != self._surface.get_size() or version != self._version:
             if size == self._surface.get_size():
