@@ -22,7 +22,11 @@ def freeze() -> None:
 
 @contextmanager
 def loading() -> Iterator[None]:
-    """Search for no garbage for the length of a ``with`` block, and never for what is there at its end."""
+    """Search for no garbage for the length of a ``with`` block, and never in what is there at its end.
+
+    The first scene is among that. It is freed all the same when nothing refers to it any more; only what
+    refers to itself in a circle stays.
+    """
     enabled = gc.isenabled()
     gc.disable()
     try:
