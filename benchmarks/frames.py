@@ -3,12 +3,15 @@
 ``uv run python benchmarks/frames.py [--frames N] [--keys vte]`` prints the median, the 99th percentile and
 the maximum [ms] of each part. No screen is needed: SDL's dummy driver takes the picture, 1280 x 720 pixels. A
 frame of 60 Hz has 16.7 ms. Each step of a frame is 1/60 s of the world, so "total" is what a frame costs that
-keeps up.
+keeps up; "CPU" is the same frame by the clock of the process, which does not run while another program has
+the processor. ``--slowest K`` says what the K slowest frames of each scene were made of, garbage collection
+included. As in the program, what was loaded is not searched for garbage.
 """
 
 from __future__ import annotations
 
 import argparse
+import gc
 import os
 import time
 from collections.abc import Callable
@@ -21,6 +24,7 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 import pygame
 
 from physicslab.config import PhysicsConfig
+from physicslab.garbage import freeze
 from physicslab.kernels import KERNELS, compile_kernels
 from physicslab.kernels.warm import load_all
 from physicslab.prefabs import container, gas, pile
@@ -33,7 +37,10 @@ from physicslab.world import World
 
 FRAME = 1.0 / 60.0
 SIZE = (1280, 720)
-PARTS = ("sim", "draw", "hud", "total")
+SMALLEST, LARGEST = (640, 480), (1920, 1080)
+PARTS = ("input", "sim", "draw", "hud", "total", "CPU", "gc")
+SHOWN = 6
+"""How many of the parts are in the table."""
 WARM_UP = 60
 """Frames that are not counted: fonts, caches and scales settle in them."""
 
@@ -76,12 +83,29 @@ def turn_wheel(sandbox: Sandbox, frame: int) -> None:
     pygame.event.post(pygame.Event(pygame.MOUSEWHEEL, x=0, y=notch, precise_y=float(notch), flipped=False))
 
 
-def drag_border(sandbox: Sandbox, frame: int) -> None:
-    """Make the window larger and smaller, by 20 pixels a frame."""
-    shift = 20 * abs(20 - frame % 40)
+def resize(sandbox: Sandbox, size: tuple[int, int]) -> None:
+    """Give the window another size [px], as SDL does when its border is dragged."""
     canvas = sandbox.window.canvas
     assert isinstance(canvas, PygameCanvas)
-    canvas.surface = pygame.display.set_mode((SIZE[0] - shift, SIZE[1] - shift // 2))
+    canvas.surface = pygame.display.set_mode(size)
+
+
+def drag_border(sandbox: Sandbox, frame: int) -> None:
+    """Make the window larger and smaller, between a small screen and a large one, and let it rest at both.
+
+    The border moves for 20 frames by a twentieth of the way each; in the rest, as long, the text follows.
+    """
+    way = min(frame % 40, 20) / 20.0
+    share = way if frame % 80 < 40 else 1.0 - way
+    size = tuple(round(a + share * (b - a)) for a, b in zip(SMALLEST, LARGEST, strict=True))
+    if size != sandbox.window.canvas.size:
+        resize(sandbox, (size[0], size[1]))
+
+
+def maximise(sandbox: Sandbox, frame: int) -> None:
+    """Change between a small window and a large one at once, every half second."""
+    if frame % 30 == 0:
+        resize(sandbox, LARGEST if frame % 60 == 0 else SMALLEST)
 
 
 def cases(keys: str) -> list[Case]:
@@ -93,10 +117,12 @@ def cases(keys: str) -> list[Case]:
         Case("gas", small_gas, 0.0, keys),
         Case("large pile, settled", large_pile, 20.0, ""),
         Case("large pile, settled", large_pile, 20.0, keys),
-        Case("pile, wheel", lambda: load_scene("pile"), 12.0, "", turn_wheel),
-        Case("pile, resized", lambda: load_scene("pile"), 12.0, "", drag_border),
-        Case("large pile, wheel", large_pile, 20.0, "", turn_wheel),
-        Case("large pile, resized", large_pile, 20.0, "", drag_border),
+        *(Case(f"pile, settled, {key}", lambda: load_scene("pile"), 12.0, key) for key in keys),
+        *(Case(f"large pile, {key}", large_pile, 20.0, key) for key in keys),
+        Case("gas, trails", small_gas, 0.0, "t"),
+        Case("large pile, wheel", large_pile, 20.0, "t", turn_wheel),
+        Case("large pile, dragged", large_pile, 20.0, "t", drag_border),
+        Case("large pile, maximised", large_pile, 20.0, "t", maximise),
     ]
 
 
@@ -106,7 +132,24 @@ def press(name: str) -> None:
     pygame.event.post(pygame.Event(pygame.KEYDOWN, key=code, mod=0, unicode="", scancode=0))
 
 
-def measure(case: Case, frames: int) -> tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], Sandbox]:
+class Collections:
+    """How long garbage collection took so far [ns]."""
+
+    def __init__(self) -> None:
+        self.nanoseconds = 0
+        self._began = 0
+        gc.callbacks.append(self._note)
+
+    def _note(self, phase: str, info: dict[str, int]) -> None:
+        if phase == "start":
+            self._began = time.perf_counter_ns()
+        else:
+            self.nanoseconds += time.perf_counter_ns() - self._began
+
+
+def measure(
+    case: Case, frames: int, collections: Collections
+) -> tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], Sandbox]:
     """Return what each part of each frame took [ms], a frame a row, and the sandbox as it is then."""
     world = case.build()
     world.run(seconds=case.seconds)
@@ -115,18 +158,27 @@ def measure(case: Case, frames: int) -> tuple[np.ndarray[tuple[int, int], np.dty
         press(key)
     spent = np.zeros((frames, len(PARTS)))
     timings = world.schedule.timings
+    freeze()
     for n in range(-WARM_UP, frames):
+        before = {name: timing.nanoseconds for name, timing in timings.items()}
+        collected, cpu, start = collections.nanoseconds, time.process_time_ns(), time.perf_counter_ns()
         if case.disturb is not None:
             case.disturb(sandbox, n + WARM_UP)
-        before = {name: timing.nanoseconds for name, timing in timings.items()}
-        start = time.perf_counter_ns()
         sandbox.frame(FRAME)
-        total = time.perf_counter_ns() - start
+        total, cpu = time.perf_counter_ns() - start, time.process_time_ns() - cpu
         if n >= 0:
             own = {name: timing.nanoseconds - before.get(name, 0) for name, timing in timings.items()}
-            draw, hud = own["RenderSystem"], own["HudSystem"]
-            spent[n] = total - draw - hud, draw, hud, total
+            heard, draw, hud = own["InputSystem"], own["RenderSystem"], own["HudSystem"]
+            collected = collections.nanoseconds - collected
+            spent[n] = heard, total - heard - draw - hud, draw, hud, total, cpu, collected
     return spent / 1e6, sandbox
+
+
+def print_slowest(spent: np.ndarray[tuple[int, int], np.dtype[np.float64]], count: int) -> None:
+    """Say what the slowest frames were made of."""
+    for n in np.argsort(-spent[:, PARTS.index("total")])[:count]:
+        parts = "  ".join(f"{part} {value:.2f}" for part, value in zip(PARTS, spent[n], strict=True))
+        print(f"    frame {n}: {parts}")
 
 
 def main() -> None:
@@ -134,20 +186,23 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--frames", type=int, default=300, help="how many are counted of each scene")
     parser.add_argument("--keys", default="vte", help="which are pressed first: V, T and E")
+    parser.add_argument("--slowest", type=int, default=0, help="how many slow frames are taken apart")
     parser.add_argument("--only", default="", help="what is in the names of the scenes to be timed")
     options = parser.parse_args()
     load_all()
     compile_kernels(KERNELS)
-    columns = "".join(f"{part:>23}" for part in PARTS)
-    print(f"{'scene':22}{'bodies':>7}  {'on':5}{columns}   median / p99 / maximum, ms")
+    collections = Collections()
+    columns = "".join(f"{part:>21}" for part in PARTS[:SHOWN])
+    print(f"{'scene':22}{'bodies':>7}  {'on':5}{columns}   median, p99, maximum, ms")
     for case in cases(options.keys):
         if options.only not in case.name:
             continue
-        spent, sandbox = measure(case, options.frames)
-        middle, high, most = np.percentile(spent, (50, 99, 100), axis=0)
-        row = "".join(f"{a:8.2f} /{b:6.2f}/{c:6.2f}" for a, b, c in zip(middle, high, most, strict=True))
+        spent, sandbox = measure(case, options.frames, collections)
+        percentiles = np.percentile(spent[:, :SHOWN], (50, 99, 100), axis=0)
+        row = "".join(f"{a:8.2f}{b:6.1f}{c:6.1f} " for a, b, c in percentiles.T)
         bodies = len(sandbox.world.entities())
         print(f"{case.name:22}{bodies:7}  {case.keys or '-':5}{row}", flush=True)
+        print_slowest(spent, options.slowest)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import time
 from importlib import import_module
 
 from physicslab.config import WindowConfig
+from physicslab.garbage import loading
 from physicslab.view.display import Display, wants_to_leave
 from physicslab.view.progress import draw_loading
 from physicslab.view.theme import DARK
@@ -65,8 +66,9 @@ def _load(display: Display, module: str) -> bool:
 
 def _import(module: str) -> None:
     try:
-        import_module(module)
-        import_module("physicslab.kernels.warm").load_all()
-        import_module("physicslab.kernels").prepare()
+        with loading():
+            import_module(module)
+            import_module("physicslab.kernels.warm").load_all()
+            import_module("physicslab.kernels").prepare()
     except Exception:  # it is raised once more where the window can be closed and the reason told
         return

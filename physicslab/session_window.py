@@ -7,6 +7,7 @@ from pathlib import Path
 from physicslab.autosave import Autosave
 from physicslab.compiling import Compiling, Left
 from physicslab.config import WindowConfig
+from physicslab.garbage import loading
 from physicslab.sandbox import Sandbox
 from physicslab.scene import load_scene
 from physicslab.sessions import Session, session_folder
@@ -43,7 +44,10 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     window.recovery = Recovery(abandoned, None if session is None else session.path)
     try:
         with Compiling(display) as compiling:
-            _loop(Sandbox(world, window, autosave=autosave), display, compiling)
+            with loading():
+                sandbox = Sandbox(world, window, autosave=autosave)
+                sandbox.frame(0.0)
+            _loop(sandbox, display, compiling)
     except Left:  # the window was closed while it waited for kernels
         pass
     finally:
@@ -57,9 +61,8 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
 
 
 def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
-    """Show frames until the window is to be closed."""
+    """Show the first frame, which is drawn, and further ones until the window is to be closed."""
     window = sandbox.window
-    sandbox.frame(0.0)
     display.show()  # the time that the first frame took, with all that it loads, is not made up for
     elapsed = 0.0
     while not window.closing:

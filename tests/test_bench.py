@@ -14,6 +14,7 @@ from physicslab.bench.catalogue import SCENES, gas_scene, pile_scene, select
 from physicslab.bench.clock import take_turns
 from physicslab.bench.engine import OurEngine, missing_peers
 from physicslab.bench.growth import exponent, growths
+from physicslab.bench.machine import machine_text
 from physicslab.bench.measure import measure_scene
 from physicslab.bench.memory import measure_memory
 from physicslab.bench.quality import Quality
@@ -128,11 +129,13 @@ def test_every_scene_is_built_awake_with_its_number_of_bodies() -> None:
 def test_the_command_prints_tables(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["bench", "piles", "gas_10", "circles_10"]) == 0
     out, err = capsys.readouterr()
-    assert err == ""
-    assert "ms a step" in out and "quality after" in out and "growth of a step's cost" in out
-    assert [line.split()[0] for line in out.splitlines()[:5]] == [
+    assert out.startswith(machine_text(peers=False)), "nothing but the report"
+    assert "ms of CPU time a step" in out and "quality after" in out and "growth of a step's cost" in out
+    assert [line.split()[0] for line in err.splitlines() if line] == [
         "pile_5:", "pile_10:", "pile_20:", "gas_10:", "circles_10:",
     ]  # fmt: skip
+    (growth,) = (line for line in out.splitlines() if line.startswith("piles"))
+    assert len(growth.split()) == 6, "the group, the engine, a cost for each size, the exponent"
 
 
 @pytest.mark.usefixtures("small_scenes")
@@ -217,3 +220,19 @@ def test_peers_are_timed_beside(capsys: pytest.CaptureFixture[str]) -> None:
         for engine in scene["engines"]:
             assert engine["step_ms"]["median"] > 0.0 and engine["times_ours"] > 0.0
             assert engine["quality"]["deepest overlap"] >= 0.0
+
+
+@pytest.mark.usefixtures("small_scenes")
+def test_large_scenes_are_run_without_peers_unless_they_are_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if importlib.util.find_spec("pymunk") is None or importlib.util.find_spec("Box2D") is None:
+        pytest.skip("no peers installed")
+    for module in ("commands.bench", "bench.tables"):
+        monkeypatch.setattr(f"physicslab.{module}.MOST_BESIDE", 10)
+    assert cli.main(["bench", "piles", "--peers"]) == 0
+    out, err = capsys.readouterr()
+    assert ["pymunk" in line for line in err.splitlines() if line] == [True, True, False]
+    assert "beyond 10, which take others minutes, PhysicsLab alone" in out
+    assert cli.main(["bench", "pile_20", "--peers"]) == 0
+    assert "pymunk" in capsys.readouterr().err

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from physicslab.bench.catalogue import MOST_BESIDE
 from physicslab.bench.clock import Spread
 from physicslab.bench.engine import OURS
 from physicslab.bench.machine import machine_text
@@ -53,7 +54,7 @@ def report_text(report: BenchReport) -> str:
             ("ms a step by system, as shares of the median", _systems(report)),
         ]  # fmt: skip
     if report.growths:
-        blocks.append(("growth of a step's cost: N^p", _growth(report)))
+        blocks.append((_growth_title(report), _growth(report)))
     if report.unused:
         blocks.append(
             ("a step with the systems that the scene needs, and with all there are", _unused(report))
@@ -124,11 +125,20 @@ def _systems(report: BenchReport) -> str:
     return _table(rows)
 
 
+def _growth_title(report: BenchReport) -> str:
+    title = "growth of a step's cost: ms for so many bodies, and the p of N^p"
+    alone = any(result.scene.size > MOST_BESIDE and len(result.engines) == 1 for result in report.scenes)
+    remark = f"; beyond {MOST_BESIDE:,}, which take others minutes, PhysicsLab alone"
+    return title + remark if report.peers and alone else title
+
+
 def _growth(report: BenchReport) -> str:
-    rows = [["scenes", "engine", "sizes", "p"]]
+    sizes = sorted({size for growth in report.growths for size in growth.sizes})
+    rows = [["scenes", "engine", *(f"{size}" for size in sizes), "p"]]
     for growth in report.growths:
-        sizes = f"{growth.sizes[0]}..{growth.sizes[-1]}"
-        rows.append([growth.group, growth.engine, sizes, _number(growth.exponent, 3)])
+        costs = dict(zip(growth.sizes, growth.ms, strict=True))
+        every = [f"{costs[size]:#.3g}" if size in costs else "-" for size in sizes]
+        rows.append([growth.group, growth.engine, *every, _number(growth.exponent, 3)])
     return _table(rows, 2)
 
 

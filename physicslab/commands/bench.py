@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
-from physicslab.bench.catalogue import SCENES, groups, names, opened, select
+from physicslab.bench.catalogue import MOST_BESIDE, SCENES, groups, names, opened, select
 from physicslab.bench.document import document
 from physicslab.bench.engine import PEERS, missing_peers
 from physicslab.bench.measure import measure_scene
@@ -34,7 +34,10 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
     what = "a scene of the benchmark, a group of them, a built-in scene or a scene file; everything if none"
     parser.add_argument("scenes", metavar="SCENE", nargs="*", help=what)
-    peers = "time pymunk and Box2D on the same scenes, in turn (needs the dependency group peers)"
+    peers = (
+        "time pymunk and Box2D on the same scenes, in turn (needs the dependency group peers); those of more "
+        f"than {MOST_BESIDE:,} bodies only where they are named, for they take them minutes"
+    )
     parser.add_argument("--peers", action="store_true", help=peers)
     parser.add_argument("--json", metavar="FILE", help="write everything that was measured (- for stdout)")
     parser.add_argument("--plot", metavar="DIR", help="draw growth and ratios, as bench.png")
@@ -59,15 +62,18 @@ def execute(arguments: Namespace) -> int:
     pictures = None if arguments.plot is None else picture_directory(arguments.plot, "bench.png")
     quiet = output is not None and output.to_stdout
     report = BenchReport(arguments.peers)
-    for found in _results(scenes, extras, arguments.peers):
+    beside = {scene.name for scene in scenes if _beside(scene, arguments)}
+    for found in _results(scenes, extras, beside):
         if isinstance(found, SceneResult):
             report.scenes.append(found)
-            _show(scene_text(found), quiet)
+            _tell(scene_text(found), quiet)
         else:
             report.unused.append(found)
     if _MEMORY in extras:
         report.memory = measure_memory()
-    _show("\n" + report_text(report), quiet)
+    _tell("", quiet)
+    if not quiet:
+        print(report_text(report), flush=True)
     if output is not None:
         output.write(json_text(document(report)).encode("utf-8"))
     if pictures is not None:
@@ -106,12 +112,17 @@ def _chosen(wanted: Sequence[str]) -> tuple[list[BenchScene], list[str]]:
     return list(chosen.values()), extras
 
 
+def _beside(scene: BenchScene, arguments: Namespace) -> bool:
+    """Whether other engines take part in a scene."""
+    return arguments.peers and (scene.size <= MOST_BESIDE or scene.name in arguments.scenes)
+
+
 def _results(
-    scenes: Sequence[BenchScene], extras: Sequence[str], peers: bool
+    scenes: Sequence[BenchScene], extras: Sequence[str], beside: Collection[str]
 ) -> Iterator[SceneResult | Unused]:
     """Yield what comes of each, and keep the terminal told how far all are."""
     jobs: list[tuple[int, Iterator[float | SceneResult | Unused]]] = [
-        (scene.size, measure_scene(scene, PEERS if peers else ())) for scene in scenes
+        (scene.size, measure_scene(scene, PEERS if scene.name in beside else ())) for scene in scenes
     ]
     if _UNUSED in extras:
         jobs += [(1_000, measure_unused(case)) for case in UNUSED]
@@ -130,9 +141,10 @@ def _results(
         progress.clear()
 
 
-def _show(text: str, quiet: bool) -> None:
-    if not quiet:
-        print(text, flush=True)
+def _tell(text: str, quiet: bool) -> None:
+    """Say how far it is where that is no part of the report."""
+    if not quiet and sys.stderr is not None:  # a program may be started without
+        print(text, file=sys.stderr, flush=True)
 
 
 def _check(results: Sequence[SceneResult]) -> None:

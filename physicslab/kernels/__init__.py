@@ -191,6 +191,24 @@ def load(jitted: Any) -> None:
 
 
 def prepare() -> None:
-    """Let numba learn what it knows of types, as it would before the first kernel: 0.2 s and more."""
-    cpu_target.typing_context.refresh()
-    cpu_target.target_context.refresh()
+    """Let numba learn what it knows of types, as it would before the first kernel: 0.2 s and more.
+
+    Where SciPy is installed numba imports its linear algebra, only to see whether matrix products could be
+    compiled: half as long again, at every start. No kernel has any, so it is told that there is none.
+    """
+    with _without("scipy.linalg"):
+        cpu_target.typing_context.refresh()
+        cpu_target.target_context.refresh()
+
+
+@contextmanager
+def _without(module: str) -> Iterator[None]:
+    """Let a module not be found within a ``with`` block, unless it was imported before."""
+    known = module in sys.modules
+    if not known:
+        sys.modules[module] = cast(Any, None)
+    try:
+        yield
+    finally:
+        if not known:
+            del sys.modules[module]

@@ -14,8 +14,9 @@ from physicslab.view.figures import EnergyWatch, FrameMeter, measure_world
 from physicslab.view.help import Help
 from physicslab.view.hint import Hint
 from physicslab.view.legend import Legend, legend_of
-from physicslab.view.panels import Panel, broken, draw_pill, lay_out, text_size
+from physicslab.view.panels import Line, Panel, broken, draw_pill, lay_out, text_size
 from physicslab.view.readings import cost_lines, figure_lines, left_out_lines, method_lines
+from physicslab.view.rota import Rota
 from physicslab.view.scale_bar import draw_scale_bar, scale_bar_height
 from physicslab.view.work_precision import draw_work_precision
 
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["HudSystem"]
 
-_PERIOD = 0.1
+_PERIODS = {"figures": 0.1, "costs": 0.1, "advice": 0.25}
 """Time [s] between two readings: figures that change faster cannot be read."""
 _PANEL, _MARGIN = 19.5, 0.8
 """Width of the panels, and the room around them, in heights of the text."""
@@ -60,7 +61,9 @@ class HudSystem(System):
         self._toolbar = toolbar
         self._meter = FrameMeter()
         self._watch = EnergyWatch()
-        self._next_reading = 0.0
+        self._rota = Rota(_PERIODS)
+        self._lines: dict[str, tuple[list[Line], ...]] = {}
+        self._placed: dict[str, Panel] = {}
         self._laid_out: tuple[tuple[int, int], Theme] | None = None
         self._world: World | None = None
         self._panels: list[Panel] = []
@@ -69,7 +72,7 @@ class HudSystem(System):
         self._overlays = (False, False, True)
         self._middle = 0
         self._hint: Hint
-        self._help: Help
+        self._help: Help | None = None
         self._dropped = 0.0
         self._dropped_now = 0.0
         self._drop_until = 0.0
@@ -82,16 +85,21 @@ class HudSystem(System):
         self._lay_out()
         self._watch.follow(world)
         overlays = window.overlays.arrows, window.overlays.impulses, window.figures
-        changed = world is not self._world or overlays != self._overlays
-        if window.now >= self._next_reading or changed:
-            self._next_reading, self._world, self._overlays = window.now + _PERIOD, world, overlays
-            self._read(world)
+        if world is not self._world or overlays != self._overlays:
+            self._world, self._overlays = world, overlays
+            self._rota.all_done(window.now)
+            for reading in _PERIODS:
+                self._read(reading, world)
+        elif (due := self._rota.due(window.now)) is not None:
+            self._read(due, world)
         if window.error_study.poll():
             self._announce(window.error_study.failure)
         if window.error_study.shown and not window.help:
             draw_work_precision(window.error_study, window.canvas, window.theme)
             window.overlays.covered = [(0, 0, *window.canvas.size)]
         elif window.help:
+            if self._help is None:  # made only now: it is large, and a window that is resized seldom needs it
+                self._help = Help(CONTROLS, self._text_size, window.canvas, window.theme)
             self._help.draw(window.canvas)
             window.overlays.covered = [(0, 0, *window.canvas.size)]  # or labels would look out below it
         else:
@@ -107,8 +115,9 @@ class HudSystem(System):
             self._toolbar.lay_out()
             hinted = [control for control in CONTROLS if not control.minor]
             self._hint = Hint(hinted, self._text_size - 1, canvas, theme)
-            self._help = Help(CONTROLS, self._text_size, canvas, theme)
-            self._next_reading = window.now
+            self._help = None
+            for reading in self._lines:
+                self._place(reading)
 
     def room(self) -> Rect:
         """Return what is left for the world [px]: below the toolbar, above the hint, between the panels.
@@ -138,8 +147,8 @@ class HudSystem(System):
     def _draw_all(self, world: World) -> None:
         window = self._window
         canvas, theme, size = window.canvas, window.theme, self._text_size
-        for panel in self._panels:
-            panel.draw(canvas, theme)
+        for n, panel in enumerate(self._panels):
+            panel.show(f"panel {n}", canvas, theme)
         if self._legend is not None:
             self._legend.draw(canvas, theme)
         self._hint.draw(canvas)
@@ -158,28 +167,37 @@ class HudSystem(System):
     def _text_size(self) -> int:
         return text_size(self._window.canvas)
 
-    def _read(self, world: World) -> None:
-        window, size = self._window, self._text_size
+    def _read(self, reading: str, world: World) -> None:
+        """Look at the figures, the costs or what is not to be trusted."""
+        if reading == "advice":
+            self._advice = advise(world)
+            return
+        if reading == "costs":
+            self._lines[reading] = ([*cost_lines(world, self._meter), *left_out_lines(world)],)
+        else:
+            figures = figure_lines(world, measure_world(world, self._watch), self._meter.frame_rate)
+            plain = [line for line in figures if line.kind != "detail"]
+            self._lines[reading] = ([*figures, *method_lines(world)], figures, plain)
+        self._place(reading)
+
+    def _place(self, reading: str) -> None:
+        """Lay out what was read in a window as it is now: the figures at the left, the costs at the right."""
+        window, size, across = self._window, self._text_size, self._window.canvas.size[0]
         canvas, theme = window.canvas, window.theme
         width, margin = round(_PANEL * size), round(_MARGIN * size)
-        top = self._toolbar.height + margin
-        measured = measure_world(world, self._watch)
-        self._advice = advise(world)
-        figures = figure_lines(world, measured, self._meter.frame_rate)
-        costs = [*cost_lines(world, self._meter), *left_out_lines(world)]
-        plain = [line for line in figures if line.kind != "detail"]
+        top, right = self._toolbar.height + margin, self._sides()[1]
         bottom = self._hint.top - size - sum(height + size // 2 for _, _, height in self._messages())
-        for lines in ([*figures, *method_lines(world)], figures, plain):
-            left = lay_out(lines, margin, top, width, size, canvas, theme)
-            if top + left.rect[3] <= bottom:
+        for lines in self._lines[reading] if window.figures else ():
+            panel = lay_out(lines, margin if reading == "figures" else right, top, width, size, canvas, theme)
+            self._placed[reading] = panel
+            if top + panel.rect[3] <= bottom:
                 break  # else less is said, so that no message lies over it
-        self._panels = [left]
-        across, right = canvas.size[0], self._sides()[1]
-        if right < across:
-            self._panels.append(lay_out(costs, right, top, width, size, canvas, theme))
-        self._middle = (margin + width + right) // 2
         if not window.figures:
-            self._panels, self._middle = [], across // 2
+            self._placed.clear()
+        elif right >= across:
+            self._placed.pop("costs", None)
+        self._panels = [self._placed[side] for side in ("figures", "costs") if side in self._placed]
+        self._middle = (margin + width + right) // 2 if window.figures else across // 2
         self._place_legend()
 
     def _place_legend(self) -> None:

@@ -88,9 +88,11 @@ def _on_screen(
     centre: NDArray[np.float64], reach: NDArray[np.float64], size: tuple[int, int]
 ) -> NDArray[np.bool_]:
     """Whether each body can be seen; what is not finite cannot."""
-    margin = reach[:, None]
+    # A column at a time: numpy is slow where the last axis is as short as two.
+    across, down = centre[:, 0], centre[:, 1]
     with np.errstate(invalid="ignore"):
-        inside: NDArray[np.bool_] = ((centre > -margin) & (centre < np.array(size) + margin)).all(axis=1)
+        inside: NDArray[np.bool_] = (across > -reach) & (across < size[0] + reach)
+        inside &= (down > -reach) & (down < size[1] + reach)
     return inside
 
 

@@ -14,7 +14,18 @@ from physicslab.view.theme import Colour
 if TYPE_CHECKING:
     import pygame
 
-__all__ = ["Align", "Canvas", "Look", "Numbers", "Painter", "Points", "RecordingCanvas", "Rect", "TextStyle"]
+__all__ = [
+    "Align",
+    "Canvas",
+    "Look",
+    "Numbers",
+    "Painter",
+    "Paper",
+    "Points",
+    "RecordingCanvas",
+    "Rect",
+    "TextStyle",
+]
 
 type Numbers = NDArray[np.float64]
 """A float64 array (n,)."""
@@ -59,7 +70,20 @@ class TextStyle:
     bold: bool = False
 
 
-class Canvas(Protocol):
+class Paper(Protocol):
+    """What words and panels can be put on: a canvas, or a part of it that is kept."""
+
+    def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
+        """Draw a rectangle with rounded corners and a thin outline."""
+
+    def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
+        """Write one line; ``at`` is its top left, top middle or top right."""
+
+    def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
+        """Return the width and height of one line [px]."""
+
+
+class Canvas(Paper, Protocol):
     """A picture in the making. All lengths are pixels, y points down, and what comes later lies on top.
 
     Angles are counter-clockwise as seen on the screen [rad]. What lies outside the picture is cut off, and
@@ -87,14 +111,12 @@ class Canvas(Protocol):
     def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
         """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
 
-    def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
-        """Draw a rectangle with rounded corners and a thin outline."""
+    def sheet(self, name: str, rect: Rect, version: object, draw: Callable[[Paper], None]) -> None:
+        """Draw words and panels that lie within ``rect`` [px] and stay for as long as ``version`` does.
 
-    def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
-        """Write one line; ``at`` is its top left, top middle or top right."""
-
-    def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
-        """Return the width and height of one line [px]."""
+        What was drawn under the same ``name`` before may be put down once more in place of calling ``draw``;
+        if the version is the same, it is drawn in the same way relative to the corner of ``rect``.
+        """
 
     def paint(self, painter: Painter) -> None:
         """Let something else draw on the picture: widgets do that by themselves."""
@@ -168,6 +190,10 @@ class RecordingCanvas:
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return a guess: letters a little over half as wide as high."""
         return round(0.55 * style.size * len(words)), round(1.36 * style.size)
+
+    def sheet(self, name: str, rect: Rect, version: object, draw: Callable[[Paper], None]) -> None:
+        """Note each thing on it."""
+        draw(self)
 
     def paint(self, painter: Painter) -> None:
         """Note that something was to be drawn."""

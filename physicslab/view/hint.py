@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from physicslab.view.canvas import Canvas, TextStyle
+from physicslab.view.canvas import Canvas, Paper, TextStyle
 from physicslab.view.controls import Control
 from physicslab.view.theme import Theme
 
@@ -62,14 +62,21 @@ class Hint:
 
     def _fill(self, controls: Sequence[Control], room: int) -> list[list[Control]]:
         rows: list[list[Control]] = [[]]
+        left, gap = room, 2 * self._pad
         for control in controls:
-            if rows[-1] and self._width([*rows[-1], control]) > room:
+            width = self._widths[control]
+            if rows[-1] and width > left:
                 rows.append([])
+                left = room
             rows[-1].append(control)
+            left -= width + gap
         return rows
 
     def draw(self, canvas: Canvas) -> None:
         """Draw it, each row in the middle."""
+        canvas.sheet("hint", self.rect, self, self._draw_on)
+
+    def _draw_on(self, canvas: Paper) -> None:
         theme, pad = self._theme, self._pad
         canvas.panel(self.rect, theme.panel, theme.outline, theme.panel_opacity)
         height = self._row - pad // 2

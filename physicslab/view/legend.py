@@ -61,7 +61,7 @@ class Legend:
 
     def draw(self, canvas: Canvas, theme: Theme) -> None:
         """Draw it."""
-        self.panel.draw(canvas, theme)
+        self.panel.show("legend", canvas, theme)
         for sample, place, length in self.samples:
             start, span = np.array([place]), np.array([(length, 0.0)])
             if sample.kind is not None:

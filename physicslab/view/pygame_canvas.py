@@ -13,7 +13,9 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.view.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle
+from physicslab.view.canvas import Align, Look, Numbers, Painter, Paper, Points, Rect, TextStyle
+from physicslab.view.rounded import rounded
+from physicslab.view.sheet import Sheet
 from physicslab.view.theme import Colour
 
 __all__ = ["PygameCanvas"]
@@ -22,10 +24,6 @@ _KEPT_SURFACES = 512
 _KEPT_SIZES = 4096
 _RIM = 1.6
 """Width of the rims [px]."""
-_CORNER = 8
-"""Radius of a panel's corners [px]."""
-_SMOOTHING = 4
-"""How many times too large panels are drawn, to be shrunk."""
 
 
 def _load_font(size: int, bold: bool) -> pygame.font.Font:
@@ -60,6 +58,7 @@ class PygameCanvas:
         self._kept: OrderedDict[tuple[object, ...], pygame.Surface] = OrderedDict()
         self._fonts: dict[tuple[int, bool], pygame.font.Font] = {}
         self._colours: dict[Colour, int] = {}
+        self._sheets: dict[str, Sheet] = {}
         self._sizes: dict[tuple[str, TextStyle], tuple[int, int]] = {}
 
     @property
@@ -127,16 +126,26 @@ class PygameCanvas:
         """Draw a rectangle with rounded corners and a thin outline."""
         left, top, width, height = rect
         if width > 0 and height > 0:
-            key = ("panel", width, height, colour, outline, opacity)
-            made = self._keep(key, lambda: _rounded((width, height), colour, outline, opacity))
+            made = self.kept_panel((width, height), colour, outline, opacity)
             self.surface.blit(made, (left, top), special_flags=pygame.BLEND_PREMULTIPLIED)
+
+    def kept_panel(
+        self, size: tuple[int, int], colour: Colour, outline: Colour, opacity: float
+    ) -> pygame.Surface:
+        """Return the picture of a panel, its colours multiplied by its opacity."""
+        key = ("panel", *size, colour, outline, opacity)
+        return self._keep(key, lambda: rounded(size, colour, outline, opacity))
 
     def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
         """Write one line; ``at`` is its top left, top middle or top right."""
-        font = self._font(style)
-        line = self._keep(("text", words, style), lambda: font.render(words, True, style.colour))
+        line = self.kept_text(words, style)
         shift = {"left": 0, "centre": line.get_width() // 2, "right": line.get_width()}[align]
         self.surface.blit(line, (at[0] - shift, at[1]))
+
+    def kept_text(self, words: str, style: TextStyle) -> pygame.Surface:
+        """Return the picture of one line."""
+        font = self._font(style)
+        return self._keep(("text", words, style), lambda: font.render(words, True, style.colour))
 
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return the width and height of one line [px]."""
@@ -147,6 +156,13 @@ class PygameCanvas:
                 self._sizes.clear()
             size = self._sizes[key] = self._font(style).size(words)
         return size
+
+    def sheet(self, name: str, rect: Rect, version: object, draw: Callable[[Paper], None]) -> None:
+        """Draw words and panels that lie within ``rect`` [px] and stay for as long as ``version`` does."""
+        kept = self._sheets.get(name)
+        if kept is None:
+            kept = self._sheets[name] = Sheet(self)
+        kept.put(rect, version, draw)
 
     def paint(self, painter: Painter) -> None:
         """Let something else draw on the picture."""
@@ -176,16 +192,3 @@ def _painter(name: str) -> Any:
 def _plain(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return numbers as the compiled loops take them, whatever stride and type they came in."""
     return np.ascontiguousarray(numbers, np.float64)
-
-
-def _rounded(size: tuple[int, int], colour: Colour, outline: Colour, opacity: float) -> pygame.Surface:
-    """Return a rectangle with smooth round corners, its colours multiplied by its opacity."""
-    width, height = size
-    radius = _SMOOTHING * min(_CORNER, width // 2, height // 2)
-    large = pygame.Surface((_SMOOTHING * width, _SMOOTHING * height), pygame.SRCALPHA, 32)
-    pygame.draw.rect(large, outline, large.get_rect(), border_radius=radius)
-    inside = large.get_rect().inflate(-2 * _SMOOTHING, -2 * _SMOOTHING)
-    pygame.draw.rect(large, colour, inside, border_radius=radius - _SMOOTHING)
-    small = pygame.transform.smoothscale(large.premul_alpha(), size)
-    small.fill((round(255 * opacity),) * 4, special_flags=pygame.BLEND_RGBA_MULT)
-    return small

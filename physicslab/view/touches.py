@@ -34,19 +34,24 @@ TOUCH = np.dtype(
 
 def _touches(world: World, chosen: NDArray[np.int64], normal: str, tangent: str) -> Touches:
     """Return the points of these numbers, with the impulses of two columns."""
-    contacts = world.contacts
-    manifolds, points = contacts.manifolds[chosen // 2], contacts.points[chosen]
+    pair, manifolds, points = chosen // 2, world.contacts.manifolds, world.contacts.points
     touches: Touches = np.zeros(len(chosen), TOUCH)
-    touches["a"], touches["b"], touches["point"] = manifolds["entity_a"], manifolds["entity_b"], chosen % 2
-    arm = np.stack((points["arm_bx"], points["arm_by"]), axis=1)
-    touches["place"] = world.table(Transform)["position"][manifolds["b"]] + arm
+    # A column at a time: what else there is of a contact is several times as much.
+    touches["a"], touches["b"], touches["point"] = (
+        manifolds["entity_a"][pair], manifolds["entity_b"][pair], chosen % 2,
+    )  # fmt: skip
+    row_a, row_b = manifolds["a"][pair], manifolds["b"][pair]
+    place, centre = touches["place"], world.table(Transform)["position"]
+    for axis, arm in enumerate(("arm_bx", "arm_by")):
+        place[:, axis] = centre[row_b, axis] + points[arm][chosen]
     # Shown on B, or on A where nothing can push B: seen from there, normal and tangent turn round.
     inverse_mass = world.bodies.inverse_mass
-    on_a = (inverse_mass[manifolds["b"]] == 0.0) & (inverse_mass[manifolds["a"]] > 0.0)
-    direction = np.stack((manifolds["normal_x"], manifolds["normal_y"]), axis=1)
-    touches["direction"] = np.where(on_a[:, None], -direction, direction)
-    touches["friction"], touches["speed"] = manifolds["friction"], points["approach_speed"]
-    touches["normal"], touches["tangent"] = points[normal], points[tangent]
+    on_a = (inverse_mass[row_b] == 0.0) & (inverse_mass[row_a] > 0.0)
+    for axis, name in enumerate(("normal_x", "normal_y")):
+        component = manifolds[name][pair]
+        touches["direction"][:, axis] = np.where(on_a, -component, component)
+    touches["friction"], touches["speed"] = manifolds["friction"][pair], points["approach_speed"][chosen]
+    touches["normal"], touches["tangent"] = points[normal][chosen], points[tangent][chosen]
     touches["time"] = world.time
     return touches
 

@@ -37,6 +37,18 @@ class Button(pygame_gui.elements.UIButton):
 
     widgets: Widgets
     icon = ""
+    _outdated = False
+
+    def outdate(self) -> None:
+        """Write its words in the widgets' new style: now if it is shown, else when it is."""
+        self._outdated = not self.icon
+        if self.visible:
+            self._update()
+
+    def _update(self) -> None:
+        if self._outdated:
+            self._outdated = False
+            self.rebuild_from_changed_theme_data()
 
     def _set_any_images_from_theme(self) -> bool:
         """Draw the icon, in place of an image that a theme names."""
@@ -56,6 +68,7 @@ class Button(pygame_gui.elements.UIButton):
 
     def put(self, rect: Rect) -> None:
         """Show it at a place [px]."""
+        self._update()
         if tuple(self.rect) != rect:
             grown = tuple(self.rect.size) != rect[2:]
             self.set_relative_position(rect[:2])
@@ -143,6 +156,7 @@ class Widgets:
         self._look = (theme, text_size)
         self._icons: dict[tuple[str, tuple[int, int]], tuple[pygame.Surface, pygame.Surface]] = {}
         self._manager = _Manager(size, _style(theme, text_size), enable_live_theme_updates=False)
+        self._styles: dict[int, Any] = {}  # by the height of the text
         self._plates: list[Plate] = []
         self._buttons: list[Button] = []
         self._unsettled = _SETTLING
@@ -200,11 +214,22 @@ class Widgets:
         self._look = (theme, text_size)
         if recoloured:
             self._icons.clear()
-        style = self._manager.create_new_theme(_style(theme, text_size))
-        self._manager.set_ui_theme(style, update_all_sprites=True)
-        if recoloured:  # where the text alone grows, buttons are drawn anew as they are put in their places
+            self._styles.clear()
+        if text_size not in self._styles:
+            self._styles[text_size] = self._manager.create_new_theme(_style(theme, text_size))
+        style = self._styles[text_size]
+        if recoloured:
+            self._manager.set_ui_theme(style, update_all_sprites=True)
             for button in self._buttons:
                 button.remake()
+            return
+        # Where the text alone grows, only what has words changes, and most of that is hidden: to ask every
+        # widget to look for changes takes as long as a frame.
+        self._manager.ui_theme = style
+        for widget in (*self._plates, *self._buttons):
+            widget.ui_theme = style
+        for button in self._buttons:
+            button.outdate()
 
     def covers(self, place: tuple[float, float]) -> bool:
         """Whether a widget is at a place [px]."""
