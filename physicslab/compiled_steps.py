@@ -106,7 +106,7 @@ class CompiledSteps:
         """
         h = world.simulation.dt / world.simulation.substeps
         contacts = world.contacts
-        contacts.in_order()
+        contacts.in_order(len(world.roster))
         contacts.blocks.trim()
         self._contact.begin(world, h)
         made, substep, stage, steps = 0, 0, BEGIN, min(steps, _MOST)
@@ -133,9 +133,10 @@ class CompiledSteps:
         began = time.perf_counter_ns()
         contacts, substeps = world.contacts, world.simulation.substeps
         self._cost[:] = 0
-        why, done, substep, contacts.active, contacts.left, struck_before, struck, contacts.span = (
+        why, done, substep, near, contacts.active, contacts.left, struck_before, struck, contacts.span = (
             contact_steps.advance(steps, substeps, substep, stage, h, *self._numbers(world, before, h))
         )
+        contacts.lying, contacts.recorded, contacts.loose_count = near
         world.steps += done
         world.time += done * world.simulation.dt
         world.collisions += struck_before
@@ -162,7 +163,9 @@ class CompiledSteps:
             (physics.linear_damping, physics.angular_damping), self._contact.fall(world, h),
             self._broad_phase.fat,
             (self._broad_phase.bounds, physics.bounds_restitution, physics.bounds_friction),
-            contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
+            (contacts.idle, contacts.reach, world.roster.entities),
+            (contacts.lying, contacts.recorded, contacts.loose_count),
+            contacts.manifolds, contacts.points, contacts.loose,
             contacts.touching, contacts.active,
             (*contacts.blocks.discs.solved, *contacts.blocks.boxes.solved),
             (resolve.hertz, resolve.damping_ratio, resolve.slop, resolve.max_push), contacts.span, self._cost,

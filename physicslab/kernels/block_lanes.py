@@ -44,7 +44,7 @@ from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 
 __all__ = [
     "COLOURS", "Masks", "admit", "empty_lane", "follow_pairs", "give_up", "keep_loose", "list_loose",
-    "seat_again", "sort_blocks", "sort_loose", "store",
+    "seat_again", "sort_blocks", "store",
     "store_lane", "wake",
 ]  # fmt: skip
 
@@ -327,17 +327,6 @@ def list_loose(manifolds: Manifolds, pairs: int, loose: Rows) -> int:
             loose[found] = p
             found += 1
     return found
-
-
-@kernel
-def sort_loose(loose: Rows, count: int) -> None:
-    """Put the loose pairs in order, of which all but the last few are."""
-    for k in range(1, count):
-        p, place = loose[k], k
-        while place > 0 and loose[place - 1] > p:
-            loose[place] = loose[place - 1]
-            place -= 1
-        loose[place] = p
 
 
 @kernel

@@ -7,7 +7,8 @@ from physicslab.kernels.grid import still_holds
 from physicslab.kernels.impact import strike
 from physicslab.kernels.impulse import MOST_PARTS, relax, separate, solve
 from physicslab.kernels.motion import clear, drift, find_not_finite, kick
-from physicslab.kernels.records import Manifolds, Points
+from physicslab.kernels.near_pairs import promote
+from physicslab.kernels.records import Couples, Manifolds, Points
 from physicslab.kernels.ticks import charge, ticks
 
 __all__ = [
@@ -40,6 +41,8 @@ _Touch = tuple[Manifolds, Points, Rows, int]
 """The records of near pairs, which of them touch, and how many."""
 _Lanes = tuple[Numbers, int, Rows, Rows, Rows, Numbers, int, Rows, Rows, Rows]
 """Blocks of discs and of boxes, of which none is in use."""
+_Idle = tuple[Couples, Numbers, Rows]
+"""The near pairs without records and how near each must come to get one [m]; the entities of all rows."""
 _Spring = tuple[float, float, float, float]
 """Of contacts: frequency [Hz], damping ratio, slop, fastest push [m/s]."""
 
@@ -87,18 +90,21 @@ def advance(
     steps: int, substeps: int, substep: int, stage: int, h: float, iterations: int, few: int,
     state: _State, kept: _State, sizes: _Sizes, materials: _Two, inverse: _Two, tethered: Flags,
     forces: _Forces, damping: tuple[float, float], fall: float, fat: Vectors, bounds: _Bounds,
-    manifolds: Manifolds, points: Points, loose: Rows, loose_count: int, touching: Rows, active: int,
+    idle: _Idle, near: tuple[int, int, int],
+    manifolds: Manifolds, points: Points, loose: Rows, touching: Rows, active: int,
     lanes: _Lanes, spring: _Spring, span: float, cost: Rows,
-) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
+) -> tuple[int, int, int, tuple[int, int, int], int, int, int, int, float]:  # fmt: skip
     """Make ``steps`` steps of ``substeps`` times ``h`` seconds, beginning at a stage of a substep.
 
     The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and what happens at each is what
     the systems do there. ``fall`` is how far [m] the forces may bring two bodies together within a substep;
-    ``few`` contacts or more end the loop. ``cost`` (6,) gets ticks added for each of ``SYSTEMS``.
+    ``few`` contacts or more end the loop. ``near`` is how many near pairs lie idle, have records and are
+    loose. ``cost`` (6,) gets ticks added for each of ``SYSTEMS``.
 
-    Returns why it ended, how many steps are done, the substep that it was in, how many pairs touch, how many
-    of them the impacts left, the impacts in the steps that are done and all impacts, and the time [s] that
-    the points' impulses stand for. ``kept`` is the state in which the last step began.
+    Returns why it ended, how many steps are done, the substep that it was in, ``near`` as it is then, how
+    many pairs touch, how many of them the impacts left, the impacts in the steps that are done and all
+    impacts, and the time [s] that the points' impulses stand for. ``kept`` is the state in which the last
+    step began.
     """
     position, angle, linear, angular = state
     walls, bounds_restitution, bounds_friction = bounds
@@ -119,15 +125,19 @@ def advance(
             holds = still_holds(position, angle, linear, *sizes, fat, h)
             now = charge(cost, _BROAD_PHASE, now)
             if not holds:
-                return UNLISTED, done, substep, active, left, impacts_done, impacts, span
+                return UNLISTED, done, substep, near, active, left, impacts_done, impacts, span
         if stage != STRIKE:
+            near = promote(
+                idle[0], idle[1], near[0], manifolds, points, near[1], loose, near[2], idle[2],
+                position, linear, h, fall,
+            )  # fmt: skip
             active = find_contacts(
-                manifolds, points, loose, loose_count, touching, *state, *sizes, *materials, *inverse,
+                manifolds, points, loose, near[2], touching, *state, *sizes, *materials, *inverse,
                 walls, bounds_restitution, bounds_friction, substep == 0, h, -0.5, fall,
             )  # fmt: skip
             now = charge(cost, _CONTACT, now)
             if substep == 0 and active >= few:
-                return CROWDED, done, substep, active, left, impacts_done, impacts, span
+                return CROWDED, done, substep, near, active, left, impacts_done, impacts, span
         stage, left, touch = BEGIN, 0, (manifolds, points, touching, active)
         if active:
             struck, left = strike(*touch, *state, forces[0], *inverse, forces[3], h, -0.5 * h, 0.5 * h)
@@ -152,6 +162,6 @@ def advance(
             failed = find_not_finite(position, angle) >= 0 or find_not_finite(linear, angular) >= 0
             now = charge(cost, _BODIES, now)
             if failed:
-                return DIVERGED, done, substep, active, left, impacts_done, impacts, span
+                return DIVERGED, done, substep, near, active, left, impacts_done, impacts, span
             done, impacts_done = done + 1, impacts
-    return ALL, done, substep, active, left, impacts_done, impacts, span
+    return ALL, done, substep, near, active, left, impacts_done, impacts, span

@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.records import Manifolds, Pairs, Points
+from physicslab.kernels.records import Pairs
 
-__all__ = ["carry_over", "fat_boxes", "find_pairs", "still_holds"]
+__all__ = ["fat_boxes", "find_pairs", "still_holds"]
 
 
 @inlined
@@ -31,8 +31,8 @@ def still_holds(
 ) -> bool:
     """Whether every body, with what it moves in a time h, is still inside the fat box made for it.
 
-    ``fat`` (rows, 5) holds where each body was (x, y, angle), its bounding radius then, and the margin around
-    it.
+    ``fat`` (rows, 5) holds where each body was (x, y, angle), its bounding radius then, negative for a disc,
+    and the margin around it.
     """
     for i in range(len(angle)):
         if kind[i] == 0:
@@ -40,10 +40,11 @@ def still_holds(
                 return False
             continue
         reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
+        made_for = -reach if kind[i] == 1 else reach
         moved_x = abs(position[i, 0] - fat[i, 0]) + abs(linear[i, 0]) * h
         moved_y = abs(position[i, 1] - fat[i, 1]) + abs(linear[i, 1]) * h
         turned = abs(angle[i] - fat[i, 2]) * reach if kind[i] == 2 else 0.0
-        if not max(moved_x, moved_y) + turned <= fat[i, 4] or reach != fat[i, 3]:
+        if not max(moved_x, moved_y) + turned <= fat[i, 4] or made_for != fat[i, 3]:
             return False
     return True
 
@@ -84,7 +85,7 @@ def fat_boxes(
         speed = max(abs(linear[i, 0]), abs(linear[i, 1]), usual if inverse_mass[i] > 0.0 else 0.0)
         margin = 0.1 * min(half_x, half_y) + 8.0 * h * speed
         fat[i, 0], fat[i, 1], fat[i, 2] = position[i, 0], position[i, 1], angle[i]
-        fat[i, 3], fat[i, 4] = reach, margin
+        fat[i, 3], fat[i, 4] = (-reach if kind[i] == 1 else reach), margin
         boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
         boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
 
@@ -213,21 +214,32 @@ def _level(
         for side in range(4):
             near[entry, side] = boxes[small[k], side]
 
-    met = np.empty(smalls, np.int64)
     for p in range(smalls):
         ix, iy = home[p, 0], home[p, 1]
         if dense:  # buckets one above the other are next to each other: two stretches hold all five cells
             at = (ix - low_x) * up + iy - low_y
-            # Every neighbour is written down, and kept by counting: whether two overlap cannot be foretold.
-            meetings = 0
-            for q in range(p + 1, first[at + 2]):
-                met[meetings] = body[q]
-                meetings += _overlap(near, p, near, q)
-            for q in range(first[at + up - 1], first[at + up + 2]):
-                met[meetings] = body[q]
-                meetings += _overlap(near, p, near, q)
-            for k in range(meetings):
-                found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], met[k])
+            above, beside, end = first[at + 2], first[at + up - 1], first[at + up + 2]
+            most = above - (p + 1) + end - beside
+            i = body[p]
+            if most <= 2 * _CROWD:
+                if found + most > len(pairs):
+                    found += most
+                    continue
+                # Every neighbour is written down, and kept by counting: whether two overlap cannot be
+                # foretold.
+                for q in range(p + 1, above):
+                    pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, body[q]), max(i, body[q]), -1
+                    found += _overlap(near, p, near, q)
+                for q in range(beside, end):
+                    pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, body[q]), max(i, body[q]), -1
+                    found += _overlap(near, p, near, q)
+                continue
+            for q in range(p + 1, above):
+                if _overlap(near, p, near, q):
+                    found = _take(pairs, found, inverse_mass, boxes, fat, company, i, body[q])
+            for q in range(beside, end):
+                if _overlap(near, p, near, q):
+                    found = _take(pairs, found, inverse_mass, boxes, fat, company, i, body[q])
             continue
         for neighbour in range(5):
             jx = ix if neighbour < 2 else ix + 1
@@ -263,11 +275,11 @@ def find_pairs(
     boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers,
     bounded: bool, bounds: Numbers, pairs: Pairs,
 ) -> int:  # fmt: skip
-    """Write the pairs (a, b, wall) whose fat boxes overlap, each once, sorted; return how many there are.
+    """Write the pairs (a, b, wall) whose fat boxes overlap, each once; return how many there are.
 
     A grid whose cells fit the usual body finds the pairs of small ones, and of small with large ones; the
-    large ones go on to a coarser grid. Bodies past the bounds make pairs with row 0 and the wall. Pairs of
-    which neither can be moved do not count. More pairs than ``pairs`` has rows are counted and not written.
+    large ones go on to a coarser grid. Bodies past the bounds make pairs with row 0 and the wall, which come
+    first. Where ``pairs`` has too few rows, the number is larger than that, and no less than is needed.
     """
     n = len(kind)
     members = np.empty(n, np.int64)
@@ -285,7 +297,6 @@ def find_pairs(
                     if found < len(pairs):
                         pairs[found, 0], pairs[found, 1], pairs[found, 2] = 0, i, wall
                     found += 1
-    walls = found
     while count > 1:
         inverse_sizes = 0.0
         for k in range(count):
@@ -297,71 +308,4 @@ def find_pairs(
             company,
         )  # fmt: skip
         members[:count] = larges[:count]
-    if found <= len(pairs):
-        _sort_pairs(pairs, walls, found, n)
     return found
-
-
-@inlined
-def _sort_pairs(pairs: Pairs, start: int, end: int, n: int) -> None:
-    """Sort pairs by a, then b: by counting, twice, the last significant key first."""
-    spare = np.empty((end - start, 2), np.int64)
-    for key in (1, 0):
-        first = np.zeros(n + 1, np.int64)
-        for p in range(start, end):
-            first[pairs[p, key] + 1] += 1
-        for i in range(n):
-            first[i + 1] += first[i]
-        for p in range(start, end):
-            to = first[pairs[p, key]]
-            spare[to, 0], spare[to, 1] = pairs[p, 0], pairs[p, 1]
-            first[pairs[p, key]] += 1
-        for p in range(start, end):
-            pairs[p, 0], pairs[p, 1] = spare[p - start, 0], spare[p - start, 1]
-
-
-@kernel
-def carry_over(
-    pairs: Pairs,
-    count: int,
-    entities: Rows,
-    old_manifolds: Manifolds,
-    old_points: Points,
-    old_count: int,
-    manifolds: Manifolds,
-    points: Points,
-) -> None:
-    """Give each pair its manifold: the one it had, found by walking both sorted lists, or an empty one."""
-    q = 0
-    for p in range(count):
-        a, b, wall = pairs[p, 0], pairs[p, 1], pairs[p, 2]
-        entity_a, entity_b = entities[a], entities[b]
-        while q < old_count:
-            old = old_manifolds[q]
-            if old.entity_a > entity_a:
-                break
-            if old.entity_a == entity_a:
-                if old.entity_b > entity_b:
-                    break
-                if old.entity_b == entity_b and old.wall >= wall:
-                    break
-            q += 1
-        manifold = manifolds[p]
-        matches = False
-        if q < old_count:
-            old = old_manifolds[q]
-            matches = old.entity_a == entity_a and old.entity_b == entity_b and old.wall == wall
-        if matches:
-            manifolds[p] = old_manifolds[q]
-            points[2 * p] = old_points[2 * q]
-            points[2 * p + 1] = old_points[2 * q + 1]
-        else:
-            manifold.entity_a, manifold.entity_b, manifold.wall = entity_a, entity_b, wall
-            manifold.count, manifold.found, manifold.struck, manifold.lane = 0, 0, 0, -1
-            points[2 * p].feature = points[2 * p + 1].feature = 0
-            points[2 * p].normal_impulse = points[2 * p + 1].normal_impulse = 0.0
-            points[2 * p].tangent_impulse = points[2 * p + 1].tangent_impulse = 0.0
-            points[2 * p].approach_speed = points[2 * p + 1].approach_speed = 0.0
-            points[2 * p].impact_normal = points[2 * p + 1].impact_normal = 0.0
-            points[2 * p].impact_tangent = points[2 * p + 1].impact_tangent = 0.0
-        manifold.a, manifold.b = a, b

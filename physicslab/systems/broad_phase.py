@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.kernels import grid
+from physicslab.kernels import grid, near_pairs
 from physicslab.schedule import Stage, System, at
 
 if TYPE_CHECKING:
@@ -42,7 +42,14 @@ class BroadPhaseSystem(System):
         Of the world: xmin, ymin, xmax, ymax [m].
     """
 
-    kernels = (grid.still_holds, grid.fat_boxes, grid.find_pairs, grid.carry_over)
+    kernels = (
+        grid.still_holds,
+        grid.fat_boxes,
+        grid.find_pairs,
+        near_pairs.part,
+        near_pairs.carry_over,
+        near_pairs.sort_loose,
+    )
 
     def __init__(self) -> None:
         self.fat: NDArray[np.float64] = np.zeros((0, 5))
@@ -78,7 +85,7 @@ class BroadPhaseSystem(System):
         grid.fat_boxes(position, angle, linear, *sizes, inverse_mass, self.fat, self._boxes, h)
         bounded = world.physics.bounds is not None
         count = self._count_pairs(shape["kind"], inverse_mass, bounded)
-        world.contacts.relist(world, self._pairs, count)
+        world.contacts.part(world, self._pairs, count)
 
     def _count_pairs(self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool) -> int:
         """Fill the list of pairs, made larger where it is too small, and return their number."""
