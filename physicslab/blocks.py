@@ -125,6 +125,8 @@ class Blocks:
     def trim(self) -> None:
         """Drop the empty blocks at the end: what was there once makes no difference."""
         for lanes in self.kinds:
+            if not lanes.count:
+                continue
             taken = np.flatnonzero(lanes.pair[: lanes.count * WIDE] >= 0)
             lanes.count = int(taken[-1]) // WIDE + 1 if len(taken) else 0
 

@@ -94,8 +94,9 @@ class Contacts:
         together are in order; those that have got their records since stand behind them.
     points : array of POINT (2 capacity,)
         Points 2 p and 2 p + 1 belong to pair p; the first ``manifolds[p]["count"]`` are in use.
-    idle : int32 array (capacity, 2)
-        Rows of the discs that are near each other and have no record; the first ``lying`` are in use.
+    idle : uint32 array (2 capacity,)
+        Rows of the discs that are near each other and have no record, two by two; the first ``lying`` pairs
+        are in use.
     reach : float64 array (capacity,)
         How near these must come to get one [m].
     blocks : Blocks
@@ -153,7 +154,7 @@ class Contacts:
         self.points: NDArray[Any] = np.zeros(2 * capacity, POINT)
         self.touching: NDArray[np.int64] = np.zeros(capacity, np.int64)
         self.loose: NDArray[np.int64] = np.zeros(capacity, np.int64)
-        self.idle: NDArray[np.int32] = np.zeros((capacity, 2), np.int32)
+        self.idle: NDArray[np.uint32] = np.zeros(2 * capacity, np.uint32)
         self.reach: NDArray[np.float64] = np.zeros(capacity)
         self._table: NDArray[np.int64] = np.zeros(16, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.
@@ -233,18 +234,18 @@ class Contacts:
             self._list_loose(len(world.roster))
         return None
 
-    def part(self, world: World, pairs: NDArray[np.int64], found: int) -> None:
-        """Take a new list of ``found`` near pairs (a, b, wall), in no order, those of the bounds first.
+    def part(self, world: World, pairs: NDArray[np.int64], found: int, walls: int) -> None:
+        """Take a new list of ``found`` near pairs, in no order but that ``walls`` of the bounds come first.
 
         Pairs of discs of which nothing is remembered lie idle until they come near.
         """
         self._make_table()
         if len(self.reach) < found:
-            self.idle, self.reach = np.zeros((2 * found, 2), np.int32), np.zeros(2 * found)
+            self.idle, self.reach = np.zeros(4 * found, np.uint32), np.zeros(2 * found)
         shape = world.table(Shape)
         count, self.lying = near_pairs.part(
-            pairs, found, shape["kind"], shape["radius"], world.bodies.inverse_mass, world.roster.entities,
-            self.manifolds, self.recorded, self.stale, self._table, self.idle, self.reach,
+            pairs, found, walls, shape["kind"], shape["radius"], world.bodies.inverse_mass,
+            world.roster.entities, self.manifolds, self.recorded, self.stale, self._table, self.idle, self.reach,
         )  # fmt: skip
         self._relist(world, pairs, count, noted=True)
 

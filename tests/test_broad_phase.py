@@ -21,7 +21,7 @@ def near(world: World) -> list[tuple[int, int, int]]:
     contacts, entities = world.contacts, world.roster.entities
     manifolds = contacts.manifolds[: contacts.recorded]
     recorded = [(int(m["entity_a"]), int(m["entity_b"]), int(m["wall"])) for m in manifolds]
-    idle = [(*pair, -1) for pair in entities[contacts.idle[: contacts.lying]].tolist()]
+    idle = [(*pair, -1) for pair in entities[contacts.idle[: 2 * contacts.lying].reshape(-1, 2)].tolist()]
     return sorted(recorded + idle)
 
 

@@ -108,11 +108,21 @@ def _overlap(these: Vectors, i: int, those: Vectors, j: int) -> bool:
 
 
 @inlined
+def _meet(flat: Numbers, p: int, q: int) -> bool:
+    """Whether two boxes overlap, of those that lie one after the other."""
+    i, j = 4 * p, 4 * q
+    return bool(
+        (flat[i] <= flat[j + 2]) & (flat[j] <= flat[i + 2])
+        & (flat[i + 1] <= flat[j + 3]) & (flat[j + 1] <= flat[i + 3])
+    )  # fmt: skip
+
+
+@inlined
 def _take(
     pairs: Pairs, found: int, inverse_mass: Numbers,
     boxes: Vectors, fat: Vectors, company: Rows, i: int, j: int,
 ) -> int:  # fmt: skip
-    """Write the pair (i, j) in order, if it can be moved and there is room; return how many there are now.
+    """Write the pair (i, j), if it can be moved and there is room; return how many there are now.
 
     Of bodies that were put on one spot only so many pairs are taken that work and memory stay in proportion
     to the bodies: whoever has a crowd in its ``company`` meets the others when some of those have gone.
@@ -132,7 +142,7 @@ def _take(
             company[i] += 1
             company[j] += 1
     if found < len(pairs):
-        pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, j), max(i, j), -1
+        pairs[found, 0], pairs[found, 1] = i, j
     return found + 1
 
 
@@ -214,6 +224,7 @@ def _level(
         for side in range(4):
             near[entry, side] = boxes[small[k], side]
 
+    flat = near.reshape(near.size)  # else every index is multiplied by a stride
     for p in range(smalls):
         ix, iy = home[p, 0], home[p, 1]
         if dense:  # buckets one above the other are next to each other: two stretches hold all five cells
@@ -228,11 +239,11 @@ def _level(
                 # Every neighbour is written down, and kept by counting: whether two overlap cannot be
                 # foretold.
                 for q in range(p + 1, above):
-                    pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, body[q]), max(i, body[q]), -1
-                    found += _overlap(near, p, near, q)
+                    pairs[found, 0], pairs[found, 1] = i, body[q]
+                    found += _meet(flat, p, q)
                 for q in range(beside, end):
-                    pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, body[q]), max(i, body[q]), -1
-                    found += _overlap(near, p, near, q)
+                    pairs[found, 0], pairs[found, 1] = i, body[q]
+                    found += _meet(flat, p, q)
                 continue
             for q in range(p + 1, above):
                 if _overlap(near, p, near, q):
@@ -274,12 +285,13 @@ def _level(
 def find_pairs(
     boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers,
     bounded: bool, bounds: Numbers, pairs: Pairs,
-) -> int:  # fmt: skip
-    """Write the pairs (a, b, wall) whose fat boxes overlap, each once; return how many there are.
+) -> tuple[int, int]:  # fmt: skip
+    """Write the pairs whose fat boxes overlap, each once; return how many there are, and how many of walls.
 
     A grid whose cells fit the usual body finds the pairs of small ones, and of small with large ones; the
-    large ones go on to a coarser grid. Bodies past the bounds make pairs with row 0 and the wall, which come
-    first. Where ``pairs`` has too few rows, the number is larger than that, and no less than is needed.
+    large ones go on to a coarser grid. Bodies past the bounds make pairs (0, row, wall), which come first; of
+    the others only two rows are written. Where ``pairs`` has too few rows, the number is larger than that, and
+    no less than is needed.
     """
     n = len(kind)
     members = np.empty(n, np.int64)
@@ -297,6 +309,7 @@ def find_pairs(
                     if found < len(pairs):
                         pairs[found, 0], pairs[found, 1], pairs[found, 2] = 0, i, wall
                     found += 1
+    walls = found
     while count > 1:
         inverse_sizes = 0.0
         for k in range(count):
@@ -308,4 +321,4 @@ def find_pairs(
             company,
         )  # fmt: skip
         members[:count] = larges[:count]
-    return found
+    return found, walls

@@ -47,7 +47,7 @@ def _known(table: Rows, mask: int, manifolds: Manifolds, entity_a: int, entity_b
         q = table[place]
         old = manifolds[q]
         if old.entity_a == entity_a and old.entity_b == entity_b and old.wall == wall:
-            return q
+            return int(q)
         place = (place + 1) & mask
     return -1
 
@@ -68,12 +68,14 @@ def _note_known(manifolds: Manifolds, count: int, table: Rows) -> None:
 
 @kernel
 def part(
-    pairs: Pairs, found: int, kind: Rows, radius: Numbers, inverse_mass: Numbers, entities: Rows,
+    pairs: Pairs, found: int, walls: int, kind: Rows, radius: Numbers, inverse_mass: Numbers, entities: Rows,
     manifolds: Manifolds, known: int, stale: bool, table: Rows, idle: Couples, reach: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
     """Part the pairs that were found: discs of which nothing is remembered lie idle, all others get records.
 
-    The latter are left in ``pairs``, sorted; returns how many they are, and how many lie idle. The first
+    The first ``walls`` pairs are those of the bounds; of the others only the rows are read, in either order.
+    Pairs of which neither body can be moved are dropped. Those with records are left in ``pairs``, sorted;
+    returns how many they are, and how many lie idle. The first
     ``known`` of ``manifolds`` are the records so far, whose rows are others now if they are ``stale``.
     ``table`` is filled for :func:`carry_over`.
     """
@@ -85,23 +87,20 @@ def part(
             old = manifolds[q]
             if _is_remembered(old):
                 remembered[old.a] = remembered[old.b] = True
-    kept, walls, lying = 0, 0, 0
-    for p in range(found):
-        a, b, wall = pairs[p, 0], pairs[p, 1], pairs[p, 2]
-        if wall < 0:
-            if inverse_mass[a] + inverse_mass[b] == 0.0:
-                continue
-            if (kind[a] == 1) & (kind[b] == 1) and (
-                not (remembered[a] & remembered[b])
-                or _known(table, mask, manifolds, entities[a], entities[b], wall) < 0
-            ):
-                idle[lying, 0], idle[lying, 1] = a, b
-                reach[lying] = REACH * (radius[a] + radius[b])
-                lying += 1
-                continue
-        else:
-            walls += 1
-        pairs[kept, 0], pairs[kept, 1], pairs[kept, 2] = a, b, wall
+    kept, lying = walls, 0
+    for p in range(walls, found):
+        a, b = min(pairs[p, 0], pairs[p, 1]), max(pairs[p, 0], pairs[p, 1])
+        if inverse_mass[a] + inverse_mass[b] == 0.0:
+            continue
+        if (kind[a] == 1) & (kind[b] == 1) and (
+            not (remembered[a] & remembered[b])
+            or _known(table, mask, manifolds, entities[a], entities[b], -1) < 0
+        ):
+            idle[2 * lying], idle[2 * lying + 1] = a, b
+            reach[lying] = REACH * (radius[a] + radius[b])
+            lying += 1
+            continue
+        pairs[kept, 0], pairs[kept, 1], pairs[kept, 2] = a, b, -1
         kept += 1
     _sort_pairs(pairs, walls, kept, n)
     return kept, lying
@@ -177,10 +176,13 @@ def promote(
     """
     near = np.empty(lying, np.int64)
     came = 0
+    # Flat, and by numbers without a sign: else every index is multiplied by a stride and looked at.
+    places, velocities = position.reshape(position.size), linear.reshape(linear.size)
     for k in range(lying):
-        a, b = np.int64(idle[k, 0]), np.int64(idle[k, 1])
-        dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
-        moved = abs(linear[b, 0] - linear[a, 0]) + abs(linear[b, 1] - linear[a, 1])
+        a, b = 2 * np.uint64(idle[2 * k]), 2 * np.uint64(idle[2 * k + 1])
+        up_a, up_b = a + np.uint64(1), b + np.uint64(1)
+        dx, dy = places[b] - places[a], places[up_b] - places[up_a]
+        moved = abs(velocities[b] - velocities[a]) + abs(velocities[up_b] - velocities[up_a])
         far = reach[k] + moved * h + fall
         near[came] = k  # kept by counting: which pair comes near cannot be foretold
         came += not (dx * dx + dy * dy > far * far)
@@ -189,14 +191,14 @@ def promote(
     for k in range(came):
         p = count + k
         manifold = manifolds[p]
-        a, b = np.int64(idle[near[k], 0]), np.int64(idle[near[k], 1])
+        a, b = np.int64(idle[2 * near[k]]), np.int64(idle[2 * near[k] + 1])
         _make_blank(manifolds, points, p)
         manifold.a, manifold.b, manifold.wall = a, b, -1
         manifold.entity_a, manifold.entity_b = entities[a], entities[b]
         loose[loose_count + k] = p
     for k in range(came - 1, -1, -1):
-        lying -= 1
-        idle[near[k], 0], idle[near[k], 1], reach[near[k]] = idle[lying, 0], idle[lying, 1], reach[lying]
+        lying, to = lying - 1, near[k]
+        idle[2 * to], idle[2 * to + 1], reach[to] = idle[2 * lying], idle[2 * lying + 1], reach[lying]
     _merge_tail(manifolds, loose, loose_count, loose_count + came, len(entities))
     return lying, count + came, loose_count + came
 
@@ -205,7 +207,7 @@ def promote(
 def _rank(manifolds: Manifolds, p: int, rows: int) -> int:
     """Return a number that is larger for what comes later in the order of rows and walls."""
     manifold = manifolds[p]
-    return (manifold.a * rows + manifold.b) * 8 + manifold.wall + 1
+    return int((manifold.a * rows + manifold.b) * 8 + manifold.wall + 1)
 
 
 @inlined

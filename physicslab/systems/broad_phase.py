@@ -84,15 +84,17 @@ class BroadPhaseSystem(System):
         inverse_mass = world.bodies.inverse_mass
         grid.fat_boxes(position, angle, linear, *sizes, inverse_mass, self.fat, self._boxes, h)
         bounded = world.physics.bounds is not None
-        count = self._count_pairs(shape["kind"], inverse_mass, bounded)
-        world.contacts.part(world, self._pairs, count)
+        found, walls = self._count_pairs(shape["kind"], inverse_mass, bounded)
+        world.contacts.part(world, self._pairs, found, walls)
 
-    def _count_pairs(self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool) -> int:
-        """Fill the list of pairs, made larger where it is too small, and return their number."""
+    def _count_pairs(
+        self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool
+    ) -> tuple[int, int]:
+        """Fill the list of pairs, made larger where it is too small; return how many, how many of walls."""
         while True:
-            count = int(
-                grid.find_pairs(self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs)
+            found, walls = grid.find_pairs(
+                self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs
             )
-            if count <= len(self._pairs):
-                return count
-            self._pairs = np.zeros((2 * count, 3), np.int64)
+            if found <= len(self._pairs):
+                return found, walls
+            self._pairs = np.zeros((2 * found, 3), np.int64)
