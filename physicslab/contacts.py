@@ -245,7 +245,8 @@ class Contacts:
         shape = world.table(Shape)
         count, self.lying = near_pairs.part(
             pairs, found, walls, shape["kind"], shape["radius"], world.bodies.inverse_mass,
-            world.roster.entities, self.manifolds, self.recorded, self.stale, self._table, self.idle, self.reach,
+            world.roster.entities, self.manifolds, self.recorded, self.stale, self._table,
+            self.idle, self.reach,
         )  # fmt: skip
         self._relist(world, pairs, count, noted=True)
 

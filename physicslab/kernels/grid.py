@@ -31,22 +31,20 @@ def still_holds(
 ) -> bool:
     """Whether every body, with what it moves in a time h, is still inside the fat box made for it.
 
-    ``fat`` (rows, 5) holds where each body was (x, y, angle), its bounding radius then, negative for a disc,
+    ``fat`` (5, rows) holds where each body was (x, y, angle), its bounding radius then, negative for a disc,
     and the margin around it.
     """
-    for i in range(len(angle)):
-        if kind[i] == 0:
-            if fat[i, 3] != 0.0:
-                return False
-            continue
+    places, velocities = position.reshape(position.size), linear.reshape(linear.size)
+    holds = True
+    for i in range(len(angle)):  # to the end, whatever comes: so it is done in vectors
         reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
-        made_for = -reach if kind[i] == 1 else reach
-        moved_x = abs(position[i, 0] - fat[i, 0]) + abs(linear[i, 0]) * h
-        moved_y = abs(position[i, 1] - fat[i, 1]) + abs(linear[i, 1]) * h
-        turned = abs(angle[i] - fat[i, 2]) * reach if kind[i] == 2 else 0.0
-        if not max(moved_x, moved_y) + turned <= fat[i, 4] or made_for != fat[i, 3]:
-            return False
-    return True
+        made_for = (-reach if kind[i] == 1 else reach) if kind[i] != 0 else 0.0
+        moved_x = abs(places[2 * i] - fat[0, i]) + abs(velocities[2 * i]) * h
+        moved_y = abs(places[2 * i + 1] - fat[1, i]) + abs(velocities[2 * i + 1]) * h
+        turned = abs(angle[i] - fat[2, i]) * (reach if kind[i] == 2 else 0.0)
+        inside = (max(moved_x, moved_y) + turned <= fat[4, i]) | (kind[i] == 0)
+        holds &= inside & (made_for == fat[3, i])
+    return holds
 
 
 @kernel
@@ -72,7 +70,7 @@ def fat_boxes(
             speeds += min(speed, 1e9)
     usual = speeds / moving if moving else 0.0
     for i in range(len(angle)):
-        fat[i, 3] = 0.0
+        fat[3, i] = 0.0
         if kind[i] == 0:
             continue
         reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
@@ -84,8 +82,8 @@ def fat_boxes(
         # A slow body among fast ones is about to be struck.
         speed = max(abs(linear[i, 0]), abs(linear[i, 1]), usual if inverse_mass[i] > 0.0 else 0.0)
         margin = 0.1 * min(half_x, half_y) + 8.0 * h * speed
-        fat[i, 0], fat[i, 1], fat[i, 2] = position[i, 0], position[i, 1], angle[i]
-        fat[i, 3], fat[i, 4] = (-reach if kind[i] == 1 else reach), margin
+        fat[0, i], fat[1, i], fat[2, i] = position[i, 0], position[i, 1], angle[i]
+        fat[3, i], fat[4, i] = (-reach if kind[i] == 1 else reach), margin
         boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
         boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
 
@@ -130,8 +128,8 @@ def _take(
     if inverse_mass[i] + inverse_mass[j] == 0.0:
         return found
     # The boxes without their margins.
-    across_i, up_i = boxes[i, 2] - boxes[i, 0] - 2.0 * fat[i, 4], boxes[i, 3] - boxes[i, 1] - 2.0 * fat[i, 4]
-    across_j, up_j = boxes[j, 2] - boxes[j, 0] - 2.0 * fat[j, 4], boxes[j, 3] - boxes[j, 1] - 2.0 * fat[j, 4]
+    across_i, up_i = boxes[i, 2] - boxes[i, 0] - 2.0 * fat[4, i], boxes[i, 3] - boxes[i, 1] - 2.0 * fat[4, i]
+    across_j, up_j = boxes[j, 2] - boxes[j, 0] - 2.0 * fat[4, j], boxes[j, 3] - boxes[j, 1] - 2.0 * fat[4, j]
     dx = abs(boxes[i, 0] + boxes[i, 2] - boxes[j, 0] - boxes[j, 2])
     dy = abs(boxes[i, 1] + boxes[i, 3] - boxes[j, 1] - boxes[j, 3])
     if (dx < across_i + across_j) & (dy < up_i + up_j):
@@ -290,8 +288,8 @@ def find_pairs(
 
     A grid whose cells fit the usual body finds the pairs of small ones, and of small with large ones; the
     large ones go on to a coarser grid. Bodies past the bounds make pairs (0, row, wall), which come first; of
-    the others only two rows are written. Where ``pairs`` has too few rows, the number is larger than that, and
-    no less than is needed.
+    the others only two rows are written. Where ``pairs`` has too few rows, the number is larger than that,
+    and no less than is needed.
     """
     n = len(kind)
     members = np.empty(n, np.int64)

@@ -36,7 +36,7 @@ class BroadPhaseSystem(System):
 
     Attributes
     ----------
-    fat : float64 array (rows, 5)
+    fat : float64 array (5, rows)
         Where each body was (x, y, angle), its bounding radius then, and the margin around it [m].
     bounds : float64 array (4,)
         Of the world: xmin, ymin, xmax, ymax [m].
@@ -52,7 +52,7 @@ class BroadPhaseSystem(System):
     )
 
     def __init__(self) -> None:
-        self.fat: NDArray[np.float64] = np.zeros((0, 5))
+        self.fat: NDArray[np.float64] = np.zeros((5, 0))
         self._boxes: NDArray[np.float64] = np.zeros((0, 4))
         self._pairs: NDArray[np.int64] = np.zeros((256, 3), np.int64)
         self.bounds: NDArray[np.float64] = np.zeros(4)
@@ -76,8 +76,8 @@ class BroadPhaseSystem(System):
         transform, shape = world.table(Transform), world.table(Shape)
         position, angle, linear = transform["position"], transform["angle"], world.table(Velocity)["linear"]
         sizes = shape["kind"], shape["radius"], shape["width"], shape["height"]
-        if len(self.fat) != len(angle):
-            self.fat, self._boxes = np.zeros((len(angle), 5)), np.zeros((len(angle), 4))
+        if self.fat.shape[1] != len(angle):
+            self.fat, self._boxes = np.zeros((5, len(angle))), np.zeros((len(angle), 4))
             world.contacts.stale = True
         if not world.contacts.stale and grid.still_holds(position, angle, linear, *sizes, self.fat, h):
             return
