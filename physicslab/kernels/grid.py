@@ -31,14 +31,14 @@ def still_holds(
 ) -> bool:
     """Whether every body, with what it moves in a time h, is still inside the fat box made for it.
 
-    ``fat`` (5, rows) holds where each body was (x, y, angle), its bounding radius then, negative for a disc,
-    and the margin around it.
+    ``fat`` (5, rows) holds where each body was (x, y, angle), its bounding radius then, and the margin around
+    it.
     """
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)
     holds = True
     for i in range(len(angle)):  # to the end, whatever comes: so it is done in vectors
         reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
-        made_for = (-reach if kind[i] == 1 else reach) if kind[i] != 0 else 0.0
+        made_for = reach if kind[i] != 0 else 0.0
         moved_x = abs(places[2 * i] - fat[0, i]) + abs(velocities[2 * i]) * h
         moved_y = abs(places[2 * i + 1] - fat[1, i]) + abs(velocities[2 * i + 1]) * h
         turned = abs(angle[i] - fat[2, i]) * (reach if kind[i] == 2 else 0.0)
@@ -61,7 +61,7 @@ def fat_boxes(
     boxes: Vectors,
     h: float,
 ) -> None:
-    """Make each body's fat box (xmin, ymin, xmax, ymax), good for about two steps."""
+    """Make each body's fat box (xmin, ymin, xmax, ymax), good for about three steps."""
     moving, speeds = 0, 0.0
     for i in range(len(angle)):
         speed = abs(linear[i, 0]) + abs(linear[i, 1])
@@ -81,9 +81,9 @@ def fat_boxes(
             half_y = 0.5 * (s * width[i] + c * height[i])
         # A slow body among fast ones is about to be struck.
         speed = max(abs(linear[i, 0]), abs(linear[i, 1]), usual if inverse_mass[i] > 0.0 else 0.0)
-        margin = 0.1 * min(half_x, half_y) + 8.0 * h * speed
+        margin = 0.1 * min(half_x, half_y) + 14.0 * h * speed
         fat[0, i], fat[1, i], fat[2, i] = position[i, 0], position[i, 1], angle[i]
-        fat[3, i], fat[4, i] = (-reach if kind[i] == 1 else reach), margin
+        fat[3, i], fat[4, i] = reach, margin
         boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
         boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
 
