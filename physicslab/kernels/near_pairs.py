@@ -179,10 +179,10 @@ def promote(
     # Flat, and by numbers without a sign: else every index is multiplied by a stride and looked at.
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)
     for k in range(lying):
-        a, b = 2 * np.uint64(idle[2 * k]), 2 * np.uint64(idle[2 * k + 1])
-        up_a, up_b = a + np.uint64(1), b + np.uint64(1)
-        dx, dy = places[b] - places[a], places[up_b] - places[up_a]
-        moved = abs(velocities[b] - velocities[a]) + abs(velocities[up_b] - velocities[up_a])
+        xa, xb = 2 * np.uint64(idle[2 * k]), 2 * np.uint64(idle[2 * k + 1])
+        ya, yb = xa + np.uint64(1), xb + np.uint64(1)
+        dx, dy = places[xb] - places[xa], places[yb] - places[ya]
+        moved = abs(velocities[xb] - velocities[xa]) + abs(velocities[yb] - velocities[ya])
         far = reach[k] + moved * h + fall
         near[came] = k  # kept by counting: which pair comes near cannot be foretold
         came += not (dx * dx + dy * dy > far * far)
