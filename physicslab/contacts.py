@@ -234,8 +234,10 @@ class Contacts:
             self._list_loose(len(world.roster))
         return None
 
-    def part(self, world: World, pairs: NDArray[np.int64], found: int, walls: int) -> None:
-        """Take a new list of ``found`` near pairs, in no order but that ``walls`` of the bounds come first.
+    def part(
+        self, world: World, couples: NDArray[np.uint32], found: int, pairs: NDArray[np.int64], walls: int
+    ) -> None:
+        """Take a new list of near pairs: ``found`` of bodies, in no order, and ``walls`` of the bounds.
 
         Pairs of discs of which nothing is remembered lie idle until they come near.
         """
@@ -244,7 +246,7 @@ class Contacts:
             self.idle, self.reach = np.zeros(4 * found, np.uint32), np.zeros(2 * found)
         shape = world.table(Shape)
         count, self.lying = near_pairs.part(
-            pairs, found, walls, shape["kind"], shape["radius"], world.bodies.inverse_mass,
+            couples, found, pairs, walls, shape["kind"], shape["radius"], world.bodies.inverse_mass,
             world.roster.entities, self.manifolds, self.recorded, self.stale, self._table,
             self.idle, self.reach,
         )  # fmt: skip

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.records import Pairs
+from physicslab.kernels.records import Couples, Pairs
 
 __all__ = ["fat_boxes", "find_pairs", "still_holds"]
 
@@ -117,7 +117,7 @@ def _meet(flat: Numbers, p: int, q: int) -> bool:
 
 @inlined
 def _take(
-    pairs: Pairs, found: int, inverse_mass: Numbers,
+    couples: Couples, found: int, inverse_mass: Numbers,
     boxes: Vectors, fat: Vectors, company: Rows, i: int, j: int,
 ) -> int:  # fmt: skip
     """Write the pair (i, j), if it can be moved and there is room; return how many there are now.
@@ -139,8 +139,8 @@ def _take(
                 return found
             company[i] += 1
             company[j] += 1
-    if found < len(pairs):
-        pairs[found, 0], pairs[found, 1] = i, j
+    if 2 * found < len(couples):
+        couples[2 * found], couples[2 * found + 1] = i, j
     return found + 1
 
 
@@ -166,7 +166,7 @@ def _level(
     count: int,
     cell: float,
     inverse_mass: Numbers,
-    pairs: Pairs,
+    couples: Couples,
     found: int,
     larges: Rows,
     company: Rows,
@@ -231,24 +231,24 @@ def _level(
             most = above - (p + 1) + end - beside
             i = body[p]
             if most <= 2 * _CROWD:
-                if found + most > len(pairs):
+                if 2 * (found + most) > len(couples):
                     found += most
                     continue
                 # Every neighbour is written down, and kept by counting: whether two overlap cannot be
                 # foretold.
                 for q in range(p + 1, above):
-                    pairs[found, 0], pairs[found, 1] = i, body[q]
+                    couples[2 * found], couples[2 * found + 1] = i, body[q]
                     found += _meet(flat, p, q)
                 for q in range(beside, end):
-                    pairs[found, 0], pairs[found, 1] = i, body[q]
+                    couples[2 * found], couples[2 * found + 1] = i, body[q]
                     found += _meet(flat, p, q)
                 continue
             for q in range(p + 1, above):
                 if _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, i, body[q])
+                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
             for q in range(beside, end):
                 if _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, i, body[q])
+                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
             continue
         for neighbour in range(5):
             jx = ix if neighbour < 2 else ix + 1
@@ -256,7 +256,7 @@ def _level(
             at = _bucket(jx, jy, low_x, low_y, up, buckets, dense)
             for q in range(p + 1 if neighbour == 0 else first[at], first[at + 1]):
                 if home[q, 0] == jx and home[q, 1] == jy and _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], body[q])
+                    found = _take(couples, found, inverse_mass, boxes, fat, company, body[p], body[q])
 
     for k in range(large_count):
         i = larges[k]
@@ -269,33 +269,33 @@ def _level(
         if not dense or float(to_x - from_x + 1) * float(to_y - from_y + 1) > smalls:
             for q in range(smalls):
                 if _overlap(boxes, i, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, i, body[q])
+                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
             continue
         for ix in range(from_x, to_x + 1):
             column = (ix - low_x) * up - low_y
             for q in range(first[column + from_y], first[column + to_y + 1]):
                 if _overlap(boxes, i, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, i, body[q])
+                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
     return found, large_count
 
 
 @kernel
 def find_pairs(
     boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers,
-    bounded: bool, bounds: Numbers, pairs: Pairs,
+    bounded: bool, bounds: Numbers, pairs: Pairs, couples: Couples,
 ) -> tuple[int, int]:  # fmt: skip
-    """Write the pairs whose fat boxes overlap, each once; return how many there are, and how many of walls.
+    """Find the pairs whose fat boxes overlap, each once; return how many of bodies there are, and of walls.
 
     A grid whose cells fit the usual body finds the pairs of small ones, and of small with large ones; the
-    large ones go on to a coarser grid. Bodies past the bounds make pairs (0, row, wall), which come first; of
-    the others only two rows are written. Where ``pairs`` has too few rows, the number is larger than that,
+    large ones go on to a coarser grid. Their rows are written to ``couples``. Bodies past the bounds make
+    pairs (0, row, wall), written to ``pairs``. Where either has no room, the numbers are larger than that,
     and no less than is needed.
     """
     n = len(kind)
     members = np.empty(n, np.int64)
     larges = np.empty(n, np.int64)
     company = np.zeros(n, np.int64)
-    count, found = 0, 0
+    count, found, walls = 0, 0, 0
     for i in range(n):
         if kind[i] == 0:
             continue
@@ -304,10 +304,9 @@ def find_pairs(
         if bounded and inverse_mass[i] > 0.0:
             for wall in range(4):
                 if boxes[i, wall] < bounds[wall] if wall < 2 else boxes[i, wall] > bounds[wall]:
-                    if found < len(pairs):
-                        pairs[found, 0], pairs[found, 1], pairs[found, 2] = 0, i, wall
-                    found += 1
-    walls = found
+                    if walls < len(pairs):
+                        pairs[walls, 0], pairs[walls, 1], pairs[walls, 2] = 0, i, wall
+                    walls += 1
     while count > 1:
         inverse_sizes = 0.0
         for k in range(count):
@@ -315,7 +314,7 @@ def find_pairs(
             inverse_sizes += 1.0 / max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1])
         # The harmonic mean goes by the small bodies, which are many, and not by the few walls.
         found, count = _level(
-            boxes, fat, members, count, 1.25 * count / inverse_sizes, inverse_mass, pairs, found, larges,
+            boxes, fat, members, count, 1.25 * count / inverse_sizes, inverse_mass, couples, found, larges,
             company,
         )  # fmt: skip
         members[:count] = larges[:count]

@@ -68,14 +68,15 @@ def _note_known(manifolds: Manifolds, count: int, table: Rows) -> None:
 
 @kernel
 def part(
-    pairs: Pairs, found: int, walls: int, kind: Rows, radius: Numbers, inverse_mass: Numbers, entities: Rows,
+    couples: Couples, found: int, pairs: Pairs, walls: int,
+    kind: Rows, radius: Numbers, inverse_mass: Numbers, entities: Rows,
     manifolds: Manifolds, known: int, stale: bool, table: Rows, idle: Couples, reach: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
     """Part the pairs that were found: discs of which nothing is remembered lie idle, all others get records.
 
-    The first ``walls`` pairs are those of the bounds; of the others only the rows are read, in either order.
-    Pairs of which neither body can be moved are dropped. Those with records are left in ``pairs``, sorted;
-    returns how many they are, and how many lie idle. The first
+    The rows of those that were ``found`` are in ``couples``, in either order; where neither body can be moved
+    they are dropped. In ``pairs`` are the first ``walls``, those of the bounds, and to these are added the
+    others with records, sorted; returns how many there are then, and how many lie idle. The first
     ``known`` of ``manifolds`` are the records so far, whose rows are others now if they are ``stale``.
     ``table`` is filled for :func:`carry_over`.
     """
@@ -88,8 +89,9 @@ def part(
             if _is_remembered(old):
                 remembered[old.a] = remembered[old.b] = True
     kept, lying = walls, 0
-    for p in range(walls, found):
-        a, b = min(pairs[p, 0], pairs[p, 1]), max(pairs[p, 0], pairs[p, 1])
+    for k in range(found):
+        one, other = np.int64(couples[2 * k]), np.int64(couples[2 * k + 1])
+        a, b = min(one, other), max(one, other)
         if inverse_mass[a] + inverse_mass[b] == 0.0:
             continue
         if (kind[a] == 1) & (kind[b] == 1) and (

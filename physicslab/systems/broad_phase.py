@@ -54,7 +54,8 @@ class BroadPhaseSystem(System):
     def __init__(self) -> None:
         self.fat: NDArray[np.float64] = np.zeros((5, 0))
         self._boxes: NDArray[np.float64] = np.zeros((0, 4))
-        self._pairs: NDArray[np.int64] = np.zeros((256, 3), np.int64)
+        self._couples: NDArray[np.uint32] = np.zeros(512, np.uint32)
+        self._pairs: NDArray[np.int64] = np.zeros((512, 3), np.int64)
         self.bounds: NDArray[np.float64] = np.zeros(4)
 
     def attach(self, world: World) -> None:
@@ -85,16 +86,17 @@ class BroadPhaseSystem(System):
         grid.fat_boxes(position, angle, linear, *sizes, inverse_mass, self.fat, self._boxes, h)
         bounded = world.physics.bounds is not None
         found, walls = self._count_pairs(shape["kind"], inverse_mass, bounded)
-        world.contacts.part(world, self._pairs, found, walls)
+        world.contacts.part(world, self._couples, found, self._pairs, walls)
 
     def _count_pairs(
         self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool
     ) -> tuple[int, int]:
-        """Fill the list of pairs, made larger where it is too small; return how many, how many of walls."""
+        """Find the pairs, with more room where it is too little; return how many of bodies, of walls."""
         while True:
             found, walls = grid.find_pairs(
-                self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs
+                self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs, self._couples
             )
-            if found <= len(self._pairs):
+            if 2 * found <= len(self._couples) and found + walls <= len(self._pairs):
                 return found, walls
-            self._pairs = np.zeros((2 * found, 3), np.int64)
+            self._couples = np.zeros(4 * found, np.uint32)
+            self._pairs = np.zeros((2 * (found + walls), 3), np.int64)
