@@ -102,7 +102,7 @@ class Blocks:
         block_admission.settle, block_seats.seat_again, block_admission.sort_blocks,
         block_seats.remember, block_seats.outdated,
         block_lanes.store, block_lanes.list_loose, block_lanes.follow_pairs, block_lanes.wake,
-        block_lanes.sort_loose, block_contact.refresh, block_contact.deepest_lane,
+        block_contact.refresh, block_contact.deepest_lane,
     )  # fmt: skip
 
     def __init__(self) -> None:

@@ -103,7 +103,7 @@ class CompiledSteps:
         """
         h = world.simulation.dt / world.simulation.substeps
         contacts = world.contacts
-        contacts.in_order()
+        contacts.in_order(len(world.roster))
         if contacts.blocks.lanes and contacts.blocks.outdated(world):
             contacts.dissolve(len(world.roster))
         self._contact.begin(world, h)
@@ -163,10 +163,8 @@ class CompiledSteps:
             (physics.linear_damping, physics.angular_damping), self._contact.fall(world, h),
             self._broad_phase.fat,
             (self._broad_phase.bounds, physics.bounds_restitution, physics.bounds_friction),
-            (
-                contacts.manifolds, contacts.points, contacts.candidate_pairs,
-                contacts.loose, contacts.touching,
-            ),
+            (contacts.idle, contacts.reach, world.roster.entities),
+            (contacts.manifolds, contacts.points, contacts.loose, contacts.touching),
             counts, contacts.blocks.discs.seats, contacts.blocks.boxes.seats, contacts.opened,
             (resolve.hertz, resolve.damping_ratio, resolve.slop, resolve.max_push), contacts.span, self._cost,
         )  # fmt: skip

@@ -17,8 +17,8 @@ from physicslab.kernels import (
     block_lanes,
     block_seats,
     compile_kernels,
-    grid,
     impulse,
+    near_pairs,
 )
 from physicslab.kernels.block_admission import FEW
 from physicslab.kernels.block_layout import WIDE
@@ -93,25 +93,31 @@ class Contact:
 
 
 class Contacts:
-    """The near pairs of one world, sorted, each with its manifold, and which of them touch.
+    """The near pairs of one world, those that may touch with a record, and which of them do.
 
     Attributes
     ----------
     manifolds : array of MANIFOLD (capacity,)
-        One for each near pair; the first ``candidate_pairs`` are in use.
+        One for each near pair that has a record; the first ``recorded`` are in use. Those that were listed
+        together are in order; those that have got their records since stand behind them.
     points : array of POINT (2 capacity,)
         Points 2 p and 2 p + 1 belong to pair p; the first ``manifolds[p]["count"]`` are in use.
+    idle : uint32 array (2 capacity,)
+        Rows of the discs that are near each other and have no record, two by two; the first ``lying`` pairs
+        are in use.
+    reach : float64 array (capacity,)
+        How near these must come to get one [m].
     blocks : Blocks
         The settled contacts, eight side by side; what their records say is as old as the last :meth:`sync`.
     loose : int64 array (capacity,)
-        The near pairs that are in no block; the first ``loose_count`` are in use.
+        The pairs with records that are in no block; the first ``loose_count`` are in use.
     unordered : bool
         Whether pairs were set loose since those were last listed in order.
     touching : int64 array (capacity,)
         The loose pairs with points; the first ``active`` are in use. Points may have positive separation:
         they would meet within a substep.
-    candidate_pairs, count : int
-        How many pairs are near each other, and how many have points, loose or not.
+    recorded, lying, count : int
+        How many near pairs have records, how many lie idle, and how many have points, loose or not.
     left : int
         How many pairs the impacts of this substep have left to the solver.
     opened : int64 array (COLOURS,)
@@ -130,11 +136,11 @@ class Contacts:
     """How many impacts are kept."""
 
     def __init__(self) -> None:
-        self.candidate_pairs = self.loose_count = 0
+        self.recorded = self.lying = self.loose_count = 0
         self.active = self.left = 0
         self.blocks = Blocks()
         self.opened = np.zeros(block_lanes.COLOURS, np.int64)
-        self._counts = np.zeros(7, np.int64)
+        self._counts = np.zeros(block_lanes.COUNTED, np.int64)
         self._synced, self._seats = True, False
         self.unordered = False
         self.span = 0.0
@@ -159,8 +165,16 @@ class Contacts:
         self.points: NDArray[Any] = np.zeros(2 * capacity, POINT)
         self.touching: NDArray[np.int64] = np.zeros(capacity, np.int64)
         self.loose: NDArray[np.int64] = np.zeros(capacity, np.int64)
+        self.idle: NDArray[np.uint32] = np.zeros(2 * capacity, np.uint32)
+        self.reach: NDArray[np.float64] = np.zeros(capacity)
+        self._table: NDArray[np.int64] = np.zeros(16, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.
         self._spare_manifolds, self._spare_points = self.manifolds.copy(), self.points.copy()
+
+    @property
+    def candidate_pairs(self) -> int:
+        """How many pairs are near each other."""
+        return self.recorded + self.lying
 
     @property
     def count(self) -> int:
@@ -185,18 +199,19 @@ class Contacts:
         if self.blocks.lanes:
             self.sync()
             self.manifolds["lane"] = -1
-            self._list_loose()
+            self._list_loose(rows)
         self.blocks.reset(rows)
 
-    def in_order(self) -> None:
+    def in_order(self, rows: int) -> None:
         """Put the loose pairs in order, where some were set loose since: a file tells no other order."""
         if self.unordered:
-            block_lanes.sort_loose(self.loose, self.loose_count)
+            near_pairs.sort_loose(self.manifolds, self.loose, self.loose_count, rows)
             self.unordered = False
 
-    def _list_loose(self) -> None:
-        self.unordered = False
-        self.loose_count = int(block_lanes.list_loose(self.manifolds, self.candidate_pairs, self.loose))
+    def _list_loose(self, rows: int) -> None:
+        self.loose_count = int(block_lanes.list_loose(self.manifolds, self.recorded, self.loose))
+        self.unordered = True
+        self.in_order(rows)
 
     def settle(self, world: World, h: float) -> None:
         """Take what has settled into blocks."""
@@ -209,7 +224,7 @@ class Contacts:
             counts = self.counted()
             came = block_admission.settle(
                 counts, blocks.discs.seats, blocks.boxes.seats, self.opened,
-                self.manifolds, self.points, self.candidate_pairs, self.loose, self.touching,
+                self.manifolds, self.points, self.loose, self.touching,
                 shape["kind"], shape["radius"], material["restitution"], material["friction"],
                 world.table(Velocity)["linear"], bodies.inverse_mass, bodies.inverse_inertia, h,
             )  # fmt: skip
@@ -227,7 +242,7 @@ class Contacts:
         """Return the counts that kernels change, in the order of :mod:`physicslab.kernels.block_lanes`."""
         discs, boxes = self.blocks.kinds
         self._counts[:] = (
-            self.loose_count, self.active, self.left,
+            self.lying, self.recorded, self.loose_count, self.active, self.left,
             self.blocks.lanes, discs.count, boxes.count, self.unordered,
         )  # fmt: skip
         return self._counts
@@ -236,41 +251,81 @@ class Contacts:
         """Take over the counts that a kernel has changed."""
         discs, boxes = self.blocks.kinds
         (
-            self.loose_count, self.active, self.left,
+            self.lying, self.recorded, self.loose_count, self.active, self.left,
             self.blocks.lanes, discs.count, boxes.count, unordered,
         ) = counts.tolist()  # fmt: skip
         self.unordered = bool(unordered)
 
-    def relist(self, world: World, pairs: NDArray[np.int64], count: int) -> None:
-        """Take a new sorted list of ``count`` near pairs (a, b, wall); pairs known before stay as they are.
+    def part(
+        self, world: World, couples: NDArray[np.uint32], found: int, pairs: NDArray[np.int64], walls: int
+    ) -> None:
+        """Take a new list of near pairs: ``found`` of bodies, in no order, and ``walls`` of the bounds.
 
-        What touches is still to be found out.
+        Pairs of discs of which nothing is remembered lie idle until they come near.
         """
+        self._make_table()
+        if len(self.reach) < found:
+            self.idle, self.reach = np.zeros(4 * found, np.uint32), np.zeros(2 * found)
+        shape = world.table(Shape)
+        count, self.lying = near_pairs.part(
+            couples, found, pairs, walls, shape["kind"], shape["radius"], world.bodies.inverse_mass,
+            world.roster.entities, self.manifolds, self.recorded, self.stale, self._table,
+            self.idle, self.reach,
+        )  # fmt: skip
+        self._relist(world, pairs, count, noted=True)
+
+    def promote(self, world: World, h: float, fall: float) -> None:
+        """Give records to the idle pairs that come near within a substep of ``h`` seconds.
+
+        ``fall`` is how far [m] the forces may bring two bodies together within it.
+        """
+        self.lying, self.recorded, self.loose_count = near_pairs.promote(
+            self.idle, self.reach, self.lying, self.manifolds, self.points, self.recorded,
+            self.loose, self.loose_count, world.roster.entities,
+            world.table(Transform)["position"], world.table(Velocity)["linear"], h, fall,
+        )  # fmt: skip
+
+    def _make_table(self) -> None:
+        """See to it that there is room to look up every record."""
+        if len(self._table) < 4 * self.recorded:
+            self._table = np.zeros(8 * self.recorded, np.int64)
+
+    def relist(self, world: World, pairs: NDArray[np.int64], count: int) -> None:
+        """Take a new sorted list of ``count`` near pairs (a, b, wall), each with its record.
+
+        Pairs known before stay as they are. What touches is still to be found out.
+        """
+        self._make_table()
+        self.lying = 0
+        self._relist(world, pairs, count, noted=False)
+
+    def _relist(self, world: World, pairs: NDArray[np.int64], count: int, *, noted: bool) -> None:
         entities = world.roster.entities
         if self.stale:
             self.sync()
             # Rows may be others now: what had a lane takes its seat again.
             self._seats |= self.blocks.lanes > 0
             self.blocks.reset(len(entities))
-        if len(self._spare_manifolds) < count:
-            room = 2 * count
+        most = count + self.lying
+        if len(self._spare_manifolds) < most:
+            room = 2 * most
             self._spare_manifolds, self._spare_points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
-        grid.carry_over(
-            pairs, count, entities,
-            self.manifolds, self.points, self.candidate_pairs, self._spare_manifolds, self._spare_points,
+        near_pairs.carry_over(
+            pairs, count, entities, self.manifolds, self.points, self.recorded, self._table, noted,
+            self._spare_manifolds, self._spare_points,
         )  # fmt: skip
         self.manifolds, self._spare_manifolds = self._spare_manifolds, self.manifolds
         self.points, self._spare_points = self._spare_points, self.points
-        self.candidate_pairs, self.active, self.stale = count, 0, False
-        if len(self.touching) < count:
-            self.touching, self.loose = np.zeros((2, 2 * count), np.int64)
+        self.recorded, self.active, self.stale = count, 0, False
+        if len(self.touching) < most:
+            self.touching, self.loose = np.zeros((2, 2 * most), np.int64)
         if self._seats:
             self._seat_again(world)
         elif self.blocks.lanes:
             self.blocks.lanes = sum(
                 block_lanes.follow_pairs(*lanes.layout, self.manifolds, count) for lanes in self.blocks.kinds
             )
-        self._list_loose()
+        self._list_loose(len(entities))
 
     def _seat_again(self, world: World) -> None:
         """Put the contacts of a file back into the lanes in which they lay."""
@@ -279,7 +334,7 @@ class Contacts:
         for lanes in self.blocks.kinds:
             lanes.count, seated = block_seats.seat_again(
                 lanes.kind, lanes.data, lanes.a, lanes.b, lanes.pair, lanes.colour, lanes.used,
-                self.manifolds, self.points, self.candidate_pairs,
+                self.manifolds, self.points, self.recorded,
                 world.table(Shape)["kind"], world.table(Shape)["radius"],
                 material["restitution"], material["friction"],
                 world.bodies.inverse_mass, world.bodies.inverse_inertia,
@@ -292,7 +347,7 @@ class Contacts:
     def clear(self) -> None:
         """Forget every pair."""
         self.blocks.reset(1)
-        self.candidate_pairs = self.loose_count = self.active = 0
+        self.recorded = self.lying = self.loose_count = self.active = 0
         self.stale = self._synced = True
 
     @property
@@ -309,8 +364,14 @@ class Contacts:
 
     def _told(self) -> list[int]:
         self.sync()
-        near = self.manifolds[: self.candidate_pairs]
-        pairs: list[int] = np.flatnonzero((near["count"] > 0) | (near["struck"] > 0)).tolist()
+        near = self.manifolds[: self.recorded]
+        told = (near["count"] > 0) | (near["struck"] > 0)
+        return [p for p in self._ordered() if told[p]]
+
+    def _ordered(self) -> list[int]:
+        """Return the numbers of all records in the order of entities."""
+        near = self.manifolds[: self.recorded]
+        pairs: list[int] = np.lexsort((near["wall"], near["entity_b"], near["entity_a"])).tolist()
         return pairs
 
     def between(self, world: World, a: int, b: int) -> Contact | None:
@@ -354,9 +415,9 @@ class Contacts:
         """Return what :meth:`remembered` needs, in copies that no step changes."""
         self.sync()
         held = Contacts.__new__(Contacts)
-        held.candidate_pairs = self.candidate_pairs
-        held.manifolds = self.manifolds[: self.candidate_pairs].copy()
-        held.points = self.points[: 2 * self.candidate_pairs].copy()
+        held.recorded = self.recorded
+        held.manifolds = self.manifolds[: self.recorded].copy()
+        held.points = self.points[: 2 * self.recorded].copy()
         held.blocks = Blocks()
         for mine, copy in zip(self.blocks.kinds, held.blocks.kinds, strict=True):
             copy.colour = mine.colour.copy()
@@ -369,7 +430,7 @@ class Contacts:
         anew leave their features and impulses; those that will be kept, everything; ``None`` stands for a
         pair of which nothing is kept. A settled contact adds its lane, and the colour of its block.
         """
-        for p in range(self.candidate_pairs):
+        for p in self._ordered():
             manifold = self.manifolds[p]
             pair = [int(manifold["entity_a"]), int(manifold["entity_b"]), int(manifold["wall"])]
             lane = int(manifold["lane"])
@@ -417,7 +478,7 @@ class Contacts:
             for j in (2 * p, 2 * p + 1):
                 for name in names:
                     self.points[j][name] = next(values)
-        self.candidate_pairs, self.active, self.stale = len(ordered), 0, True
+        self.recorded, self.lying, self.active, self.stale = len(ordered), 0, 0, True
 
     def _take_seat(self, lane: float, colour: float) -> int:
         """Note that a lane is that of a contact that will be found again, in a block of a colour."""

@@ -93,9 +93,9 @@ class Near:
 def near_pairs(world: World) -> Near:
     """Return the near pairs of the last step."""
     contacts = world.contacts
-    manifolds = contacts.manifolds[: contacts.candidate_pairs]
+    manifolds = contacts.manifolds[: contacts.recorded]
     contacts.sync()
-    touching = np.flatnonzero(contacts.manifolds["count"][: contacts.candidate_pairs] > 0)
+    touching = np.flatnonzero(contacts.manifolds["count"][: contacts.recorded] > 0)
     held = manifolds[touching]
     separation = contacts.points["separation"]
     first, second = separation[2 * touching], separation[2 * touching + 1]

@@ -102,10 +102,10 @@ class Flights:
             contacts.relist(world, self._pairs, len(self._pairs))
             self._list_touching(world)
             self._listed = True
-        near = contacts.manifolds[: contacts.candidate_pairs]
+        near = contacts.manifolds[: contacts.recorded]
         if near["struck"].any():
             near["struck"] = 0
-            points = contacts.points[: 2 * contacts.candidate_pairs]
+            points = contacts.points[: 2 * contacts.recorded]
             for name in _FELT:
                 points[name] = 0.0
             self._struck_at[:] = np.nan
@@ -125,15 +125,15 @@ class Flights:
 
     def _list_touching(self, world: World) -> None:
         contacts = world.contacts
-        touching = np.flatnonzero(contacts.manifolds["count"][: contacts.candidate_pairs] > 0)
+        touching = np.flatnonzero(contacts.manifolds["count"][: contacts.recorded] > 0)
         contacts.active = len(touching)
         contacts.touching[: len(touching)] = touching
 
     def _pressed(self, world: World) -> NDArray[np.bool_]:
         """Return which rows the contact step has left with a contact that holds them."""
         contacts = world.contacts
-        near = contacts.manifolds[: contacts.candidate_pairs]
-        points = contacts.points[: 2 * contacts.candidate_pairs].reshape(-1, 2)
+        near = contacts.manifolds[: contacts.recorded]
+        points = contacts.points[: 2 * contacts.recorded].reshape(-1, 2)
         in_use = np.arange(2) < near["count"][:, None]
         deep = points["separation"] < -events.DEEP * near["size"][:, None]
         held = (in_use & ((points["normal_impulse"] > 0.0) | deep)).any(axis=1)
@@ -199,8 +199,8 @@ class Flights:
         if span <= _SHORT * dt:
             return _state(world)
         contacts = world.contacts
-        near = contacts.manifolds[: contacts.candidate_pairs]
-        points = contacts.points[: 2 * contacts.candidate_pairs]
+        near = contacts.manifolds[: contacts.recorded]
+        points = contacts.points[: 2 * contacts.recorded]
         others = np.ones(len(near), np.bool_)
         others[pairs] = False
         near["count"][others] = -1  # the contact step passes over them
@@ -231,7 +231,7 @@ class Flights:
             (self._mode == events.RESTING)[:, None], self._flights[:, _PULL], flying[:, None] * self._gravity
         )
         elapsed, impacts, why, pair = events.fly(
-            contacts.manifolds, contacts.points, contacts.candidate_pairs,
+            contacts.manifolds, contacts.points, contacts.recorded,
             self._flights, self._mode, self._face, self._due, self._struck_at,
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
             shape["kind"], shape["radius"], shape["width"], shape["height"],

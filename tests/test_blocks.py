@@ -56,7 +56,7 @@ def test_every_pair_has_one_lane_or_is_loose(name: str) -> None:
     seated = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.blocks.kinds])
     seated = seated[seated >= 0]
     everyone = np.sort(np.concatenate((seated, contacts.loose[: contacts.loose_count])))
-    assert np.array_equal(everyone, np.arange(contacts.candidate_pairs))
+    assert np.array_equal(everyone, np.arange(contacts.recorded))
 
 
 @pytest.mark.parametrize("name", SETTLED)
@@ -134,7 +134,7 @@ def test_a_mass_changed_by_hand_counts_from_the_next_step() -> None:
     for world in worlds:
         world.step()
         world.contacts.sync()
-    near = worlds[0].contacts.manifolds[: worlds[0].contacts.candidate_pairs]
+    near = worlds[0].contacts.manifolds[: worlds[0].contacts.recorded]
     touches = (near["count"] > 0) & ((near["entity_a"] == top) | (near["entity_b"] == top))
     felt = [
         float(world.contacts.points["normal_impulse"].reshape(-1, 2)[: len(near)][touches].sum())
@@ -174,6 +174,6 @@ def test_lanes_that_a_file_makes_up_stay_loose() -> None:
         seated = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.blocks.kinds])
         seated = seated[seated >= 0]
         everyone = np.sort(np.concatenate((seated, contacts.loose[: contacts.loose_count])))
-        assert np.array_equal(everyone, np.arange(contacts.candidate_pairs))
+        assert np.array_equal(everyone, np.arange(contacts.recorded))
         assert len(seated) == contacts.blocks.lanes
         assert contacts.max_penetration < 0.02

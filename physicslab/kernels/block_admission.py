@@ -10,6 +10,7 @@ from physicslab.kernels.block_lanes import (
     DISC_BLOCKS,
     LANES,
     LOOSE,
+    RECORDED,
     UNORDERED,
     Masks,
     Seats,
@@ -24,6 +25,7 @@ from physicslab.kernels.block_layout import (
     WIDE,
 )  # fmt: skip
 from physicslab.kernels.block_seats import seat
+from physicslab.kernels.near_pairs import sort_loose
 from physicslab.kernels.pair import NEAR, STILL
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 
@@ -192,7 +194,7 @@ def _has_room(seats: Seats, blocks: int, active: int) -> bool:
 @kernel
 def settle(
     counts: Rows, discs: Seats, boxes: Seats, opened: Rows,
-    manifolds: Manifolds, points: Points, pairs: int, loose: Rows, touching: Rows,
+    manifolds: Manifolds, points: Points, loose: Rows, touching: Rows,
     shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
     inverse_mass: Numbers, inverse_inertia: Numbers, h: float,
 ) -> int:  # fmt: skip
@@ -230,5 +232,6 @@ def settle(
     if came > 0:
         counts[LANES] += came
         counts[ACTIVE] = _keep_loose(manifolds, touching, active)
-        counts[LOOSE], counts[UNORDERED] = list_loose(manifolds, pairs, loose), 0
+        counts[LOOSE], counts[UNORDERED] = list_loose(manifolds, counts[RECORDED], loose), 0
+        sort_loose(manifolds, loose, counts[LOOSE], len(shape))
     return SETTLED

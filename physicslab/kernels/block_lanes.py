@@ -32,8 +32,9 @@ from physicslab.kernels.block_layout import (
 from physicslab.kernels.records import Manifolds, Points
 
 __all__ = [
-    "ACTIVE", "BOX_BLOCKS", "COLOURS", "DISC_BLOCKS", "LANES", "LEFT", "LOOSE", "UNORDERED", "Masks", "Seats",
-    "empty_lane", "follow_pairs", "give_up", "list_loose", "sort_loose", "store", "store_lane", "wake",
+    "ACTIVE", "BOX_BLOCKS", "COLOURS", "COUNTED", "DISC_BLOCKS", "LANES", "LEFT", "LOOSE", "LYING",
+    "RECORDED", "UNORDERED", "Masks", "Seats",
+    "empty_lane", "follow_pairs", "give_up", "list_loose", "store", "store_lane", "wake",
 ]  # fmt: skip
 
 COLOURS = 64
@@ -42,9 +43,11 @@ Masks = Annotated[NDArray[np.uint64], uint64[::1]]
 """A uint64 array (n,), bit by bit."""
 Seats = tuple[Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
 """The blocks of a kind: data, rows of A and B, pairs, colours, the colours of each body, their order."""
-LOOSE, ACTIVE, LEFT, LANES, DISC_BLOCKS, BOX_BLOCKS, UNORDERED = range(7)
-"""What kernels count that change it: loose pairs, those of them that touch, those that impacts have left to
-the solver, lanes in use, blocks, and whether loose pairs are out of order."""
+COUNTED = 9
+LYING, RECORDED, LOOSE, ACTIVE, LEFT, LANES, DISC_BLOCKS, BOX_BLOCKS, UNORDERED = range(COUNTED)
+"""What kernels count that change it: near pairs that lie idle, those that have records, those of these that
+are loose, that touch, that impacts have left to the solver; lanes in use, blocks; and whether loose pairs are
+out of order."""
 
 
 @inlined
@@ -96,17 +99,6 @@ def list_loose(manifolds: Manifolds, pairs: int, loose: Rows) -> int:
             loose[found] = p
             found += 1
     return found
-
-
-@kernel
-def sort_loose(loose: Rows, count: int) -> None:
-    """Put the loose pairs in order, of which all but the last few are."""
-    for k in range(1, count):
-        p, place = loose[k], k
-        while place > 0 and loose[place - 1] > p:
-            loose[place] = loose[place - 1]
-            place -= 1
-        loose[place] = p
 
 
 @kernel

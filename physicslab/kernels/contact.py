@@ -3,6 +3,7 @@
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.near_pairs import REACH
 from physicslab.kernels.pair import NEAR, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
@@ -103,8 +104,14 @@ def find_contacts(
         had_points = manifold.count > 0
         if not (a_box or b_box or had_points or manifold.wall >= 0):
             # Most near circles are too far apart for this substep: settle those without a call.
-            reach = 1.02 * (radius[a] + radius[b]) + abs(ux) + abs(uy) + fall
+            reach = REACH * (radius[a] + radius[b]) + abs(ux) + abs(uy) + fall
             if dx * dx + dy * dy > reach * reach:
+                continue
+        elif manifold.wall >= 0 and not (b_box or had_points):
+            # So it is with circles near the bounds.
+            away = position[b, manifold.wall % 2] - bounds[manifold.wall]
+            clear = (away if manifold.wall < 2 else -away) - radius[b]
+            if clear > REACH * NEAR * radius[b] + abs(ux) + abs(uy) + fall:
                 continue
         manifold.offset_x, manifold.offset_y = dx, dy
         if (a_box and b_box) or (manifold.wall >= 0 and b_box):

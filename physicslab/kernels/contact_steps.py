@@ -10,9 +10,10 @@ from physicslab.kernels.block_lanes import (
     LANES,
     LEFT,
     LOOSE,
+    LYING,
+    RECORDED,
     UNORDERED,
     Seats,
-    sort_loose,
     wake,
 )
 from physicslab.kernels.block_layout import BOX, DISC
@@ -22,8 +23,9 @@ from physicslab.kernels.grid import still_holds
 from physicslab.kernels.impact import strike
 from physicslab.kernels.impulse import MOST_PARTS, relax, separate, solve
 from physicslab.kernels.motion import clear, drift, find_not_finite, kick
+from physicslab.kernels.near_pairs import promote, sort_loose
 from physicslab.kernels.pair import NEAR, STILL
-from physicslab.kernels.records import Manifolds, Points
+from physicslab.kernels.records import Couples, Manifolds, Points
 from physicslab.kernels.ticks import charge, ticks
 
 __all__ = [
@@ -52,10 +54,12 @@ _Forces = tuple[Vectors, Numbers, Numbers, bool, float, float]
 """Forces [N], torques [N m], masses [kg]; whether any act, and gravity [m/s^2]."""
 _Bounds = tuple[Numbers, float, float]
 """Where they are [m], their restitution and friction."""
-_Pairs = tuple[Manifolds, Points, int, Rows, Rows]
-"""The records of near pairs, how many those are, which of them are loose, and which of those touch."""
+_Pairs = tuple[Manifolds, Points, Rows, Rows]
+"""The records of near pairs, which of them are loose, and which of those touch."""
 _Lanes = tuple[Numbers, int, Rows, Rows, Rows, Numbers, int, Rows, Rows, Rows]
 """Blocks of discs and of boxes: data, how many, their order, rows of A and B."""
+_Idle = tuple[Couples, Numbers, Rows]
+"""The near pairs without records and how near each must come to get one [m]; the entities of all rows."""
 _Spring = tuple[float, float, float, float]
 """Of contacts: frequency [Hz], damping ratio, slop, fastest push [m/s]."""
 
@@ -84,11 +88,11 @@ def _pull(forces: _Forces, inverse_mass: Numbers, cost: Rows, now: int) -> int:
 
 @inlined
 def _find(
-    counts: Rows, discs: Seats, boxes: Seats, pairs: _Pairs, state: _State, sizes: _Sizes, materials: _Two,
-    inverse: _Two, bounds: _Bounds, first: bool, h: float, fall: float,
+    counts: Rows, discs: Seats, boxes: Seats, idle: _Idle, pairs: _Pairs, state: _State, sizes: _Sizes,
+    materials: _Two, inverse: _Two, bounds: _Bounds, first: bool, h: float, fall: float,
 ) -> None:  # fmt: skip
-    """Find where settled contacts touch now, then where loose ones do, those set loose among them."""
-    manifolds, points, _, loose, touching = pairs
+    """Find where settled contacts touch now, which idle pairs come near, then where the loose ones touch."""
+    manifolds, points, loose, touching = pairs
     walls, bounds_restitution, bounds_friction = bounds
     if counts[LANES] > 0:
         before = counts[LOOSE]
@@ -102,8 +106,13 @@ def _find(
         came = counts[LOOSE] - before
         counts[LANES] -= came
         if came > 0 or counts[UNORDERED] != 0:
-            sort_loose(loose, counts[LOOSE])
+            sort_loose(manifolds, loose, counts[LOOSE], len(state[1]))
             counts[UNORDERED] = 0
+    couples, reach, entities = idle
+    counts[LYING], counts[RECORDED], counts[LOOSE] = promote(
+        couples, reach, counts[LYING], manifolds, points, counts[RECORDED], loose, counts[LOOSE], entities,
+        state[0], state[2], h, fall,
+    )  # fmt: skip
     counts[ACTIVE] = find_contacts(
         manifolds, points, loose, counts[LOOSE], touching, *state, *sizes, *materials, *inverse,
         walls, bounds_restitution, bounds_friction, first, h, -0.5, fall,
@@ -116,7 +125,7 @@ def _strike(
     h: float,
 ) -> int:  # fmt: skip
     """Bounce what meets, settled contacts that this wakes among it; return how many impacts there were."""
-    manifolds, points, _, loose, touching = pairs
+    manifolds, points, loose, touching = pairs
     impacts, counts[LEFT] = 0, 0
     while counts[ACTIVE] > 0:
         struck, counts[LEFT] = strike(
@@ -163,7 +172,7 @@ def advance(
     steps: int, substeps: int, substep: int, stage: int, h: float, iterations: int,
     state: _State, kept: _State, sizes: _Sizes, materials: _Two, inverse: _Two, tethered: Flags,
     forces: _Forces, damping: tuple[float, float], fall: float, fat: Vectors, bounds: _Bounds,
-    pairs: _Pairs, counts: Rows, discs: Seats, boxes: Seats, opened: Rows,
+    idle: _Idle, pairs: _Pairs, counts: Rows, discs: Seats, boxes: Seats, opened: Rows,
     spring: _Spring, span: float, cost: Rows,
 ) -> tuple[int, int, int, int, int, float]:  # fmt: skip
     """Make ``steps`` steps of ``substeps`` times ``h`` seconds, beginning at a stage of a substep.
@@ -178,7 +187,7 @@ def advance(
     which the last step began.
     """
     position, angle, linear, angular = state
-    manifolds, points, near, loose, touching = pairs
+    manifolds, points, loose, touching = pairs
     hertz, damping_ratio, slop, max_push = spring
     kicked = forces[3] or damping[0] != 0.0 or damping[1] != 0.0
     done, impacts, impacts_done = 0, 0, 0
@@ -200,11 +209,23 @@ def advance(
                 return UNLISTED, done, substep, impacts_done, impacts, span
         if stage != STRIKE:
             _find(
-                counts, discs, boxes, pairs, state, sizes, materials, inverse, bounds, substep == 0, h, fall
+                counts,
+                discs,
+                boxes,
+                idle,
+                pairs,
+                state,
+                sizes,
+                materials,
+                inverse,
+                bounds,
+                substep == 0,
+                h,
+                fall,
             )
             if substep == 0 and (counts[LANES] > 0 or counts[ACTIVE] >= FEW):
                 came = settle(
-                    counts, discs, boxes, opened, manifolds, points, near, loose, touching,
+                    counts, discs, boxes, opened, manifolds, points, loose, touching,
                     sizes[0], sizes[1], *materials, linear, *inverse, h,
                 ) if counts[LANES] > 0 else -1  # fmt: skip
                 if came != SETTLED:

@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
-from physicslab.kernels.records import Manifolds, Pairs, Points
+from physicslab.kernels.records import Couples, Pairs
 
-__all__ = ["carry_over", "fat_boxes", "find_pairs", "still_holds"]
+__all__ = ["fat_boxes", "find_pairs", "still_holds"]
 
 
 @inlined
@@ -31,21 +31,20 @@ def still_holds(
 ) -> bool:
     """Whether every body, with what it moves in a time h, is still inside the fat box made for it.
 
-    ``fat`` (rows, 5) holds where each body was (x, y, angle), its bounding radius then, and the margin around
+    ``fat`` (5, rows) holds where each body was (x, y, angle), its bounding radius then, and the margin around
     it.
     """
-    for i in range(len(angle)):
-        if kind[i] == 0:
-            if fat[i, 3] != 0.0:
-                return False
-            continue
+    places, velocities = position.reshape(position.size), linear.reshape(linear.size)
+    holds = True
+    for i in range(len(angle)):  # to the end, whatever comes: so it is done in vectors
         reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
-        moved_x = abs(position[i, 0] - fat[i, 0]) + abs(linear[i, 0]) * h
-        moved_y = abs(position[i, 1] - fat[i, 1]) + abs(linear[i, 1]) * h
-        turned = abs(angle[i] - fat[i, 2]) * reach if kind[i] == 2 else 0.0
-        if not max(moved_x, moved_y) + turned <= fat[i, 4] or reach != fat[i, 3]:
-            return False
-    return True
+        made_for = reach if kind[i] != 0 else 0.0
+        moved_x = abs(places[2 * i] - fat[0, i]) + abs(velocities[2 * i]) * h
+        moved_y = abs(places[2 * i + 1] - fat[1, i]) + abs(velocities[2 * i + 1]) * h
+        turned = abs(angle[i] - fat[2, i]) * (reach if kind[i] == 2 else 0.0)
+        inside = (max(moved_x, moved_y) + turned <= fat[4, i]) | (kind[i] == 0)
+        holds &= inside & (made_for == fat[3, i])
+    return holds
 
 
 @kernel
@@ -62,7 +61,7 @@ def fat_boxes(
     boxes: Vectors,
     h: float,
 ) -> None:
-    """Make each body's fat box (xmin, ymin, xmax, ymax), good for about two steps."""
+    """Make each body's fat box (xmin, ymin, xmax, ymax), good for about three steps."""
     moving, speeds = 0, 0.0
     for i in range(len(angle)):
         speed = abs(linear[i, 0]) + abs(linear[i, 1])
@@ -71,7 +70,7 @@ def fat_boxes(
             speeds += min(speed, 1e9)
     usual = speeds / moving if moving else 0.0
     for i in range(len(angle)):
-        fat[i, 3] = 0.0
+        fat[3, i] = 0.0
         if kind[i] == 0:
             continue
         reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
@@ -82,9 +81,9 @@ def fat_boxes(
             half_y = 0.5 * (s * width[i] + c * height[i])
         # A slow body among fast ones is about to be struck.
         speed = max(abs(linear[i, 0]), abs(linear[i, 1]), usual if inverse_mass[i] > 0.0 else 0.0)
-        margin = 0.1 * min(half_x, half_y) + 8.0 * h * speed
-        fat[i, 0], fat[i, 1], fat[i, 2] = position[i, 0], position[i, 1], angle[i]
-        fat[i, 3], fat[i, 4] = reach, margin
+        margin = 0.1 * min(half_x, half_y) + 14.0 * h * speed
+        fat[0, i], fat[1, i], fat[2, i] = position[i, 0], position[i, 1], angle[i]
+        fat[3, i], fat[4, i] = reach, margin
         boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
         boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
 
@@ -107,11 +106,21 @@ def _overlap(these: Vectors, i: int, those: Vectors, j: int) -> bool:
 
 
 @inlined
+def _meet(flat: Numbers, p: int, q: int) -> bool:
+    """Whether two boxes overlap, of those that lie one after the other."""
+    i, j = 4 * p, 4 * q
+    return bool(
+        (flat[i] <= flat[j + 2]) & (flat[j] <= flat[i + 2])
+        & (flat[i + 1] <= flat[j + 3]) & (flat[j + 1] <= flat[i + 3])
+    )  # fmt: skip
+
+
+@inlined
 def _take(
-    pairs: Pairs, found: int, inverse_mass: Numbers,
+    couples: Couples, found: int, inverse_mass: Numbers,
     boxes: Vectors, fat: Vectors, company: Rows, i: int, j: int,
 ) -> int:  # fmt: skip
-    """Write the pair (i, j) in order, if it can be moved and there is room; return how many there are now.
+    """Write the pair (i, j), if it can be moved and there is room; return how many there are now.
 
     Of bodies that were put on one spot only so many pairs are taken that work and memory stay in proportion
     to the bodies: whoever has a crowd in its ``company`` meets the others when some of those have gone.
@@ -119,8 +128,8 @@ def _take(
     if inverse_mass[i] + inverse_mass[j] == 0.0:
         return found
     # The boxes without their margins.
-    across_i, up_i = boxes[i, 2] - boxes[i, 0] - 2.0 * fat[i, 4], boxes[i, 3] - boxes[i, 1] - 2.0 * fat[i, 4]
-    across_j, up_j = boxes[j, 2] - boxes[j, 0] - 2.0 * fat[j, 4], boxes[j, 3] - boxes[j, 1] - 2.0 * fat[j, 4]
+    across_i, up_i = boxes[i, 2] - boxes[i, 0] - 2.0 * fat[4, i], boxes[i, 3] - boxes[i, 1] - 2.0 * fat[4, i]
+    across_j, up_j = boxes[j, 2] - boxes[j, 0] - 2.0 * fat[4, j], boxes[j, 3] - boxes[j, 1] - 2.0 * fat[4, j]
     dx = abs(boxes[i, 0] + boxes[i, 2] - boxes[j, 0] - boxes[j, 2])
     dy = abs(boxes[i, 1] + boxes[i, 3] - boxes[j, 1] - boxes[j, 3])
     if (dx < across_i + across_j) & (dy < up_i + up_j):
@@ -130,8 +139,8 @@ def _take(
                 return found
             company[i] += 1
             company[j] += 1
-    if found < len(pairs):
-        pairs[found, 0], pairs[found, 1], pairs[found, 2] = min(i, j), max(i, j), -1
+    if 2 * found < len(couples):
+        couples[2 * found], couples[2 * found + 1] = i, j
     return found + 1
 
 
@@ -157,7 +166,7 @@ def _level(
     count: int,
     cell: float,
     inverse_mass: Numbers,
-    pairs: Pairs,
+    couples: Couples,
     found: int,
     larges: Rows,
     company: Rows,
@@ -213,21 +222,33 @@ def _level(
         for side in range(4):
             near[entry, side] = boxes[small[k], side]
 
-    met = np.empty(smalls, np.int64)
+    flat = near.reshape(near.size)  # else every index is multiplied by a stride
     for p in range(smalls):
         ix, iy = home[p, 0], home[p, 1]
         if dense:  # buckets one above the other are next to each other: two stretches hold all five cells
             at = (ix - low_x) * up + iy - low_y
-            # Every neighbour is written down, and kept by counting: whether two overlap cannot be foretold.
-            meetings = 0
-            for q in range(p + 1, first[at + 2]):
-                met[meetings] = body[q]
-                meetings += _overlap(near, p, near, q)
-            for q in range(first[at + up - 1], first[at + up + 2]):
-                met[meetings] = body[q]
-                meetings += _overlap(near, p, near, q)
-            for k in range(meetings):
-                found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], met[k])
+            above, beside, end = first[at + 2], first[at + up - 1], first[at + up + 2]
+            most = above - (p + 1) + end - beside
+            i = body[p]
+            if most <= 2 * _CROWD:
+                if 2 * (found + most) > len(couples):
+                    found += most
+                    continue
+                # Every neighbour is written down, and kept by counting: whether two overlap cannot be
+                # foretold.
+                for q in range(p + 1, above):
+                    couples[2 * found], couples[2 * found + 1] = i, body[q]
+                    found += _meet(flat, p, q)
+                for q in range(beside, end):
+                    couples[2 * found], couples[2 * found + 1] = i, body[q]
+                    found += _meet(flat, p, q)
+                continue
+            for q in range(p + 1, above):
+                if _overlap(near, p, near, q):
+                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
+            for q in range(beside, end):
+                if _overlap(near, p, near, q):
+                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
             continue
         for neighbour in range(5):
             jx = ix if neighbour < 2 else ix + 1
@@ -235,7 +256,7 @@ def _level(
             at = _bucket(jx, jy, low_x, low_y, up, buckets, dense)
             for q in range(p + 1 if neighbour == 0 else first[at], first[at + 1]):
                 if home[q, 0] == jx and home[q, 1] == jy and _overlap(near, p, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, body[p], body[q])
+                    found = _take(couples, found, inverse_mass, boxes, fat, company, body[p], body[q])
 
     for k in range(large_count):
         i = larges[k]
@@ -248,32 +269,33 @@ def _level(
         if not dense or float(to_x - from_x + 1) * float(to_y - from_y + 1) > smalls:
             for q in range(smalls):
                 if _overlap(boxes, i, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, i, body[q])
+                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
             continue
         for ix in range(from_x, to_x + 1):
             column = (ix - low_x) * up - low_y
             for q in range(first[column + from_y], first[column + to_y + 1]):
                 if _overlap(boxes, i, near, q):
-                    found = _take(pairs, found, inverse_mass, boxes, fat, company, i, body[q])
+                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
     return found, large_count
 
 
 @kernel
 def find_pairs(
     boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers,
-    bounded: bool, bounds: Numbers, pairs: Pairs,
-) -> int:  # fmt: skip
-    """Write the pairs (a, b, wall) whose fat boxes overlap, each once, sorted; return how many there are.
+    bounded: bool, bounds: Numbers, pairs: Pairs, couples: Couples,
+) -> tuple[int, int]:  # fmt: skip
+    """Find the pairs whose fat boxes overlap, each once; return how many of bodies there are, and of walls.
 
     A grid whose cells fit the usual body finds the pairs of small ones, and of small with large ones; the
-    large ones go on to a coarser grid. Bodies past the bounds make pairs with row 0 and the wall. Pairs of
-    which neither can be moved do not count. More pairs than ``pairs`` has rows are counted and not written.
+    large ones go on to a coarser grid. Their rows are written to ``couples``. Bodies past the bounds make
+    pairs (0, row, wall), written to ``pairs``. Where either has no room, the numbers are larger than that,
+    and no less than is needed.
     """
     n = len(kind)
     members = np.empty(n, np.int64)
     larges = np.empty(n, np.int64)
     company = np.zeros(n, np.int64)
-    count, found = 0, 0
+    count, found, walls = 0, 0, 0
     for i in range(n):
         if kind[i] == 0:
             continue
@@ -282,10 +304,9 @@ def find_pairs(
         if bounded and inverse_mass[i] > 0.0:
             for wall in range(4):
                 if boxes[i, wall] < bounds[wall] if wall < 2 else boxes[i, wall] > bounds[wall]:
-                    if found < len(pairs):
-                        pairs[found, 0], pairs[found, 1], pairs[found, 2] = 0, i, wall
-                    found += 1
-    walls = found
+                    if walls < len(pairs):
+                        pairs[walls, 0], pairs[walls, 1], pairs[walls, 2] = 0, i, wall
+                    walls += 1
     while count > 1:
         inverse_sizes = 0.0
         for k in range(count):
@@ -293,75 +314,8 @@ def find_pairs(
             inverse_sizes += 1.0 / max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1])
         # The harmonic mean goes by the small bodies, which are many, and not by the few walls.
         found, count = _level(
-            boxes, fat, members, count, 1.25 * count / inverse_sizes, inverse_mass, pairs, found, larges,
+            boxes, fat, members, count, 1.25 * count / inverse_sizes, inverse_mass, couples, found, larges,
             company,
         )  # fmt: skip
         members[:count] = larges[:count]
-    if found <= len(pairs):
-        _sort_pairs(pairs, walls, found, n)
-    return found
-
-
-@allocating
-def _sort_pairs(pairs: Pairs, start: int, end: int, n: int) -> None:
-    """Sort pairs by a, then b: by counting, twice, the last significant key first."""
-    spare = np.empty((end - start, 2), np.int64)
-    for key in (1, 0):
-        first = np.zeros(n + 1, np.int64)
-        for p in range(start, end):
-            first[pairs[p, key] + 1] += 1
-        for i in range(n):
-            first[i + 1] += first[i]
-        for p in range(start, end):
-            to = first[pairs[p, key]]
-            spare[to, 0], spare[to, 1] = pairs[p, 0], pairs[p, 1]
-            first[pairs[p, key]] += 1
-        for p in range(start, end):
-            pairs[p, 0], pairs[p, 1] = spare[p - start, 0], spare[p - start, 1]
-
-
-@kernel
-def carry_over(
-    pairs: Pairs,
-    count: int,
-    entities: Rows,
-    old_manifolds: Manifolds,
-    old_points: Points,
-    old_count: int,
-    manifolds: Manifolds,
-    points: Points,
-) -> None:
-    """Give each pair its manifold: the one it had, found by walking both sorted lists, or an empty one."""
-    q = 0
-    for p in range(count):
-        a, b, wall = pairs[p, 0], pairs[p, 1], pairs[p, 2]
-        entity_a, entity_b = entities[a], entities[b]
-        while q < old_count:
-            old = old_manifolds[q]
-            if old.entity_a > entity_a:
-                break
-            if old.entity_a == entity_a:
-                if old.entity_b > entity_b:
-                    break
-                if old.entity_b == entity_b and old.wall >= wall:
-                    break
-            q += 1
-        manifold = manifolds[p]
-        matches = False
-        if q < old_count:
-            old = old_manifolds[q]
-            matches = old.entity_a == entity_a and old.entity_b == entity_b and old.wall == wall
-        if matches:
-            manifolds[p] = old_manifolds[q]
-            points[2 * p] = old_points[2 * q]
-            points[2 * p + 1] = old_points[2 * q + 1]
-        else:
-            manifold.entity_a, manifold.entity_b, manifold.wall = entity_a, entity_b, wall
-            manifold.count, manifold.found, manifold.struck, manifold.lane = 0, 0, 0, -1
-            points[2 * p].feature = points[2 * p + 1].feature = 0
-            points[2 * p].normal_impulse = points[2 * p + 1].normal_impulse = 0.0
-            points[2 * p].tangent_impulse = points[2 * p + 1].tangent_impulse = 0.0
-            points[2 * p].approach_speed = points[2 * p + 1].approach_speed = 0.0
-            points[2 * p].impact_normal = points[2 * p + 1].impact_normal = 0.0
-            points[2 * p].impact_tangent = points[2 * p + 1].impact_tangent = 0.0
-        manifold.a, manifold.b = a, b
+    return found, walls

@@ -86,6 +86,16 @@ def drift(
     position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers, tethered: Flags, h: float
 ) -> None:
     """Move and turn every row that is not tethered at its present velocity for a time h."""
+    free = True
+    for i in range(len(tethered)):
+        free &= not tethered[i]
+    if free:  # as a rule: nothing to decide, so that vectors of numbers are added
+        places, velocities = position.reshape(position.size), linear.reshape(linear.size)
+        for i in range(len(places)):
+            places[i] += h * velocities[i]
+        for i in range(len(angle)):
+            angle[i] += h * angular[i]
+        return
     for i in range(len(angle)):
         if not tethered[i]:
             position[i, 0] += h * linear[i, 0]

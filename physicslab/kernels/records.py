@@ -3,11 +3,11 @@
 from typing import Annotated, Any
 
 import numpy as np
-from numba import from_dtype, int64
+from numba import from_dtype, int64, uint32
 from numpy.typing import NDArray
 
 __all__ = [
-    "IMPACT", "MANIFOLD", "POINT", "Impacts", "Manifold", "Manifolds", "Pairs", "Point", "Points",
+    "IMPACT", "MANIFOLD", "POINT", "Couples", "Impacts", "Manifold", "Manifolds", "Pairs", "Point", "Points",
 ]  # fmt: skip
 
 MANIFOLD = np.dtype(
@@ -94,6 +94,8 @@ Impacts = Annotated[NDArray[np.void], from_dtype(IMPACT)[::1]]
 """An array of IMPACT (n,)."""
 Pairs = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, 3): rows a < b, and the wall or -1."""
+Couples = Annotated[NDArray[np.uint32], uint32[::1]]
+"""A uint32 array (2 n,): rows a < b, one after the other."""
 Manifold = Any
 """One record of MANIFOLD; in compiled code its fields are attributes."""
 Point = Any

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.kernels import grid
+from physicslab.kernels import grid, near_pairs
 from physicslab.schedule import Stage, System, at
 
 if TYPE_CHECKING:
@@ -36,18 +36,26 @@ class BroadPhaseSystem(System):
 
     Attributes
     ----------
-    fat : float64 array (rows, 5)
+    fat : float64 array (5, rows)
         Where each body was (x, y, angle), its bounding radius then, and the margin around it [m].
     bounds : float64 array (4,)
         Of the world: xmin, ymin, xmax, ymax [m].
     """
 
-    kernels = (grid.still_holds, grid.fat_boxes, grid.find_pairs, grid.carry_over)
+    kernels = (
+        grid.still_holds,
+        grid.fat_boxes,
+        grid.find_pairs,
+        near_pairs.part,
+        near_pairs.carry_over,
+        near_pairs.sort_loose,
+    )
 
     def __init__(self) -> None:
-        self.fat: NDArray[np.float64] = np.zeros((0, 5))
+        self.fat: NDArray[np.float64] = np.zeros((5, 0))
         self._boxes: NDArray[np.float64] = np.zeros((0, 4))
-        self._pairs: NDArray[np.int64] = np.zeros((256, 3), np.int64)
+        self._couples: NDArray[np.uint32] = np.zeros(512, np.uint32)
+        self._pairs: NDArray[np.int64] = np.zeros((512, 3), np.int64)
         self.bounds: NDArray[np.float64] = np.zeros(4)
 
     def attach(self, world: World) -> None:
@@ -69,23 +77,26 @@ class BroadPhaseSystem(System):
         transform, shape = world.table(Transform), world.table(Shape)
         position, angle, linear = transform["position"], transform["angle"], world.table(Velocity)["linear"]
         sizes = shape["kind"], shape["radius"], shape["width"], shape["height"]
-        if len(self.fat) != len(angle):
-            self.fat, self._boxes = np.zeros((len(angle), 5)), np.zeros((len(angle), 4))
+        if self.fat.shape[1] != len(angle):
+            self.fat, self._boxes = np.zeros((5, len(angle))), np.zeros((len(angle), 4))
             world.contacts.stale = True
         if not world.contacts.stale and grid.still_holds(position, angle, linear, *sizes, self.fat, h):
             return
         inverse_mass = world.bodies.inverse_mass
         grid.fat_boxes(position, angle, linear, *sizes, inverse_mass, self.fat, self._boxes, h)
         bounded = world.physics.bounds is not None
-        count = self._count_pairs(shape["kind"], inverse_mass, bounded)
-        world.contacts.relist(world, self._pairs, count)
+        found, walls = self._count_pairs(shape["kind"], inverse_mass, bounded)
+        world.contacts.part(world, self._couples, found, self._pairs, walls)
 
-    def _count_pairs(self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool) -> int:
-        """Fill the list of pairs, made larger where it is too small, and return their number."""
+    def _count_pairs(
+        self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool
+    ) -> tuple[int, int]:
+        """Find the pairs, with more room where it is too little; return how many of bodies, of walls."""
         while True:
-            count = int(
-                grid.find_pairs(self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs)
+            found, walls = grid.find_pairs(
+                self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs, self._couples
             )
-            if count <= len(self._pairs):
-                return count
-            self._pairs = np.zeros((2 * count, 3), np.int64)
+            if 2 * found <= len(self._couples) and found + walls <= len(self._pairs):
+                return found, walls
+            self._couples = np.zeros(4 * found, np.uint32)
+            self._pairs = np.zeros((2 * (found + walls), 3), np.int64)

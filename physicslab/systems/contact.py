@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from physicslab.components import Material, Shape, Transform, Velocity
-from physicslab.kernels import block_contact, contact
+from physicslab.kernels import block_contact, contact, near_pairs
 from physicslab.kernels.pair import NEAR, STILL
 from physicslab.schedule import Stage, System, at
 from physicslab.systems.broad_phase import nothing_to_touch
@@ -25,7 +25,7 @@ class ContactSystem(System):
     swept, so that none passes through another.
     """
 
-    kernels = (contact.find_contacts,)
+    kernels = (near_pairs.promote, contact.find_contacts)
     observes = False  # what it begins anew at a step is its own record
 
     def __init__(self) -> None:
@@ -53,7 +53,8 @@ class ContactSystem(System):
         if contacts.blocks.lanes:
             self._refresh(world, h, fall)
             contacts.changed()
-        contacts.in_order()
+        contacts.in_order(len(world.roster))
+        contacts.promote(world, h, fall)
         contacts.active = contact.find_contacts(
             contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count, contacts.touching,
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],

@@ -52,9 +52,7 @@ class ResolveSystem(System):
         contacts, bodies = world.contacts, world.bodies
         if not (contacts.count and world.has_forces and bodies.unequal):
             return 1
-        load = impulse.heaviest_load(
-            contacts.manifolds, contacts.candidate_pairs, bodies.force, bodies.inverse_mass
-        )
+        load = impulse.heaviest_load(contacts.manifolds, contacts.recorded, bodies.force, bodies.inverse_mass)
         parts = 1
         while parts < impulse.MOST_PARTS and parts * parts * _LIGHT_LOAD < load:
             parts *= 2

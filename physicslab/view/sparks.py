@@ -78,7 +78,7 @@ class Sparks:
 
     def _strike(self, world: World, scale: float) -> None:
         contacts = world.contacts
-        near = contacts.manifolds[: contacts.candidate_pairs]
+        near = contacts.manifolds[: contacts.recorded]
         struck = np.flatnonzero(near["struck"] > 0)
         if not len(struck):
             return

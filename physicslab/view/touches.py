@@ -60,7 +60,7 @@ def resting_of(world: World) -> Touches:
     """Return where bodies touch, with the impulses of the last substep that held them apart."""
     contacts = world.contacts
     contacts.sync()
-    pairs = np.flatnonzero(contacts.manifolds["count"][: contacts.candidate_pairs] > 0)
+    pairs = np.flatnonzero(contacts.manifolds["count"][: contacts.recorded] > 0)
     both = np.stack((2 * pairs, 2 * pairs + 1), axis=1)
     in_use = np.arange(2) < contacts.manifolds["count"][pairs][:, None]
     chosen = both[in_use]
@@ -70,7 +70,7 @@ def resting_of(world: World) -> Touches:
 def impacts_of(world: World) -> Touches:
     """Return the impacts of the step so far."""
     contacts = world.contacts
-    pairs = np.flatnonzero(contacts.manifolds["struck"][: contacts.candidate_pairs] > 0)
+    pairs = np.flatnonzero(contacts.manifolds["struck"][: contacts.recorded] > 0)
     both = np.stack((2 * pairs, 2 * pairs + 1), axis=1).reshape(-1)
     return _touches(
         world, both[contacts.points["impact_normal"][both] > 0.0], "impact_normal", "impact_tangent"

@@ -1,0 +1,248 @@
+"""The list of near pairs: which have a record, and which lie idle until they come within reach.
+
+Most near pairs of discs do not touch for long. They are kept as two rows and a distance each, so that looking
+at them all takes a nanosecond or two a pair; the record of a contact, of hundreds of bytes, is made when the
+two come so near that they may touch within the substep.
+"""
+
+import numpy as np
+
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
+from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points
+
+__all__ = ["REACH", "carry_over", "part", "promote", "sort_loose"]
+
+REACH = 1.02
+"""So many times the sum of their radii apart, two discs are near enough to have points."""
+_FREE = -1
+
+
+@inlined
+def _place(table: Rows, mask: int, entity_a: int, entity_b: int, wall: int) -> int:
+    """Return where the search for a pair begins in a table of mask + 1 places."""
+    mixed = entity_a * 73856093 + entity_b * 19349663 + wall
+    return (mixed ^ (mixed >> 15)) & mask
+
+
+@inlined
+def _mask(count: int) -> int:
+    """Return one less than the places for so many records: a power of two, at least half of them free."""
+    places = 16
+    while places < 2 * count:
+        places *= 2
+    return places - 1
+
+
+@inlined
+def _is_remembered(manifold: Manifold) -> bool:
+    """Whether anything is known of a pair but that it is near."""
+    return bool((manifold.count != 0) | (manifold.struck != 0) | (manifold.found != 0) | (manifold.lane >= 0))
+
+
+@inlined
+def _known(table: Rows, mask: int, manifolds: Manifolds, entity_a: int, entity_b: int, wall: int) -> int:
+    """Return the number of the record of a pair, or -1."""
+    place = _place(table, mask, entity_a, entity_b, wall)
+    while table[place] != _FREE:
+        q = table[place]
+        old = manifolds[q]
+        if old.entity_a == entity_a and old.entity_b == entity_b and old.wall == wall:
+            return int(q)
+        place = (place + 1) & mask
+    return -1
+
+
+@inlined
+def _note_known(manifolds: Manifolds, count: int, table: Rows) -> None:
+    """Fill a table that leads from a pair of entities to its record, if that remembers anything."""
+    mask = _mask(count)
+    table[: mask + 1] = _FREE
+    for q in range(count):
+        old = manifolds[q]
+        if _is_remembered(old):
+            place = _place(table, mask, old.entity_a, old.entity_b, old.wall)
+            while table[place] != _FREE:
+                place = (place + 1) & mask
+            table[place] = q
+
+
+@kernel
+def part(
+    couples: Couples, found: int, pairs: Pairs, walls: int,
+    kind: Rows, radius: Numbers, inverse_mass: Numbers, entities: Rows,
+    manifolds: Manifolds, known: int, stale: bool, table: Rows, idle: Couples, reach: Numbers,
+) -> tuple[int, int]:  # fmt: skip
+    """Part the pairs that were found: discs of which nothing is remembered lie idle, all others get records.
+
+    The rows of those that were ``found`` are in ``couples``, in either order; where neither body can be moved
+    they are dropped. In ``pairs`` are the first ``walls``, those of the bounds, and to these are added the
+    others with records, sorted; returns how many there are then, and how many lie idle. The first
+    ``known`` of ``manifolds`` are the records so far, whose rows are others now if they are ``stale``.
+    ``table`` is filled for :func:`carry_over`.
+    """
+    _note_known(manifolds, known, table)
+    mask, n = _mask(known), len(kind)
+    remembered = np.full(n, stale)
+    if not stale:
+        for q in range(known):
+            old = manifolds[q]
+            if _is_remembered(old):
+                remembered[old.a] = remembered[old.b] = True
+    kept, lying = walls, 0
+    for k in range(found):
+        one, other = np.int64(couples[2 * k]), np.int64(couples[2 * k + 1])
+        a, b = min(one, other), max(one, other)
+        if inverse_mass[a] + inverse_mass[b] == 0.0:
+            continue
+        if (kind[a] == 1) & (kind[b] == 1) and (
+            not (remembered[a] & remembered[b])
+            or _known(table, mask, manifolds, entities[a], entities[b], -1) < 0
+        ):
+            idle[2 * lying], idle[2 * lying + 1] = a, b
+            reach[lying] = REACH * (radius[a] + radius[b])
+            lying += 1
+            continue
+        pairs[kept, 0], pairs[kept, 1], pairs[kept, 2] = a, b, -1
+        kept += 1
+    _sort_pairs(pairs, walls, kept, n)
+    return kept, lying
+
+
+@allocating
+def _sort_pairs(pairs: Pairs, start: int, end: int, n: int) -> None:
+    """Sort pairs by a, then b: by counting, twice, the last significant key first."""
+    spare = np.empty((end - start, 2), np.int64)
+    for key in (1, 0):
+        first = np.zeros(n + 1, np.int64)
+        for p in range(start, end):
+            first[pairs[p, key] + 1] += 1
+        for i in range(n):
+            first[i + 1] += first[i]
+        for p in range(start, end):
+            to = first[pairs[p, key]]
+            spare[to, 0], spare[to, 1] = pairs[p, 0], pairs[p, 1]
+            first[pairs[p, key]] += 1
+        for p in range(start, end):
+            pairs[p, 0], pairs[p, 1] = spare[p - start, 0], spare[p - start, 1]
+
+
+@kernel
+def carry_over(
+    pairs: Pairs, count: int, entities: Rows, old_manifolds: Manifolds, old_points: Points, known: int,
+    table: Rows, noted: bool, manifolds: Manifolds, points: Points,
+) -> None:  # fmt: skip
+    """Give each pair its record: the one it had, or a blank one.
+
+    The first ``known`` of the old records are looked up in ``table``, which is filled first if they are not
+    ``noted`` there.
+    """
+    if not noted:
+        _note_known(old_manifolds, known, table)
+    mask = _mask(known)
+    for p in range(count):
+        a, b, wall = pairs[p, 0], pairs[p, 1], pairs[p, 2]
+        q = _known(table, mask, old_manifolds, entities[a], entities[b], wall)
+        if q >= 0:
+            manifolds[p] = old_manifolds[q]
+            points[2 * p] = old_points[2 * q]
+            points[2 * p + 1] = old_points[2 * q + 1]
+        else:
+            _make_blank(manifolds, points, p)
+            manifold = manifolds[p]
+            manifold.entity_a, manifold.entity_b, manifold.wall = entities[a], entities[b], wall
+        manifold = manifolds[p]
+        manifold.a, manifold.b = a, b
+
+
+@inlined
+def _make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
+    """Let a record tell of nothing that was."""
+    manifold = manifolds[p]
+    manifold.count, manifold.found, manifold.struck, manifold.lane, manifold.size = 0, 0, 0, -1, 0.0
+    for j in range(2 * p, 2 * p + 2):
+        point = points[j]
+        point.feature = 0
+        point.normal_impulse = point.tangent_impulse = 0.0
+        point.approach_speed = point.impact_normal = point.impact_tangent = 0.0
+
+
+@kernel
+def promote(
+    idle: Couples, reach: Numbers, lying: int, manifolds: Manifolds, points: Points, count: int,
+    loose: Rows, loose_count: int, entities: Rows, position: Vectors, linear: Vectors, h: float, fall: float,
+) -> tuple[int, int, int]:  # fmt: skip
+    """Give records to the idle pairs that may touch within ``h`` seconds from now or before.
+
+    Returns how many pairs lie idle, have records and are loose. Records come after those that are there, and
+    their numbers into ``loose`` in the order of rows: so it does not matter when a pair got its own.
+    """
+    near = np.empty(lying, np.int64)
+    came = 0
+    # Flat, and by numbers without a sign: else every index is multiplied by a stride and looked at.
+    places, velocities = position.reshape(position.size), linear.reshape(linear.size)
+    for k in range(lying):
+        xa, xb = 2 * np.uint64(idle[2 * k]), 2 * np.uint64(idle[2 * k + 1])
+        ya, yb = xa + np.uint64(1), xb + np.uint64(1)
+        dx, dy = places[xb] - places[xa], places[yb] - places[ya]
+        moved = abs(velocities[xb] - velocities[xa]) + abs(velocities[yb] - velocities[ya])
+        far = reach[k] + moved * h + fall
+        near[came] = k  # kept by counting: which pair comes near cannot be foretold
+        came += not (dx * dx + dy * dy > far * far)
+    if came == 0:
+        return lying, count, loose_count
+    for k in range(came):
+        p = count + k
+        manifold = manifolds[p]
+        a, b = np.int64(idle[2 * near[k]]), np.int64(idle[2 * near[k] + 1])
+        _make_blank(manifolds, points, p)
+        manifold.a, manifold.b, manifold.wall = a, b, -1
+        manifold.entity_a, manifold.entity_b = entities[a], entities[b]
+        loose[loose_count + k] = p
+    for k in range(came - 1, -1, -1):
+        lying, to = lying - 1, near[k]
+        idle[2 * to], idle[2 * to + 1], reach[to] = idle[2 * lying], idle[2 * lying + 1], reach[lying]
+    _merge_tail(manifolds, loose, loose_count, loose_count + came, len(entities))
+    return lying, count + came, loose_count + came
+
+
+@inlined
+def _rank(manifolds: Manifolds, p: int, rows: int) -> int:
+    """Return a number that is larger for what comes later in the order of rows and walls."""
+    manifold = manifolds[p]
+    return int((manifold.a * rows + manifold.b) * 8 + manifold.wall + 1)
+
+
+@allocating
+def _merge_tail(manifolds: Manifolds, loose: Rows, start: int, count: int, rows: int) -> None:
+    """Put the numbers from ``start`` on in their places among those before, which are in order."""
+    many = count - start
+    tail, ranks = np.empty(many, np.int64), np.empty(many, np.int64)
+    for k in range(many):
+        tail[k] = loose[start + k]
+        ranks[k] = _rank(manifolds, tail[k], rows)
+    gap = many // 2  # Shell's sort: a few as a rule, all pairs of a world at its beginning
+    while gap > 0:
+        for k in range(gap, many):
+            p, rank, place = tail[k], ranks[k], k
+            while place >= gap and ranks[place - gap] > rank:
+                tail[place], ranks[place] = tail[place - gap], ranks[place - gap]
+                place -= gap
+            tail[place], ranks[place] = p, rank
+        gap = 1 if gap == 2 else (gap * 5) // 11
+    before, to = start - 1, count - 1
+    for k in range(many - 1, -1, -1):
+        while before >= 0 and _rank(manifolds, loose[before], rows) > ranks[k]:
+            loose[to] = loose[before]
+            to, before = to - 1, before - 1
+        loose[to] = tail[k]
+        to -= 1
+
+
+@kernel
+def sort_loose(manifolds: Manifolds, loose: Rows, count: int, rows: int) -> None:
+    """Put loose pairs in the order of rows and walls; as a rule all but the last few are."""
+    start = min(count, 1)
+    while start < count and _rank(manifolds, loose[start - 1], rows) < _rank(manifolds, loose[start], rows):
+        start += 1
+    if start < count:
+        _merge_tail(manifolds, loose, start, count, rows)

@@ -1,0 +1,137 @@
+"""Near pairs that lie idle: when they get a record, in which order, and that it makes no difference."""
+
+from __future__ import annotations
+
+import numpy as np
+from desk import bits
+from hypothesis import given
+from hypothesis import strategies as st
+
+from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.kernels import compile_kernels, near_pairs
+from physicslab.kernels.records import MANIFOLD, POINT
+from physicslab.prefabs import gas
+from physicslab.scene import read_scene, write_scene
+from physicslab.systems.broad_phase import BroadPhaseSystem
+from physicslab.systems.contact import ContactSystem
+from physicslab.systems.standard import standard_systems
+from physicslab.world import World
+
+
+def disc(world: World, x: float, y: float, velocity: tuple[float, float] = (0.0, 0.0)) -> int:
+    return world.spawn(
+        Transform((x, y)), Velocity(velocity), Mass(1.0), Shape.circle(0.5), Material(1.0, 0.0)
+    )
+
+
+def recorded(world: World) -> list[tuple[int, int]]:
+    """Return the pairs that have records."""
+    records = world.contacts.manifolds[: world.contacts.recorded]
+    return [(int(record["entity_a"]), int(record["entity_b"])) for record in records]
+
+
+def test_a_disc_on_its_way_gets_a_record_when_it_comes_within_reach() -> None:
+    world = World(BroadPhaseSystem(), ContactSystem())
+    one, other = disc(world, 0.0, 0.0), disc(world, 1.05, 0.0)
+    world.step()
+    assert (world.contacts.recorded, world.contacts.lying, world.contacts.candidate_pairs) == (0, 1, 1)
+    world.component(other, Velocity).linear = (-30.0, 0.0)
+    world.step()
+    assert recorded(world) == [(one, other)]
+    assert (world.contacts.lying, world.contacts.count) == (0, 1)
+
+
+def test_what_parts_again_lies_idle_in_the_next_list() -> None:
+    world = World(BroadPhaseSystem(), ContactSystem())
+    one, other = disc(world, 0.0, 0.0), disc(world, 1.0, 0.0)
+    world.step()
+    assert recorded(world) == [(one, other)]
+    world.component(other, Transform).position = (1.08, 0.0)
+    world.step()
+    assert recorded(world) == [(one, other)]
+    assert world.contacts.count == 0
+    world.contacts.stale = True
+    world.step()
+    assert (world.contacts.recorded, world.contacts.lying) == (0, 1)
+
+
+def test_records_are_gone_through_in_the_order_of_rows_whenever_they_came() -> None:
+    world = World(BroadPhaseSystem(), ContactSystem())
+    for i in range(30):
+        disc(world, 1.03 * (i % 6), 1.03 * (i // 6))
+    world.step()
+    assert world.contacts.recorded == 0
+    random = np.random.default_rng(2)
+    linear = world.table(Velocity)["linear"]
+    for _ in range(12):  # so short a step that none leaves its fat box
+        linear[random.integers(1, 31)] = random.uniform(-40.0, 40.0, 2)
+        world.step(0.002)
+    contacts = world.contacts
+    assert contacts.recorded > 5
+    assert recorded(world) != sorted(recorded(world))
+    loose = [recorded(world)[p] for p in contacts.loose[: contacts.loose_count]]
+    assert loose == sorted(recorded(world))
+    told = [(contact.a, contact.b) for contact in contacts.listed(world)]
+    assert told == sorted(told)
+
+
+def test_a_gas_goes_on_with_the_same_bits_whatever_lies_idle() -> None:
+    region = (-3.0, -2.0, 3.0, 2.0)
+    laws = PhysicsConfig(gravity_mode="none", bounds=region, bounds_restitution=1.0)
+    simulation = SimulationConfig(sleeping=False)
+    worlds = [World(*standard_systems(), physics=laws, simulation=simulation) for _ in range(3)]
+    for world in worlds:
+        gas(world, 120, region)
+    for step in range(120):
+        for world in worlds:
+            world.step()
+        worlds[1].contacts.stale = True
+        if step % 10 == 0:
+            worlds[2] = read_scene(write_scene(worlds[2]))
+        assert bits(worlds[0]) == bits(worlds[1]) == bits(worlds[2])
+    assert worlds[0].collisions > 100
+
+
+places = st.lists(st.tuples(st.floats(-6, 6), st.floats(-6, 6)), min_size=2, max_size=40)
+
+
+@given(places, st.floats(0.0, 0.2), st.integers(0, 2**32 - 1))
+def test_just_those_within_reach_are_promoted(made: list[tuple[float, float]], h: float, seed: int) -> None:
+    position = np.array([(0.0, 0.0), *made])
+    linear = np.random.default_rng(seed).uniform(-3.0, 3.0, position.shape)
+    rows = len(position)
+    couples = [(a, b) for a in range(1, rows) for b in range(a + 1, rows)]
+    shuffled = np.random.default_rng(seed).permutation(couples)
+    idle, reach = shuffled.astype(np.uint32).ravel(), np.full(len(couples), 0.8)
+    room = len(couples)
+    manifolds, points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
+    loose, entities = np.zeros(room, np.int64), 10 * np.arange(rows)
+    compile_kernels((near_pairs.promote,))
+    lying, count, loose_count = near_pairs.promote(
+        idle, reach, room, manifolds, points, 0, loose, 0, entities, position, linear, h, 0.01
+    )
+    moved = np.abs(linear[:, None] - linear[None]).sum(axis=2) * h
+    apart = np.linalg.norm(position[:, None] - position[None], axis=2) - (0.8 + moved + 0.01)
+    left = {tuple(pair) for pair in idle[: 2 * lying].reshape(-1, 2).tolist()}
+    promoted = [(int(m["a"]), int(m["b"])) for m in manifolds[loose[:loose_count]]]
+    assert count == loose_count == room - lying
+    assert promoted == sorted(promoted)
+    assert left | set(promoted) == set(couples)
+    assert not left & set(promoted)
+    assert all(apart[pair] < 1e-9 for pair in promoted)
+    assert all(apart[pair] > -1e-9 for pair in left)
+    assert (manifolds["entity_b"][:count] == 10 * manifolds["b"][:count]).all()
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9), st.integers(-1, 3)), max_size=60, unique=True)
+)
+def test_loose_pairs_are_sorted_by_rows_and_walls(pairs: list[tuple[int, int, int]]) -> None:
+    manifolds = np.zeros(len(pairs), MANIFOLD)
+    for p, pair in enumerate(pairs):
+        manifolds[p]["a"], manifolds[p]["b"], manifolds[p]["wall"] = pair
+    loose = np.arange(len(pairs))
+    compile_kernels((near_pairs.sort_loose,))
+    near_pairs.sort_loose(manifolds, loose, len(pairs), 10)
+    assert [pairs[p] for p in loose] == sorted(pairs)
