@@ -99,7 +99,7 @@ class Blocks:
     kernels = (
         block_lanes.admit, block_lanes.store, block_lanes.list_loose, block_lanes.keep_loose,
         block_lanes.follow_pairs, block_lanes.wake, block_lanes.seat_again, block_lanes.sort_blocks,
-        block_lanes.sort_loose, block_contact.refresh, block_contact.deepest_lane,
+        block_lanes.sort_loose, block_lanes.release, block_contact.refresh, block_contact.deepest_lane,
     )  # fmt: skip
 
     def __init__(self) -> None:

@@ -96,14 +96,17 @@ class Contacts:
     blocks : Blocks
         The settled contacts, eight side by side; what their records say is as old as the last :meth:`sync`.
     loose : int64 array (capacity,)
-        The near pairs that are in no block; the first ``loose_count`` are in use.
+        The near pairs that are in no block and not laid aside; the first ``loose_count`` are in use.
+    resting : int64 array (capacity,)
+        The pairs with points that were laid aside because both bodies sleep, or one does and nothing moves
+        the other; the first ``resting_count`` are in use.
     unordered : bool
         Whether pairs were set loose since those were last listed in order.
     touching : int64 array (capacity,)
         The loose pairs with points; the first ``active`` are in use. Points may have positive separation:
         they would meet within a substep.
     candidate_pairs, count : int
-        How many pairs are near each other, and how many have points, loose or not.
+        How many pairs are near each other, and how many have points, wherever they lie.
     left : int
         How many pairs the impacts of this substep have left to the solver.
     span : float
@@ -120,9 +123,10 @@ class Contacts:
     """How many impacts are kept."""
 
     def __init__(self) -> None:
-        self.candidate_pairs = self.loose_count = 0
+        self.candidate_pairs = self.loose_count = self.resting_count = 0
         self.active = self.left = 0
         self.blocks = Blocks()
+        self._quiet: NDArray[np.bool_] = np.zeros(0, np.bool_)
         self._opened = np.zeros(block_lanes.COLOURS, np.int64)
         self._synced, self._seats = True, False
         self.unordered = False
@@ -148,13 +152,14 @@ class Contacts:
         self.points: NDArray[Any] = np.zeros(2 * capacity, POINT)
         self.touching: NDArray[np.int64] = np.zeros(capacity, np.int64)
         self.loose: NDArray[np.int64] = np.zeros(capacity, np.int64)
+        self.resting: NDArray[np.int64] = np.zeros(capacity, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.
         self._spare_manifolds, self._spare_points = self.manifolds.copy(), self.points.copy()
 
     @property
     def count(self) -> int:
         """How many near pairs have points."""
-        return self.active + self.blocks.lanes
+        return self.active + self.blocks.lanes + self.resting_count
 
     def changed(self) -> None:
         """Note that lanes hold what their records do not say."""
@@ -185,7 +190,34 @@ class Contacts:
 
     def _list_loose(self) -> None:
         self.unordered = False
-        self.loose_count = int(block_lanes.list_loose(self.manifolds, self.candidate_pairs, self.loose))
+        self.loose_count, self.resting_count = block_lanes.list_loose(
+            self.manifolds, self.candidate_pairs, self._quiet, self.loose, self.resting
+        )
+
+    def lay_aside(self, quiet: NDArray[np.bool_]) -> None:
+        """Look no more at the pairs of which both bodies are ``quiet`` (rows,), and again at all others."""
+        self._quiet = quiet
+        if not self.stale:  # else that is done when they are listed
+            self._list_loose()
+            loose = self.loose[: self.loose_count]
+            touching = loose[self.manifolds["count"][loose] > 0]
+            self.active = len(touching)
+            self.touching[: self.active] = touching
+
+    def release(self, asleep: NDArray[np.bool_]) -> None:
+        """Give the contacts of sleepers back to their records."""
+        if self.blocks.lanes:
+            self.blocks.lanes -= sum(
+                block_lanes.release(*lanes.layout, self.manifolds, self.points, asleep)
+                for lanes in self.blocks.kinds
+            )
+
+    def rescale(self, pairs: NDArray[np.bool_], before: float, after: float) -> None:
+        """Let the impulses of some pairs stand for another time [s] than ``before``."""
+        if before > 0.0 and after > 0.0 and before != after:
+            chosen = np.repeat(pairs, 2)
+            for name in ("normal_impulse", "tangent_impulse"):
+                self.points[name][: len(chosen)][chosen] *= after / before
 
     def admit(self, world: World, h: float) -> None:
         """Take what has settled into blocks."""
@@ -205,7 +237,7 @@ class Contacts:
             lanes.count, more = block_lanes.admit(
                 *lanes.layout, self._opened, self.manifolds, self.points, self.touching, self.active,
                 shape, world.table(Shape)["radius"], material["restitution"], material["friction"], linear,
-                bodies.inverse_mass, bodies.inverse_inertia,
+                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, world.sleep.asleep,
                 h, 0.25 * STILL, 0.25 * NEAR,  # half of what sets them loose
             )  # fmt: skip
             if more or lanes.count != before:
@@ -241,7 +273,7 @@ class Contacts:
         self.points, self._spare_points = self._spare_points, self.points
         self.candidate_pairs, self.active, self.stale = count, 0, False
         if len(self.touching) < count:
-            self.touching, self.loose = np.zeros((2, 2 * count), np.int64)
+            self.touching, self.loose, self.resting = np.zeros((3, 2 * count), np.int64)
         if self._seats:
             self._seat_again(world)
         elif self.blocks.lanes:
@@ -253,6 +285,8 @@ class Contacts:
     def _seat_again(self, world: World) -> None:
         """Put the contacts of a file back into the lanes in which they lay."""
         self._seats, material = False, world.table(Material)
+        near, asleep = self.manifolds[: self.candidate_pairs], world.sleep.asleep
+        near["lane"][asleep[near["a"]] | asleep[near["b"]]] = -1  # sleepers have none
         world.schedule.compile(self.blocks.kernels)
         for lanes in self.blocks.kinds:
             lanes.count, seated = block_lanes.seat_again(
@@ -270,14 +304,15 @@ class Contacts:
     def clear(self) -> None:
         """Forget every pair."""
         self.blocks.reset(1)
-        self.candidate_pairs = self.loose_count = self.active = 0
+        self.candidate_pairs = self.loose_count = self.resting_count = self.active = 0
         self.stale = self._synced = True
 
     @property
     def max_penetration(self) -> float:
         """The deepest overlap now [m]."""
         compile_kernels((impulse.deepest,))
-        depth = float(impulse.deepest(self.manifolds, self.points, self.touching, self.active))
+        pairs = ((self.touching, self.active), (self.resting, self.resting_count))
+        depth = max(float(impulse.deepest(self.manifolds, self.points, *listed)) for listed in pairs)
         lanes = [block_contact.deepest_lane(k.kind, k.data, k.count) for k in self.blocks.kinds if k.count]
         return max(depth, *lanes) if lanes else depth
 

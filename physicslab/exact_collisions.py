@@ -62,7 +62,7 @@ def _foreign(world: World) -> str | None:
                 return f"the force of {system.name} bends the flights"
             if world.physics.gravity_mode == "planet":
                 return "planets attract each other"
-        elif system.name not in ("Bodies", *_CONTACT_STEP) and not set(type(system).marked()) <= _AROUND:
+        elif system.name not in ("Bodies", "SleepSystem", *_CONTACT_STEP) and not set(type(system).marked()) <= _AROUND:
             return f"{system.name} acts within the step"
     return None
 

@@ -7,7 +7,7 @@ import numpy as np
 from numba import uint64
 from numpy.typing import NDArray
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.block_layout import (
     ANGLE_A,
     ANGLE_B,
@@ -44,7 +44,7 @@ from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 
 __all__ = [
     "COLOURS", "Masks", "admit", "empty_lane", "follow_pairs", "give_up", "keep_loose", "list_loose",
-    "seat_again", "sort_blocks", "sort_loose", "store",
+    "release", "seat_again", "sort_blocks", "sort_loose", "store",
     "store_lane", "wake",
 ]  # fmt: skip
 
@@ -215,14 +215,15 @@ def admit(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     opened: Rows, manifolds: Manifolds, points: Points, touching: Rows, count: int,
     shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
-    inverse_mass: Numbers, inverse_inertia: Numbers,
+    inverse_mass: Numbers, inverse_inertia: Numbers, asleep: Flags,
     h: float, still: float, near: float,
 ) -> tuple[int, int]:  # fmt: skip
     """Take the settled contacts of one kind into blocks; return how many there are, and how many came.
 
     Two contacts of a body never share a block: each has one of ``COLOURS``, the first that neither of its
     bodies has been given. ``used`` (rows,) are the colours of each body's contacts, ``opened`` (COLOURS,) the
-    block of each colour that may have room. What finds no room in ``data`` stays loose.
+    block of each colour that may have room. What finds no room in ``data`` stays loose, and so does what
+    touches somebody ``asleep``: it is about to wake him.
     """
     rows, came = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
     blocks, empty = _survey(blocks, pair, colour, opened)
@@ -231,7 +232,7 @@ def admit(
         manifold = manifolds[p]
         i, j = manifold.a, manifold.b
         discs, boxes = shape[i] == 1 and shape[j] == 1, shape[i] == 2 and shape[j] == 2
-        if manifold.wall >= 0 or not (discs if kind == DISC else boxes and manifold.found == 2):
+        if asleep[i] or asleep[j] or manifold.wall >= 0 or not (discs if kind == DISC else boxes and manifold.found == 2):
             continue
         if not _is_settled(manifold, points[2 * p], points[2 * p + 1], linear, h, still, near):
             continue
@@ -319,14 +320,26 @@ def sort_blocks(blocks: int, colour: Rows, order: Rows) -> None:
 
 
 @kernel
-def list_loose(manifolds: Manifolds, pairs: int, loose: Rows) -> int:
-    """Write the pairs that have no lane, in order; return how many there are."""
-    found = 0
+def list_loose(
+    manifolds: Manifolds, pairs: int, quiet: Flags, loose: Rows, resting: Rows
+) -> tuple[int, int]:
+    """Write the pairs that have no lane, in order; return how many there are.
+
+    Where both bodies are ``quiet`` (rows,), none of which there may be, nothing is to be found out: of such
+    pairs those with points are written to ``resting``; how many is returned as well.
+    """
+    found, rest = 0, 0
     for p in range(pairs):
-        if manifolds[p].lane < 0:
-            loose[found] = p
-            found += 1
-    return found
+        if manifolds[p].lane >= 0:
+            continue
+        if len(quiet) > 0 and quiet[manifolds[p].a] and quiet[manifolds[p].b]:
+            if manifolds[p].count > 0:
+                resting[rest] = p
+                rest += 1
+            continue
+        loose[found] = p
+        found += 1
+    return found, rest
 
 
 @kernel
@@ -374,6 +387,23 @@ def give_up(
     used[a[lane]] &= ~bit
     used[b[lane]] &= ~bit
     empty_lane(data, rows, k, lane % WIDE, a, b, pair)
+
+
+@kernel
+def release(
+    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
+    manifolds: Manifolds, points: Points, asleep: Flags,
+) -> int:  # fmt: skip
+    """Give the contacts of sleepers back to their records; return how many."""
+    rows, released = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
+    for lane in range(blocks * WIDE):
+        p = pair[lane]
+        if p >= 0 and (asleep[a[lane]] or asleep[b[lane]]):
+            store_lane(data, rows, lane, p, manifolds, points)
+            manifolds[p].lane = -1
+            give_up(data, rows, lane, a, b, pair, colour, used)
+            released += 1
+    return released
 
 
 @kernel

@@ -6,22 +6,28 @@ from physicslab.kernels.gravity import uniform_gravity
 from physicslab.kernels.grid import still_holds
 from physicslab.kernels.impact import strike
 from physicslab.kernels.impulse import MOST_PARTS, relax, separate, solve
+from physicslab.kernels.islands import count_rest, find_touched
 from physicslab.kernels.motion import clear, drift, find_not_finite, kick
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.ticks import charge, ticks
 
 __all__ = [
-    "ALL", "BEGIN", "CROWDED", "DIVERGED", "FIND", "STRIKE", "SYSTEMS", "UNLISTED", "advance",
+    "ALL", "BEGIN", "CROWDED", "DIVERGED", "DROWSY", "FIND", "STIRRED", "STRIKE", "SYSTEMS", "UNLISTED",
+    "advance",
 ]  # fmt: skip
 
-ALL, UNLISTED, CROWDED, DIVERGED = range(4)
+ALL, UNLISTED, CROWDED, DIVERGED, STIRRED, DROWSY = range(6)
 """Why the loop ended: all steps are made; the near pairs must be listed anew; so many bodies touch that they
-may be worth blocks; the last step has left something that is not finite."""
+may be worth blocks; the last step has left something that is not finite; somebody asleep is touched; at the
+end of a step, somebody may fall asleep."""
 BEGIN, FIND, STRIKE = range(3)
 """Where in a substep the loop begins: at its start; where bodies touch; at the impacts."""
-SYSTEMS = ("Bodies", "GravitySystem", "IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem")
+SYSTEMS = (
+    "Bodies", "GravitySystem", "IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem",
+    "SleepSystem",
+)  # fmt: skip
 """Whose work it is, in the order in which ``cost`` holds what each took."""
-_BODIES, _GRAVITY, _INTEGRATE, _BROAD_PHASE, _CONTACT, _RESOLVE = range(6)
+_BODIES, _GRAVITY, _INTEGRATE, _BROAD_PHASE, _CONTACT, _RESOLVE, _SLEEP = range(7)
 
 _TIMED = 8
 """One of so many steps of a call is timed: reading the clock takes a twentieth of a step of ten bodies."""
@@ -34,6 +40,9 @@ _Two = tuple[Numbers, Numbers]
 """Restitutions and frictions; inverse masses [1/kg] and moments of inertia [1/(kg m^2)]."""
 _Forces = tuple[Vectors, Numbers, Numbers, bool, float, float]
 """Forces [N], torques [N m], masses [kg]; whether any act, and gravity [m/s^2]."""
+_Sleep = tuple[bool, int, float, Numbers, Flags, Numbers, Numbers, Flags]
+"""Whether bodies may sleep, how many do, the step [s], inverse masses of sleepers too, who sleeps, rests [s]
+and lowest speeds [m/s]; room for marks."""
 _Bounds = tuple[Numbers, float, float]
 """Where they are [m], their restitution and friction."""
 _Touch = tuple[Manifolds, Points, Rows, int]
@@ -86,7 +95,7 @@ def _solve(
 def advance(
     steps: int, substeps: int, substep: int, stage: int, h: float, iterations: int, few: int,
     state: _State, kept: _State, sizes: _Sizes, materials: _Two, inverse: _Two, tethered: Flags,
-    forces: _Forces, damping: tuple[float, float], fall: float, fat: Vectors, bounds: _Bounds,
+    forces: _Forces, sleep: _Sleep, damping: tuple[float, float], fall: float, fat: Vectors, bounds: _Bounds,
     manifolds: Manifolds, points: Points, loose: Rows, loose_count: int, touching: Rows, active: int,
     lanes: _Lanes, spring: _Spring, span: float, cost: Rows,
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
@@ -94,13 +103,14 @@ def advance(
 
     The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and what happens at each is what
     the systems do there. ``fall`` is how far [m] the forces may bring two bodies together within a substep;
-    ``few`` contacts or more end the loop. ``cost`` (6,) gets ticks added for each of ``SYSTEMS``.
+    ``few`` contacts or more end the loop. ``cost`` (7,) gets ticks added for each of ``SYSTEMS``.
 
     Returns why it ended, how many steps are done, the substep that it was in, how many pairs touch, how many
     of them the impacts left, the impacts in the steps that are done and all impacts, and the time [s] that
     the points' impulses stand for. ``kept`` is the state in which the last step began.
     """
     position, angle, linear, angular = state
+    drowsy, sleepers, dt, own_inverse_mass, asleep, rest, slowest, touched = sleep
     walls, bounds_restitution, bounds_friction = bounds
     kicked = forces[3] or damping[0] != 0.0 or damping[1] != 0.0
     done, left, impacts, impacts_done = 0, 0, 0, 0
@@ -112,7 +122,7 @@ def advance(
                 _keep(state, kept)
                 now = charge(cost, _BODIES, now)
             drift(position, angle, linear, angular, tethered, 0.5 * h)
-            now = _pull(forces, inverse[0], cost, charge(cost, _INTEGRATE, now))
+            now = _pull(forces, own_inverse_mass, cost, charge(cost, _INTEGRATE, now))
             if kicked:
                 kick(linear, angular, forces[0], forces[1], *inverse, tethered, *damping, 0.5 * h)
             now = charge(cost, _BODIES, now)
@@ -128,6 +138,13 @@ def advance(
             now = charge(cost, _CONTACT, now)
             if substep == 0 and active >= few:
                 return CROWDED, done, substep, active, left, impacts_done, impacts, span
+            if sleepers:
+                active, found = find_touched(
+                    manifolds, points, touching, active, inverse[0], linear, angular, asleep, touched
+                )
+                now = charge(cost, _SLEEP, now)
+                if found:
+                    return STIRRED, done, substep, active, left, impacts_done, impacts, span
         stage, left, touch = BEGIN, 0, (manifolds, points, touching, active)
         if active:
             struck, left = strike(*touch, *state, forces[0], *inverse, forces[3], h, -0.5 * h, 0.5 * h)
@@ -154,4 +171,11 @@ def advance(
             if failed:
                 return DIVERGED, done, substep, active, left, impacts_done, impacts, span
             done, impacts_done = done + 1, impacts
+            if drowsy:
+                due = count_rest(
+                    linear, angular, *sizes, own_inverse_mass, tethered, asleep, rest, slowest, dt
+                )
+                now = charge(cost, _SLEEP, now)
+                if due:
+                    return DROWSY, done, substep, active, left, impacts_done, impacts, span
     return ALL, done, substep, active, left, impacts_done, impacts, span

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.kernels import grid
+from physicslab.kernels import block_lanes, grid
 from physicslab.schedule import Stage, System, at
 
 if TYPE_CHECKING:
@@ -42,7 +42,9 @@ class BroadPhaseSystem(System):
         Of the world: xmin, ymin, xmax, ymax [m].
     """
 
-    kernels = (grid.still_holds, grid.fat_boxes, grid.find_pairs, grid.carry_over)
+    kernels = (
+        grid.still_holds, grid.fat_boxes, grid.find_pairs, grid.carry_over, block_lanes.list_loose,
+    )  # fmt: skip
 
     def __init__(self) -> None:
         self.fat: NDArray[np.float64] = np.zeros((0, 5))
