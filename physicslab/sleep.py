@@ -158,9 +158,14 @@ class Sleep:
         a, b, count = _touching(world)
         contacts = world.contacts
         contacts.release(self.asleep)
-        self._laws = world.physics, world.simulation
+        self._begin(world)
         contacts.rescale((count > 0) & (falling[a] | falling[b]), contacts.span, self._span(world))
         self._lay_aside(world)
+
+    def _begin(self, world: World) -> None:
+        """Note how everything is from which an edit will be told."""
+        self._laws = world.physics, world.simulation
+        self._kept, self._known = self._figures(world), self._entities > 0
 
     def keep(self, world: World) -> None:
         """Note how things are at the end of a step: what is otherwise before the next one is an edit."""
@@ -242,9 +247,7 @@ class Sleep:
         self.count = int(np.count_nonzero(self.asleep))
         self.unseen = self.count > 0
         self.forces[:] = np.nan
-        self._laws = world.physics, world.simulation
-        self._kept = self._figures(world)
-        self._known = self._entities > 0
+        self._begin(world)
         self._lay_aside(world)
 
 
