@@ -77,8 +77,8 @@ class CompiledSteps:
     """Makes steps of one world in a compiled loop, until its structure changes; the bits are those of steps.
 
     The loop comes back where Python is needed: to list the near pairs anew, to look for settled contacts
-    where many touch, to wake who is touched, to let fall asleep who has rested, to report a divergence. A world that has settled contacts in blocks is stepped stage by
-    stage.
+    where many touch, to wake who is touched, to let fall asleep who has rested, to report a divergence. A
+    world that has settled contacts in blocks is stepped stage by stage.
 
     Parameters
     ----------

@@ -27,7 +27,10 @@ __all__ = ["FORMAT", "SceneDraft", "check_scene", "read_scene"]
 FORMAT = "physicslab-scene/1"
 """What the key ``format`` of a scene says."""
 
-_KEYS = ("format", "name", "title", "description", "time", "physics", "simulation", "entities", "contacts", "rests")
+_KEYS = (
+    "format", "name", "title", "description", "time", "physics", "simulation", "entities", "contacts",
+    "rests",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

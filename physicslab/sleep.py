@@ -126,7 +126,7 @@ class Sleep:
             self.wake(world, marked)
 
     def _mark_neighbours(self, world: World, causes: NDArray[np.int64], marked: _Marks) -> None:
-        """Mark the sleepers that touch some of the entities ``causes``, or did when pairs were last listed."""
+        """Mark the sleepers that touched some of the entities ``causes`` when pairs were last listed."""
         a, b, count = _touching(world)
         near = world.contacts.manifolds[: world.contacts.candidate_pairs]
         for entity, row in ((near["entity_a"], b), (near["entity_b"], a)):
@@ -222,9 +222,9 @@ class Sleep:
         return span
 
     def export(self, world: World) -> list[list[Any]]:
-        """Return who has rested: the entity of each sleeper; of each other body also how long, and how slowly.
+        """Return lists: an entity that sleeps, or one with how long [s] and how slowly [m/s] it has rested.
 
-        Only what a file will know again: bodies with a Shape that can be moved. [s], [m/s].
+        Only what a file will know again: bodies with a Shape that can be moved.
         """
         movable = (world.bodies.inverse_mass > 0.0) & (world.table(Shape)["kind"] != 0)
         rows = np.flatnonzero((self.asleep | (self.rest > 0.0)) & movable)

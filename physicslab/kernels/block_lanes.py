@@ -232,7 +232,9 @@ def admit(
         manifold = manifolds[p]
         i, j = manifold.a, manifold.b
         discs, boxes = shape[i] == 1 and shape[j] == 1, shape[i] == 2 and shape[j] == 2
-        if asleep[i] or asleep[j] or manifold.wall >= 0 or not (discs if kind == DISC else boxes and manifold.found == 2):
+        if manifold.wall >= 0 or not (discs if kind == DISC else boxes and manifold.found == 2):
+            continue
+        if asleep[i] or asleep[j]:
             continue
         if not _is_settled(manifold, points[2 * p], points[2 * p + 1], linear, h, still, near):
             continue

@@ -26,7 +26,8 @@ def note_figures(
     """Write down where every body is and what it is made of."""
     for i in range(len(angle)):
         figures[i, 0], figures[i, 1], figures[i, 2] = position[i, 0], position[i, 1], angle[i]
-        figures[i, _KIND], figures[i, 4], figures[i, 5], figures[i, 6] = kind[i], radius[i], width[i], height[i]
+        figures[i, _KIND], figures[i, 4] = kind[i], radius[i]
+        figures[i, 5], figures[i, 6] = width[i], height[i]
         figures[i, 7], figures[i, 8] = restitution[i], friction[i]
         figures[i, INVERSE_MASS], figures[i, 10] = inverse_mass[i], inverse_inertia[i]
         figures[i, _MOVES] = 1.0 if moves[i] else 0.0

@@ -71,8 +71,8 @@ def _join(parent: Rows, i: int, j: int) -> None:
 
 @kernel
 def find_held(
-    manifolds: Manifolds, points: Points, pairs: int, inverse_mass: Numbers, linear: Vectors, angular: Numbers,
-    ready: Flags, held: Flags,
+    manifolds: Manifolds, points: Points, pairs: int,
+    inverse_mass: Numbers, linear: Vectors, angular: Numbers, ready: Flags, held: Flags,
 ) -> int:  # fmt: skip
     """Mark the bodies of islands that may sleep; return how many there are.
 
@@ -168,7 +168,7 @@ def join_marked(a: Rows, b: Rows, count: Rows, asleep: Flags, marked: Flags) -> 
 
 @kernel
 def list_resting(manifolds: Manifolds, pairs: int, quiet: Flags, resting: Rows) -> int:
-    """Write the pairs of which both bodies are quiet, whether they touch or not; return how many there are."""
+    """Write the pairs of which both bodies are quiet, whether they touch or not; return how many."""
     found = 0
     for p in range(pairs):
         if quiet[manifolds[p].a] and quiet[manifolds[p].b]:

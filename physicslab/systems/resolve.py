@@ -105,7 +105,8 @@ class ResolveSystem(System):
             impulse.solve(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.active,
                 *contacts.blocks.discs.solved, *contacts.blocks.boxes.solved,
-                velocity["linear"], velocity["angular"], bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
+                velocity["linear"], velocity["angular"],
+                bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
                 bodies.force, world.has_forces, h, carried, world.simulation.iterations or 1,
                 self.hertz * finer, self.damping_ratio, self.slop,
             )  # fmt: skip
@@ -118,7 +119,8 @@ class ResolveSystem(System):
             impulse.relax(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.active,
                 *contacts.blocks.discs.solved, *contacts.blocks.boxes.solved,
-                velocity["linear"], velocity["angular"], bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
+                velocity["linear"], velocity["angular"],
+                bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
                 h, world.simulation.iterations or 1,
             )  # fmt: skip
             impulse.separate(

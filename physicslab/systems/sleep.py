@@ -51,6 +51,9 @@ class SleepSystem(System):
         return reason
 
     def _why_awake(self, world: World) -> str | None:
+        reason = nothing_to_touch(world)
+        if reason is not None:
+            return reason
         if not world.simulation.sleeping:
             return "sleeping is false"
         if world.physics.gravity_mode == "planet":
@@ -59,7 +62,7 @@ class SleepSystem(System):
             return "impacts are located exactly"
         if self._contact is None:
             return "ContactSystem is not among the systems"
-        return nothing_to_touch(world)
+        return None
 
     @at(Stage.CONTACT)
     def rouse(self, world: World, h: float) -> None:
@@ -116,7 +119,8 @@ class SleepSystem(System):
         if islands.count_rest(
             velocity["linear"], velocity["angular"],
             shape["kind"], shape["radius"], shape["width"], shape["height"],
-            world.bodies.inverse_mass, world.bodies.tethered, sleep.asleep, sleep.rest, sleep.slowest, h,
+            world.bodies.inverse_mass, world.bodies.tethered, sleep.asleep, sleep.rest, sleep.slowest,
+            min(h, world.simulation.dt),  # of a step that was divided no more than the end is seen
         ):  # fmt: skip
             self.lull(world, h)
         sleep.keep(world)
