@@ -63,14 +63,16 @@ class Sleep:
         self._kept: NDArray[np.float64] = np.zeros((1, edits.FIGURES))
         self._known: _Marks = np.zeros(1, np.bool_)
         self._entities: NDArray[np.int64] = np.zeros(1, np.int64)
+        self._followed = self._entities
         self._gone: NDArray[np.int64] = np.zeros(0, np.int64)
         self._laws: tuple[Any, Any] | None = None
 
     def follow(self, world: World) -> None:
         """Let every entity keep what it has where rows are numbered anew."""
-        entities, before = world.roster.entities, self._entities
-        if entities is before:
+        if world.roster.entities is self._followed:
             return
+        self._followed = world.roster.entities
+        entities, before = self._followed.copy(), self._entities  # the roster blanks rows where they stand
         row = np.full(max(int(entities.max()), int(before.max())) + 1, -1)
         row[before] = np.arange(len(before))
         row[0] = -1

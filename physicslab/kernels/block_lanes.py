@@ -322,9 +322,7 @@ def sort_blocks(blocks: int, colour: Rows, order: Rows) -> None:
 
 
 @kernel
-def list_loose(
-    manifolds: Manifolds, pairs: int, quiet: Flags, loose: Rows, resting: Rows
-) -> tuple[int, int]:
+def list_loose(manifolds: Manifolds, pairs: int, quiet: Flags, loose: Rows, resting: Rows) -> tuple[int, int]:
     """Write the pairs that have no lane, in order; return how many there are.
 
     Where both bodies are ``quiet`` (rows,), none of which there may be, nothing is to be found out: of such
