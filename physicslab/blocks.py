@@ -60,11 +60,12 @@ class Lanes:
         """See to it that so many blocks have room."""
         if len(self.colour) < blocks:
             room = 2 * blocks
-            data, colour = np.zeros(room * self.rows), np.zeros(room, np.int64)
+            data, (colour, order) = np.zeros(room * self.rows), np.zeros((2, room), np.int64)
             data[: len(self.data)], colour[: len(self.colour)] = self.data, self.colour
+            order[: len(self.order)] = self.order
             lanes = np.zeros((3, room * WIDE), np.int64)
             lanes[:, : len(self.pair)] = self.a, self.b, self.pair
-            self.data, self.colour, self.order = data, colour, np.zeros(room, np.int64)
+            self.data, self.colour, self.order = data, colour, order
             self.a, self.b, self.pair = (np.ascontiguousarray(lane) for lane in lanes)
 
     def sort(self) -> None:
