@@ -170,9 +170,11 @@ class Sleep:
         self._kept, self._known = self._figures(world), self._entities > 0
 
     def keep(self, world: World) -> None:
-        """Note how things are at the end of a step: what is otherwise before the next one is an edit."""
+        """Note where a step has brought what moves by itself: what is elsewhere later was edited."""
         if self.count:
-            self._kept = self._figures(world)
+            transform, moves = world.table(Transform), world.table(Velocity).present
+            rows = np.flatnonzero(moves & (world.bodies.inverse_mass == 0.0))
+            self._kept[rows, :2], self._kept[rows, 2] = transform["position"][rows], transform["angle"][rows]
 
     def forget(self, world: World) -> None:
         """Wake everybody, and begin all rests anew."""
