@@ -163,6 +163,20 @@ def test_sections_that_are_wrong_are_refused(sections: dict[str, Any], line: str
     assert refused(scene(BALL) | sections, tmp_path).startswith(line)
 
 
+BODY = {"Transform": {}, "Velocity": {}, "Mass": {}, "Shape": {"kind": "circle", "radius": 1}, "id": "disc"}
+RESTS = [
+    ([["disc", 0, 0.1]], "rests[0][1] = 0: must be a finite number > 0 s"),
+    ([["disc", math.inf, 0.1]], "rests[0][1] = Infinity: must be a finite number > 0 s"),
+    ([["disc", 0.1, -1]], "rests[0][2] = -1: must be a finite number >= 0 m/s"),
+    ([["disc"], ["disc", 0.1, 0.0]], 'rests[1][0] = "disc": must be an id that has no rest yet'),
+]
+
+
+@pytest.mark.parametrize(("rests", "line"), RESTS, ids=[line for _, line in RESTS])
+def test_rests_that_make_no_sense_are_refused(rests: list[Any], line: str, tmp_path: Path) -> None:
+    assert refused(scene(BODY) | {"rests": rests}, tmp_path).startswith(line)
+
+
 TEXTS = [
     ("[]", '= []: must be an object {"format"'),
     ('{"entities": []}', 'format is missing: must be "physicslab-scene/1"'),

@@ -49,7 +49,7 @@ def count_rest(
         rest[i] += h
         longest = max(longest, rest[i])
     now, before = (longest + _ROUNDING) / _PERIOD, (longest - h + _ROUNDING) / _PERIOD
-    return longest >= READY and math.floor(now) > math.floor(before)
+    return bool(longest >= READY and np.floor(now) > np.floor(before))
 
 
 @inlined

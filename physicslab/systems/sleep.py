@@ -68,7 +68,7 @@ class SleepSystem(System):
     def rouse(self, world: World, h: float) -> None:
         """Wake whom something touches that moves or is awake, and on whom the forces have changed.
 
-        That is done before the impacts: who is struck has his own mass.
+        That is done before the impacts: nobody is struck as if nothing could move him.
         """
         sleep, contacts, bodies = world.sleep, world.contacts, world.bodies
         if sleep.unseen:
