@@ -39,7 +39,7 @@ def step_ms(world: World, steps: int = 60, spells: int = 9) -> float:
 def add_ball(world: World) -> None:
     """Spawn a ball that bounces for ever, and what it bounces on."""
     box(world, (AWAY, 19.5), width=4.0, height=1.0, static=True, restitution=1.0)
-    circle(world, (AWAY, 23.0), radius=0.1, restitution=1.0)
+    circle(world, (AWAY, 23.0), radius=0.1, restitution=1.0, mass=0.03)
 
 
 def measure(name: str) -> str:

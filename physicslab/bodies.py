@@ -90,7 +90,8 @@ class Bodies(System):
         """Let nothing move who is asleep."""
         np.copyto(self.awake_inverse_mass, self.inverse_mass)
         np.copyto(self.awake_inverse_inertia, self.inverse_inertia)
-        self.awake_inverse_mass[asleep] = self.awake_inverse_inertia[asleep] = 0.0
+        if asleep.any():
+            self.awake_inverse_mass[asleep] = self.awake_inverse_inertia[asleep] = 0.0
 
     def attach(self, world: World) -> None:
         """Forget the forces of systems that may run no more."""
