@@ -137,6 +137,20 @@ def test_what_rides_on_a_lift_stays_awake_until_it_stands() -> None:
     assert world.component(rider, Transform).position.y == pytest.approx(0.5 + 0.06 + 0.5, abs=0.01)
 
 
+def test_a_lift_that_starts_in_a_file_wakes_who_stands_on_it() -> None:
+    world = open_space(sleeping=True)
+    lift = world.spawn(Transform((0.0, -0.5)), Velocity(), Shape.box(4.0, 1.0), Material(friction=0.5))
+    rider = box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
+    world.run(seconds=1.0)
+    assert sleepers(world) == {rider}
+    world.component(lift, Velocity).linear = Vector2(0.0, 0.3)
+    again = read_scene(write_scene(world))
+    for each in (world, again):
+        each.run(seconds=0.25)
+        assert not sleepers(each)
+    assert bits(again) == bits(world)
+
+
 @pytest.mark.parametrize("part", [Spring(anchor_b=(0.0, 3.0), stiffness=1.0), Drag(linear=0.1)])
 def test_nobody_sleeps_on_whom_a_spring_or_drag_acts(part: Spring | Drag) -> None:
     world, boxes = resting_boxes(0.0, 5.0)

@@ -72,7 +72,7 @@ class SleepSystem(System):
         """
         sleep, contacts, bodies = world.sleep, world.contacts, world.bodies
         if sleep.unseen:
-            self._see(world)
+            self._take_part(world, self._see(world), h)
         while sleep.count:
             velocity, marked = world.table(Velocity), np.zeros(len(sleep.asleep), np.bool_)
             contacts.active, found = islands.find_touched(
@@ -87,6 +87,8 @@ class SleepSystem(System):
 
     def _take_part(self, world: World, woken: NDArray[np.bool_], h: float) -> None:
         """Let those who have just woken take part in the substep that has begun without them."""
+        if not woken.any():
+            return
         contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
         if world.has_forces:
             motion.kick(
@@ -144,8 +146,11 @@ class SleepSystem(System):
         )  # fmt: skip
         return held
 
-    def _see(self, world: World) -> None:
-        """Find where sleepers touch as they lie now; wake those whom nothing holds, as a file may have it."""
+    def _see(self, world: World) -> NDArray[np.bool_]:
+        """Find where sleepers touch as they lie now; wake those whom nothing holds, and return who woke.
+
+        A file may have it that somebody sleeps in the air.
+        """
         sleep, contacts, bodies = world.sleep, world.contacts, world.bodies
         sleep.unseen = False
         quiet = sleep.asleep | ~world.table(Velocity).present
@@ -156,8 +161,7 @@ class SleepSystem(System):
             world, pairs, count, contacts.resting, bodies.inverse_mass, bodies.inverse_inertia, True, h
         )
         loose = sleep.asleep & ~self._held(world, sleep.asleep)
-        if loose.any():
-            sleep.wake(world, loose)
+        return sleep.wake(world, loose) if loose.any() else loose
 
 
 def _missed(world: World) -> float:
