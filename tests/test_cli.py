@@ -130,6 +130,13 @@ def test_a_scene_goes_on_from_its_own_time(capsys: pytest.CaptureFixture[str], t
     assert report["time"] == 1.5
 
 
+def test_run_tells_how_many_sleep(capsys: pytest.CaptureFixture[str]) -> None:
+    report = document(capsys, "run", "stack", "--seconds", "5")
+    assert (report["asleep"], report["contacts"]) == (10, 10)
+    assert cli.main(["run", "stack", "--seconds", "5"]) == 0
+    assert "asleep      10 of 11 bodies, at rest" in capsys.readouterr().out
+
+
 def test_run_writes_a_row_a_step_and_body(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["run", "drop", "--steps", "3", "--csv", "-"]) == 0
     rows = list(csv.reader(io.StringIO(capsys.readouterr().out)))

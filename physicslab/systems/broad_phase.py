@@ -88,7 +88,7 @@ class BroadPhaseSystem(System):
         if not world.contacts.stale and grid.still_holds(position, angle, linear, *sizes, self.fat, h):
             return
         awake = world.bodies.awake_inverse_mass
-        ahead = h * _foresight(world.sleep.count, np.count_nonzero(awake))
+        ahead = h * _foresight(world.sleep.count, int(np.count_nonzero(awake)))
         grid.fat_boxes(position, angle, linear, *sizes, awake, self.fat, self._boxes, ahead)
         inverse_mass = world.bodies.inverse_mass
         bounded = world.physics.bounds is not None
