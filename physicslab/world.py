@@ -524,6 +524,14 @@ class World:
             self._leap(first * self._simulation.dt, 1, first)
             self._leap(dt - first * self._simulation.dt, 1, steps - first)
 
+    def _pass_over(self, steps: int) -> None:
+        """Count steps in which nothing would happen, and calls of systems that would find nothing."""
+        self.divided, self.substeps = 1, self._simulation.substeps
+        for system in self.schedule.running:
+            around = {Stage.PREPARE, Stage.FINISH} & system.marked().keys()
+            self.schedule.note(system.name, steps * len(around), 0)
+        self.steps += steps
+
     def _run_compiled(self, compiled: CompiledSteps, steps: int) -> int:
         """Make ``steps`` steps or fewer in one compiled call; return how many."""
         with self.active():
@@ -554,7 +562,10 @@ class World:
             self.synchronise()
             by_step = self._equations is None and self._flights is None
             unseen = min(stride - done % stride, whole - done)
-            if self._compiled is not None and unseen > 0 and self._compiled.ready(self):
+            if unseen > 0 and not self.schedule.observed and self.sleep.everything(self):
+                self._pass_over(unseen)
+                done += unseen
+            elif self._compiled is not None and unseen > 0 and self._compiled.ready(self):
                 before = self.steps
                 try:
                     done += self._run_compiled(self._compiled, unseen)
