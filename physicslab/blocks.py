@@ -57,11 +57,12 @@ class Lanes:
         """See to it that so many blocks have room."""
         if len(self.colour) < blocks:
             room = 2 * blocks
-            data, colour = _in_lines(room * self.rows), np.zeros(room, np.int64)
+            data, (colour, order) = _in_lines(room * self.rows), np.zeros((2, room), np.int64)
             data[: len(self.data)], colour[: len(self.colour)] = self.data, self.colour
+            order[: len(self.order)] = self.order
             lanes = np.zeros((3, room * WIDE), np.int64)
             lanes[:, : len(self.pair)] = self.a, self.b, self.pair
-            self.data, self.colour, self.order = data, colour, np.zeros(room, np.int64)
+            self.data, self.colour, self.order = data, colour, order
             self.a, self.b, self.pair = (np.ascontiguousarray(lane) for lane in lanes)
 
     def sort(self) -> None:
@@ -102,7 +103,7 @@ class Blocks:
         block_admission.settle, block_seats.seat_again, block_admission.sort_blocks,
         block_seats.remember, block_seats.outdated,
         block_lanes.store, block_lanes.list_loose, block_lanes.follow_pairs, block_lanes.wake,
-        block_contact.refresh, block_contact.deepest_lane,
+        block_lanes.release, block_contact.refresh, block_contact.deepest_lane,
     )  # fmt: skip
 
     def __init__(self) -> None:

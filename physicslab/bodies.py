@@ -34,6 +34,8 @@ class Bodies(System):
         Forces [N] and torques [N m] added up in this substep.
     inverse_mass, inverse_inertia : float64 arrays (rows,)
         Zero for what cannot be moved or turned: static, kinematic and held bodies.
+    awake_inverse_mass, awake_inverse_inertia : float64 arrays (rows,)
+        The same, and zero for sleepers: what is simulated goes by these.
     unequal : bool
         Whether two bodies that may meet differ so much in mass that one may be too heavy for the other.
     tethered : bool array (rows,)
@@ -52,6 +54,8 @@ class Bodies(System):
         self.torque: NDArray[np.float64] = np.zeros(rows)
         self.inverse_mass: NDArray[np.float64] = np.zeros(rows)
         self.inverse_inertia: NDArray[np.float64] = np.zeros(rows)
+        self.awake_inverse_mass: NDArray[np.float64] = np.zeros(rows)
+        self.awake_inverse_inertia: NDArray[np.float64] = np.zeros(rows)
         self.tethered: NDArray[np.bool_] = np.zeros(rows, np.bool_)
 
     def derive(self, world: World) -> None:
@@ -80,6 +84,14 @@ class Bodies(System):
             allowed = f"{_INERTIA.allowed}, of mass and Shape too"
             raise InvalidValue(f"{label}: Mass", "inertia", inertia, allowed)
         self.unequal = ratio > impulse.UNEQUAL
+        self.lay_aside(world.sleep.asleep)
+
+    def lay_aside(self, asleep: NDArray[np.bool_]) -> None:
+        """Let nothing move who is asleep."""
+        np.copyto(self.awake_inverse_mass, self.inverse_mass)
+        np.copyto(self.awake_inverse_inertia, self.inverse_inertia)
+        if asleep.any():
+            self.awake_inverse_mass[asleep] = self.awake_inverse_inertia[asleep] = 0.0
 
     def attach(self, world: World) -> None:
         """Forget the forces of systems that may run no more."""
@@ -108,7 +120,7 @@ class Bodies(System):
         velocity = world.table(Velocity)
         motion.kick(
             velocity["linear"], velocity["angular"], self.force, self.torque,
-            self.inverse_mass, self.inverse_inertia, self.tethered,
+            self.awake_inverse_mass, self.awake_inverse_inertia, self.tethered,
             physics.linear_damping, physics.angular_damping, h,
         )  # fmt: skip
 

@@ -52,6 +52,7 @@ class Checkpoint:
             np.copyto(column, kept)
         world.force_evaluations, world.collisions, world.contacts.logged = self._counts
         world.contacts.clear()  # what a failed step left there may not be finite either
+        world.sleep.forget(world)  # and nothing is known to hold anybody
 
 
 def _moving(world: World) -> tuple[NDArray[np.float64], ...]:

@@ -12,7 +12,17 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.kernels import contact_steps
-from physicslab.kernels.contact_steps import BEGIN, CROWDED, DIVERGED, FIND, STRIKE, SYSTEMS, UNLISTED
+from physicslab.kernels.contact_steps import (
+    BEGIN,
+    CROWDED,
+    DIVERGED,
+    DROWSY,
+    FIND,
+    STIRRED,
+    STRIKE,
+    SYSTEMS,
+    UNLISTED,
+)
 from physicslab.schedule import Stage
 
 if TYPE_CHECKING:
@@ -20,21 +30,24 @@ if TYPE_CHECKING:
     from physicslab.systems.broad_phase import BroadPhaseSystem
     from physicslab.systems.contact import ContactSystem
     from physicslab.systems.resolve import ResolveSystem
+    from physicslab.systems.sleep import SleepSystem
     from physicslab.world import World
 
-__all__ = ["CompiledSteps", "why_not_compiled"]
+__all__ = ["COMPILED", "OF_FRAMES", "CompiledSteps", "why_not_compiled"]
 
-_COMPILED = {
+COMPILED = {
     "Bodies": "physicslab.bodies",
     "GravitySystem": "physicslab.systems.gravity",
     "IntegrateSystem": "physicslab.systems.integrate",
     "BroadPhaseSystem": "physicslab.systems.broad_phase",
     "ContactSystem": "physicslab.systems.contact",
+    "SleepSystem": "physicslab.systems.sleep",
     "ResolveSystem": "physicslab.systems.resolve",
 }
 """Whose work the loop does, and in which modules those are: a class of that name may be somebody's own."""
 _NEEDED = ("Bodies", "IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem")
-_OF_FRAMES = {Stage.INPUT, Stage.RENDER, Stage.HUD}
+OF_FRAMES = {Stage.INPUT, Stage.RENDER, Stage.HUD}
+"""The stages that belong to frames, and not to steps."""
 _MOST = 4096
 """So many steps, at the most, are one call: whoever wants to stop a run waits for it."""
 _PLAN = [stage for stage, _ in LEAPFROG.substep]
@@ -53,7 +66,7 @@ def why_not_compiled(world: World) -> str | None:
     if world.physics.gravity_mode == "planet" and "GravitySystem" in running:
         return "planets attract each other"
     for name, system in running.items():
-        if type(system).__module__ != _COMPILED.get(name) and not set(type(system).marked()) <= _OF_FRAMES:
+        if type(system).__module__ != COMPILED.get(name) and not set(type(system).marked()) <= OF_FRAMES:
             return f"{name} acts or looks at every step"
     return None
 
@@ -62,7 +75,7 @@ class CompiledSteps:
     """Makes steps of one world in a compiled loop, until its structure changes; the bits are those of steps.
 
     The loop comes back where Python is needed: to list the near pairs anew, to make the first blocks or room
-    for more, to report a divergence.
+    for more, to wake who is touched, to let fall asleep who has rested, to report a divergence.
 
     Parameters
     ----------
@@ -77,6 +90,7 @@ class CompiledSteps:
         self._broad_phase = cast("BroadPhaseSystem", running["BroadPhaseSystem"])
         self._contact = cast("ContactSystem", running["ContactSystem"])
         self._resolve = cast("ResolveSystem", running["ResolveSystem"])
+        self._sleep = cast("SleepSystem | None", running.get("SleepSystem"))
         self._cost = np.zeros(len(SYSTEMS), np.int64)
         self._once: dict[str, int] = {}
         self._within: dict[str, list[int]] = {}
@@ -89,7 +103,9 @@ class CompiledSteps:
         """Whether the coming step can be made so, as things stand."""
         contacts = world.contacts
         heavy = world.bodies.unequal and world.has_forces
-        return not (heavy or contacts.stale)
+        if heavy or contacts.stale:
+            return False
+        return not (world.sleep.unseen or world.sleep.everything(world))
 
     def run(self, world: World, steps: int, before: Checkpoint) -> int:
         """Make ``steps`` steps or fewer, at least one, and return how many; the clock goes with them.
@@ -119,8 +135,23 @@ class CompiledSteps:
             elif why == CROWDED:
                 self._contact.begin(world, h)  # another step than the one before may have begun
                 self._timed("ContactSystem", self._contact.settle, world, h)
+                self._rouse(world, h)
                 stage = STRIKE
+            elif why == STIRRED:
+                self._rouse(world, h)
+                stage = STRIKE
+            elif why == DROWSY and self._sleep is not None:
+                self._timed("SleepSystem", self._sleep.lull, world, world.simulation.dt)
+                stage = BEGIN
+                if world.sleep.everything(world):
+                    break
+        world.sleep.keep(world)
         return made
+
+    def _rouse(self, world: World, h: float) -> None:
+        """Wake whom something touches."""
+        if self._sleep is not None:
+            self._timed("SleepSystem", self._sleep.rouse, world, h)
 
     def _advance(
         self, world: World, before: Checkpoint, steps: int, substep: int, stage: int, h: float
@@ -151,15 +182,20 @@ class CompiledSteps:
         """Return what the loop works on."""
         transform, velocity = world.table(Transform), world.table(Velocity)
         shape, material, bodies = world.table(Shape), world.table(Material), world.bodies
-        contacts, physics, resolve = world.contacts, world.physics, self._resolve
+        contacts, physics, resolve, sleep = world.contacts, world.physics, self._resolve, world.sleep
         return (
             world.simulation.iterations or 1,
             (transform["position"], transform["angle"], velocity["linear"], velocity["angular"]),
             before.columns,
             (shape["kind"], shape["radius"], shape["width"], shape["height"]),
             (material["restitution"], material["friction"]),
-            (bodies.inverse_mass, bodies.inverse_inertia), bodies.tethered,
+            (bodies.awake_inverse_mass, bodies.awake_inverse_inertia), bodies.tethered,
             (bodies.force, bodies.torque, world.table(Mass)["mass"], world.has_forces, *physics.gravity),
+            (
+                self._sleep is not None, sleep.count, world.simulation.dt, bodies.inverse_mass,
+                sleep.asleep, sleep.rest, sleep.slowest, np.zeros_like(sleep.asleep),
+                contacts.quiet, contacts.resting,
+            ),
             (physics.linear_damping, physics.angular_damping), self._contact.fall(world, h),
             self._broad_phase.fat,
             (self._broad_phase.bounds, physics.bounds_restitution, physics.bounds_friction),

@@ -110,14 +110,19 @@ class Contacts:
     blocks : Blocks
         The settled contacts, eight side by side; what their records say is as old as the last :meth:`sync`.
     loose : int64 array (capacity,)
-        The pairs with records that are in no block; the first ``loose_count`` are in use.
+        The pairs with records that are in no block and not laid aside; the first ``loose_count`` are in use.
+    resting : int64 array (capacity,)
+        The pairs with points that were laid aside because both bodies sleep, or one does and nothing moves
+        the other; the first ``resting_count`` are in use.
+    quiet : bool array (rows,)
+        Whose pairs with each other are laid aside; empty where nobody sleeps.
     unordered : bool
         Whether pairs were set loose since those were last listed in order.
     touching : int64 array (capacity,)
         The loose pairs with points; the first ``active`` are in use. Points may have positive separation:
         they would meet within a substep.
     recorded, lying, count : int
-        How many near pairs have records, how many lie idle, and how many have points, loose or not.
+        How many near pairs have records, how many lie idle, and how many have points, wherever they lie.
     left : int
         How many pairs the impacts of this substep have left to the solver.
     opened : int64 array (COLOURS,)
@@ -136,9 +141,10 @@ class Contacts:
     """How many impacts are kept."""
 
     def __init__(self) -> None:
-        self.recorded = self.lying = self.loose_count = 0
+        self.recorded = self.lying = self.loose_count = self.resting_count = 0
         self.active = self.left = 0
         self.blocks = Blocks()
+        self.quiet: NDArray[np.bool_] = np.zeros(0, np.bool_)
         self.opened = np.zeros(block_lanes.COLOURS, np.int64)
         self._counts = np.zeros(block_lanes.COUNTED, np.int64)
         self._synced, self._seats = True, False
@@ -168,6 +174,7 @@ class Contacts:
         self.idle: NDArray[np.uint32] = np.zeros(2 * capacity, np.uint32)
         self.reach: NDArray[np.float64] = np.zeros(capacity)
         self._table: NDArray[np.int64] = np.zeros(16, np.int64)
+        self.resting: NDArray[np.int64] = np.zeros(capacity, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.
         self._spare_manifolds, self._spare_points = self.manifolds.copy(), self.points.copy()
 
@@ -179,7 +186,7 @@ class Contacts:
     @property
     def count(self) -> int:
         """How many near pairs have points."""
-        return self.active + self.blocks.lanes
+        return self.active + self.blocks.lanes + self.resting_count
 
     def changed(self) -> None:
         """Note that lanes hold what their records do not say."""
@@ -209,9 +216,36 @@ class Contacts:
             self.unordered = False
 
     def _list_loose(self, rows: int) -> None:
-        self.loose_count = int(block_lanes.list_loose(self.manifolds, self.recorded, self.loose))
+        self.loose_count, self.resting_count = block_lanes.list_loose(
+            self.manifolds, self.recorded, self.quiet, self.loose, self.resting
+        )
         self.unordered = True
         self.in_order(rows)
+
+    def lay_aside(self, quiet: NDArray[np.bool_], rows: int) -> None:
+        """Look no more at the pairs of which both bodies are ``quiet`` (rows,), and again at all others."""
+        self.quiet = quiet
+        if not self.stale:  # else that is done when they are listed
+            self._list_loose(rows)
+            loose = self.loose[: self.loose_count]
+            touching = loose[self.manifolds["count"][loose] > 0]
+            self.active = len(touching)
+            self.touching[: self.active] = touching
+
+    def release(self, asleep: NDArray[np.bool_]) -> None:
+        """Give the contacts of sleepers back to their records."""
+        if self.blocks.lanes:
+            self.blocks.lanes -= sum(
+                block_lanes.release(*lanes.layout, self.manifolds, self.points, asleep)
+                for lanes in self.blocks.kinds
+            )
+
+    def rescale(self, pairs: NDArray[np.bool_], before: float, after: float) -> None:
+        """Let the impulses of some pairs stand for another time [s] than ``before``."""
+        if before > 0.0 and after > 0.0 and before != after:
+            chosen = np.repeat(pairs, 2)
+            for name in ("normal_impulse", "tangent_impulse"):
+                self.points[name][: len(chosen)][chosen] *= after / before
 
     def settle(self, world: World, h: float) -> None:
         """Take what has settled into blocks."""
@@ -224,9 +258,10 @@ class Contacts:
             counts = self.counted()
             came = block_admission.settle(
                 counts, blocks.discs.seats, blocks.boxes.seats, self.opened,
-                self.manifolds, self.points, self.loose, self.touching,
+                self.manifolds, self.points, self.loose, self.resting, self.touching,
+                self.quiet, world.sleep.asleep,
                 shape["kind"], shape["radius"], material["restitution"], material["friction"],
-                world.table(Velocity)["linear"], bodies.inverse_mass, bodies.inverse_inertia, h,
+                world.table(Velocity)["linear"], bodies.awake_inverse_mass, bodies.awake_inverse_inertia, h,
             )  # fmt: skip
             self.recount(counts)
             if came != block_admission.FULL:
@@ -242,7 +277,7 @@ class Contacts:
         """Return the counts that kernels change, in the order of :mod:`physicslab.kernels.block_lanes`."""
         discs, boxes = self.blocks.kinds
         self._counts[:] = (
-            self.lying, self.recorded, self.loose_count, self.active, self.left,
+            self.lying, self.recorded, self.loose_count, self.resting_count, self.active, self.left,
             self.blocks.lanes, discs.count, boxes.count, self.unordered,
         )  # fmt: skip
         return self._counts
@@ -251,7 +286,7 @@ class Contacts:
         """Take over the counts that a kernel has changed."""
         discs, boxes = self.blocks.kinds
         (
-            self.lying, self.recorded, self.loose_count, self.active, self.left,
+            self.lying, self.recorded, self.loose_count, self.resting_count, self.active, self.left,
             self.blocks.lanes, discs.count, boxes.count, unordered,
         ) = counts.tolist()  # fmt: skip
         self.unordered = bool(unordered)
@@ -318,7 +353,7 @@ class Contacts:
         self.points, self._spare_points = self._spare_points, self.points
         self.recorded, self.active, self.stale = count, 0, False
         if len(self.touching) < most:
-            self.touching, self.loose = np.zeros((2, 2 * most), np.int64)
+            self.touching, self.loose, self.resting = np.zeros((3, 2 * most), np.int64)
         if self._seats:
             self._seat_again(world)
         elif self.blocks.lanes:
@@ -330,6 +365,8 @@ class Contacts:
     def _seat_again(self, world: World) -> None:
         """Put the contacts of a file back into the lanes in which they lay."""
         self._seats, material = False, world.table(Material)
+        near, asleep = self.manifolds[: self.recorded], world.sleep.asleep
+        near["lane"][asleep[near["a"]] | asleep[near["b"]]] = -1  # sleepers have none
         world.schedule.compile(self.blocks.kernels)
         for lanes in self.blocks.kinds:
             lanes.count, seated = block_seats.seat_again(
@@ -347,14 +384,15 @@ class Contacts:
     def clear(self) -> None:
         """Forget every pair."""
         self.blocks.reset(1)
-        self.recorded = self.lying = self.loose_count = self.active = 0
+        self.recorded = self.lying = self.loose_count = self.resting_count = self.active = 0
         self.stale = self._synced = True
 
     @property
     def max_penetration(self) -> float:
         """The deepest overlap now [m]."""
         compile_kernels((impulse.deepest,))
-        depth = float(impulse.deepest(self.manifolds, self.points, self.touching, self.active))
+        pairs = ((self.touching, self.active), (self.resting, self.resting_count))
+        depth = max(float(impulse.deepest(self.manifolds, self.points, *listed)) for listed in pairs)
         lanes = [block_contact.deepest_lane(k.kind, k.data, k.count) for k in self.blocks.kinds if k.count]
         return max(depth, *lanes) if lanes else depth
 

@@ -21,6 +21,7 @@ FEW = 32
 MOST_PAIRS = 20_000
 """Every impact looks through all pairs: beyond so many that costs more than any accuracy is worth."""
 _CONTACT_STEP = ("IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem")
+_KNOWN = ("Bodies", "SleepSystem", *_CONTACT_STEP)
 _AROUND = {Stage.INPUT, Stage.PREPARE, Stage.IMPACT, Stage.FINISH, Stage.RENDER, Stage.HUD}
 _NEAR = 0.01
 """Share of the smaller body's size within which bodies count as lying on each other."""
@@ -62,7 +63,7 @@ def _foreign(world: World) -> str | None:
                 return f"the force of {system.name} bends the flights"
             if world.physics.gravity_mode == "planet":
                 return "planets attract each other"
-        elif system.name not in ("Bodies", *_CONTACT_STEP) and not set(type(system).marked()) <= _AROUND:
+        elif system.name not in _KNOWN and not set(type(system).marked()) <= _AROUND:
             return f"{system.name} acts within the step"
     return None
 

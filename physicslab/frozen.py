@@ -34,6 +34,8 @@ class Frozen:
         Those with a Shape.
     contacts : Contacts
         What the contact solver remembers.
+    rests : list of lists
+        Who sleeps, and how long the others have rested.
     texts : dict of str to str
         Name, title and description of the world.
     time : float
@@ -51,6 +53,7 @@ class Frozen:
         self.time, self.physics, self.simulation = world.time, world.physics, world.simulation
         self.shaped = set(world.batch(Shape).entities.tolist())
         self.contacts: Contacts = world.contacts.copied()
+        self.rests = world.sleep.export(world)
         self._rows = dict(world.roster.row_of)
         self._tables = _copied(world.roster)
 

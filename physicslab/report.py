@@ -85,6 +85,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "angular_momentum": momentum.angular,
         "candidate_pairs": int(world.contacts.candidate_pairs),
         "contacts": int(world.contacts.count),
+        "asleep": world.sleep.count,
         "collisions": int(world.collisions),
         "max_penetration": record.max_penetration,
         "divided": record.divided,
@@ -159,6 +160,8 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         f"{report['collisions']} collisions, deepest overlap {report['max_penetration']:.3g} m",
         f"  systems     {systems or 'none'}",
     ]
+    if report["asleep"]:
+        lines.insert(-1, f"  asleep      {report['asleep']} of {len(report['entities'])} bodies, at rest")
     if report["summation"]:
         lines.append(f"  summed      {report['summation']}")
     if report["interpreted"]:

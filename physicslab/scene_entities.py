@@ -23,13 +23,14 @@ from physicslab.scene_checks import (
     suggestion,
 )
 
-__all__ = ["UNSAVED", "check_contacts", "check_entities", "check_ids"]
+__all__ = ["UNSAVED", "check_contacts", "check_entities", "check_ids", "check_rests"]
 
 UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
 
 type _Expected = tuple[tuple[str, ...], tuple[str, ...], str]
 _NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Trail)
+_MAY_REST = (Velocity, Mass, Shape)
 
 
 def check_ids(entities: object, source: str) -> dict[str, int]:
@@ -98,6 +99,33 @@ def check_contacts(
             if not is_number(value):
                 raise refusal(f"{where}[{place}]", value, "a finite number")
         mapped.append([*pair, *row[2:]])
+    return mapped
+
+
+def check_rests(
+    rows: object, entities: Sequence[Mapping[str, Any]], ids: Mapping[str, int], source: str
+) -> list[list[Any]]:
+    """Return who sleeps, and how long and how slowly others have rested, with places, from 1, for ids."""
+    if not isinstance(rows, list):
+        raise refusal(f"{source}: rests", rows, "a list of lists")
+    mapped: list[list[Any]] = []
+    seen: set[int] = set()
+    for index, row in enumerate(rows):
+        where = f"{source}: rests[{index}]"
+        if not isinstance(row, list) or len(row) not in (1, 3):
+            raise refusal(where, row, "an id for a sleeper, or an id, a time s and a speed m/s, in a list")
+        number = ids.get(row[0], 0) if isinstance(row[0], str) else 0
+        if not number or not all(kind.__name__ in entities[number - 1] for kind in _MAY_REST):
+            allowed = "the id of an entity with " + ", ".join(kind.__name__ for kind in _MAY_REST)
+            raise refusal(f"{where}[0]", row[0], allowed)
+        if number in seen:
+            raise refusal(f"{where}[0]", row[0], "an id that has no rest yet")
+        seen.add(number)
+        if len(row) == 3 and not (is_number(row[1]) and row[1] > 0.0):
+            raise refusal(f"{where}[1]", row[1], "a finite number > 0 s")
+        if len(row) == 3 and not (is_number(row[2]) and row[2] >= 0.0):
+            raise refusal(f"{where}[2]", row[2], "a finite number >= 0 m/s")
+        mapped.append([number, *row[1:]])
     return mapped
 
 

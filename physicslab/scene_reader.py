@@ -18,7 +18,7 @@ from physicslab.scene_checks import (
     refusal,
     shown,
 )
-from physicslab.scene_entities import check_contacts, check_entities, check_ids
+from physicslab.scene_entities import check_contacts, check_entities, check_ids, check_rests
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
@@ -27,7 +27,10 @@ __all__ = ["FORMAT", "SceneDraft", "check_scene", "read_scene"]
 FORMAT = "physicslab-scene/1"
 """What the key ``format`` of a scene says."""
 
-_KEYS = ("format", "name", "title", "description", "time", "physics", "simulation", "entities", "contacts")
+_KEYS = (
+    "format", "name", "title", "description", "time", "physics", "simulation", "entities", "contacts",
+    "rests",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +49,8 @@ class SceneDraft:
         The id of each entity and its components. They refer to entities by place in this list, from 1.
     contacts : list of lists of numbers
         The contact solver's memory; the first two numbers of a row are entities, 0 for the bounds.
+    rests : list of lists of numbers
+        Who sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
     """
 
     name: str
@@ -56,6 +61,7 @@ class SceneDraft:
     simulation: SimulationConfig
     entities: list[tuple[str | None, list[Component]]]
     contacts: list[list[Any]]
+    rests: list[list[Any]]
 
 
 def read_scene(document: object, source: str = "scene") -> World:
@@ -91,13 +97,14 @@ def read_scene(document: object, source: str = "scene") -> World:
     for number, (id_, components) in enumerate(draft.entities, start=1):
         entity = world.spawn(*components, name=id_)
         assert entity == number, "a new world numbers its entities from 1"
-    if draft.contacts:
+    if draft.contacts or draft.rests:
         world.synchronise()
         try:
             world.contacts.restore(world, draft.contacts)
         except (ValueError, OverflowError) as error:
             esper.switch_world(before)
             raise SceneError(f"{source}: contacts: {error}") from error
+        world.sleep.restore(world, draft.rests)
     return world
 
 
@@ -121,6 +128,7 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
         simulation=_config(SimulationConfig, scene.get("simulation", {}), source),
         entities=check_entities(scene["entities"], ids, source),
         contacts=check_contacts(scene.get("contacts", []), scene["entities"], ids, source),
+        rests=check_rests(scene.get("rests", []), scene["entities"], ids, source),
     )
 
 

@@ -57,7 +57,8 @@ def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
             contacts.append(row)
         yield
     ids = dict(frozen.names)
-    ids |= yield from _invented(entities, ids, {end for row in contacts for end in row[:2]})
+    referred = {end for row in contacts for end in row[:2]} | {rest[0] for rest in frozen.rests}
+    ids |= yield from _invented(entities, ids, referred)
     document: dict[str, Any] = {"format": FORMAT} | {key: text for key, text in frozen.texts.items() if text}
     if frozen.time:
         document["time"] = frozen.time
@@ -72,7 +73,8 @@ def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
     for memory in contacts:
         memory[:2] = [ids.get(end) for end in memory[:2]]
         yield
-    return document | ({"contacts": contacts} if contacts else {})
+    rests = [[ids[rest[0]], *rest[1:]] for rest in frozen.rests]
+    return document | ({"contacts": contacts} if contacts else {}) | ({"rests": rests} if rests else {})
 
 
 def unique_name(wanted: str, taken: Container[str]) -> str:

@@ -29,6 +29,7 @@ from physicslab.integrators import StepTooSmall
 from physicslab.integrators.choice import choose, provisional
 from physicslab.roster import Roster
 from physicslab.schedule import ForceSystem, Schedule, Stage, System
+from physicslab.sleep import Sleep
 from physicslab.tethers import Tethers
 
 __all__ = ["World"]
@@ -66,6 +67,8 @@ class World:
         What moves the bodies that springs and drag act on where contacts act as well.
     revision : int
         How often its structure or its configuration changed: what was measured before is another world's.
+    sleep : Sleep
+        Who has come to rest, and is not simulated until something wakes him.
     substeps : int
         Of how many parts the last step was, or each part of one that was divided: more than
         ``simulation.substeps`` where a system found that these would not do.
@@ -108,6 +111,7 @@ class World:
         self.collisions = 0
         self.bodies = Bodies()
         self.contacts = Contacts()
+        self.sleep = Sleep()
         self.roster = Roster()
         self.schedule = Schedule((self.bodies, *systems))
         self.has_forces = False
@@ -314,6 +318,7 @@ class World:
                     self._choose()
                 if self.tethers is not None and self.tethers.outdated(self):
                     self._choose()
+                self.sleep.check(self)
 
     @_quiet
     def _follow(self) -> None:
@@ -322,12 +327,22 @@ class World:
             return
         while self.roster.synchronise() or self._stale:
             self._stale = True  # and stays so if a system refuses what it finds
+            self.sleep.follow(self)
             self.bodies.derive(self)
+            self.sleep.check(self)
+            self._remake()
+            self.revision += 1
+            self._stale = False
+
+    def _remake(self) -> None:
+        """Choose the systems and the method; who may sleep hangs on the method."""
+        while True:
+            exact = self.method.collisions == "exact"
             self.schedule.remake(self)
             self.has_forces = any(isinstance(system, ForceSystem) for system in self.schedule.running)
             self._choose()
-            self.revision += 1
-            self._stale = False
+            if exact == (self.method.collisions == "exact"):
+                return
 
     def _choose(self) -> None:
         """Choose the method for what there is, and make ready what it works with."""
@@ -346,6 +361,7 @@ class World:
             self._compiled = CompiledSteps(self)
             self.schedule.compile(self._compiled.kernels)
         self.contacts.stale |= had_flights or self._flights is not None
+        self.sleep.look_around(self)
 
     @_quiet
     def step(self, dt: float | None = None) -> None:
@@ -377,6 +393,8 @@ class World:
                     self.tethers.begin(self)
                 if self._equations is not None:
                     self._flow(self._equations, dt / parts, parts)
+                elif self._flights is None and self.sleep.everything(self):
+                    self.substeps = self._simulation.substeps  # in which nothing would happen
                 elif self._flights is None:
                     finer = max((system.finer(self) for system in self.schedule.running), default=1)
                     self.substeps = finer * self._simulation.substeps
@@ -507,6 +525,14 @@ class World:
             self._leap(first * self._simulation.dt, 1, first)
             self._leap(dt - first * self._simulation.dt, 1, steps - first)
 
+    def _pass_over(self, steps: int) -> None:
+        """Count steps in which nothing would happen, and calls of systems that would find nothing."""
+        self.divided, self.substeps = 1, self._simulation.substeps
+        for system in self.schedule.running:
+            around = {Stage.PREPARE, Stage.FINISH} & system.marked().keys()
+            self.schedule.note(system.name, steps * len(around), 0)
+        self.steps += steps
+
     def _run_compiled(self, compiled: CompiledSteps, steps: int) -> int:
         """Make ``steps`` steps or fewer in one compiled call; return how many."""
         with self.active():
@@ -537,7 +563,10 @@ class World:
             self.synchronise()
             by_step = self._equations is None and self._flights is None
             unseen = min(stride - done % stride, whole - done)
-            if self._compiled is not None and unseen > 0 and self._compiled.ready(self):
+            if unseen > 0 and not self.schedule.observed and self.sleep.everything(self):
+                self._pass_over(unseen)
+                done += unseen
+            elif self._compiled is not None and unseen > 0 and self._compiled.ready(self):
                 before = self.steps
                 try:
                     done += self._run_compiled(self._compiled, unseen)

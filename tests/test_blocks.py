@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from desk import bits
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics import measure_energy, measure_momentum
 from physicslab.kernels import compile_kernels, impulse
 from physicslab.kernels.block_layout import WIDE
 from physicslab.prefabs import box, circle, container, pile, pyramid
+from physicslab.scene import read_scene, write_scene
 from physicslab.stability.worlds import floor, open_space, place
 from physicslab.world import World
 
@@ -177,3 +179,14 @@ def test_lanes_that_a_file_makes_up_stay_loose() -> None:
         assert np.array_equal(everyone, np.arange(contacts.recorded))
         assert len(seated) == contacts.blocks.lanes
         assert contacts.max_penetration < 0.02
+
+
+def test_all_lanes_of_a_settled_pile_go_on_from_a_file() -> None:
+    """When none joins them after they were seated, they are solved in their order all the same."""
+    world = settled_discs()
+    again = read_scene(write_scene(world))
+    for _ in range(20):
+        world.step()
+        again.step()
+        assert bits(again) == bits(world)
+    assert again.contacts.blocks.lanes == world.contacts.blocks.lanes > 100

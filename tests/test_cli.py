@@ -49,7 +49,7 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
         "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason",
         "collision_method", "collision_reason", "summation", "interpreted", "force_evaluations", "wall_s",
         "compile_s", "systems", "left_out", "energy", "momentum", "angular_momentum", "candidate_pairs",
-        "contacts", "collisions", "max_penetration", "divided", "advice", "entities",
+        "contacts", "asleep", "collisions", "max_penetration", "divided", "advice", "entities",
     ]  # fmt: skip
     assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
     assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "exact")
@@ -128,6 +128,13 @@ def test_a_scene_goes_on_from_its_own_time(capsys: pytest.CaptureFixture[str], t
     save_scene(world, tmp_path / "later.json")
     report = document(capsys, "run", str(tmp_path / "later.json"), "--seconds", "0.5")
     assert report["time"] == 1.5
+
+
+def test_run_tells_how_many_sleep(capsys: pytest.CaptureFixture[str]) -> None:
+    report = document(capsys, "run", "stack", "--seconds", "5")
+    assert (report["asleep"], report["contacts"]) == (10, 10)
+    assert cli.main(["run", "stack", "--seconds", "5"]) == 0
+    assert "asleep      10 of 11 bodies, at rest" in capsys.readouterr().out
 
 
 def test_run_writes_a_row_a_step_and_body(capsys: pytest.CaptureFixture[str]) -> None:

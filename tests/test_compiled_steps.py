@@ -88,6 +88,23 @@ def test_it_leaves_for_the_blocks_in_the_middle_of_a_step() -> None:
     assert_alike(stepped, ran)
 
 
+def test_steps_that_are_passed_over_are_counted_alike() -> None:
+    def resting() -> World:
+        world = World(*standard_systems())
+        box(world, (0.0, -0.5), width=9.0, height=1.0, static=True, friction=0.5)
+        box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
+        return world
+
+    stepped, ran = watched(resting()), resting()
+    for world in (stepped, ran):
+        world.run(steps=100)
+        assert world.sleep.count == 1
+        circle(world, (0.0, 4.0), radius=0.3, friction=0.5)
+        world.run(steps=300)
+        assert world.sleep.count == 2
+    assert_alike(stepped, ran)
+
+
 def test_single_steps_are_compiled_too() -> None:
     stepped, ran = watched(BENCH["circles_10"].build()), BENCH["circles_10"].build()
     for _ in range(STEPS):

@@ -70,6 +70,18 @@ def test_pairs_and_contacts_are_shown_as_they_come() -> None:
     assert row(canvas, "Contacts") == "1"
 
 
+def test_who_sleeps_is_counted_beside_the_bodies() -> None:
+    world = empty_world()
+    box(world, (0, -0.5), width=10, height=1, static=True, friction=0.5)
+    box(world, (0, 0.25), friction=0.5)
+    circle(world, (3, 50))
+    desk, canvas = recorded(world)
+    desk.frames(80)
+    frame(desk, canvas)
+    assert row(canvas, "Bodies") == "3, 1 asleep"
+    assert row(canvas, "Contacts") == "1"
+
+
 def test_the_frame_rate_is_smoothed() -> None:
     world = empty_world()
     meter = FrameMeter()

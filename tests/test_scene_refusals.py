@@ -150,12 +150,31 @@ SECTIONS = [
     ({"contacts": [[None, None, "1"]]}, 'contacts[0][2] = "1": must be a finite number'),
     ({"contacts": [[None, None, math.nan]]}, "contacts[0][2] = NaN: must be a finite number"),
     ({"contacts": [[None, None, 0]]}, "contacts: a contact has"),
+    ({"rests": {}}, "rests = {}: must be a list of lists"),
+    ({"rests": ["ball"]}, 'rests[0] = "ball": must be an id for a sleeper, or an id, a time s and a speed'),
+    ({"rests": [["ball", 1.0]]}, 'rests[0] = ["ball", 1.0]: must be an id for a sleeper'),
+    ({"rests": [["ball"]]}, 'rests[0][0] = "ball": must be the id of an entity with Velocity, Mass, Shape'),
+    ({"rests": [[None]]}, "rests[0][0] = null: must be the id of an entity with Velocity, Mass, Shape"),
 ]
 
 
 @pytest.mark.parametrize(("sections", "line"), SECTIONS, ids=[line for _, line in SECTIONS])
 def test_sections_that_are_wrong_are_refused(sections: dict[str, Any], line: str, tmp_path: Path) -> None:
     assert refused(scene(BALL) | sections, tmp_path).startswith(line)
+
+
+BODY = {"Transform": {}, "Velocity": {}, "Mass": {}, "Shape": {"kind": "circle", "radius": 1}, "id": "disc"}
+RESTS = [
+    ([["disc", 0, 0.1]], "rests[0][1] = 0: must be a finite number > 0 s"),
+    ([["disc", math.inf, 0.1]], "rests[0][1] = Infinity: must be a finite number > 0 s"),
+    ([["disc", 0.1, -1]], "rests[0][2] = -1: must be a finite number >= 0 m/s"),
+    ([["disc"], ["disc", 0.1, 0.0]], 'rests[1][0] = "disc": must be an id that has no rest yet'),
+]
+
+
+@pytest.mark.parametrize(("rests", "line"), RESTS, ids=[line for _, line in RESTS])
+def test_rests_that_make_no_sense_are_refused(rests: list[Any], line: str, tmp_path: Path) -> None:
+    assert refused(scene(BODY) | {"rests": rests}, tmp_path).startswith(line)
 
 
 TEXTS = [

@@ -91,7 +91,7 @@ def study_scene(name: str, load: Callable[[], World]) -> Iterator[float | SceneS
         Returns the scene's world, a new one each time.
     """
     load = _without_trails(load)
-    plain = load().simulation
+    plain = dataclasses.replace(load().simulation, sleeping=False)  # errors are to be those of methods
     auto = dataclasses.replace(plain, integrator="auto")
     methods = [method for method in INTEGRATORS if _takes(load, plain, method)]
     wanted = [auto, *(rung for method in methods for rung in _ladder(plain, method))]

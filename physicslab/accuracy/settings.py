@@ -43,14 +43,15 @@ class Setting:
     collisions: str = "auto"
 
     def simulation(self, problem: Problem) -> SimulationConfig:
-        """Return the configuration of the problem's world."""
+        """Return the configuration of the problem's world; nobody sleeps: errors are the method's."""
         if self.integrator == "auto":
-            return SimulationConfig(dt=problem.dt)
+            return SimulationConfig(dt=problem.dt, sleeping=False)
         tolerance = self.tolerance or SimulationConfig().tolerance
         parts = _SUBSTEPS if problem.touches else 1
         dt = problem.seconds * parts / (self.steps or 1)
         return SimulationConfig(
-            dt=dt, substeps=parts, integrator=self.integrator, tolerance=tolerance, collisions=self.collisions
+            dt=dt, substeps=parts, integrator=self.integrator, tolerance=tolerance,
+            sleeping=False, collisions=self.collisions,
         )  # fmt: skip
 
 

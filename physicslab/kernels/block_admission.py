@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.block_lanes import (
     ACTIVE,
     BOX_BLOCKS,
@@ -11,6 +11,7 @@ from physicslab.kernels.block_lanes import (
     LANES,
     LOOSE,
     RECORDED,
+    RESTING,
     UNORDERED,
     Masks,
     Seats,
@@ -99,14 +100,15 @@ def _admit(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     opened: Rows, manifolds: Manifolds, points: Points, touching: Rows, count: int,
     shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
-    inverse_mass: Numbers, inverse_inertia: Numbers,
+    inverse_mass: Numbers, inverse_inertia: Numbers, asleep: Flags,
     h: float, still: float, near: float,
 ) -> tuple[int, int]:  # fmt: skip
     """Take the settled contacts of one kind into blocks; return how many there are, and how many came.
 
     Two contacts of a body never share a block: each has one of ``COLOURS``, the first that neither of its
     bodies has been given. ``used`` (rows,) are the colours of each body's contacts, ``opened`` (COLOURS,) the
-    block of each colour that may have room. What finds no room in ``data`` stays loose.
+    block of each colour that may have room. What finds no room in ``data`` stays loose, and so does what
+    touches somebody ``asleep``: it is about to wake him.
     """
     rows, came = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
     blocks, empty = _survey(blocks, pair, colour, opened)
@@ -116,6 +118,8 @@ def _admit(
         i, j = manifold.a, manifold.b
         discs, boxes = shape[i] == 1 and shape[j] == 1, shape[i] == 2 and shape[j] == 2
         if manifold.wall >= 0 or not (discs if kind == DISC else boxes and manifold.found == 2):
+            continue
+        if asleep[i] or asleep[j]:
             continue
         if not _is_settled(manifold, points[2 * p], points[2 * p + 1], linear, h, still, near):
             continue
@@ -194,7 +198,8 @@ def _has_room(seats: Seats, blocks: int, active: int) -> bool:
 @kernel
 def settle(
     counts: Rows, discs: Seats, boxes: Seats, opened: Rows,
-    manifolds: Manifolds, points: Points, loose: Rows, touching: Rows,
+    manifolds: Manifolds, points: Points, loose: Rows, resting: Rows, touching: Rows, quiet: Flags,
+    asleep: Flags,
     shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
     inverse_mass: Numbers, inverse_inertia: Numbers, h: float,
 ) -> int:  # fmt: skip
@@ -222,7 +227,7 @@ def settle(
             counts[which], more = _admit(
                 kind, data, counts[which], a, b, pair, colour, used, opened, manifolds, points, touching,
                 active, shape, radius, restitution, friction, linear, inverse_mass, inverse_inertia,
-                h, _ENTRY * STILL, _ENTRY * NEAR,
+                asleep, h, _ENTRY * STILL, _ENTRY * NEAR,
             )  # fmt: skip
             came += more
     if came > 0 or counts[DISC_BLOCKS] != before[0]:
@@ -232,6 +237,7 @@ def settle(
     if came > 0:
         counts[LANES] += came
         counts[ACTIVE] = _keep_loose(manifolds, touching, active)
-        counts[LOOSE], counts[UNORDERED] = list_loose(manifolds, counts[RECORDED], loose), 0
+        counts[LOOSE], counts[RESTING] = list_loose(manifolds, counts[RECORDED], quiet, loose, resting)
         sort_loose(manifolds, loose, counts[LOOSE], len(shape))
+        counts[UNORDERED] = 0
     return SETTLED

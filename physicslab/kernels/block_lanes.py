@@ -7,7 +7,7 @@ import numpy as np
 from numba import uint64
 from numpy.typing import NDArray
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.block_layout import (
     ARM_AX,
     ARM_AY,
@@ -33,8 +33,8 @@ from physicslab.kernels.records import Manifolds, Points
 
 __all__ = [
     "ACTIVE", "BOX_BLOCKS", "COLOURS", "COUNTED", "DISC_BLOCKS", "LANES", "LEFT", "LOOSE", "LYING",
-    "RECORDED", "UNORDERED", "Masks", "Seats",
-    "empty_lane", "follow_pairs", "give_up", "list_loose", "store", "store_lane", "wake",
+    "RECORDED", "RESTING", "UNORDERED", "Masks", "Seats",
+    "empty_lane", "follow_pairs", "give_up", "list_loose", "release", "store", "store_lane", "wake",
 ]  # fmt: skip
 
 COLOURS = 64
@@ -43,11 +43,11 @@ Masks = Annotated[NDArray[np.uint64], uint64[::1]]
 """A uint64 array (n,), bit by bit."""
 Seats = tuple[Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
 """The blocks of a kind: data, rows of A and B, pairs, colours, the colours of each body, their order."""
-COUNTED = 9
-LYING, RECORDED, LOOSE, ACTIVE, LEFT, LANES, DISC_BLOCKS, BOX_BLOCKS, UNORDERED = range(COUNTED)
+COUNTED = 10
+LYING, RECORDED, LOOSE, RESTING, ACTIVE, LEFT, LANES, DISC_BLOCKS, BOX_BLOCKS, UNORDERED = range(COUNTED)
 """What kernels count that change it: near pairs that lie idle, those that have records, those of these that
-are loose, that touch, that impacts have left to the solver; lanes in use, blocks; and whether loose pairs are
-out of order."""
+are loose, that rest with sleepers, that touch, that impacts have left to the solver; lanes in use, blocks;
+and whether loose pairs are out of order."""
 
 
 @inlined
@@ -91,14 +91,41 @@ def store(data: Numbers, rows: int, blocks: int, pair: Rows, manifolds: Manifold
 
 
 @kernel
-def list_loose(manifolds: Manifolds, pairs: int, loose: Rows) -> int:
-    """Write the pairs that have no lane, in order; return how many there are."""
-    found = 0
+def list_loose(manifolds: Manifolds, pairs: int, quiet: Flags, loose: Rows, resting: Rows) -> tuple[int, int]:
+    """Write the pairs that have no lane, in the order of their records; return how many there are.
+
+    Where both bodies are ``quiet`` (rows,), none of which there may be, nothing is to be found out: of such
+    pairs those with points are written to ``resting``; how many is returned as well.
+    """
+    found, rest = 0, 0
     for p in range(pairs):
-        if manifolds[p].lane < 0:
-            loose[found] = p
-            found += 1
-    return found
+        if manifolds[p].lane >= 0:
+            continue
+        if len(quiet) > 0 and quiet[manifolds[p].a] and quiet[manifolds[p].b]:
+            if manifolds[p].count > 0:
+                resting[rest] = p
+                rest += 1
+            continue
+        loose[found] = p
+        found += 1
+    return found, rest
+
+
+@kernel
+def release(
+    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
+    manifolds: Manifolds, points: Points, asleep: Flags,
+) -> int:  # fmt: skip
+    """Give the contacts of sleepers back to their records; return how many."""
+    rows, released = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
+    for lane in range(blocks * WIDE):
+        p = pair[lane]
+        if p >= 0 and (asleep[a[lane]] or asleep[b[lane]]):
+            store_lane(data, rows, lane, p, manifolds, points)
+            manifolds[p].lane = -1
+            give_up(data, rows, lane, a, b, pair, colour, used)
+            released += 1
+    return released
 
 
 @kernel

@@ -1,7 +1,7 @@
 """Whole steps of a world whose bodies touch, in one compiled loop: the stages of leapfrog, in their order."""
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, fused, inlined, kernel
-from physicslab.kernels.block_admission import FEW, SETTLED, settle
+from physicslab.kernels.block_admission import FEW, SETTLED, SPARSE, settle
 from physicslab.kernels.block_contact import refresh
 from physicslab.kernels.block_lanes import (
     ACTIVE,
@@ -22,6 +22,7 @@ from physicslab.kernels.gravity import uniform_gravity
 from physicslab.kernels.grid import still_holds
 from physicslab.kernels.impact import strike
 from physicslab.kernels.impulse import MOST_PARTS, relax, separate, solve
+from physicslab.kernels.islands import count_rest, find_touched
 from physicslab.kernels.motion import clear, drift, find_not_finite, kick
 from physicslab.kernels.near_pairs import promote, sort_loose
 from physicslab.kernels.pair import NEAR, STILL
@@ -29,17 +30,22 @@ from physicslab.kernels.records import Couples, Manifolds, Points
 from physicslab.kernels.ticks import charge, ticks
 
 __all__ = [
-    "ALL", "BEGIN", "CROWDED", "DIVERGED", "FIND", "STRIKE", "SYSTEMS", "UNLISTED", "advance",
+    "ALL", "BEGIN", "CROWDED", "DIVERGED", "DROWSY", "FIND", "STIRRED", "STRIKE", "SYSTEMS", "UNLISTED",
+    "advance",
 ]  # fmt: skip
 
-ALL, UNLISTED, CROWDED, DIVERGED = range(4)
+ALL, UNLISTED, CROWDED, DIVERGED, STIRRED, DROWSY = range(6)
 """Why the loop ended: all steps are made; the near pairs must be listed anew; so many bodies touch that more
-blocks may be needed; the last step has left something that is not finite."""
+blocks may be needed; the last step has left something that is not finite; somebody asleep is touched; at the
+end of a step, somebody may fall asleep."""
 BEGIN, FIND, STRIKE = range(3)
 """Where in a substep the loop begins: at its start; where bodies touch; at the impacts."""
-SYSTEMS = ("Bodies", "GravitySystem", "IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem")
+SYSTEMS = (
+    "Bodies", "GravitySystem", "IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem",
+    "SleepSystem",
+)  # fmt: skip
 """Whose work it is, in the order in which ``cost`` holds what each took."""
-_BODIES, _GRAVITY, _INTEGRATE, _BROAD_PHASE, _CONTACT, _RESOLVE = range(6)
+_BODIES, _GRAVITY, _INTEGRATE, _BROAD_PHASE, _CONTACT, _RESOLVE, _SLEEP = range(7)
 
 _TIMED = 8
 """One of so many steps of a call is timed: reading the clock takes a twentieth of a step of ten bodies."""
@@ -52,6 +58,9 @@ _Two = tuple[Numbers, Numbers]
 """Restitutions and frictions; inverse masses [1/kg] and moments of inertia [1/(kg m^2)]."""
 _Forces = tuple[Vectors, Numbers, Numbers, bool, float, float]
 """Forces [N], torques [N m], masses [kg]; whether any act, and gravity [m/s^2]."""
+_Sleep = tuple[bool, int, float, Numbers, Flags, Numbers, Numbers, Flags, Flags, Rows]
+"""Whether bodies may sleep, how many do, the step [s], inverse masses of sleepers too, who sleeps, rests [s]
+and lowest speeds [m/s]; room for marks; whose pairs are laid aside, and which pairs those are."""
 _Bounds = tuple[Numbers, float, float]
 """Where they are [m], their restitution and friction."""
 _Pairs = tuple[Manifolds, Points, Rows, Rows]
@@ -171,7 +180,7 @@ def _solved(counts: Rows, discs: Seats, boxes: Seats) -> _Lanes:
 def advance(
     steps: int, substeps: int, substep: int, stage: int, h: float, iterations: int,
     state: _State, kept: _State, sizes: _Sizes, materials: _Two, inverse: _Two, tethered: Flags,
-    forces: _Forces, damping: tuple[float, float], fall: float, fat: Vectors, bounds: _Bounds,
+    forces: _Forces, sleep: _Sleep, damping: tuple[float, float], fall: float, fat: Vectors, bounds: _Bounds,
     idle: _Idle, pairs: _Pairs, counts: Rows, discs: Seats, boxes: Seats, opened: Rows,
     spring: _Spring, span: float, cost: Rows,
 ) -> tuple[int, int, int, int, int, float]:  # fmt: skip
@@ -179,7 +188,7 @@ def advance(
 
     The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and what happens at each is what
     the systems do there. ``fall`` is how far [m] the forces may bring two bodies together within a substep;
-    ``counts`` are those of :mod:`physicslab.kernels.block_lanes`, and change. ``cost`` (6,) gets ticks added
+    ``counts`` are those of :mod:`physicslab.kernels.block_lanes`, and change. ``cost`` (7,) gets ticks added
     for each of ``SYSTEMS``.
 
     Returns why it ended, how many steps are done, the substep that it was in, the impacts in the steps that
@@ -189,6 +198,7 @@ def advance(
     position, angle, linear, angular = state
     manifolds, points, loose, touching = pairs
     hertz, damping_ratio, slop, max_push = spring
+    drowsy, sleepers, dt, own_inverse_mass, asleep, rest, slowest, touched, quiet, resting = sleep
     kicked = forces[3] or damping[0] != 0.0 or damping[1] != 0.0
     done, impacts, impacts_done = 0, 0, 0
     now = ticks()
@@ -199,7 +209,7 @@ def advance(
                 _keep(state, kept)
                 now = charge(cost, _BODIES, now)
             drift(position, angle, linear, angular, tethered, 0.5 * h)
-            now = _pull(forces, inverse[0], cost, charge(cost, _INTEGRATE, now))
+            now = _pull(forces, own_inverse_mass, cost, charge(cost, _INTEGRATE, now))
             if kicked:
                 kick(linear, angular, forces[0], forces[1], *inverse, tethered, *damping, 0.5 * h)
             now = charge(cost, _BODIES, now)
@@ -209,29 +219,27 @@ def advance(
                 return UNLISTED, done, substep, impacts_done, impacts, span
         if stage != STRIKE:
             _find(
-                counts,
-                discs,
-                boxes,
-                idle,
-                pairs,
-                state,
-                sizes,
-                materials,
-                inverse,
-                bounds,
-                substep == 0,
-                h,
-                fall,
-            )
-            if substep == 0 and (counts[LANES] > 0 or counts[ACTIVE] >= FEW):
-                came = settle(
-                    counts, discs, boxes, opened, manifolds, points, loose, touching,
-                    sizes[0], sizes[1], *materials, linear, *inverse, h,
-                ) if counts[LANES] > 0 else -1  # fmt: skip
-                if came != SETTLED:
-                    now = charge(cost, _CONTACT, now)
-                    return CROWDED, done, substep, impacts_done, impacts, span
+                counts, discs, boxes, idle, pairs, state, sizes, materials, inverse, bounds,
+                substep == 0, h, fall,
+            )  # fmt: skip
             now = charge(cost, _CONTACT, now)
+            if substep == 0 and (counts[LANES] > 0 or counts[ACTIVE] >= FEW):
+                came = SPARSE  # the first blocks are Python's to make
+                if counts[LANES] > 0:
+                    came = settle(
+                        counts, discs, boxes, opened, manifolds, points, loose, resting, touching, quiet,
+                        asleep, sizes[0], sizes[1], *materials, linear, *inverse, h,
+                    )  # fmt: skip
+                now = charge(cost, _CONTACT, now)
+                if came != SETTLED:
+                    return CROWDED, done, substep, impacts_done, impacts, span
+            if sleepers:
+                counts[ACTIVE], found = find_touched(
+                    manifolds, points, touching, counts[ACTIVE], inverse[0], linear, angular, asleep, touched
+                )
+                now = charge(cost, _SLEEP, now)
+                if found:
+                    return STIRRED, done, substep, impacts_done, impacts, span
         stage = BEGIN
         impacts += _strike(counts, discs, boxes, pairs, state, inverse, forces, h)
         now = charge(cost, _RESOLVE, now)
@@ -261,4 +269,11 @@ def advance(
             if failed:
                 return DIVERGED, done, substep, impacts_done, impacts, span
             done, impacts_done = done + 1, impacts
+            if drowsy:
+                due = count_rest(
+                    linear, angular, *sizes, own_inverse_mass, tethered, asleep, rest, slowest, dt
+                )
+                now = charge(cost, _SLEEP, now)
+                if due:
+                    return DROWSY, done, substep, impacts_done, impacts, span
     return ALL, done, substep, impacts_done, impacts, span

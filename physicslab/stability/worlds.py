@@ -31,12 +31,12 @@ def open_space(
     physics : PhysicsConfig, optional
         Other laws, in place of that gravity.
     **simulation
-        Fields of :class:`SimulationConfig`.
+        Fields of :class:`SimulationConfig`. Nobody sleeps unless they say so: what creeps is to be seen.
     """
     if physics is None:
         mode = "none" if gravity is None else "linear"
         physics = PhysicsConfig(gravity_mode=mode, gravity=Vector2(0.0, -(gravity or 0.0)))
-    config = SimulationConfig(**simulation)  # type: ignore[arg-type]
+    config = SimulationConfig(**{"sleeping": False, **simulation})  # type: ignore[arg-type]
     return World(*standard_systems(), physics=physics, simulation=config)
 
 

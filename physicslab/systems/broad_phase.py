@@ -8,13 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.kernels import grid, near_pairs
+from physicslab.kernels import block_lanes, grid, near_pairs
 from physicslab.schedule import Stage, System, at
 
 if TYPE_CHECKING:
     from physicslab.world import World
 
 __all__ = ["BroadPhaseSystem"]
+
+_FARTHEST = 8.0
+"""So many times as far as usual, at the most, a body that moves looks ahead."""
 
 
 def nothing_to_touch(world: World) -> str | None:
@@ -27,6 +30,14 @@ def nothing_to_touch(world: World) -> str | None:
     if shapes == 1 and world.physics.bounds is None:
         return "only one Shape in the scene, and no bounds"
     return None
+
+
+def _foresight(sleepers: int, awake: int) -> float:
+    """Return how many times as far as usual those look ahead who are awake.
+
+    Among many sleepers a new list costs more than the pairs that a few of them have too many in an old one.
+    """
+    return min(max(1.0, sleepers / max(1, awake)), _FARTHEST)
 
 
 class BroadPhaseSystem(System):
@@ -43,13 +54,9 @@ class BroadPhaseSystem(System):
     """
 
     kernels = (
-        grid.still_holds,
-        grid.fat_boxes,
-        grid.find_pairs,
-        near_pairs.part,
-        near_pairs.carry_over,
-        near_pairs.sort_loose,
-    )
+        grid.still_holds, grid.fat_boxes, grid.find_pairs,
+        near_pairs.part, near_pairs.carry_over, near_pairs.sort_loose, block_lanes.list_loose,
+    )  # fmt: skip
 
     def __init__(self) -> None:
         self.fat: NDArray[np.float64] = np.zeros((5, 0))
@@ -82,8 +89,10 @@ class BroadPhaseSystem(System):
             world.contacts.stale = True
         if not world.contacts.stale and grid.still_holds(position, angle, linear, *sizes, self.fat, h):
             return
+        awake = world.bodies.awake_inverse_mass
+        ahead = h * _foresight(world.sleep.count, int(np.count_nonzero(awake)))
+        grid.fat_boxes(position, angle, linear, *sizes, awake, self.fat, self._boxes, ahead)
         inverse_mass = world.bodies.inverse_mass
-        grid.fat_boxes(position, angle, linear, *sizes, inverse_mass, self.fat, self._boxes, h)
         bounded = world.physics.bounds is not None
         found, walls = self._count_pairs(shape["kind"], inverse_mass, bounded)
         world.contacts.part(world, self._couples, found, self._pairs, walls)

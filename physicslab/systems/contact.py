@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape, Transform, Velocity
 from physicslab.kernels import block_contact, contact, near_pairs
@@ -46,24 +47,34 @@ class ContactSystem(System):
     @at(Stage.CONTACT)
     def find(self, world: World, h: float) -> None:
         """Find or refresh the points of every near pair."""
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        shape, material = world.table(Shape), world.table(Material)
-        contacts, bodies, physics = world.contacts, world.bodies, world.physics
-        fall = self.fall(world, h)
+        contacts, bodies = world.contacts, world.bodies
         if contacts.blocks.lanes:
-            self._refresh(world, h, fall)
+            self._refresh(world, h, self.fall(world, h))
             contacts.changed()
         contacts.in_order(len(world.roster))
-        contacts.promote(world, h, fall)
-        contacts.active = contact.find_contacts(
-            contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count, contacts.touching,
-            transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
-            shape["kind"], shape["radius"], shape["width"], shape["height"],
-            material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
-            self._bounds, physics.bounds_restitution, physics.bounds_friction, self._first, h,
-            world.method.stages.window[0], fall,
+        contacts.promote(world, h, self.fall(world, h))
+        contacts.active = self.find_among(
+            world, contacts.loose, contacts.loose_count, contacts.touching,
+            bodies.awake_inverse_mass, bodies.awake_inverse_inertia, self._first, h,
         )  # fmt: skip
         self.settle(world, h)
+
+    def find_among(
+        self, world: World, pairs: NDArray[np.int64], count: int, touching: NDArray[np.int64],
+        inverse_mass: NDArray[np.float64], inverse_inertia: NDArray[np.float64], first: bool, h: float,
+    ) -> int:  # fmt: skip
+        """Find or refresh the points of ``count`` of the pairs; return how many of them touch."""
+        transform, velocity = world.table(Transform), world.table(Velocity)
+        shape, material = world.table(Shape), world.table(Material)
+        contacts, physics = world.contacts, world.physics
+        return contact.find_contacts(
+            contacts.manifolds, contacts.points, pairs, count, touching,
+            transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
+            shape["kind"], shape["radius"], shape["width"], shape["height"],
+            material["restitution"], material["friction"], inverse_mass, inverse_inertia,
+            self._bounds, physics.bounds_restitution, physics.bounds_friction, first, h,
+            world.method.stages.window[0], self.fall(world, h),
+        )  # fmt: skip
 
     def fall(self, world: World, h: float) -> float:
         """Return how far [m] uniform gravity may bring two bodies together within a time h."""

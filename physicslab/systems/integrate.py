@@ -38,5 +38,5 @@ class IntegrateSystem(System):
             bodies, velocity = world.bodies, world.table(Velocity)
             motion.foresee(
                 velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
-                bodies.inverse_mass, bodies.inverse_inertia, world.tethers.gentle, h,
+                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, world.tethers.gentle, h,
             )  # fmt: skip

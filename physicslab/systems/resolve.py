@@ -52,7 +52,9 @@ class ResolveSystem(System):
         contacts, bodies = world.contacts, world.bodies
         if not (contacts.count and world.has_forces and bodies.unequal):
             return 1
-        load = impulse.heaviest_load(contacts.manifolds, contacts.recorded, bodies.force, bodies.inverse_mass)
+        load = impulse.heaviest_load(
+            contacts.manifolds, contacts.recorded, bodies.force, bodies.awake_inverse_mass
+        )
         parts = 1
         while parts < impulse.MOST_PARTS and parts * parts * _LIGHT_LOAD < load:
             parts *= 2
@@ -69,7 +71,7 @@ class ResolveSystem(System):
             impacts, contacts.left = impact.strike(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.active,
                 transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
-                bodies.force, bodies.inverse_mass, bodies.inverse_inertia, world.has_forces,
+                bodies.force, bodies.awake_inverse_mass, bodies.awake_inverse_inertia, world.has_forces,
                 h, start * h, end * h,
             )  # fmt: skip
             world.collisions += impacts
@@ -85,7 +87,7 @@ class ResolveSystem(System):
                 contacts.loose_count, contacts.active = block_lanes.wake(
                     *lanes.layout, contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
                     contacts.touching, contacts.active, velocity["linear"], velocity["angular"],
-                    bodies.force, bodies.inverse_mass, h,
+                    bodies.force, bodies.awake_inverse_mass, h,
                 )  # fmt: skip
             contacts.blocks.lanes -= contacts.active - before
             contacts.unordered |= contacts.active > before
@@ -103,7 +105,8 @@ class ResolveSystem(System):
             impulse.solve(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.active,
                 *contacts.blocks.discs.solved, *contacts.blocks.boxes.solved,
-                velocity["linear"], velocity["angular"], bodies.inverse_mass, bodies.inverse_inertia,
+                velocity["linear"], velocity["angular"],
+                bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
                 bodies.force, world.has_forces, h, carried, world.simulation.iterations or 1,
                 self.hertz * finer, self.damping_ratio, self.slop,
             )  # fmt: skip
@@ -116,10 +119,11 @@ class ResolveSystem(System):
             impulse.relax(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.active,
                 *contacts.blocks.discs.solved, *contacts.blocks.boxes.solved,
-                velocity["linear"], velocity["angular"], bodies.inverse_mass, bodies.inverse_inertia,
+                velocity["linear"], velocity["angular"],
+                bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
                 h, world.simulation.iterations or 1,
             )  # fmt: skip
             impulse.separate(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.active,
-                world.table(Transform)["position"], bodies.inverse_mass, self.max_push * h,
+                world.table(Transform)["position"], bodies.awake_inverse_mass, self.max_push * h,
             )  # fmt: skip

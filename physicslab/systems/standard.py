@@ -9,6 +9,7 @@ from physicslab.systems.drag import DragSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
+from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.trail import TrailSystem
 
@@ -21,6 +22,7 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     IntegrateSystem,
     BroadPhaseSystem,
     ContactSystem,
+    SleepSystem,
     ResolveSystem,
     TrailSystem,
 )

@@ -23,8 +23,8 @@ class WorldFigures:
 
     Attributes
     ----------
-    bodies, candidate_pairs, contacts : int
-        How many bodies there are, pairs that are near each other, and pairs that touch.
+    bodies, asleep, candidate_pairs, contacts : int
+        How many bodies there are and sleep, pairs that are near each other, and pairs that touch.
     energy : Energy
         Kinetic and potential [J].
     drift : Drift
@@ -40,6 +40,7 @@ class WorldFigures:
     """
 
     bodies: int
+    asleep: int
     candidate_pairs: int
     contacts: int
     energy: Energy
@@ -55,7 +56,7 @@ def measure_world(world: World, watch: EnergyWatch) -> WorldFigures:
     drift = watch.sample(world)
     contacts, known = world.contacts, watch.known
     return WorldFigures(
-        len(body_rows(world)), contacts.candidate_pairs, contacts.count,
+        len(body_rows(world)), world.sleep.count, contacts.candidate_pairs, contacts.count,
         drift.latest, drift, watch.since, measure_momentum(world),
         known, known.error(world) if known is not None else 0.0,
     )  # fmt: skip

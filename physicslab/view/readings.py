@@ -17,7 +17,7 @@ def figure_lines(world: World, figures: WorldFigures, frame_rate: float) -> list
         Line(world.title or "PhysicsLab", kind="heading"),
         Line("Frame rate", f"{frame_rate:.0f} FPS"),
         Line("Time", f"{world.time:.2f} s"),
-        Line("Bodies", f"{figures.bodies}"),
+        Line("Bodies", _bodies(figures)),
         Line("Candidate pairs", f"{figures.candidate_pairs}"),
         Line("Contacts", f"{figures.contacts}"),
         *_energy_lines(world, figures),
@@ -28,6 +28,10 @@ def figure_lines(world: World, figures: WorldFigures, frame_rate: float) -> list
         Line("Gravity", _gravity(world)),
         *(Line(said, kind="remark") for said in [summation(world)] if said),
     ]
+
+
+def _bodies(figures: WorldFigures) -> str:
+    return f"{figures.bodies}, {figures.asleep} asleep" if figures.asleep else f"{figures.bodies}"
 
 
 def _energy_lines(world: World, figures: WorldFigures) -> list[Line]:

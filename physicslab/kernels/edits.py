@@ -1,0 +1,102 @@
+"""What somebody has changed behind the back of those who sleep."""
+
+import math
+
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, kernel
+
+__all__ = ["FIGURES", "INVERSE_MASS", "find_edited", "find_overlapped", "find_pushed", "note_figures"]
+
+FIGURES = 12
+"""So many numbers say where a body is and what it is made of."""
+INVERSE_MASS = 9
+"""Where among them its inverse mass stands."""
+_KIND, _MOVES = 3, 11
+_MARGIN = 1.05
+"""Circles around bodies that touch overlap, with so much room for rounding and gaps."""
+_SAME = 1e-6
+"""Share of a force within which it is the same."""
+
+
+@kernel
+def note_figures(
+    position: Vectors, angle: Numbers, kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
+    restitution: Numbers, friction: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers, moves: Flags,
+    figures: Vectors,
+) -> None:  # fmt: skip
+    """Write down where every body is and what it is made of."""
+    for i in range(len(angle)):
+        figures[i, 0], figures[i, 1], figures[i, 2] = position[i, 0], position[i, 1], angle[i]
+        figures[i, _KIND], figures[i, 4] = kind[i], radius[i]
+        figures[i, 5], figures[i, 6] = width[i], height[i]
+        figures[i, 7], figures[i, 8] = restitution[i], friction[i]
+        figures[i, INVERSE_MASS], figures[i, 10] = inverse_mass[i], inverse_inertia[i]
+        figures[i, _MOVES] = 1.0 if moves[i] else 0.0
+
+
+@kernel
+def find_edited(
+    figures: Vectors, kept: Vectors, linear: Vectors, angular: Numbers, asleep: Flags, known: Flags,
+    within: bool, edited: Flags,
+) -> int:  # fmt: skip
+    """Mark what is not as it was kept: sleepers, and shapes that nothing moves; return how many there are.
+
+    A sleeper must also have no velocity. What is awake and can be moved changes without end, and so does,
+    ``within`` a step, the place of what moves by itself. Rows that are not ``known`` are new, and no edit.
+    """
+    found = 0
+    for i in range(len(angular)):
+        edited[i] = False
+        if not known[i]:
+            continue
+        first = 0
+        if asleep[i]:
+            edited[i] = linear[i, 0] != 0.0 or linear[i, 1] != 0.0 or angular[i] != 0.0
+        else:
+            shaped = figures[i, _KIND] != 0.0 or kept[i, _KIND] != 0.0
+            fixed = figures[i, INVERSE_MASS] == 0.0 or kept[i, INVERSE_MASS] == 0.0
+            if not (shaped and fixed):
+                continue
+            if within and figures[i, _MOVES] != 0.0:
+                first = _KIND
+        for k in range(first, FIGURES):
+            if figures[i, k] != kept[i, k]:
+                edited[i] = True
+        found += 1 if edited[i] else 0
+    return found
+
+
+@kernel
+def find_overlapped(figures: Vectors, causes: Rows, asleep: Flags, marked: Flags) -> None:
+    """Mark the sleepers that some of the bodies ``causes`` may touch, by the circles around them."""
+    for k in range(len(causes)):
+        c = causes[k]
+        if figures[c, _KIND] == 0.0:
+            continue
+        reach = figures[c, 4] + 0.5 * math.sqrt(figures[c, 5] * figures[c, 5] + figures[c, 6] * figures[c, 6])
+        for i in range(len(asleep)):
+            if asleep[i]:
+                w, h = figures[i, 5], figures[i, 6]
+                both = _MARGIN * (reach + figures[i, 4] + 0.5 * math.sqrt(w * w + h * h))
+                x, y = figures[i, 0] - figures[c, 0], figures[i, 1] - figures[c, 1]
+                if x * x + y * y <= both * both:
+                    marked[i] = True
+
+
+@kernel
+def find_pushed(force: Vectors, torque: Numbers, kept: Vectors, asleep: Flags, pushed: Flags) -> int:
+    """Mark the sleepers on which other forces act than those kept (rows, 3); return how many there are.
+
+    A kept force that is no number is not known yet, as after a file was read, and is taken from now on.
+    """
+    found = 0
+    for i in range(len(torque)):
+        if not asleep[i]:
+            continue
+        if math.isnan(kept[i, 0]):
+            kept[i, 0], kept[i, 1], kept[i, 2] = force[i, 0], force[i, 1], torque[i]
+        x, y, turn = force[i, 0] - kept[i, 0], force[i, 1] - kept[i, 1], torque[i] - kept[i, 2]
+        strength = kept[i, 0] * kept[i, 0] + kept[i, 1] * kept[i, 1]
+        if x * x + y * y > _SAME * _SAME * strength or abs(turn) > _SAME * abs(kept[i, 2]):
+            pushed[i] = True
+            found += 1
+    return found

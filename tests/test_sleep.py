@@ -1,0 +1,590 @@
+"""Islands and sleeping: who may stop being simulated, and what wakes whom."""
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from desk import bits
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.config import PhysicsConfig
+from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.json_text import json_text
+from physicslab.prefabs import box, circle, container, pile, stack
+from physicslab.scene import read_scene, write_scene
+from physicslab.schedule import ForceSystem, Stage, System, at
+from physicslab.stability.worlds import floor, open_space
+from physicslab.systems.standard import standard_systems
+from physicslab.vector import Vector2
+from physicslab.world import World
+
+
+def resting_boxes(*places: float, friction: float = 0.5, **simulation: object) -> tuple[World, list[int]]:
+    """Return a floor, and boxes of 1 m on it."""
+    world = open_space(**{"sleeping": True, **simulation})  # type: ignore[arg-type]
+    floor(world, friction=friction)
+    boxes = [box(world, (x, 0.5), width=1.0, height=1.0, friction=friction) for x in places]
+    return world, boxes
+
+
+def sleeping_boxes(*places: float, friction: float = 0.5) -> tuple[World, list[int]]:
+    """Return the same when all boxes sleep."""
+    world, boxes = resting_boxes(*places, friction=friction)
+    world.run(seconds=1.0)
+    assert sleepers(world) == set(boxes)
+    return world, boxes
+
+
+def sleepers(world: World) -> set[int]:
+    """Return the entities that sleep."""
+    assert world.sleep.count == np.count_nonzero(world.sleep.asleep)
+    return set(world.roster.entities[world.sleep.asleep].tolist())
+
+
+# ---- falling asleep ----------------------------------------------------------------------------------------
+
+
+def test_half_a_second_of_rest_and_not_less() -> None:
+    world, boxes = resting_boxes(0.0)
+    world.run(steps=29)
+    assert not sleepers(world)
+    world.step()
+    assert sleepers(world) == set(boxes)
+    velocity = world.component(boxes[0], Velocity)
+    assert (velocity.linear, velocity.angular) == (Vector2(), 0.0)
+
+
+def test_a_sleeper_stays_where_it_is_and_its_contacts_are_still_told() -> None:
+    world, (first,) = sleeping_boxes(0.0)
+    before, contact = bits(world), world.contacts.between(world, 1, first)
+    world.run(seconds=5.0)
+    assert bits(world) == before
+    assert contact is not None and world.contacts.between(world, 1, first) == contact
+    weight = sum(point.normal_impulse for point in contact.points) * 4 * 60
+    assert weight == pytest.approx(9.81, rel=1e-3)
+    assert world.contacts.count == 1 and world.contacts.max_penetration == contact.depth
+
+
+def test_a_whole_island_or_nobody() -> None:
+    world, boxes = resting_boxes(0.0, 0.0)
+    world.component(boxes[1], Transform).position = Vector2(0.0, 1.5)
+    ball = circle(world, (0.0, 4.0), radius=0.1, restitution=0.9, friction=0.5)
+    world.component(boxes[1], Material).restitution = 0.9
+    for _ in range(600):
+        world.step()
+        asleep = sleepers(world)
+        assert asleep in (set(), set(boxes), {*boxes, ball})
+        touching = {end for contact in world.contacts.listed(world) for end in (contact.a, contact.b)}
+        if ball in touching:
+            assert (ball in asleep) == (boxes[0] in asleep)
+    assert asleep == {*boxes, ball}
+
+
+def test_two_that_do_not_touch_sleep_each_for_itself() -> None:
+    world, boxes = resting_boxes(-5.0, 5.0)
+    world.component(boxes[0], Velocity).linear = Vector2(2.0, 0.0)
+    world.run(seconds=0.6)
+    assert sleepers(world) == {boxes[1]}
+
+
+def test_a_puck_on_ice_never_freezes() -> None:
+    world, (puck,) = resting_boxes(0.0, friction=0.0)
+    world.component(puck, Velocity).linear = Vector2(0.01, 0.0)
+    world.run(seconds=10.0)
+    assert not sleepers(world)
+    assert world.component(puck, Transform).position.x == pytest.approx(0.1, rel=1e-9)
+
+
+def test_a_slow_gas_never_freezes() -> None:
+    laws = PhysicsConfig(gravity_mode="none", bounds=(-2.0, -2.0, 2.0, 2.0), bounds_friction=0.5)
+    world = open_space(physics=laws, sleeping=True, collisions="step")
+    for x in range(-3, 4):
+        circle(world, (0.5 * x, 0.0), radius=0.2, velocity=(0.01 * x, 0.005), friction=0.5, restitution=1.0)
+    world.run(seconds=10.0)
+    assert not sleepers(world)
+
+
+@pytest.mark.parametrize("lean", [0.002, 0.01, 0.05])
+def test_a_box_on_its_edge_tips_over_before_it_sleeps(lean: float) -> None:
+    world, (tipping,) = resting_boxes(0.0)
+    transform = world.component(tipping, Transform)
+    transform.angle, transform.position = 0.25 * math.pi + lean, Vector2(0.0, math.sqrt(0.5))
+    world.run(seconds=6.0)
+    assert sleepers(world) == {tipping}
+    turned = transform.angle / (0.5 * math.pi)
+    assert abs(turned - round(turned)) < 1e-3 and transform.position.y == pytest.approx(0.5, abs=2e-3)
+
+
+def test_what_rides_on_a_lift_stays_awake_until_it_stands() -> None:
+    world = open_space(sleeping=True)
+    lift = world.spawn(
+        Transform((0.0, -0.5)), Velocity((0.0, 0.02)), Shape.box(4.0, 1.0), Material(friction=0.5)
+    )
+    rider = box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
+    world.run(seconds=3.0)
+    assert not sleepers(world)
+    world.component(lift, Velocity).linear = Vector2()
+    world.run(seconds=1.5)
+    assert sleepers(world) == {rider}
+    world.component(lift, Velocity).linear = Vector2(0.0, 0.5)
+    world.run(seconds=1.0)
+    assert not sleepers(world)
+    assert world.component(rider, Transform).position.y == pytest.approx(0.5 + 0.06 + 0.5, abs=0.01)
+
+
+def test_a_lift_that_starts_in_a_file_wakes_who_stands_on_it() -> None:
+    world = open_space(sleeping=True)
+    lift = world.spawn(Transform((0.0, -0.5)), Velocity(), Shape.box(4.0, 1.0), Material(friction=0.5))
+    rider = box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
+    world.run(seconds=1.0)
+    assert sleepers(world) == {rider}
+    world.component(lift, Velocity).linear = Vector2(0.0, 0.3)
+    again = read_scene(write_scene(world))
+    for each in (world, again):
+        each.run(seconds=0.25)
+        assert not sleepers(each)
+    assert bits(again) == bits(world)
+
+
+@pytest.mark.parametrize("part", [Spring(anchor_b=(0.0, 3.0), stiffness=1.0), Drag(linear=0.1)])
+def test_nobody_sleeps_on_whom_a_spring_or_drag_acts(part: Spring | Drag) -> None:
+    world, boxes = resting_boxes(0.0, 5.0)
+    world.add(boxes[0], part)
+    world.run(seconds=2.0)
+    assert sleepers(world) <= {boxes[1]}
+    if isinstance(part, Spring):
+        assert sleepers(world) == {boxes[1]}
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"sleeping": False}, "sleeping is false"),
+        ({"physics": PhysicsConfig(gravity_mode="planet")}, "planets attract each other"),
+    ],
+)
+def test_it_says_why_it_is_left_out(change: dict[str, object], reason: str) -> None:
+    world = open_space(**{"sleeping": True, **change})  # type: ignore[arg-type]
+    floor(world)
+    box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
+    world.run(seconds=1.0)
+    assert {left.name: left.reason for left in world.schedule.left_out}["SleepSystem"] == reason
+    assert not sleepers(world)
+
+
+def test_flights_between_located_impacts_know_no_sleep() -> None:
+    world = open_space(sleeping=True, collisions="exact")
+    floor(world, friction=0.5, restitution=0.5)
+    circle(world, (0.0, 0.3), radius=0.25, friction=0.5, restitution=0.5)
+    world.run(seconds=3.0)
+    assert world.method.collisions == "exact"
+    reasons = {left.name: left.reason for left in world.schedule.left_out}
+    assert reasons["SleepSystem"] == "impacts are located exactly"
+
+
+def test_a_discs_pile_sleeps_out_of_its_blocks_and_wakes_into_them() -> None:
+    world = open_space(sleeping=True)
+    container(world, width=3.0, height=6.0)
+    pile(world, 120, columns=11)
+    world.run(seconds=8.0)
+    contacts = world.contacts
+    assert world.sleep.count == 120
+    assert (contacts.blocks.lanes, contacts.active, contacts.loose_count) == (0, 0, 0)
+    assert contacts.count == contacts.resting_count > 200
+    world.sleep.wake(world, world.sleep.asleep.copy())
+    assert contacts.count > 200
+    world.run(steps=2)
+    assert contacts.blocks.lanes > 0.7 * contacts.count > 140
+
+
+# ---- waking ------------------------------------------------------------------------------------------------
+
+
+def struck(sleeping: bool) -> tuple[World, int, int]:
+    """Return a box on a floor with hardly any friction, at rest for a second, and a ball about to hit it."""
+    world, (target,) = resting_boxes(0.0, friction=1e-9, sleeping=sleeping)
+    world.component(target, Material).restitution = 0.5
+    world.run(seconds=1.0)
+    ball = circle(world, (-1.0, 0.5), radius=0.3, velocity=(6.0, 0.0), mass=0.5, restitution=0.5)
+    return world, target, ball
+
+
+def test_a_blow_wakes_and_finds_the_bodys_own_mass() -> None:
+    world, target, ball = struck(sleeping=True)
+    awake, other, its_ball = struck(sleeping=False)
+    assert sleepers(world) == {target}
+    before = measure_momentum(world).linear.x
+    for each in (world, awake):
+        each.run(seconds=0.15)
+    assert not sleepers(world)
+    assert measure_momentum(world).linear.x == pytest.approx(before, rel=1e-6)
+    for mine, theirs in ((target, other), (ball, its_ball)):
+        speed, expected = (
+            world.component(mine, Velocity).linear.x, awake.component(theirs, Velocity).linear.x
+        )  # fmt: skip
+        assert speed == pytest.approx(expected, abs=1e-3)
+    assert world.component(target, Velocity).linear.x == pytest.approx(6.0 * 1.5 / 3.0, abs=1e-3)
+
+
+def test_a_touch_far_up_wakes_all_of_a_tower_and_nobody_else() -> None:
+    world, (beside,) = resting_boxes(20.0)
+    tower = stack(world, 5)
+    world.run(seconds=3.0)
+    assert sleepers(world) == {beside, *tower}
+    late = box(world, (0.1, 6.0), width=0.4, height=0.4, friction=0.5)
+    while world.steps < 400 and tower[0] in sleepers(world):
+        world.step()
+    assert sleepers(world) == {beside}
+    world.run(seconds=5.0)
+    assert sleepers(world) == {beside, late, *tower}
+
+
+def test_what_is_spawned_elsewhere_wakes_nobody() -> None:
+    world, boxes = sleeping_boxes(0.0)
+    circle(world, (8.0, 5.0), radius=0.2)
+    box(world, (-8.0, 5.0), width=1.0, height=1.0, static=True)
+    world.spawn(Transform((0.0, 0.5)), Velocity())
+    world.run(steps=10)
+    assert sleepers(world) == set(boxes)
+
+
+def change_velocity(world: World, first: int) -> None:
+    world.component(first, Velocity).linear = Vector2(0.0, 1.0)
+
+
+def change_place(world: World, first: int) -> None:
+    world.component(first, Transform).position = Vector2(0.0, 2.0)
+
+
+def change_angle(world: World, first: int) -> None:
+    world.component(first, Transform).angle = 0.1
+
+
+def change_size(world: World, first: int) -> None:
+    world.component(first, Shape).width = 0.5
+
+
+def change_mass(world: World, first: int) -> None:
+    world.component(first, Mass).mass = 2.0
+
+
+def change_material(world: World, first: int) -> None:
+    world.component(first, Material).friction = 0.1
+
+
+def hold(world: World, first: int) -> None:
+    world.add(first, Held())
+
+
+def tether(world: World, first: int) -> None:
+    world.spawn(Spring(first, anchor_b=(0.0, 3.0), stiffness=1.0))
+
+
+def change_laws(world: World, first: int) -> None:
+    world.physics = replace(world.physics, gravity=Vector2(0.0, -5.0))
+
+
+def change_steps(world: World, first: int) -> None:
+    world.simulation = replace(world.simulation, substeps=5)
+
+
+def move_floor(world: World, first: int) -> None:
+    world.component(1, Transform).position = Vector2(0.0, -0.6)
+
+
+def shrink_floor(world: World, first: int) -> None:
+    world.component(1, Shape).width = 30.0
+
+
+def grease_floor(world: World, first: int) -> None:
+    world.component(1, Material).friction = 0.01
+
+
+def remove_floor(world: World, first: int) -> None:
+    world.remove(1)
+
+
+def free_floor(world: World, first: int) -> None:
+    world.add(1, Velocity())
+    world.add(1, Mass(1.0))
+
+
+def hollow_floor(world: World, first: int) -> None:
+    world.discard(1, Shape)
+
+
+def spawn_wall(world: World, first: int) -> None:
+    box(world, (0.9, 0.5), width=1.0, height=1.0, static=True)
+
+
+EDITS: list[Callable[[World, int], None]] = [
+    change_velocity, change_place, change_angle, change_size, change_mass, change_material, hold, tether,
+    change_laws, change_steps, move_floor, shrink_floor, grease_floor, remove_floor, free_floor, hollow_floor,
+    spawn_wall,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("edit", EDITS, ids=lambda edit: edit.__name__)
+def test_an_edit_wakes_whom_it_concerns(edit: Callable[[World, int], None]) -> None:
+    world, (first,) = sleeping_boxes(0.0)
+    edit(world, first)
+    world.step()
+    assert first not in sleepers(world)
+
+
+@pytest.mark.parametrize("edit", [change_velocity, change_place, hold, spawn_wall])
+def test_an_edit_of_one_body_lets_others_sleep(edit: Callable[[World, int], None]) -> None:
+    world, (first, second) = sleeping_boxes(0.0, 8.0)
+    edit(world, first)
+    world.step()
+    assert sleepers(world) == {second}
+
+
+def test_removing_a_support_wakes_what_lay_on_it() -> None:
+    world, (beside,) = resting_boxes(20.0)
+    tower = stack(world, 4)
+    world.run(seconds=3.0)
+    world.remove(tower[0])
+    world.step()
+    assert sleepers(world) == {beside}
+    world.run(seconds=3.0)
+    assert world.component(tower[1], Transform).position.y == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_wall_that_a_system_moves_within_steps_wakes_what_leaned_on_it() -> None:
+    class Mover(System):
+        by = 0.0
+
+        @at(Stage.PREPARE)
+        def move(self, world: World, h: float) -> None:
+            world.table(Transform)["position"][1, 1] += self.by
+
+    world, boxes = resting_boxes(0.0)
+    mover = Mover()
+    world.install(mover)
+    world.run(seconds=1.0)
+    assert sleepers(world) == set(boxes)
+    mover.by = -0.01
+    world.run(steps=2)
+    assert not sleepers(world)
+
+
+class Wind(ForceSystem):
+    """Pushes everything to the right, as hard as it is told."""
+
+    strength = 0.0
+
+    @at(Stage.FORCE)
+    def blow(self, world: World, h: float) -> None:
+        world.bodies.force[2:, 0] += self.strength
+
+
+def test_a_force_wakes() -> None:
+    wind = Wind()
+    world = World(*standard_systems(), wind)
+    floor(world)
+    first = box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
+    wind.strength = 0.5
+    world.run(seconds=1.0)
+    assert sleepers(world) == {first}
+    world.run(seconds=1.0)
+    assert sleepers(world) == {first}
+    wind.strength = 20.0
+    world.step()
+    assert not sleepers(world)
+    world.run(seconds=1.0)
+    assert world.component(first, Velocity).linear.x > 5.0
+
+
+def test_a_hand_that_comes_by_wakes_what_it_pushes() -> None:
+    world, (first, second) = sleeping_boxes(0.0, 3.0)
+    world.add(second, Held())
+    world.component(second, Velocity).linear = Vector2(-2.0, 0.0)
+    world.run(seconds=2.0)
+    assert not sleepers(world)
+    assert world.component(first, Transform).position.x < -1.5
+
+
+def test_a_step_that_diverges_leaves_everybody_awake() -> None:
+    world, boxes = sleeping_boxes(0.0)
+    before = bits(world)
+    doomed = circle(world, (9.0, 3.0), radius=0.1, velocity=(0.0, 1.7e308))
+    world.component(doomed, Transform).position = Vector2(9.0, 1.7e308)
+    with pytest.raises(ArithmeticError):
+        world.run(seconds=1.0)
+    assert not sleepers(world)
+    world.remove(doomed)
+    world.run(seconds=2.0)
+    assert sleepers(world) == set(boxes)
+    assert np.allclose(np.frombuffer(before)[:4], np.frombuffer(bits(world))[:4])
+
+
+# ---- steps that are passed over ----------------------------------------------------------------------------
+
+
+def test_where_everybody_sleeps_no_substep_is_made() -> None:
+    world, _ = sleeping_boxes(0.0, 4.0)
+    calls = {name: timing.calls for name, timing in world.schedule.timings.items()}
+    evaluations, time = world.force_evaluations, world.time
+    world.run(seconds=2.0)
+    assert world.time == pytest.approx(time + 2.0) and world.steps == 180
+    assert world.force_evaluations == evaluations
+    for name in ("ResolveSystem", "GravitySystem", "IntegrateSystem", "BroadPhaseSystem"):
+        assert world.schedule.timings[name].calls == calls[name]
+
+
+def test_somebody_elses_system_is_called_while_everybody_sleeps() -> None:
+    wind = Wind()
+    world = World(*standard_systems(), wind)
+    floor(world)
+    box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
+    world.run(seconds=1.0)
+    calls = world.schedule.timings["Wind"].calls
+    world.run(steps=3)
+    assert world.schedule.timings["Wind"].calls == calls + 12
+
+
+# ---- files -------------------------------------------------------------------------------------------------
+
+
+def assert_goes_on_alike(world: World, steps: int) -> World:
+    """Assert that a world read from its file goes on with the same bits; return it."""
+    document = write_scene(world)
+    again = read_scene(json.loads(json_text(document)))
+    assert json_text(write_scene(again)) == json_text(document)
+    for _ in range(steps):
+        world.step()
+        again.step()
+        assert bits(again) == bits(world)
+    assert json_text(write_scene(again)) == json_text(write_scene(world))
+    assert (again.contacts.count, again.sleep.count) == (world.contacts.count, world.sleep.count)
+    return again
+
+
+@pytest.mark.parametrize("before", [20, 45, 70, 150])
+def test_a_world_in_which_some_sleep_goes_on_from_a_file_bit_for_bit(before: int) -> None:
+    world, _ = resting_boxes(-4.0, 4.0)
+    stack(world, 3)
+    circle(world, (4.2, 6.0), radius=0.3, friction=0.5, restitution=0.4)
+    world.run(steps=before)
+    again = assert_goes_on_alike(world, 150)
+    assert again.contacts.listed(again) == world.contacts.listed(world)
+
+
+def test_a_pile_beside_a_sleeping_one_goes_on_from_a_file_bit_for_bit() -> None:
+    world = open_space(sleeping=True)
+    for middle, columns, higher in ((-4.0, 11, 0.0), (4.0, 11, 12.0)):
+        container(world, (middle, 0.0), width=3.0, height=6.0)
+        pile(world, 120, (middle, higher), columns=columns)
+    while world.sleep.count < 120:
+        world.step()
+    assert world.contacts.blocks.lanes > 0 and world.sleep.count < 240
+    assert_goes_on_alike(world, 60)
+
+
+def test_a_fresh_world_has_no_rests_in_its_file() -> None:
+    world, _ = resting_boxes(0.0)
+    assert "rests" not in write_scene(world)
+    world.run(steps=3)
+    assert [len(rest) for rest in write_scene(world)["rests"]] == [3]
+    world.run(seconds=1.0)
+    assert [len(rest) for rest in write_scene(world)["rests"]] == [1]
+
+
+def test_who_hangs_in_the_air_in_a_file_wakes() -> None:
+    world, (first,) = sleeping_boxes(0.0)
+    document = write_scene(world)
+    document["entities"][1]["Transform"]["position"] = [0.0, 3.0]
+    again = read_scene(document)
+    again.run(seconds=0.5)
+    assert again.component(first, Transform).position.y < 2.5
+
+
+def test_an_edit_before_a_file_is_written_is_not_lost() -> None:
+    world, (first,) = sleeping_boxes(0.0)
+    change_place(world, first)
+    again = read_scene(write_scene(world))
+    for each in (world, again):
+        each.run(seconds=0.25)
+    assert bits(again) == bits(world) and not sleepers(world)
+
+
+# ---- properties --------------------------------------------------------------------------------------------
+
+bodies = st.tuples(
+    st.booleans(), st.floats(-3.0, 3.0), st.floats(0.3, 4.0), st.floats(0.1, 0.6), st.floats(0.1, 0.6),
+    st.floats(-2.0, 2.0), st.floats(0.0, 0.6), st.floats(0.0, 1.0),
+)  # fmt: skip
+
+
+def thrown(given: list[tuple[float, ...]]) -> World:
+    """Return bodies thrown together within bounds, late ones and heavy ones among them."""
+    laws = PhysicsConfig(bounds=(-3.5, 0.0, 3.5, 8.0))
+    world = open_space(physics=laws, sleeping=True, collisions="step")
+    for disc, x, y, width, height, vx, restitution, friction in given:
+        common = {"velocity": (vx, 0.0), "restitution": restitution, "friction": friction}
+        if disc:
+            circle(world, (x, y), radius=0.5 * width, **common)  # type: ignore[arg-type]
+        else:
+            box(world, (x, y), width=width, height=height, **common)  # type: ignore[arg-type]
+    return world
+
+
+class Onlooker(System):
+    """Looks at every step, so that each is made stage by stage."""
+
+    @at(Stage.FINISH)
+    def look(self, world: World, h: float) -> None:
+        """See that it is there."""
+
+
+@settings(max_examples=15)
+@given(st.lists(bodies, min_size=1, max_size=8), bodies)
+def test_runs_steps_and_files_agree_while_bodies_sleep_and_wake(
+    given: list[tuple[float, ...]], late: tuple[float, ...]
+) -> None:
+    stepped, ran = thrown(given), thrown(given)
+    stepped.install(Onlooker())
+    for world in (stepped, ran):
+        world.run(steps=150)
+        circle(world, (late[1], 5.0), radius=0.5 * late[3], velocity=(late[5], 0.0), friction=late[7])
+        world.run(steps=60)
+    assert bits(stepped) == bits(ran)
+    assert stepped.contacts.export() == ran.contacts.export()
+    assert stepped.sleep.export(stepped) == ran.sleep.export(ran)
+    again = read_scene(json.loads(json_text(write_scene(ran))))
+    for world in (again, ran):
+        world.run(steps=60)
+    assert bits(again) == bits(ran)
+
+
+@settings(max_examples=15)
+@given(st.lists(bodies, min_size=1, max_size=8))
+def test_sleepers_have_no_velocity_and_lie_on_something(given: list[tuple[float, ...]]) -> None:
+    world = thrown(given)
+    for _ in world.stepping(steps=240, stride=5):
+        asleep, velocity = world.sleep.asleep, world.table(Velocity)
+        assert not velocity["linear"][asleep].any() and not velocity["angular"][asleep].any()
+        assert not (world.sleep.rest[asleep] > 0.0).any()
+        near = world.contacts.manifolds[: world.contacts.candidate_pairs]
+        touching = near[near["count"] > 0]
+        one, other = asleep[touching["a"]], asleep[touching["b"]]
+        movable = world.bodies.inverse_mass > 0.0
+        both = movable[touching["a"]] & movable[touching["b"]]
+        assert (one == other)[both].all()
+        assert np.isin(np.flatnonzero(asleep), np.concatenate((touching["a"], touching["b"]))).all()
+
+
+def test_falling_asleep_costs_no_more_energy_than_the_speed_allows() -> None:
+    world = open_space(sleeping=True)
+    floor(world)
+    stack(world, 6)
+    while not world.sleep.count:
+        before = measure_energy(world).total
+        world.step()
+    assert abs(measure_energy(world).total - before) < 6 * 0.5 * 0.05**2
