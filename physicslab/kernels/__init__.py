@@ -1,9 +1,9 @@
 """Compiled loops over arrays. Nothing here knows a world, an entity or a screen.
 
-A function that Python calls is a ``@kernel``. Its annotations are its one signature: :data:`Numbers`,
-:data:`Vectors`, :data:`Rows`, :data:`Flags`, ``float``, ``int`` and ``bool``. A stray int, float32 or strided
-column is an error and never a silent recompilation of seconds. A function that only kernels call is
-``@inlined``.
+A function that Python calls is a ``@kernel``, or an ``@allocating_kernel`` if it makes arrays. Its annotations
+are its one signature: :data:`Numbers`, :data:`Vectors`, :data:`Rows`, :data:`Flags`, ``float``, ``int`` and
+``bool``. A stray int, float32 or strided column is an error and never a silent recompilation of seconds. A
+function that only kernels call is ``@inlined``.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from numpy.typing import NDArray
 
 __all__ = [
     "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
-    "allocating", "ask_before_compiling", "cache_directory", "cached", "compile_kernels", "fused", "inlined",
-    "inlined_loosely", "kernel", "load", "prepare",
+    "allocating", "allocating_kernel", "ask_before_compiling", "cache_directory", "cached", "compile_kernels",
+    "fused", "inlined", "inlined_loosely", "kernel", "load", "prepare",
 ]  # fmt: skip
 
 Numbers = Annotated[NDArray[np.float64], float64[::1]]
@@ -135,8 +135,20 @@ def inlined_loosely[F: Callable[..., Any]](function: F) -> F:
 
 
 def kernel[F: Callable[..., Any]](function: F) -> F:
-    """Make a function that Python calls, for the one signature that its annotations give."""
-    jitted: Any = _jit(function)
+    """Make a function that Python calls, and that makes no arrays, for the signature of its annotations.
+
+    numba takes an array in for half the price where nobody counts who refers to it.
+    """
+    return _listed(function, counts=False)
+
+
+def allocating_kernel[F: Callable[..., Any]](function: F) -> F:
+    """Make a function like ``@kernel`` that makes arrays of its own."""
+    return _listed(function, counts=True)
+
+
+def _listed[F: Callable[..., Any]](function: F, counts: bool) -> F:
+    jitted: Any = _jit(function, counts)
     jitted.declared_signature = _signature(function)
     jitted.compiled = False
     KERNELS.append(jitted)

@@ -7,7 +7,7 @@ import numpy as np
 from numba import uint64
 from numpy.typing import NDArray
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
 from physicslab.kernels.block_layout import (
     ARM_AX,
     ARM_AY,
@@ -128,7 +128,7 @@ def release(
     return released
 
 
-@kernel
+@allocating_kernel
 def follow_pairs(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, pairs: int,
@@ -174,7 +174,7 @@ def _resting_speed(a: int, b: int, linear: Vectors, force: Vectors, inverse_mass
     return resting
 
 
-@kernel
+@allocating_kernel
 def wake(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, points: Points, loose: Rows, loose_count: int, touching: Rows, count: int,

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from physicslab.kernels import Numbers, kernel
+from physicslab.kernels import Numbers, allocating_kernel
 from physicslab.kernels.compensated import add
 from physicslab.kernels.force_calls import Calls, accelerate
 
 __all__ = ["rk4"]
 
 
-@kernel
+@allocating_kernel
 def rk4(
     q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float, steps: int
 ) -> int:

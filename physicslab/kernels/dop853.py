@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Vectors, allocating_kernel, inlined
 from physicslab.kernels.compensated import add
 from physicslab.kernels.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, LAST_LOW, WEIGHTS
 from physicslab.kernels.force_calls import Calls, accelerate
@@ -130,7 +130,7 @@ def _all_finite(q: Numbers, v: Numbers, n: int) -> bool:
     return finite
 
 
-@kernel
+@allocating_kernel
 def dop853(
     q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
     span: float, tolerance: float, period: float, most: int,

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
 from physicslab.kernels.pairwise import attract_pairwise, depth_of_pairs
 from physicslab.kernels.tree_pull import attract_by_tree, depth_by_tree
 
@@ -77,7 +77,7 @@ def attract(
         attract_pairwise(x, y, mass, softening, plummer, ax, ay)
 
 
-@kernel
+@allocating_kernel
 def planet_gravity(
     force: Vectors, position: Vectors, mass: Numbers, rows: Rows, G: float, softening: float, plummer: bool
 ) -> None:
@@ -110,7 +110,7 @@ def planet_gravity(
         force[i, 1] += fy
 
 
-@kernel
+@allocating_kernel
 def planet_potential(
     position: Vectors, mass: Numbers, rows: Rows, G: float, softening: float, plummer: bool
 ) -> float:

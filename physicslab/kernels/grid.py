@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.records import Couples, Pairs
 
 __all__ = ["fat_boxes", "find_pairs", "still_holds"]
@@ -279,7 +279,7 @@ def _level(
     return found, large_count
 
 
-@kernel
+@allocating_kernel
 def find_pairs(
     boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers,
     bounded: bool, bounds: Numbers, pairs: Pairs, couples: Couples,

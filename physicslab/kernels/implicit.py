@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined
 from physicslab.kernels.compensated import add
 from physicslab.kernels.dop853 import largest
 from physicslab.kernels.force_calls import Calls, accelerate_over
@@ -189,7 +189,7 @@ def _search(
     return -1, evaluations
 
 
-@kernel
+@allocating_kernel
 def implicit_midpoint(
     q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls,
     order: Rows, band: int, h: float, steps: int,

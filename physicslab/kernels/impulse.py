@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
 from physicslab.kernels.block_impulse import pressed, start_lanes, sweep_lanes
 from physicslab.kernels.records import Manifolds, Point, Points
 
@@ -238,7 +238,7 @@ def relax(
         drift = 0.0
 
 
-@kernel
+@allocating_kernel
 def separate(
     manifolds: Manifolds,
     points: Points,

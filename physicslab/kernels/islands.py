@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
 from physicslab.kernels.records import Manifolds, Points
 
 __all__ = ["READY", "REST", "SLOW", "count_rest", "find_held", "find_touched", "join_marked", "list_resting"]
@@ -69,7 +69,7 @@ def _join(parent: Rows, i: int, j: int) -> None:
         parent[max(i, j)] = min(i, j)
 
 
-@kernel
+@allocating_kernel
 def find_held(
     manifolds: Manifolds, points: Points, pairs: int,
     inverse_mass: Numbers, linear: Vectors, angular: Numbers, ready: Flags, held: Flags,
@@ -147,7 +147,7 @@ def find_touched(
     return kept, found
 
 
-@kernel
+@allocating_kernel
 def join_marked(a: Rows, b: Rows, count: Rows, asleep: Flags, marked: Flags) -> None:
     """Mark all sleepers that touch marked ones, directly or through other sleepers.
 

@@ -7,7 +7,7 @@ two come so near that they may touch within the substep.
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points
 
 __all__ = ["REACH", "carry_over", "part", "promote", "sort_loose"]
@@ -66,7 +66,7 @@ def _note_known(manifolds: Manifolds, count: int, table: Rows) -> None:
             table[place] = q
 
 
-@kernel
+@allocating_kernel
 def part(
     couples: Couples, found: int, pairs: Pairs, walls: int,
     kind: Rows, radius: Numbers, inverse_mass: Numbers, entities: Rows,
@@ -166,7 +166,7 @@ def _make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
         point.approach_speed = point.impact_normal = point.impact_tangent = 0.0
 
 
-@kernel
+@allocating_kernel
 def promote(
     idle: Couples, reach: Numbers, lying: int, manifolds: Manifolds, points: Points, count: int,
     loose: Rows, loose_count: int, entities: Rows, position: Vectors, linear: Vectors, h: float, fall: float,
@@ -176,6 +176,8 @@ def promote(
     Returns how many pairs lie idle, have records and are loose. Records come after those that are there, and
     their numbers into ``loose`` in the order of rows: so it does not matter when a pair got its own.
     """
+    if lying == 0:
+        return lying, count, loose_count
     near = np.empty(lying, np.int64)
     came = 0
     # Flat, and by numbers without a sign: else every index is multiplied by a stride and looked at.

@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, kernel
+from physicslab.kernels import Numbers, allocating_kernel
 from physicslab.kernels.compensated import add
 from physicslab.kernels.force_calls import Calls, accelerate
 
 __all__ = ["split"]
 
 
-@kernel
+@allocating_kernel
 def split(
     q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
     drifts: Numbers, kicks: Numbers, h: float, steps: int,
