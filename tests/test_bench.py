@@ -2,6 +2,7 @@
 
 import dataclasses
 import importlib.util
+import itertools
 import json
 import math
 from pathlib import Path
@@ -11,7 +12,7 @@ import pytest
 
 from physicslab import cli
 from physicslab.bench.catalogue import SCENES, gas_scene, pile_scene, select
-from physicslab.bench.clock import take_turns
+from physicslab.bench.clock import TURN, take_turns
 from physicslab.bench.engine import OurEngine, missing_peers
 from physicslab.bench.growth import exponent, growths
 from physicslab.bench.machine import machine_text
@@ -96,10 +97,13 @@ def test_every_engine_takes_every_place_in_the_order_and_as_many_steps() -> None
         def read(self) -> object:
             return None
 
-    for times in take_turns([Noted("a"), Noted("b"), Noted("c")], 12):
-        assert [len(spent.step) for spent in times] == [len(spent.read) for spent in times] == [12] * 3
-    orders = ["".join(calls[i : i + 3]) for i in range(0, 36, 3)]
+    *_, times = take_turns([Noted("a"), Noted("b"), Noted("c")], 12 * TURN + 1)
+    assert [len(spent.step) for spent in times] == [len(spent.read) for spent in times] == [12 * TURN + 1] * 3
+    turns = ["".join(names) for names in itertools.batched(calls[: 36 * TURN], TURN)]
+    assert all(len(set(turn)) == 1 for turn in turns)
+    orders = ["".join(turn[0] for turn in order) for order in itertools.batched(turns, 3)]
     assert sorted(orders) == sorted(2 * ["abc", "acb", "bac", "bca", "cab", "cba"])
+    assert calls[36 * TURN :] == ["a", "b", "c"]
 
 
 def test_what_a_scene_does_not_use_changes_no_bit() -> None:

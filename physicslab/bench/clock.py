@@ -1,4 +1,4 @@
-"""Times of engines that take turns, so that noise and heat and a full cache are the same for all.
+"""Times of engines that take turns, so that noise and heat are the same for all.
 
 What is told is CPU time, of all threads of the process: on an idle machine that is the time on the wall, and
 on one that does other work it leaves the waiting out. No engine gains by a second thread.
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from physicslab.bench.engine import Engine
 
-__all__ = ["Spread", "Times", "take_turns"]
+__all__ = ["TURN", "Spread", "Times", "take_turns"]
 
 
 class Spread:
@@ -66,6 +66,13 @@ def _no_collection() -> Iterator[None]:
         gc.enable()
 
 
+TURN = 10
+"""Single steps that an engine takes before the next has its turn. With one each, all would be timed while
+they fetch from memory what the others have driven out of the caches; a program runs one engine."""
+_PORTION = 12
+"""Turns between two looks at how far all is: a whole number of times through the orders of three."""
+
+
 def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterator[list[Times]]:
     """Advance all engines ``rounds`` times, in every order in turn; yield the times so far now and then.
 
@@ -74,22 +81,25 @@ def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterat
     engines : sequence of Engine
         Who takes part.
     rounds : int
-        How often each has its turn.
+        How many steps, or blocks of steps, each takes.
     block : int
-        Steps of a turn, in one call; 0 for a single one, after which the state is read back as well.
+        Steps of a block, in one call that is a turn; 0 for single ones, ``TURN`` in a turn, after each of
+        which the state is read back as well.
     """
     times = [Times() for _ in engines]
     orders = itertools.cycle(itertools.permutations(range(len(engines))))
-    for start in range(0, rounds, _PORTION):
+    turns = [1] * rounds if block else [TURN] * (rounds // TURN) + [rounds % TURN] * (rounds % TURN > 0)
+    for start in range(0, len(turns), _PORTION):
         with _no_collection():
-            for order in itertools.islice(orders, min(_PORTION, rounds - start)):
+            for turn, order in zip(turns[start : start + _PORTION], orders, strict=False):
                 for i in order:
-                    _turn(engines[i], times[i], block)
+                    for _ in range(turn):
+                        _advance(engines[i], times[i], block)
         yield times
 
 
-def _turn(engine: Engine, spent: Times, block: int) -> None:
-    """Let an engine advance, and note what it took."""
+def _advance(engine: Engine, spent: Times, block: int) -> None:
+    """Let an engine take a step, or a block of steps, and note what it took."""
     entered, began = time.perf_counter_ns(), time.process_time_ns()
     if block:
         engine.run(block)
@@ -102,7 +112,3 @@ def _turn(engine: Engine, spent: Times, block: int) -> None:
         began = time.process_time_ns()
         engine.read()
         spent.read.append((time.process_time_ns() - began) / 1e6)
-
-
-_PORTION = 12
-"""Turns between two looks at how far all is: a whole number of times through the orders of three."""

@@ -1,9 +1,9 @@
 """Compiled loops over arrays. Nothing here knows a world, an entity or a screen.
 
-A function that Python calls is a ``@kernel``, or an ``@allocating_kernel`` if it makes arrays. Its annotations
-are its one signature: :data:`Numbers`, :data:`Vectors`, :data:`Rows`, :data:`Flags`, ``float``, ``int`` and
-``bool``. A stray int, float32 or strided column is an error and never a silent recompilation of seconds. A
-function that only kernels call is ``@inlined``.
+A function that Python calls is a ``@kernel``, or an ``@allocating_kernel`` if it makes arrays. Its
+annotations are its one signature: :data:`Numbers`, :data:`Vectors`, :data:`Rows`, :data:`Flags`, ``float``,
+``int`` and ``bool``. A stray int, float32 or strided column is an error and never a silent recompilation of
+seconds. A function that only kernels call is ``@inlined``.
 """
 
 from __future__ import annotations

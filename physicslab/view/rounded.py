@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import pygame
 
-from physicslab.view.theme import Colour
+from physicslab.view.theme import NOTHING, Colour
 
 __all__ = ["rounded"]
 
@@ -36,7 +36,7 @@ def rounded(size: tuple[int, int], colour: Colour, outline: Colour, opacity: flo
         for top in (0, 1):
             corner = ((reach + 1) * left, (reach + 1) * top, reach, reach)
             place = ((width - reach) * left, (height - reach) * top)
-            made.fill((0, 0, 0, 0), (*place, reach, reach))
+            made.fill(NOTHING, (*place, reach, reach))
             made.blit(tile, place, corner, pygame.BLEND_RGBA_ADD)
     return made
 

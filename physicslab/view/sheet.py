@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pygame
 
 from physicslab.view.canvas import Align, Rect, TextStyle
-from physicslab.view.theme import Colour
+from physicslab.view.theme import NOTHING, Colour
 
 if TYPE_CHECKING:
     from physicslab.view.canvas import Paper
@@ -39,7 +39,7 @@ class Sheet:
         size = (max(rect[2], 1), max(rect[3], 1))
         if size != self._surface.get_size() or version != self._version:
             if size == self._surface.get_size():
-                self._surface.fill((0, 0, 0, 0))
+                self._surface.fill(NOTHING)
             else:
                 self._surface = pygame.Surface(size, pygame.SRCALPHA, 32)
             self._version, self._corner = version, rect[:2]

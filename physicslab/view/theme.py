@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["DARK", "HIGH_CONTRAST", "PROJECTOR", "THEMES", "Colour", "Theme", "mixed"]
+__all__ = ["DARK", "HIGH_CONTRAST", "NOTHING", "PROJECTOR", "THEMES", "Colour", "Theme", "mixed"]
 
 type Colour = tuple[int, int, int]
 """Red, green and blue, 0 to 255."""
+NOTHING = (0, 0, 0, 0)
+"""What covers nothing, multiplied by its opacity of none."""
 
 
 def mixed(under: Colour, over: Colour, share: float) -> Colour:
