@@ -120,8 +120,7 @@ class CompiledSteps:
         h = world.simulation.dt / world.simulation.substeps
         contacts = world.contacts
         contacts.in_order(len(world.roster))
-        if contacts.blocks.lanes and contacts.blocks.outdated(world):
-            contacts.dissolve(len(world.roster))
+        contacts.refill(world)
         self._contact.begin(world, h)
         made, substep, stage, steps = 0, 0, BEGIN, min(steps, _MOST)
         while made < steps:

@@ -129,6 +129,8 @@ class Contacts:
         Room in which blocks with free lanes are noted.
     span : float
         The time [s] that the points' impulses stand for; 0 before there were any.
+    finer : int
+        How many times as many substeps as asked for the coming step needs.
     stale : bool
         Whether the pairs must be found anew because bodies came, went or changed.
     log : array of IMPACT
@@ -149,7 +151,7 @@ class Contacts:
         self._counts = np.zeros(block_lanes.COUNTED, np.int64)
         self._synced, self._seats = True, False
         self.unordered = False
-        self.span = 0.0
+        self.span, self.finer = 0.0, 1
         self.stale = True
         self.log: NDArray[Any] = np.zeros(self.LOGGED, IMPACT)
         self.logged = 0
@@ -362,8 +364,17 @@ class Contacts:
             )
         self._list_loose(len(entities))
 
+    def refill(self, world: World) -> None:
+        """Let lanes hold masses, sizes and materials as they are now, if somebody has changed one of them."""
+        if self.blocks.lanes and self.blocks.outdated(world):
+            rows = len(world.roster)
+            self.sync()
+            self.blocks.reset(rows)
+            self._seat_again(world)
+            self._list_loose(rows)
+
     def _seat_again(self, world: World) -> None:
-        """Put the contacts of a file back into the lanes in which they lay."""
+        """Put the contacts whose records name a lane, as those of a file do, back into that."""
         self._seats, material = False, world.table(Material)
         near, asleep = self.manifolds[: self.recorded], world.sleep.asleep
         near["lane"][asleep[near["a"]] | asleep[near["b"]]] = -1  # sleepers have none
@@ -378,14 +389,14 @@ class Contacts:
             )  # fmt: skip
             lanes.sort()
             self.blocks.lanes += seated
-        if not self.blocks.known:
-            self.blocks.remember(world)
+        self.blocks.remember(world)
 
     def clear(self) -> None:
         """Forget every pair."""
         self.blocks.reset(1)
         self.recorded = self.lying = self.loose_count = self.resting_count = self.active = 0
         self.stale = self._synced = True
+        self.finer = 1
 
     @property
     def max_penetration(self) -> float:
@@ -453,7 +464,7 @@ class Contacts:
         """Return what :meth:`remembered` needs, in copies that no step changes."""
         self.sync()
         held = Contacts.__new__(Contacts)
-        held.recorded = self.recorded
+        held.recorded, held.span, held.finer = self.recorded, self.span, self.finer
         held.manifolds = self.manifolds[: self.recorded].copy()
         held.points = self.points[: 2 * self.recorded].copy()
         held.blocks = Blocks()
@@ -466,7 +477,8 @@ class Contacts:
 
         A row starts with the two entities (0 for the world's bounds) and the wall. Points that will be found
         anew leave their features and impulses; those that will be kept, everything; ``None`` stands for a
-        pair of which nothing is kept. A settled contact adds its lane, and the colour of its block.
+        pair of which nothing is kept. A settled contact adds its lane, and the colour of its block; one that
+        will strike in the next substep, which of its points do: 1, 2, or 3 for both.
         """
         for p in self._ordered():
             manifold = self.manifolds[p]
@@ -481,7 +493,9 @@ class Contacts:
                 yield [*pair, *kept, *both, *seat]
             else:
                 warm = [self.points[j][name].item() for j in (2 * p, 2 * p + 1) for name in _WARM]
-                yield [*pair, *warm, *seat] if seat or any(warm[1:3] + warm[4:]) else None
+                ahead = int(self.points[2 * p]["ahead"] + 2 * self.points[2 * p + 1]["ahead"])
+                rest = seat or ([ahead] if ahead else [])
+                yield [*pair, *warm, *rest] if rest or any(warm[1:3] + warm[4:]) else None
 
     def export(self) -> list[list[float]]:
         """Return all that is :meth:`remembered`."""
@@ -500,8 +514,10 @@ class Contacts:
         light, heavy = 3 + 2 * len(_WARM), 2 + len(_KEPT) + 2 * len(POINT.names or ())
         ordered = sorted(rows, key=lambda row: tuple(row[:3]))
         for p, row in enumerate(ordered):
-            if len(row) not in (light, heavy, light + 2, heavy + 2):
+            if len(row) not in (light, heavy, light + 1, light + 2, heavy + 2):
                 raise ValueError(f"a contact has {light} or {heavy} values, or two more, not {len(row)}")
+            if len(row) == light + 1 and row[-1] not in (1, 2, 3):
+                raise ValueError(f"points that strike next: {row[-1]!r}: must be 1, 2 or 3")
             manifold = self.manifolds[p]
             manifold["lane"] = self._take_seat(*row[-2:]) if len(row) in (light + 2, heavy + 2) else -1
             manifold["entity_a"], manifold["entity_b"], manifold["wall"] = row[:3]
@@ -516,6 +532,8 @@ class Contacts:
             for j in (2 * p, 2 * p + 1):
                 for name in names:
                     self.points[j][name] = next(values)
+            if len(row) == light + 1:
+                self.points["ahead"][2 * p : 2 * p + 2] = int(row[-1]) & 1, int(row[-1]) >> 1
         self.recorded, self.lying, self.active, self.stale = len(ordered), 0, 0, True
 
     def _take_seat(self, lane: float, colour: float) -> int:

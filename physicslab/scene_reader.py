@@ -8,7 +8,9 @@ from typing import Any
 import esper
 
 from physicslab.columns import Component, InvalidValue
-from physicslab.config import PhysicsConfig, SimulationConfig, field_names
+from physicslab.config import SHORTEST, PhysicsConfig, SimulationConfig, field_names
+from physicslab.fields import Field
+from physicslab.kernels.impulse import MOST_PARTS
 from physicslab.scene_checks import (
     SceneError,
     checked_keys,
@@ -29,7 +31,7 @@ FORMAT = "physicslab-scene/1"
 
 _KEYS = (
     "format", "name", "title", "description", "time", "physics", "simulation", "entities", "contacts",
-    "rests",
+    "rests", "solver",
 )  # fmt: skip
 
 
@@ -51,6 +53,9 @@ class SceneDraft:
         The contact solver's memory; the first two numbers of a row are entities, 0 for the bounds.
     rests : list of lists of numbers
         Who sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
+    solver : tuple of float and int
+        The time that the contacts' impulses stand for [s], and how many times as many substeps as asked for
+        the coming step needs.
     """
 
     name: str
@@ -62,6 +67,7 @@ class SceneDraft:
     entities: list[tuple[str | None, list[Component]]]
     contacts: list[list[Any]]
     rests: list[list[Any]]
+    solver: tuple[float, int]
 
 
 def read_scene(document: object, source: str = "scene") -> World:
@@ -97,6 +103,7 @@ def read_scene(document: object, source: str = "scene") -> World:
     for number, (id_, components) in enumerate(draft.entities, start=1):
         entity = world.spawn(*components, name=id_)
         assert entity == number, "a new world numbers its entities from 1"
+    world.contacts.span, world.contacts.finer = draft.solver
     if draft.contacts or draft.rests:
         world.synchronise()
         try:
@@ -119,17 +126,34 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
     if "entities" not in scene:
         raise SceneError(f"{source}: entities is missing: must be a list of entities")
     ids = check_ids(scene["entities"], source)
+    simulation = _config(SimulationConfig, scene.get("simulation", {}), source)
     return SceneDraft(
         name=checked_text(scene.get("name", ""), f"{source}: name"),
         title=checked_text(scene.get("title", ""), f"{source}: title"),
         description=checked_text(scene.get("description", ""), f"{source}: description", lines=True),
         time=_time(scene.get("time", 0.0), f"{source}: time"),
         physics=_config(PhysicsConfig, scene.get("physics", {}), source),
-        simulation=_config(SimulationConfig, scene.get("simulation", {}), source),
+        simulation=simulation,
         entities=check_entities(scene["entities"], ids, source),
         contacts=check_contacts(scene.get("contacts", []), scene["entities"], ids, source),
         rests=check_rests(scene.get("rests", []), scene["entities"], ids, source),
+        solver=_solver(scene.get("solver", {}), simulation, f"{source}: solver"),
     )
+
+
+_SPAN = Field("span", "number", unit="s", minimum=SHORTEST, owner="solver")
+_FINER = Field("finer", "whole", minimum=1, maximum=MOST_PARTS, owner="solver")
+
+
+def _solver(value: Any, simulation: SimulationConfig, where: str) -> tuple[float, int]:
+    """Return what the solver takes from the last step; what is left out is as the simulation asks."""
+    found = checked_object(value, where, 'an object {"span": ..., "finer": ...}')
+    checked_keys(found, f"{where}: ", "key", ("span", "finer"))
+    given: dict[str, Any] = {"span": simulation.dt / simulation.substeps, "finer": 1, **found}
+    try:
+        return float(_SPAN.check(given["span"])), int(_FINER.check(given["finer"]))
+    except InvalidValue as error:
+        raise SceneError(f"{where.removesuffix('solver')}{error}") from error
 
 
 def _time(value: Any, where: str) -> float:

@@ -74,7 +74,15 @@ def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
         memory[:2] = [ids.get(end) for end in memory[:2]]
         yield
     rests = [[ids[rest[0]], *rest[1:]] for rest in frozen.rests]
-    return document | ({"contacts": contacts} if contacts else {}) | ({"rests": rests} if rests else {})
+    kept = {"contacts": contacts, "rests": rests, "solver": _solver(frozen)}
+    return document | {key: value for key, value in kept.items() if value}
+
+
+def _solver(frozen: Frozen) -> dict[str, Any]:
+    """Return for what time impulses stand, and how much finer the next step is, where not as asked."""
+    contacts, simulation = frozen.contacts, frozen.simulation
+    span = {"span": contacts.span} if contacts.span not in (0.0, simulation.dt / simulation.substeps) else {}
+    return span | ({"finer": contacts.finer} if contacts.finer != 1 else {})
 
 
 def unique_name(wanted: str, taken: Container[str]) -> str:

@@ -110,7 +110,7 @@ class System:
         return self.kernels
 
     def finer(self, world: World) -> int:
-        """Return how many times as many substeps as asked for the coming step needs, as things stand."""
+        """Return how many times as many substeps as asked for the next step needs, at the end of one."""
         return 1
 
     @classmethod
@@ -311,7 +311,9 @@ class Schedule:
 
     def note(self, name: str, calls: int, nanoseconds: int) -> None:
         """Note what a system has cost that was not called by :meth:`run`."""
-        timing = self.timings.setdefault(name, Timing())
+        timing = self.timings.get(name)
+        if timing is None:
+            timing = self.timings[name] = Timing()
         timing.calls += calls
         timing.nanoseconds += nanoseconds
 

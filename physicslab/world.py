@@ -396,14 +396,14 @@ class World:
                 elif self._flights is None and self.sleep.everything(self):
                     self.substeps = self._simulation.substeps  # in which nothing would happen
                 elif self._flights is None:
-                    finer = max((system.finer(self) for system in self.schedule.running), default=1)
-                    self.substeps = finer * self._simulation.substeps
+                    self.substeps = self.contacts.finer * self._simulation.substeps
                     self._go_through(dt / parts / self.substeps, parts * self.substeps)
                 elif parts > 1:
                     self._flights.run(self, dt / parts, parts)
                 else:
                     self._flights.step(self, dt)
                 self.schedule.run(Stage.FINISH, self, dt)
+                self.contacts.finer = max((system.finer(self) for system in self.schedule.running), default=1)
             except Diverged:
                 self._go_back()
                 raise
@@ -536,7 +536,7 @@ class World:
     def _run_compiled(self, compiled: CompiledSteps, steps: int) -> int:
         """Make ``steps`` steps or fewer in one compiled call; return how many."""
         with self.active():
-            self.divided, self.substeps = 1, self._simulation.substeps
+            self.divided, self.substeps, self.contacts.finer = 1, self._simulation.substeps, 1
             self._before.take(self)
             self._stepping = True
             try:

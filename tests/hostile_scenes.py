@@ -82,7 +82,9 @@ _SIMULATION = st.fixed_dictionaries(
         "tolerance": st.floats(1e-18, 1e-6),
     },
 )  # fmt: skip
-_KEYS = st.sampled_from(["Spring", "Mass", "Velocity", "id", "time", "contacts", "rests", "angular"])
+_KEYS = st.sampled_from(
+    ["Spring", "Mass", "Velocity", "id", "time", "contacts", "rests", "solver", "angular"]
+)
 
 
 @st.composite

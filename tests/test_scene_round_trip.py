@@ -20,7 +20,7 @@ from physicslab.bodies import Diverged
 from physicslab.components import Held, Mass, Name, Shape, Spring, Trail, Transform, Velocity
 from physicslab.config import PhysicsConfig, SimulationConfig
 from physicslab.json_text import json_text
-from physicslab.prefabs import box, circle, pendulum, stack
+from physicslab.prefabs import box, circle, container, pendulum, pile, stack
 from physicslab.scene import read_scene, write_scene
 from physicslab.scene_writer import unique_name
 from physicslab.scenes import SCENES
@@ -267,3 +267,70 @@ def test_a_collapsing_pyramid_goes_on_with_the_same_bits() -> None:
         again.step()
     for component, name in ((Transform, "position"), (Transform, "angle"), (Velocity, "linear")):
         assert world.table(component)[name].tobytes() == again.table(component)[name].tobytes()
+
+
+def falling_pile() -> World:
+    world = World(*standard_systems())
+    container(world, width=3.0, height=9.0)
+    pile(world, 150, columns=11)
+    world.run(steps=150)
+    return world
+
+
+def add_one(world: World, discs: list[int]) -> None:
+    circle(world, (0.2, 7.0), radius=0.1)
+
+
+def take_one(world: World, discs: list[int]) -> None:
+    world.remove(discs[len(discs) // 2])
+
+
+def burden_one(world: World, discs: list[int]) -> None:
+    world.component(discs[len(discs) // 2], Mass).mass *= 1.2
+
+
+def overburden_one(world: World, discs: list[int]) -> None:
+    world.component(discs[-1], Mass).mass *= 30.0  # which takes more substeps than asked for
+
+
+def shorten(world: World, discs: list[int]) -> None:
+    world.simulation = dataclasses.replace(world.simulation, substeps=6)
+
+
+@pytest.mark.parametrize("edit", [add_one, take_one, burden_one, overburden_one, shorten])
+@pytest.mark.parametrize("steps", [0, 1, 25])
+def test_a_pile_that_was_edited_goes_on_with_the_same_bits(
+    edit: Callable[[World, list[int]], None], steps: int
+) -> None:
+    world = falling_pile()
+    edit(world, [entity for entity in world.entities() if world.has(entity, Mass)])
+    for _ in range(steps):
+        world.step()
+    again = read_scene(json.loads(json_text(write_scene(world))))
+    for _ in range(30):
+        world.step()
+        again.step()
+    assert world.contacts.blocks.lanes + world.sleep.count > 0
+    pairs = zip(world.entities(), again.entities(), strict=True)
+    for entity, copy in pairs:
+        for component in (Transform, Velocity):
+            if world.has(entity, component):
+                assert (
+                    world.component(entity, component).values() == again.component(copy, component).values()
+                )
+
+
+@pytest.mark.parametrize(
+    ("solver", "words"),
+    [
+        ({"span": 0.0}, "scene: solver.span = 0.0: must be"),
+        ({"finer": 17}, "scene: solver.finer = 17: must be"),
+        ({"finer": 1.5}, "scene: solver.finer = 1.5: must be"),
+        ({"spin": 1}, "scene: solver: spin = 1: unknown key"),
+        ([], "scene: solver = []: must be"),
+    ],
+)
+def test_a_solver_that_makes_no_sense_is_refused(solver: object, words: str) -> None:
+    with pytest.raises(SceneError) as refused:
+        read_scene({"format": "physicslab-scene/1", "entities": [], "solver": solver})
+    assert str(refused.value).startswith(words)

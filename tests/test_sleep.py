@@ -571,7 +571,7 @@ def test_sleepers_have_no_velocity_and_lie_on_something(given: list[tuple[float,
         asleep, velocity = world.sleep.asleep, world.table(Velocity)
         assert not velocity["linear"][asleep].any() and not velocity["angular"][asleep].any()
         assert not (world.sleep.rest[asleep] > 0.0).any()
-        near = world.contacts.manifolds[: world.contacts.candidate_pairs]
+        near = world.contacts.manifolds[: world.contacts.recorded]
         touching = near[near["count"] > 0]
         one, other = asleep[touching["a"]], asleep[touching["b"]]
         movable = world.bodies.inverse_mass > 0.0

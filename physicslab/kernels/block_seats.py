@@ -38,6 +38,7 @@ from physicslab.kernels.block_layout import (
     TWO,
     WIDE,
 )  # fmt: skip
+from physicslab.kernels.contact import effective_masses
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 
 __all__ = ["outdated", "remember", "seat", "seat_again"]
@@ -84,6 +85,8 @@ def seat(
     manifold.friction = math.sqrt(friction[i] * friction[j])
     if kind == DISC:
         manifold.size, manifold.swept = 2.0 * min(radius[i], radius[j]), 0
+    else:
+        effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
     _fill_common(data, at, manifold, inverse_mass, inverse_inertia)
     _fill_point(data, at + ONE, one)
     if kind == DISC:

@@ -161,7 +161,7 @@ class Warmup:
     def hurry(self, names: Iterable[str]) -> None:
         """Let these kernels be compiled before all others, except for those that are being compiled."""
         with self._lock:
-            wanted = [name for name in names if name in self._jobs]
+            wanted = [name for name in dict.fromkeys(names) if name in self._jobs]  # two may need the same
             for name in wanted:
                 self._jobs.remove(name)
             self._jobs.extendleft(reversed(wanted))

@@ -91,8 +91,8 @@ class ContactSystem(System):
     def _refresh(self, world: World, h: float, fall: float) -> None:
         """Find where settled contacts touch now; those that are settled no longer join the loose ones."""
         contacts, transform, velocity = world.contacts, world.table(Transform), world.table(Velocity)
-        if self._first and contacts.blocks.outdated(world):
-            contacts.dissolve(len(world.roster))
+        if self._first:
+            contacts.refill(world)
         before = contacts.loose_count
         for lanes in contacts.blocks.kinds:
             contacts.loose_count = block_contact.refresh(

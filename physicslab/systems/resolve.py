@@ -52,6 +52,7 @@ class ResolveSystem(System):
         contacts, bodies = world.contacts, world.bodies
         if not (contacts.count and world.has_forces and bodies.unequal):
             return 1
+        contacts.sync()
         load = impulse.heaviest_load(
             contacts.manifolds, contacts.recorded, bodies.force, bodies.awake_inverse_mass
         )
