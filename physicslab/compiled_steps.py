@@ -92,12 +92,19 @@ class CompiledSteps:
         self._resolve = cast("ResolveSystem", running["ResolveSystem"])
         self._sleep = cast("SleepSystem | None", running.get("SleepSystem"))
         self._cost = np.zeros(len(SYSTEMS), np.int64)
-        self._once: dict[str, int] = {}
-        self._within: dict[str, list[int]] = {}
-        for name, system in running.items():
-            marked = type(system).marked()
-            self._once[name] = len({Stage.PREPARE, Stage.FINISH} & marked.keys())
-            self._within[name] = [place for place, stage in enumerate(_PLAN) if stage in marked]
+        self._calls: list[tuple[int, str, int, int]] = []
+        for place, name in enumerate(SYSTEMS):
+            if name in running:
+                marked = type(running[name]).marked()
+                once = len({Stage.PREPARE, Stage.FINISH} & marked.keys())
+                self._calls.append((place, name, once, sum(stage in marked for stage in _PLAN)))
+        transform, velocity = world.table(Transform), world.table(Velocity)
+        shape, material = world.table(Shape), world.table(Material)
+        self._columns = (
+            (transform["position"], transform["angle"], velocity["linear"], velocity["angular"]),
+            (shape["kind"], shape["radius"], shape["width"], shape["height"]),
+            (material["restitution"], material["friction"]),
+        )
 
     def ready(self, world: World) -> bool:
         """Whether the coming step can be made so, as things stand."""
@@ -179,15 +186,11 @@ class CompiledSteps:
         self, world: World, before: Checkpoint, h: float, counts: NDArray[np.int64]
     ) -> tuple[Any, ...]:
         """Return what the loop works on."""
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        shape, material, bodies = world.table(Shape), world.table(Material), world.bodies
+        (state, sizes, materials), bodies = self._columns, world.bodies
         contacts, physics, resolve, sleep = world.contacts, world.physics, self._resolve, world.sleep
         return (
             world.simulation.iterations or 1,
-            (transform["position"], transform["angle"], velocity["linear"], velocity["angular"]),
-            before.columns,
-            (shape["kind"], shape["radius"], shape["width"], shape["height"]),
-            (material["restitution"], material["friction"]),
+            state, before.columns, sizes, materials,
             (bodies.awake_inverse_mass, bodies.awake_inverse_inertia), bodies.tethered,
             (bodies.force, bodies.torque, world.table(Mass)["mass"], world.has_forces, *physics.gravity),
             (
@@ -206,11 +209,11 @@ class CompiledSteps:
 
     def _note(self, world: World, steps: int, nanoseconds: int) -> None:
         """Note as many calls as stepping would make; the time is shared out by the loop's own clock."""
-        whole = max(1, int(self._cost.sum()))
-        for name, cost in zip(SYSTEMS, self._cost.tolist(), strict=True):
-            if name in self._within:
-                calls = self._once[name] + world.simulation.substeps * len(self._within[name])
-                world.schedule.note(name, steps * calls, nanoseconds * cost // whole)
+        costs: list[int] = self._cost.tolist()
+        whole = max(1, sum(costs))
+        for place, name, once, within in self._calls:
+            calls = once + world.simulation.substeps * within
+            world.schedule.note(name, steps * calls, nanoseconds * costs[place] // whole)
 
     def _timed(self, name: str, call: Callable[[World, float], None], world: World, h: float) -> None:
         """Call a system's method, whose call is counted with the step, and note what it cost."""

@@ -191,7 +191,8 @@ def find_contacts(
                 )  # fmt: skip
         if manifold.count > 0:
             effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
-            mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
+            if first or not had_points:
+                mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
             if inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0:
                 touching[found] = p
                 found += 1
