@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from types import TracebackType
 from typing import Any
 
-from physicslab.kernels import KERNELS, ask_before_compiling, load
+from physicslab.kernels import KERNELS, ask_before_compiling, contact_steps, load
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.view.display import Display, wants_to_leave
 from physicslab.view.progress import draw_corner, draw_progress, draw_waiting
@@ -16,7 +16,7 @@ from physicslab.view.theme import DARK, Theme
 __all__ = ["Compiling", "Left"]
 
 _ROOM = 0.008
-"""Time [s] that must be left of a frame to load a kernel in it; most take 2 to 4 ms, the largest 12."""
+"""Time [s] that must be left of a frame to load a kernel in it; most take 2 to 4 ms, few more than 8."""
 _AT_LEAST = 30
 """One frame in so many loads a kernel, whatever is left of it: a busy scene would never load any."""
 
@@ -49,6 +49,8 @@ class Compiling:
         if self._warmup is not None:
             self._warmup.__enter__()
             ask_before_compiling(self._wait)
+        else:
+            load(contact_steps.advance)  # 26 ms, for which no frame has room
         return self
 
     def __exit__(
