@@ -345,7 +345,7 @@ class Contacts:
             self.blocks.reset(len(entities))
         most = count + self.lying
         if len(self._spare_manifolds) < most:
-            room = 2 * most
+            room = most + most // 4  # a record takes 400 bytes, and there are two sets of them
             self._spare_manifolds, self._spare_points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
         near_pairs.carry_over(
             pairs, count, entities, self.manifolds, self.points, self.recorded, self._table, noted,
@@ -355,7 +355,7 @@ class Contacts:
         self.points, self._spare_points = self._spare_points, self.points
         self.recorded, self.active, self.stale = count, 0, False
         if len(self.touching) < most:
-            self.touching, self.loose, self.resting = np.zeros((3, 2 * most), np.int64)
+            self.touching, self.loose, self.resting = np.zeros((3, most + most // 4), np.int64)
         if self._seats:
             self._seat_again(world)
         elif self.blocks.lanes:
