@@ -7,7 +7,7 @@ from desk import bits
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics import measure_energy, measure_momentum
 from physicslab.kernels import compile_kernels, impulse
-from physicslab.kernels.block_layout import WIDE
+from physicslab.kernels.block_layout import MASS_A, MASS_B, WIDE
 from physicslab.prefabs import box, circle, container, pile, pyramid
 from physicslab.scene import read_scene, write_scene
 from physicslab.stability.worlds import floor, open_space, place
@@ -190,3 +190,32 @@ def test_all_lanes_of_a_settled_pile_go_on_from_a_file() -> None:
         again.step()
         assert bits(again) == bits(world)
     assert again.contacts.blocks.lanes == world.contacts.blocks.lanes > 100
+
+
+@pytest.mark.parametrize("name", SETTLED)
+def test_every_block_is_solved_once_while_contacts_come_and_go(name: str) -> None:
+    world = SETTLED[name]()
+    bodies = [entity for entity in world.entities() if world.has(entity, Mass)]
+    for entity in bodies[::-7]:
+        world.remove(entity)
+        for _ in range(3):
+            world.step()
+            for lanes in world.contacts.blocks.kinds:
+                assert sorted(lanes.order[: lanes.count].tolist()) == list(range(lanes.count))
+
+
+@pytest.mark.parametrize("name", SETTLED)
+def test_a_heavier_body_keeps_its_lanes_which_know_of_it(name: str) -> None:
+    world = SETTLED[name]()
+    before = world.contacts.blocks.lanes
+    body = [entity for entity in world.entities() if world.has(entity, Mass)][40]
+    world.component(body, Mass).mass *= 1.1
+    world.step()
+    assert world.contacts.blocks.lanes > before - 12
+    row, inverse = world.roster.row_of[body], world.bodies.inverse_mass
+    for lanes in world.contacts.blocks.kinds:
+        for lane in np.flatnonzero(lanes.pair[: lanes.count * WIDE] >= 0):
+            block = lanes.data[lane // WIDE * lanes.rows :]
+            for rows, at in ((lanes.a, MASS_A), (lanes.b, MASS_B)):
+                if rows[lane] == row:
+                    assert block[at + lane % WIDE] == inverse[row]
