@@ -34,12 +34,15 @@ class Checkpoint:
 
     def take(self, world: World) -> None:
         """Keep the state as it is now."""
+        self.make_room(world)
+        for kept, column in zip(self.columns, _moving(world), strict=True):
+            np.copyto(kept, column)
+
+    def make_room(self, world: World) -> None:
+        """Keep the counts as they are now, with room for a state that a compiled loop will keep."""
         columns = _moving(world)
         if not self.columns or len(self.columns[0]) != len(columns[0]):
-            self.columns = tuple(column.copy() for column in columns)
-        else:
-            for kept, column in zip(self.columns, columns, strict=True):
-                np.copyto(kept, column)
+            self.columns = tuple(np.zeros_like(column) for column in columns)
         self.count(world)
 
     def count(self, world: World) -> None:

@@ -309,23 +309,30 @@ class World:
         next.
         """
         with self.active():
-            self._follow()
-            if not self._stepping:
-                self.bodies.derive(self)
-                if self._equations is not None and self._equations.outdated(self):
-                    self._choose()
-                if self._flights is not None and not self._flights.holds(self):
-                    self._choose()
-                if self.tethers is not None and self.tethers.outdated(self):
-                    self._choose()
-                self.sleep.check(self)
+            self._synchronise()
 
-    @_quiet
+    def _synchronise(self) -> None:
+        """Do so where this world's context is active and numpy is quiet."""
+        self._follow()
+        if not self._stepping:
+            self.bodies.derive(self)
+            if self._equations is not None and self._equations.outdated(self):
+                self._choose()
+            if self._flights is not None and not self._flights.holds(self):
+                self._choose()
+            if self.tethers is not None and self.tethers.outdated(self):
+                self._choose()
+            self.sleep.check(self)
+
     def _follow(self) -> None:
         """Follow what changed in the structure of the world since the last call, if anything did."""
-        if self._stepping:
-            return
-        while self.roster.synchronise() or self._stale:
+        if not self._stepping and (self.roster.synchronise() or self._stale):
+            self._adapt()
+
+    @_quiet
+    def _adapt(self) -> None:
+        """Weigh bodies and choose systems and method anew, until nothing changes any more."""
+        while True:
             self._stale = True  # and stays so if a system refuses what it finds
             self.sleep.follow(self)
             self.bodies.derive(self)
@@ -333,6 +340,8 @@ class World:
             self._remake()
             self.revision += 1
             self._stale = False
+            if not self.roster.synchronise():
+                return
 
     def _remake(self) -> None:
         """Choose the systems and the method; who may sleep hangs on the method."""
@@ -379,7 +388,7 @@ class World:
         if self._stepping:
             raise RuntimeError("a system cannot step the world that is calling it")
         with self.active():
-            self.synchronise()
+            self._synchronise()
             compiled = self._compiled
             if compiled is not None and dt == self._simulation.dt and compiled.ready(self):
                 self._run_compiled(compiled, 1)
@@ -534,18 +543,17 @@ class World:
         self.steps += steps
 
     def _run_compiled(self, compiled: CompiledSteps, steps: int) -> int:
-        """Make ``steps`` steps or fewer in one compiled call; return how many."""
-        with self.active():
-            self.divided, self.substeps, self.contacts.finer = 1, self._simulation.substeps, 1
-            self._before.take(self)
-            self._stepping = True
-            try:
-                return compiled.run(self, steps, self._before)
-            except Diverged:
-                self._go_back()
-                raise
-            finally:
-                self._stepping = False
+        """Make ``steps`` steps or fewer in one compiled call, in this world's context; return how many."""
+        self.divided, self.substeps, self.contacts.finer = 1, self._simulation.substeps, 1
+        self._before.make_room(self)  # the loop keeps the state itself
+        self._stepping = True
+        try:
+            return compiled.run(self, steps, self._before)
+        except Diverged:
+            self._go_back()
+            raise
+        finally:
+            self._stepping = False
 
     def stepping(
         self, *, seconds: float | None = None, steps: int | None = None, stride: int = 1
@@ -569,7 +577,8 @@ class World:
             elif self._compiled is not None and unseen > 0 and self._compiled.ready(self):
                 before = self.steps
                 try:
-                    done += self._run_compiled(self._compiled, unseen)
+                    with self.active():
+                        done += self._run_compiled(self._compiled, unseen)
                 except Diverged:
                     self.time = start + (done + self.steps - before) * dt
                     raise
