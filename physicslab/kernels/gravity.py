@@ -27,8 +27,8 @@ are right to two units in the last place only.
 MANY = 8_000
 """From so many bodies on a tree sums their pulls.
 
-The tree is as fast as every pair at 2,000 bodies that lie evenly and at 4,000 in a Plummer sphere, and at
-8,000 takes 1/2.7 and 1/1.6 of the time (``benchmarks/gravity.py``): until then digits and momentum count.
+The tree is as fast as every pair at 3,000 bodies that lie evenly and at 5,000 in a Plummer sphere, and at
+8,000 takes 1/2.4 and 1/1.4 of the time (``benchmarks/gravity.py``): until then digits and momentum count.
 """
 
 
