@@ -104,13 +104,18 @@ class Display:
 def wants_to_leave() -> bool:
     """Whether Escape was pressed or the window closed, where nothing else is asked of the user.
 
-    Keys that are pressed are dropped. What the mouse does, and keys let go, is kept for who asks next:
-    nothing must seem held that is not.
+    All else that the user did is kept, in its order, for who asks next: a key that is pressed while a kernel
+    is waited for acts when it is there, and nothing seems held that is not.
     """
-    return any(
-        event.type == pygame.QUIT or event.key == pygame.K_ESCAPE
-        for event in pygame.event.get((pygame.QUIT, pygame.KEYDOWN))
+    events = pygame.event.get()  # of some types alone they would not come in their order
+    leaves = any(
+        event.type == pygame.QUIT or (event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE)
+        for event in events
     )
+    for event in events:
+        if not leaves:
+            pygame.event.post(event)
+    return leaves
 
 
 def _limit(size: tuple[int, int]) -> None:
