@@ -122,11 +122,6 @@ class Blocks:
             lanes.reset(rows)
         self.lanes = 0
 
-    @property
-    def known(self) -> bool:
-        """Whether it is known what the lanes were made of."""
-        return len(self._made_of) > 0
-
     def remember(self, world: World) -> None:
         """Keep the masses, sizes and materials that lanes hold as well."""
         columns = _columns(world)
