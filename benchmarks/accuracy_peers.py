@@ -20,11 +20,11 @@ import numpy as np
 import rebound
 from scipy.integrate import solve_ivp
 
-from physicslab.accuracy.catalogue import PROBLEMS
-from physicslab.accuracy.measure import finish
-from physicslab.accuracy.problem import Problem
-from physicslab.accuracy.settings import Setting
 from physicslab.components import Mass, Transform, Velocity
+from physicslab.lab.accuracy.catalogue import PROBLEMS
+from physicslab.lab.accuracy.measure import finish
+from physicslab.lab.accuracy.problem import Problem
+from physicslab.lab.accuracy.settings import Setting
 from physicslab.world import World
 
 ASKED = ("kepler_e0.5", "kepler_e0.9", "figure_eight")

@@ -16,12 +16,12 @@ from collections.abc import Callable
 import pymunk
 
 from physicslab import World
-from physicslab.config import PhysicsConfig
-from physicslab.diagnostics import measure_energy
-from physicslab.peers.pymunk_mirror import PymunkMirror
+from physicslab.diagnostics.energy import measure_energy
+from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.lab.peers.pymunk_mirror import PymunkMirror
 from physicslab.prefabs import box, container, gas, pile, pyramid
 from physicslab.systems.standard import standard_systems
-from physicslab.vector import Vector2
 
 BLOCK = 20
 """Steps that one engine takes before the other has its turn."""

@@ -23,15 +23,15 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import pygame
 
-from physicslab.config import PhysicsConfig
-from physicslab.garbage import freeze
+from physicslab.desktop.garbage import freeze
+from physicslab.desktop.sandbox import Sandbox
+from physicslab.ecs.config import PhysicsConfig
+from physicslab.files.scene import load_scene
 from physicslab.kernels import KERNELS, compile_kernels
 from physicslab.kernels.warm import load_all
 from physicslab.prefabs import container, gas, pile
-from physicslab.sandbox import Sandbox
-from physicslab.scene import load_scene
 from physicslab.systems.standard import standard_systems
-from physicslab.view.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.window import Window
 from physicslab.world import World
 

@@ -17,8 +17,14 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels.pairwise import attract_pairwise, depth_of_pairs
-from physicslab.kernels.tree_pull import LARGEST_ERROR, RMS_ERROR, THETA, attract_by_tree, depth_by_tree
+from physicslab.kernels.forces.pairwise import attract_pairwise, depth_of_pairs
+from physicslab.kernels.forces.tree_pull import (
+    LARGEST_ERROR,
+    RMS_ERROR,
+    THETA,
+    attract_by_tree,
+    depth_by_tree,
+)
 
 type Array = NDArray[np.float64]
 

@@ -13,9 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from physicslab.bench.catalogue import SCENES
+from physicslab.lab.bench.catalogue import SCENES
+from physicslab.lab.stability.worlds import open_space
 from physicslab.prefabs import box, circle
-from physicslab.stability.worlds import open_space
 from physicslab.world import World
 
 USUAL = ("pile_1000", "pile_4000", "pyramid_60")

@@ -26,11 +26,11 @@ import pymunk
 
 from physicslab import World
 from physicslab.components import Transform
-from physicslab.peers.box2d_mirror import Box2DMirror
-from physicslab.peers.peer import CannotBuild, Peer, find_contacts
-from physicslab.peers.pymunk_mirror import PymunkMirror
-from physicslab.stability.case import Case, run_case
-from physicslab.stability.catalogue import CASES, select
+from physicslab.lab.peers.box2d_mirror import Box2DMirror
+from physicslab.lab.peers.peer import CannotBuild, Peer, find_contacts
+from physicslab.lab.peers.pymunk_mirror import PymunkMirror
+from physicslab.lab.stability.case import Case, run_case
+from physicslab.lab.stability.catalogue import CASES, select
 
 SUBSTEPS = 4
 NOT_ASKED = {

@@ -57,7 +57,7 @@ def watch_world():
         return step(self, *arguments, **named)
     world.step = watched
 
-HOOKS = {"physicslab.view.display": watch_display, "physicslab.world": watch_world}
+HOOKS = {"physicslab.view.canvas.display": watch_display, "physicslab.world": watch_world}
 
 class Finder(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path, target=None):

@@ -13,20 +13,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from physicslab.fields import InvalidValue
-    from physicslab.scene import SceneError, load_scene, save_scene
-    from physicslab.vector import Vector2
+    from physicslab.ecs.fields import InvalidValue
+    from physicslab.ecs.vector import Vector2
+    from physicslab.files.scene import SceneError, load_scene, save_scene
     from physicslab.world import World
 
 __all__ = ["InvalidValue", "SceneError", "Vector2", "World", "load_scene", "save_scene"]
 
 _HOMES = {
-    "InvalidValue": "fields",
-    "SceneError": "scene_checks",
-    "Vector2": "vector",
+    "InvalidValue": "ecs.fields",
+    "SceneError": "files.checks",
+    "Vector2": "ecs.vector",
     "World": "world",
-    "load_scene": "scene",
-    "save_scene": "scene",
+    "load_scene": "files.scene",
+    "save_scene": "files.scene",
 }
 
 

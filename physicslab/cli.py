@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from physicslab.commands import COMMANDS, CommandError, command
 from physicslab.commands.command_error import FAILED, USAGE
-from physicslab.scene_checks import SceneError, printable
+from physicslab.files.checks import SceneError, printable
 from physicslab.scenes import SCENES
 
 __all__ = ["main"]
@@ -91,11 +91,11 @@ def _open(arguments: list[str]) -> int:
     parser.add_argument("scene", metavar="SCENE", nargs="?", help="a built-in scene's name, or a path")
     scene = parser.parse_args(arguments).scene
     if scene is not None and scene not in SCENES:
-        from physicslab.scene import load_scene
+        from physicslab.files.scene import load_scene
 
         load_scene(scene)  # a bad file is refused before a window flickers up
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
-    from physicslab.app import open_window  # no command without a window imports pygame
+    from physicslab.desktop.app import open_window  # no command without a window imports pygame
 
     return open_window(scene)
 

@@ -13,24 +13,24 @@ from typing import Any
 import esper
 import numpy as np
 
-from physicslab.bodies import Bodies, Diverged
-from physicslab.checkpoint import Checkpoint
-from physicslab.closed_form import NoClosedForm
-from physicslab.columns import Batch, InvalidValue, Table
-from physicslab.compiled_steps import CompiledSteps, why_not_compiled
 from physicslab.components import Name
 from physicslab.components.name import why_no_id
-from physicslab.config import SHORTEST, PhysicsConfig, SimulationConfig
-from physicslab.contacts import Contacts
-from physicslab.equations import Equations
-from physicslab.fields import Field
-from physicslab.flights import Flights
+from physicslab.ecs.component import Batch, InvalidValue, Table
+from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
+from physicslab.ecs.entity_index import Roster
+from physicslab.ecs.fields import Field
 from physicslab.integrators import StepTooSmall
-from physicslab.integrators.choice import choose, provisional
-from physicslab.roster import Roster
-from physicslab.schedule import ForceSystem, Schedule, Stage, System
-from physicslab.sleep import Sleep
-from physicslab.tethers import Tethers
+from physicslab.ode.closed_form import NoClosedForm
+from physicslab.ode.system import Equations
+from physicslab.state.bodies import Bodies, Diverged
+from physicslab.state.contacts import Contacts
+from physicslab.state.sleep import Sleep
+from physicslab.stepping.checkpoint import Checkpoint
+from physicslab.stepping.event_driven import Flights
+from physicslab.stepping.fused_contact import CompiledSteps, why_not_compiled
+from physicslab.stepping.select import choose, provisional
+from physicslab.stepping.split_forces import Tethers
+from physicslab.systems.schedule import ForceSystem, Schedule, Stage, System
 
 __all__ = ["World"]
 

@@ -6,12 +6,12 @@ import numpy as np
 import pygame
 
 from physicslab.components import Transform, Velocity
-from physicslab.config import PhysicsConfig, WindowConfig
-from physicslab.sandbox import Sandbox
+from physicslab.desktop.sandbox import Sandbox
+from physicslab.ecs.config import PhysicsConfig, WindowConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.systems.standard import standard_systems
-from physicslab.vector import Vector2
-from physicslab.view.canvas import Canvas
-from physicslab.view.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.canvas import Canvas
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.window import Window
 from physicslab.world import World
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from physicslab.config import INTEGRATORS
+from physicslab.ecs.config import INTEGRATORS
 
 __all__ = ["EXTREME", "HOSTILE", "NAMES", "PLAIN", "scenes"]
 

@@ -9,16 +9,16 @@ from pathlib import Path
 import mpmath
 import pytest
 
-from physicslab.accuracy.catalogue import LEFT_OUT, PROBLEMS, names, select
-from physicslab.accuracy.chaos import crowd
-from physicslab.accuracy.document import document
-from physicslab.accuracy.figures import digits, number, record
-from physicslab.accuracy.measure import measure
-from physicslab.accuracy.settings import Setting, ladder, refusal
-from physicslab.accuracy.study import Study, rounding_floor, study
-from physicslab.accuracy.verdict import Verdict, measured_order, verdict
 from physicslab.cli import main
 from physicslab.integrators import INTEGRATORS
+from physicslab.lab.accuracy.catalogue import LEFT_OUT, PROBLEMS, names, select
+from physicslab.lab.accuracy.chaos import crowd
+from physicslab.lab.accuracy.document import document
+from physicslab.lab.accuracy.figures import digits, number, record
+from physicslab.lab.accuracy.measure import measure
+from physicslab.lab.accuracy.settings import Setting, ladder, refusal
+from physicslab.lab.accuracy.study import Study, rounding_floor, study
+from physicslab.lab.accuracy.verdict import Verdict, measured_order, verdict
 
 type Figures = dict[tuple[str, ...], mpmath.mpf]
 """Figures by the keys under which they are on record."""
@@ -184,7 +184,7 @@ def test_every_digit_on_record_is_that_of_the_closed_form(name: str) -> None:
 
 @pytest.mark.parametrize("e", ["0", "0.5", "0.9", "0.99"])
 def test_orbits_start_at_the_nearest_float_to_the_exact_speed(e: str) -> None:
-    from physicslab.accuracy.states import place, velocity
+    from physicslab.lab.accuracy.states import place, velocity
 
     world = PROBLEMS[f"kepler_e{e}"].build(Setting("auto").simulation(PROBLEMS[f"kepler_e{e}"]))
     with mpmath.workdps(40):
@@ -406,7 +406,7 @@ def test_interrupted_it_says_so(capsys: pytest.CaptureFixture[str], monkeypatch:
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("physicslab.accuracy.study.measure", interrupt)
+    monkeypatch.setattr("physicslab.lab.accuracy.study.measure", interrupt)
     assert main(["accuracy", "free_fall"]) == 130
     assert "interrupted" in capsys.readouterr().err
 

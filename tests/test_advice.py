@@ -9,17 +9,17 @@ import pytest
 from desk import Desk, empty_world
 from test_hud import frame, recorded
 
-from physicslab.advice import Advice, WorstAdvice, advise
 from physicslab.cli import main
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.config import SimulationConfig
+from physicslab.diagnostics.warnings import Advice, WorstAdvice, advise
+from physicslab.ecs.config import SimulationConfig
+from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import box, circle, stack
-from physicslab.scene import load_scene, save_scene
 from physicslab.scenes import SCENES
 from physicslab.systems.standard import standard_systems
-from physicslab.view.advice import draw_advice
-from physicslab.view.canvas import RecordingCanvas, TextStyle
-from physicslab.view.theme import THEMES
+from physicslab.view.canvas.canvas import RecordingCanvas, TextStyle
+from physicslab.view.canvas.theme import THEMES
+from physicslab.view.panels.warnings import draw_advice
 from physicslab.world import World
 
 

@@ -11,15 +11,16 @@ import pygame
 import pytest
 from desk import FRAME, Desk, bits, empty_world
 
-from physicslab import cli, compiling
-from physicslab.app import open_window
+from physicslab import cli
 from physicslab.components import Transform, Velocity
+from physicslab.desktop import compiling
+from physicslab.desktop.app import open_window
+from physicslab.desktop.sandbox import Sandbox
+from physicslab.files.scene import SceneError, load_scene
 from physicslab.prefabs import box, circle
-from physicslab.sandbox import Sandbox
-from physicslab.scene import SceneError, load_scene
-from physicslab.schedule import Stage, System, at
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.display import Display
+from physicslab.systems.schedule import Stage, System, at
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.display import Display
 from physicslab.view.window import Window
 from physicslab.world import World
 
@@ -246,7 +247,7 @@ def test_frames_come_at_the_rate_asked_for(each_frame: EachFrame) -> None:
 
 STARTS = """
 import sys, types
-from physicslab.view.display import Display
+from physicslab.view.canvas.display import Display
 show, seen = Display.show, []
 
 def watched(display):
@@ -257,7 +258,7 @@ def watched(display):
     return show(display)
 
 Display.show = watched
-sys.modules["physicslab.session_window"] = None  # nothing is to be run in it
+sys.modules["physicslab.desktop.session_window"] = None  # nothing is to be run in it
 import physicslab.cli
 try:
     physicslab.cli.main(["drop"])

@@ -11,9 +11,11 @@ from desk import Desk, bits, empty_world
 from test_hud import MeasuringCanvas
 
 from physicslab.components import Velocity
+from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
-from physicslab.scene import load_scene
-from physicslab.view.arrows import (
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.theme import DARK, Colour
+from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,
     FORCE,
     FRICTION_IMPULSE,
@@ -24,10 +26,8 @@ from physicslab.view.arrows import (
     draw_arrows,
     longest,
 )
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.gauge import Gauge
-from physicslab.view.theme import DARK, Colour
-from physicslab.view.vectors import NORMAL_LENGTH
+from physicslab.view.overlay.vectors import NORMAL_LENGTH
+from physicslab.view.panels.gauge import Gauge
 from physicslab.world import World
 
 KINDS = (VELOCITY, FORCE, CONTACT_NORMAL, NORMAL_IMPULSE, FRICTION_IMPULSE)

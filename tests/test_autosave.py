@@ -12,16 +12,16 @@ import pygame
 import pytest
 from desk import FRAME, Desk, bits, empty_world
 
-from physicslab.app import open_window
-from physicslab.autosave import Autosave
 from physicslab.components import Transform
+from physicslab.desktop.app import open_window
+from physicslab.desktop.autosave import Autosave
+from physicslab.desktop.sandbox import Sandbox
+from physicslab.desktop.sessions import Session, session_folder
+from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import circle
-from physicslab.sandbox import Sandbox
-from physicslab.scene import load_scene, save_scene
-from physicslab.sessions import Session, session_folder
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.pygame_canvas import PygameCanvas
-from physicslab.view.recovery import Recovery
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.controls.recovery import Recovery
 from physicslab.view.window import Window
 from physicslab.world import World
 
@@ -93,7 +93,7 @@ def test_what_cannot_be_saved_is_told_once_and_the_sandbox_goes_on(
         raise OSError(28, "No space left on device")
 
     if way == "full":
-        monkeypatch.setattr("physicslab.autosave.replace_file", no_room)
+        monkeypatch.setattr("physicslab.desktop.autosave.replace_file", no_room)
     elif way == "gone":
         folder.rmdir()
     else:
@@ -116,7 +116,7 @@ def test_what_cannot_be_saved_is_told_once_and_the_sandbox_goes_on(
 
 def test_a_lock_tells_a_crash_from_a_window_that_is_open(tmp_path: Path) -> None:
     code = (
-        "import sys, time, pathlib; from physicslab.sessions import Session;"
+        "import sys, time, pathlib; from physicslab.desktop.sessions import Session;"
         "s = Session.begin(pathlib.Path(sys.argv[1])); s.path.write_text('{}'); print(s.path, flush=True);"
         "time.sleep(60)"
     )
@@ -247,8 +247,8 @@ def test_the_bar_lies_over_nothing(size: tuple[int, int], tmp_path: Path) -> Non
 
 
 def test_a_window_that_closes_leaves_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("physicslab.compiling.is_warm", lambda: True)
-    monkeypatch.setattr("physicslab.session_window.session_folder", lambda: tmp_path / "state")
+    monkeypatch.setattr("physicslab.desktop.compiling.is_warm", lambda: True)
+    monkeypatch.setattr("physicslab.desktop.session_window.session_folder", lambda: tmp_path / "state")
     pygame.init()
     pygame.event.clear()
     frames = 0
@@ -269,8 +269,8 @@ def test_a_window_that_closes_leaves_nothing(monkeypatch: pytest.MonkeyPatch, tm
 
 def test_a_folder_that_cannot_be_made_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "state").write_text("a file, no folder")
-    monkeypatch.setattr("physicslab.compiling.is_warm", lambda: True)
-    monkeypatch.setattr("physicslab.session_window.session_folder", lambda: tmp_path / "state")
+    monkeypatch.setattr("physicslab.desktop.compiling.is_warm", lambda: True)
+    monkeypatch.setattr("physicslab.desktop.session_window.session_folder", lambda: tmp_path / "state")
     said: list[str] = []
     usual = Sandbox.frame
 

@@ -11,20 +11,20 @@ from typing import Any
 import pytest
 
 from physicslab import cli
-from physicslab.bench.catalogue import SCENES, gas_scene, pile_scene, select
-from physicslab.bench.clock import TURN, take_turns
-from physicslab.bench.engine import OurEngine, missing_peers
-from physicslab.bench.growth import exponent, growths
-from physicslab.bench.machine import machine_text
-from physicslab.bench.measure import measure_scene
-from physicslab.bench.memory import measure_memory
-from physicslab.bench.quality import Quality
-from physicslab.bench.result import SceneResult
-from physicslab.bench.scene import BenchScene
-from physicslab.bench.targets import Check
-from physicslab.bench.unused import UNUSED, Unused, measure_unused
-from physicslab.bodies import Diverged
-from physicslab.peers.pymunk_mirror import PymunkMirror
+from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene, select
+from physicslab.lab.bench.clock import TURN, take_turns
+from physicslab.lab.bench.engine import OurEngine, missing_peers
+from physicslab.lab.bench.growth import exponent, growths
+from physicslab.lab.bench.machine import machine_text
+from physicslab.lab.bench.measure import measure_scene
+from physicslab.lab.bench.memory import measure_memory
+from physicslab.lab.bench.quality import Quality
+from physicslab.lab.bench.result import SceneResult
+from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.bench.targets import Check
+from physicslab.lab.bench.unused import UNUSED, Unused, measure_unused
+from physicslab.lab.peers.pymunk_mirror import PymunkMirror
+from physicslab.state.bodies import Diverged
 from physicslab.world import World
 
 
@@ -43,7 +43,7 @@ def measured(scene: BenchScene) -> SceneResult:
 def small_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
     scenes = [tiny(pile_scene(count)) for count in (5, 10, 20)]
     scenes += [tiny(gas_scene(10)), tiny(SCENES["circles_10"])]
-    monkeypatch.setattr("physicslab.bench.catalogue.SCENES", {scene.name: scene for scene in scenes})
+    monkeypatch.setattr("physicslab.lab.bench.catalogue.SCENES", {scene.name: scene for scene in scenes})
 
 
 def test_the_exponent_is_that_of_a_power_law() -> None:
@@ -203,7 +203,7 @@ def test_absent_peers_are_named_with_what_installs_them(
         title, module = "Absent", "no_such_engine"
 
     assert missing_peers() in ([], ["pymunk"], ["Box2D"], ["pymunk", "Box2D"])
-    monkeypatch.setattr("physicslab.bench.engine.PEERS", (Absent,))
+    monkeypatch.setattr("physicslab.lab.bench.engine.PEERS", (Absent,))
     assert cli.main(["bench", "--peers"]) == 2
     out, err = capsys.readouterr()
     assert (out, err) == (

@@ -5,12 +5,13 @@ import pytest
 from desk import bits
 
 from physicslab.components import Mass, Transform, Velocity
-from physicslab.diagnostics import measure_energy, measure_momentum
-from physicslab.kernels import compile_kernels, impulse
-from physicslab.kernels.block_layout import MASS_A, MASS_B, WIDE
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.files.scene import read_scene, write_scene
+from physicslab.kernels import compile_kernels
+from physicslab.kernels.solver import impulse
+from physicslab.kernels.wide.layout import MASS_A, MASS_B, WIDE
+from physicslab.lab.stability.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle, container, pile, pyramid
-from physicslab.scene import read_scene, write_scene
-from physicslab.stability.worlds import floor, open_space, place
 from physicslab.world import World
 
 

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.bodies import Diverged
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.schedule import ForceSystem, Stage, at
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.state.bodies import Diverged
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
-from physicslab.vector import Vector2
+from physicslab.systems.schedule import ForceSystem, Stage, at
 from physicslab.world import World
 
 NO_GRAVITY = PhysicsConfig(gravity_mode="none")

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Mass, Shape, Transform, Velocity
-from physicslab.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.world import World

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.vector import Vector2
-from physicslab.view.camera import Camera
+from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.camera import Camera
 
 places = st.builds(Vector2, st.floats(-50.0, 50.0), st.floats(-50.0, 50.0))
 pixels = st.tuples(st.floats(0.0, 1280.0), st.floats(0.0, 720.0))

@@ -7,9 +7,9 @@ import pygame
 import pytest
 from numpy.typing import NDArray
 
-from physicslab.view.canvas import Canvas, Look, RecordingCanvas, TextStyle
-from physicslab.view.pygame_canvas import PygameCanvas
-from physicslab.view.theme import Colour
+from physicslab.view.canvas.canvas import Canvas, Look, RecordingCanvas, TextStyle
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.theme import Colour
 
 BLACK, WHITE, RED = (0, 0, 0), (255, 255, 255), (255, 0, 0)
 

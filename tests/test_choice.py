@@ -2,14 +2,14 @@
 
 import pytest
 
-from physicslab import config
 from physicslab.components import Drag, Mass, Shape, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.diagnostics import Drift
+from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.run_report import RunRecord, run_report, run_summary
+from physicslab.ecs import config
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.integrators import INTEGRATORS
-from physicslab.report import RunRecord, run_report, run_summary
-from physicslab.schedule import ForceSystem, Stage, at
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.schedule import ForceSystem, Stage, at
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World

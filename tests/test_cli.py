@@ -19,7 +19,7 @@ import physicslab
 from physicslab import cli, load_scene, save_scene
 from physicslab.commands import progress, run
 from physicslab.commands.output import Output
-from physicslab.report import find_not_finite
+from physicslab.diagnostics.run_report import find_not_finite
 from physicslab.scenes import SCENES
 
 ROOT = Path(__file__).parent.parent
@@ -72,7 +72,7 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
 
 def test_the_numbers_are_those_of_the_world(capsys: pytest.CaptureFixture[str]) -> None:
     from physicslab.components import Transform
-    from physicslab.diagnostics import measure_energy, measure_momentum
+    from physicslab.diagnostics.energy import measure_energy, measure_momentum
 
     report = document(capsys, "run", "pendulum", "--seconds", "2.5")
     world = load_scene("pendulum")
@@ -362,7 +362,7 @@ def test_a_scene_or_nothing_opens_the_window(monkeypatch: pytest.MonkeyPatch) ->
         opened.append(scene)
         return 3
 
-    monkeypatch.setitem(sys.modules, "physicslab.app", SimpleNamespace(open_window=open_window))
+    monkeypatch.setitem(sys.modules, "physicslab.desktop.app", SimpleNamespace(open_window=open_window))
     assert cli.main([]) == 3
     assert cli.main(["drop"]) == 3
     assert cli.main(["nothing"]) == 2

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.closed_form import NoClosedForm, closed_form
 from physicslab.components import Held, Mass, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.systems.standard import standard_systems
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.columns import COMPONENTS, Component, InvalidValue, Table, Vector, component, field
 from physicslab.components import Mass, Material, Shape, Spring, Trail, Transform, Velocity
-from physicslab.config import SimulationConfig
-from physicslab.schedule import Stage, System, at
-from physicslab.vector import Vector2
+from physicslab.ecs.component import COMPONENTS, Component, InvalidValue, Table, Vector, component, field
+from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.systems.schedule import Stage, System, at
 from physicslab.world import World
 
 

@@ -8,16 +8,16 @@ from desk import bits
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from physicslab.bench.catalogue import SCENES as BENCH
-from physicslab.bodies import Diverged
-from physicslab.compiled_steps import why_not_compiled
 from physicslab.components import Drag, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.files.scene import load_scene
+from physicslab.lab.bench.catalogue import SCENES as BENCH
 from physicslab.prefabs import box, circle
-from physicslab.scene import load_scene
 from physicslab.scenes import SCENES
-from physicslab.schedule import Stage, System, at
+from physicslab.state.bodies import Diverged
+from physicslab.stepping.fused_contact import why_not_compiled
 from physicslab.systems.gravity import GravitySystem
+from physicslab.systems.schedule import Stage, System, at
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 

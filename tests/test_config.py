@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from physicslab.config import PhysicsConfig, SimulationConfig, WindowConfig, field_names
-from physicslab.fields import InvalidValue
-from physicslab.vector import Vector2
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig, WindowConfig, field_names
+from physicslab.ecs.fields import InvalidValue
+from physicslab.ecs.vector import Vector2
 
 
 def test_defaults() -> None:

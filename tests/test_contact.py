@@ -10,11 +10,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
-from physicslab.config import PhysicsConfig
-from physicslab.contacts import Contact
+from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.state.contacts import Contact
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 

@@ -5,13 +5,13 @@ import math
 import pytest
 
 from physicslab.components import Held, Mass, Shape, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig
-from physicslab.diagnostics import Drift, Energy, measure_energy, measure_momentum
-from physicslab.schedule import ForceSystem, Stage, at
+from physicslab.diagnostics.energy import Drift, Energy, measure_energy, measure_momentum
+from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.schedule import ForceSystem, Stage, at
 from physicslab.systems.spring import SpringSystem
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from desk import Desk, bits
 
-from physicslab.bodies import Diverged
 from physicslab.cli import main
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import box, circle
-from physicslab.scene import load_scene, save_scene
-from physicslab.schedule import ForceSystem, Stage, at
+from physicslab.state.bodies import Diverged
+from physicslab.systems.schedule import ForceSystem, Stage, at
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
@@ -156,7 +156,7 @@ def test_a_state_that_cannot_be_saved_is_told(
     def refuse(*arguments: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("physicslab.rescue.save_scene", refuse)
+    monkeypatch.setattr("physicslab.desktop.rescue.save_scene", refuse)
     assert "could not be saved: [Errno 28] No space left" in failed(capsys)
 
 

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.columns import InvalidValue
 from physicslab.components import Drag, Mass, Shape, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.diagnostics import measure_energy
+from physicslab.diagnostics.energy import measure_energy
+from physicslab.ecs.component import InvalidValue
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.systems.drag import DragSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from desk import Desk, empty_world
 
+from physicslab.files.scene import load_scene
 from physicslab.prefabs import pendulum
-from physicslab.scene import load_scene
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.error_study import ErrorStudy
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.panels.error_study import ErrorStudy
 
 
 def run(asked: str, integrator: str, cpu_ms: float | None, error: float | None) -> dict[str, object]:

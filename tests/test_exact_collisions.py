@@ -15,9 +15,10 @@ from hypothesis import strategies as st
 
 from physicslab import World, load_scene
 from physicslab.components import Held, Mass, Material, Shape, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.diagnostics import measure_energy, measure_momentum
-from physicslab.kernels import compile_kernels, events
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.kernels import compile_kernels
+from physicslab.kernels.events import events
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
 from physicslab.systems.standard import standard_systems

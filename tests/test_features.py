@@ -10,13 +10,13 @@ from test_arrows import lines_in
 from test_hud import row
 
 from physicslab.components import Held, Shape, Spring, Trail, Transform, Velocity
-from physicslab.config import WindowConfig
-from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.config import WindowConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
-from physicslab.vector import Vector2
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.quantities import quantity
-from physicslab.view.theme import DARK, Colour
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.theme import DARK, Colour
+from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
 
 

@@ -7,14 +7,14 @@ from desk import FRAME, Desk, empty_world
 from test_hud import frame, recorded, row
 
 from physicslab.components import Transform
-from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle, pendulum
-from physicslab.scene import load_scene
-from physicslab.vector import Vector2
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.figures import EnergyWatch
-from physicslab.view.quantities import length_of, percentage, quantity, vector_quantity
-from physicslab.view.scale_bar import draw_scale_bar
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.panels.figures import EnergyWatch
+from physicslab.view.panels.quantities import length_of, percentage, quantity, vector_quantity
+from physicslab.view.panels.scale_bar import draw_scale_bar
 
 
 def test_every_energy_stands_beside_its_name() -> None:

@@ -16,12 +16,12 @@ from deadline import deadline
 from hostile_scenes import scenes
 from hypothesis import HealthCheck, given, settings
 
-from physicslab.bodies import Diverged
-from physicslab.columns import COMPONENTS, InvalidValue
-from physicslab.diagnostics import Drift
-from physicslab.json_text import json_text
-from physicslab.report import RunRecord, find_not_finite, run_report
-from physicslab.scene import SceneError, read_scene, write_scene
+from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.run_report import RunRecord, find_not_finite, run_report
+from physicslab.ecs.component import COMPONENTS, InvalidValue
+from physicslab.files.json_text import json_text
+from physicslab.files.scene import SceneError, read_scene, write_scene
+from physicslab.state.bodies import Diverged
 from physicslab.world import World
 
 STEPS = 3

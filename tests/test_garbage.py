@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from physicslab.garbage import loading
+from physicslab.desktop.garbage import loading
 
 
 def test_nothing_is_searched_while_loading_and_what_was_loaded_never_is() -> None:

@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Held, Mass, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.diagnostics import measure_energy, measure_momentum, summation
-from physicslab.kernels.gravity import MANY
+from physicslab.diagnostics.energy import measure_energy, measure_momentum, summation
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.kernels.forces.gravity import MANY
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 AT_ONCE = SimulationConfig(substeps=1, integrator="symplectic_euler")

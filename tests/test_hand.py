@@ -6,10 +6,10 @@ import pytest
 from desk import FRAME, empty_world
 
 from physicslab.components import Held, Mass, Transform, Velocity
-from physicslab.config import WindowConfig
+from physicslab.ecs.config import WindowConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
-from physicslab.vector import Vector2
-from physicslab.view.hand import Hand
+from physicslab.view.controls.hand import Hand
 from physicslab.world import World
 
 

@@ -9,9 +9,9 @@ from desk import Desk, empty_world
 from test_hud import SIZES, MeasuringCanvas, frame, recorded
 
 from physicslab.components import Spring, Transform
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle, pendulum
-from physicslab.vector import Vector2
-from physicslab.view.controls import CONTROLS
+from physicslab.view.controls.controls import CONTROLS
 
 
 def springs(desk: Desk) -> list[Spring]:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from physicslab.scene import LARGEST_FILE, SceneError, load_scene
+from physicslab.files.scene import LARGEST_FILE, SceneError, load_scene
 
 MAIN = Path(__file__).parents[1] / "main.py"
 SECONDS = 60
@@ -95,7 +95,7 @@ def test_a_file_that_grows_while_it_is_read_is_read_no_further_than_the_limit(
         os.truncate(path, 2 * LARGEST_FILE)  # after it was looked at, before it is read
         return seen
 
-    monkeypatch.setattr("physicslab.scene.os.fstat", grow)
+    monkeypatch.setattr("physicslab.files.scene.os.fstat", grow)
     with pytest.raises(SceneError, match="is too large: a scene file must have at most"):
         load_scene(path)
 

@@ -9,10 +9,10 @@ import pytest
 from deadline import deadline
 from test_fuzz_scenes import run_or_refuse
 
-from physicslab.bodies import Diverged
-from physicslab.columns import InvalidValue
 from physicslab.components import Spring, Transform, Velocity
-from physicslab.scene import SceneError, read_scene
+from physicslab.ecs.component import InvalidValue
+from physicslab.files.scene import SceneError, read_scene
+from physicslab.state.bodies import Diverged
 from physicslab.systems.spring import SpringSystem
 from physicslab.world import World
 

@@ -7,15 +7,15 @@ import pygame
 import pytest
 from desk import FRAME, Desk, empty_world
 
-from physicslab.config import PhysicsConfig, WindowConfig
-from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.config import PhysicsConfig, WindowConfig
+from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle, pendulum
-from physicslab.scene import load_scene
-from physicslab.view.canvas import Align, RecordingCanvas, Rect, TextStyle
-from physicslab.view.controls import CONTROLS
-from physicslab.view.figures import FrameMeter
-from physicslab.view.pygame_canvas import PygameCanvas
-from physicslab.view.quantities import quantity
+from physicslab.view.canvas.canvas import Align, RecordingCanvas, Rect, TextStyle
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.controls.controls import CONTROLS
+from physicslab.view.panels.figures import FrameMeter
+from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
 
 SIZES = [(1280, 720), (800, 600), (1920, 1080), (1000, 1300), (720, 540), (2560, 1440)]

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.diagnostics import measure_energy, measure_momentum
-from physicslab.equations import Equations
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.integrators import implicit_midpoint
-from physicslab.kernels import springs
+from physicslab.kernels.forces import springs
+from physicslab.ode.system import Equations
 from physicslab.systems.standard import standard_systems
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 MIDPOINT = SimulationConfig(integrator="implicit_midpoint")

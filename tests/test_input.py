@@ -5,9 +5,9 @@ import pytest
 from desk import Desk, empty_world
 
 from physicslab.components import Held, Shape, Transform, Velocity
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
-from physicslab.vector import Vector2
-from physicslab.view.controls import CONTROLS, KEYS, RELEASES
+from physicslab.view.controls.controls import CONTROLS, KEYS, RELEASES
 
 
 @pytest.fixture

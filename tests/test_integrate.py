@@ -6,16 +6,16 @@ import math
 import numpy as np
 import pytest
 
-from physicslab.bodies import Diverged
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.diagnostics import measure_energy
+from physicslab.diagnostics.energy import measure_energy
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.integrators import INTEGRATORS
-from physicslab.schedule import Stage, System, at
+from physicslab.state.bodies import Diverged
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.schedule import Stage, System, at
 from physicslab.systems.spring import SpringSystem
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 

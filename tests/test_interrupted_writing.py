@@ -10,10 +10,10 @@ import pygame
 import pytest
 from desk import Desk
 
-from physicslab.autosave import Autosave
 from physicslab.cli import main
-from physicslab.file_replacement import remove_leftovers, replace_file
-from physicslab.scene import load_scene, save_scene
+from physicslab.desktop.autosave import Autosave
+from physicslab.files.replace import remove_leftovers, replace_file
+from physicslab.files.scene import load_scene, save_scene
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="signals and limits of POSIX")
 
@@ -22,8 +22,8 @@ CTRL = pygame.KMOD_LCTRL
 WRITER = """
 import os, signal, sys, threading
 from pathlib import Path
-from physicslab.scene import load_scene, save_scene
-from physicslab.autosave import Autosave
+from physicslab.files.scene import load_scene, save_scene
+from physicslab.desktop.autosave import Autosave
 from physicslab.cli import main
 way, path, moment = sys.argv[1], Path(sys.argv[2]), sys.argv[3]
 
@@ -39,7 +39,7 @@ class Half:
 
 if moment == "write":
     import builtins
-    import physicslab.file_replacement as module
+    import physicslab.files.replace as module
     module.open = lambda name, mode: Half(builtins.open(name, mode))
 else:
     setattr(os, moment, die)
@@ -82,7 +82,7 @@ def test_a_kill_in_the_middle_leaves_the_old_file_whole(way: str, moment: str, t
 def test_a_writer_killed_at_any_time_leaves_one_whole_file(tmp_path: Path) -> None:
     path = tmp_path / "kept.bin"
     code = (
-        "import sys; from physicslab.file_replacement import replace_file\n"
+        "import sys; from physicslab.files.replace import replace_file\n"
         "n = 0\n"
         "while True:\n"
         "    n = (n + 1) % 250; replace_file(sys.argv[1], bytes([n]) * 3_000_000)\n"
@@ -113,7 +113,7 @@ def test_a_full_disk_leaves_the_old_file_whole(
         raise OSError(28, "No space left on device")
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("physicslab.file_replacement.os.fsync", no_room)
+    monkeypatch.setattr("physicslab.files.replace.os.fsync", no_room)
     world = load_scene("stack")
     if way == "save_scene":
         with pytest.raises(OSError, match="No space left"):
@@ -143,7 +143,7 @@ def test_a_limit_on_the_size_of_files_leaves_the_old_file_whole(way: str, tmp_pa
     code = (
         "import resource, signal, sys\n"
         "from physicslab.cli import main\n"
-        "from physicslab.scene import load_scene, save_scene\n"
+        "from physicslab.files.scene import load_scene, save_scene\n"
         "world = load_scene('stack')\n"
         "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))\n"

@@ -17,6 +17,9 @@ from physicslab import kernels
 from physicslab.kernels import KERNELS, Flags, Numbers, Rows, Vectors, compile_kernels, kernel, motion
 
 FOLDER = Path(kernels.__file__).parent
+MODULES = sorted(
+    ".".join(path.relative_to(FOLDER).with_suffix("").parts) for path in FOLDER.rglob("[a-z]*.py")
+)
 
 
 @kernel
@@ -97,7 +100,7 @@ def test_half_kicks_compose_to_whole_ones() -> None:
     assert once[1] == pytest.approx(twice[1], rel=1e-14)
 
 
-@pytest.mark.parametrize("module", sorted(path.stem for path in FOLDER.glob("[a-z]*.py")))
+@pytest.mark.parametrize("module", MODULES)
 def test_every_kernel_compiles(module: str) -> None:
     importlib.import_module(f"physicslab.kernels.{module}")
     own = [made for made in KERNELS if made.py_func.__module__ == f"physicslab.kernels.{module}"]

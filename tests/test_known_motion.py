@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from physicslab import load_scene
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.kepler import propagate_kepler
-from physicslab.known_motion import known_motion
+from physicslab.diagnostics.reference_solution import known_motion
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ode.kepler import propagate_kepler
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 

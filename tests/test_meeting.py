@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from physicslab.kernels.meeting import meet_box_box, meet_circle_box, meet_circle_circle, meet_line
+from physicslab.kernels.events.meeting import meet_box_box, meet_circle_box, meet_circle_circle, meet_line
 
 away = st.floats(1.0, 3.0)
 turns = st.floats(0.0, 6.28)

@@ -8,11 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.kernels import compile_kernels, near_pairs
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.files.scene import read_scene, write_scene
+from physicslab.kernels import compile_kernels
+from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.prefabs import gas
-from physicslab.scene import read_scene, write_scene
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.standard import standard_systems

@@ -8,15 +8,15 @@ from desk import Desk, bits, empty_world
 from test_arrows import lines_in, shown
 
 from physicslab.components import Mass, Velocity
+from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
-from physicslab.scene import load_scene
-from physicslab.vector import Vector2
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.impacts import SHOWN
-from physicslab.view.impulses import LABELLED
-from physicslab.view.labels import Label, Labels
-from physicslab.view.quantities import quantity
-from physicslab.view.theme import DARK, Colour
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.theme import DARK, Colour
+from physicslab.view.overlay.impacts import SHOWN
+from physicslab.view.overlay.impulses import LABELLED
+from physicslab.view.overlay.labels import Label, Labels
+from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
 
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.pace import Pace
+from physicslab.desktop.pace import Pace
 
 DT = 1.0 / 60.0
 

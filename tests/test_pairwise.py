@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from physicslab.kernels import FASTMATH, gravity, packed_forces, pairwise
-from physicslab.kernels.pairwise import inverse_root
+from physicslab.kernels import FASTMATH
+from physicslab.kernels.forces import gravity, packed_forces, pairwise
+from physicslab.kernels.forces.pairwise import inverse_root
 
 type Array = NDArray[np.float64]
 LAWS = ("clamp", "plummer")

@@ -6,10 +6,10 @@ import pytest
 from desk import empty_world
 
 from physicslab.components import Mass, Transform, Velocity
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
-from physicslab.vector import Vector2
-from physicslab.view.camera import Camera
-from physicslab.view.picking import body_at
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.controls.picking import body_at
 from physicslab.world import World
 
 

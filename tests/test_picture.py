@@ -10,10 +10,10 @@ import pygame
 import pytest
 from desk import bits, empty_world
 
+from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle
-from physicslab.scene import load_scene
-from physicslab.view.picture import save_png
-from physicslab.view.theme import DARK
+from physicslab.view.canvas.theme import DARK
+from physicslab.view.picture.picture import save_png
 
 
 def test_a_file_and_a_stream_get_the_same_picture(tmp_path: Path) -> None:
@@ -55,7 +55,8 @@ def test_a_path_that_cannot_be_written_is_an_os_error(tmp_path: Path) -> None:
 
 def test_no_display_is_opened_and_nothing_is_printed(tmp_path: Path) -> None:
     code = (
-        "import sys; from physicslab import load_scene; from physicslab.view.picture import save_png\n"
+        "import sys; from physicslab import load_scene\n"
+        "from physicslab.view.picture.picture import save_png\n"
         "import pygame; save_png(load_scene('drop'), sys.argv[1]); assert not pygame.display.get_init()"
     )
     environment = {k: v for k, v in os.environ.items() if k not in ("SDL_VIDEODRIVER", "DISPLAY")}

@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from physicslab import InvalidValue, Vector2, World
 from physicslab.components import Mass, Material, Shape, Spring, Trail, Transform, Velocity
-from physicslab.config import PhysicsConfig
-from physicslab.diagnostics import Drift, measure_momentum
+from physicslab.diagnostics.energy import Drift, measure_momentum
+from physicslab.ecs.config import PhysicsConfig
+from physicslab.files.scene import write_scene
 from physicslab.prefabs import (
     Planet,
     binary,
@@ -26,7 +27,6 @@ from physicslab.prefabs import (
     pyramid,
     stack,
 )
-from physicslab.scene import write_scene
 from physicslab.systems.standard import standard_systems
 
 

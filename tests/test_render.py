@@ -9,17 +9,17 @@ import pytest
 from desk import FRAME, Desk, bits, empty_world
 
 from physicslab.components import Held, Mass, Spring, Transform, Velocity
+from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle, pendulum
-from physicslab.scene import load_scene
 from physicslab.scenes import SCENES
-from physicslab.schedule import Stage
-from physicslab.systems.render import RenderSystem
-from physicslab.view.backdrop import grid_spacing
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.extent import extent_of
-from physicslab.view.pygame_canvas import PygameCanvas
-from physicslab.view.springs import coil
-from physicslab.view.theme import DARK
+from physicslab.systems.frame.render import RenderSystem
+from physicslab.systems.schedule import Stage
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.theme import DARK
+from physicslab.view.picture.backdrop import grid_spacing
+from physicslab.view.picture.extent import extent_of
+from physicslab.view.picture.springs import coil
 from physicslab.view.window import Window
 from physicslab.world import World
 

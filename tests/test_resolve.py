@@ -10,10 +10,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.systems.standard import standard_systems
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 NO_GRAVITY = PhysicsConfig(gravity_mode="none")

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physicslab.components import Held, Mass, Name, Transform, Velocity
-from physicslab.vector import Vector2
+from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
 

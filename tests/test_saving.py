@@ -9,9 +9,9 @@ from desk import Desk, bits, empty_world
 from test_hud import frame, recorded
 
 from physicslab.components import Held, Velocity
+from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import circle
-from physicslab.scene import load_scene, save_scene
-from physicslab.view.scene_files import new_scene_path, newest_scene
+from physicslab.view.controls.scene_files import new_scene_path, newest_scene
 
 CTRL = pygame.KMOD_LCTRL
 
@@ -112,7 +112,7 @@ def test_a_folder_that_cannot_be_written_is_told(monkeypatch: pytest.MonkeyPatch
     def refuse(*arguments: object) -> None:
         raise PermissionError("nothing may be written here")
 
-    monkeypatch.setattr("physicslab.view.actions.save_scene", refuse)
+    monkeypatch.setattr("physicslab.view.controls.actions.save_scene", refuse)
     desk = Desk(empty_world())
     desk.key("s", CTRL)
     desk.frames()

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from physicslab import SceneError, World, load_scene
-from physicslab.columns import COMPONENTS, InvalidValue, Vector, component, field
 from physicslab.components import Material, Shape, Spring, Velocity
-from physicslab.scene import read_scene
-from physicslab.scene_checks import JsonObject, shown
+from physicslab.ecs.component import COMPONENTS, InvalidValue, Vector, component, field
+from physicslab.ecs.vector import Vector2
+from physicslab.files.checks import JsonObject, shown
+from physicslab.files.scene import read_scene
 from physicslab.scenes import SCENES
-from physicslab.vector import Vector2
 
 CONTRACT = """
 {"format": "physicslab-scene/1",

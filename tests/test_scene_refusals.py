@@ -9,9 +9,9 @@ import esper
 import pytest
 
 from physicslab import SceneError, World, load_scene
-from physicslab.columns import COMPONENTS
 from physicslab.components import Mass, Material, Shape, Spring, Trail, Transform, Velocity
-from physicslab.scene import read_scene
+from physicslab.ecs.component import COMPONENTS
+from physicslab.files.scene import read_scene
 
 BALL: dict[str, Any] = {"id": "ball", "Transform": {}, "Velocity": {}, "Mass": {}}
 

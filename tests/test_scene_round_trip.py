@@ -16,16 +16,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab import SceneError, World, load_scene, save_scene
-from physicslab.bodies import Diverged
 from physicslab.components import Held, Mass, Name, Shape, Spring, Trail, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.json_text import json_text
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.files.json_text import json_text
+from physicslab.files.scene import read_scene, write_scene
+from physicslab.files.writer import unique_name
 from physicslab.prefabs import box, circle, container, pendulum, pile, stack
-from physicslab.scene import read_scene, write_scene
-from physicslab.scene_writer import unique_name
 from physicslab.scenes import SCENES
+from physicslab.state.bodies import Diverged
 from physicslab.systems.standard import standard_systems
-from physicslab.vector import Vector2
 
 numbers = st.floats(-1e3, 1e3)
 positive = st.floats(1e-3, 1e3)

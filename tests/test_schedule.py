@@ -5,10 +5,10 @@ from typing import Any, ClassVar
 import pytest
 
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.schedule import ForceSystem, Schedule, Stage, System, at
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.schedule import ForceSystem, Schedule, Stage, System, at
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World

@@ -7,10 +7,10 @@ import pygame
 import pytest
 from numpy.typing import NDArray
 
-from physicslab.view.canvas import Paper, RecordingCanvas, Rect, TextStyle
-from physicslab.view.pygame_canvas import PygameCanvas
-from physicslab.view.rota import Rota
-from physicslab.view.rounded import rounded
+from physicslab.view.canvas.canvas import Paper, RecordingCanvas, Rect, TextStyle
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.rounded import rounded
+from physicslab.view.panels.refresh_timer import Rota
 
 RECT = (20, 10, 120, 60)
 INK = TextStyle(14, (230, 230, 230))

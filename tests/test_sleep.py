@@ -12,15 +12,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig
-from physicslab.diagnostics import measure_energy, measure_momentum
-from physicslab.json_text import json_text
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.files.json_text import json_text
+from physicslab.files.scene import read_scene, write_scene
+from physicslab.lab.stability.worlds import floor, open_space
 from physicslab.prefabs import box, circle, container, pile, stack
-from physicslab.scene import read_scene, write_scene
-from physicslab.schedule import ForceSystem, Stage, System, at
-from physicslab.stability.worlds import floor, open_space
+from physicslab.systems.schedule import ForceSystem, Stage, System, at
 from physicslab.systems.standard import standard_systems
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 

@@ -6,9 +6,9 @@ from desk import FRAME, Desk, empty_world
 
 from physicslab.components import Velocity
 from physicslab.prefabs import box, circle, stack
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.sparks import Sparks
-from physicslab.view.theme import DARK
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.theme import DARK
+from physicslab.view.picture.sparks import Sparks
 from physicslab.world import World
 
 

@@ -5,7 +5,7 @@ from desk import FRAME, Desk, empty_world
 from test_hud import frame, recorded
 
 from physicslab.components import Transform
-from physicslab.pace import Pace
+from physicslab.desktop.pace import Pace
 from physicslab.prefabs import circle
 
 

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.columns import InvalidValue
 from physicslab.components import Held, Mass, Name, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig, SimulationConfig
-from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.component import InvalidValue
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 AT_ONCE = SimulationConfig(substeps=1, integrator="symplectic_euler")

@@ -7,9 +7,9 @@ import math
 import pytest
 
 from physicslab import cli
-from physicslab.bodies import Diverged
-from physicslab.stability.case import Case, Verdict, run_case
-from physicslab.stability.catalogue import CASES, select
+from physicslab.lab.stability.case import Case, Verdict, run_case
+from physicslab.lab.stability.catalogue import CASES, select
+from physicslab.state.bodies import Diverged
 
 
 @pytest.mark.parametrize(

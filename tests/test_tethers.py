@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physicslab.components import Drag, Held, Mass, Spring, Transform, Velocity
-from physicslab.config import PhysicsConfig
-from physicslab.diagnostics import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.config import PhysicsConfig
 from physicslab.integrators.blanes_moan import BLANES_MOAN
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
+from physicslab.lab.stability.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle
-from physicslab.stability.worlds import floor, open_space, place
 from physicslab.world import World
 
 

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 import physicslab
-from physicslab.view.arrows import (
+from physicslab.view.canvas.theme import DARK, THEMES, Colour, Theme
+from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,
     FORCE,
     FRICTION_IMPULSE,
     NORMAL_IMPULSE,
     VELOCITY,
 )
-from physicslab.view.theme import DARK, THEMES, Colour, Theme
 
 # What the three common kinds of colour blindness make of linear RGB (Machado, Oliveira & Fernandes, 2009).
 SEEN_BY = {

@@ -8,13 +8,13 @@ import pytest
 from desk import Desk, empty_world
 
 from physicslab.components import Held, Shape, Spring, Transform
+from physicslab.files.scene import save_scene
 from physicslab.prefabs import circle
-from physicslab.scene import save_scene
 from physicslab.scenes import SCENES
-from physicslab.view.controls import CONTROLS, Control
-from physicslab.view.pygame_canvas import PygameCanvas
-from physicslab.view.theme import THEMES
-from physicslab.view.tools import HAND, PAN, SPAWN_TOOLS
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.theme import THEMES
+from physicslab.view.controls.controls import CONTROLS, Control
+from physicslab.view.controls.tools import HAND, PAN, SPAWN_TOOLS
 from physicslab.view.window import Window
 from physicslab.world import World
 

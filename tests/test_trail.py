@@ -5,8 +5,8 @@ import pytest
 from desk import bits, empty_world
 
 from physicslab.components import Mass, Trail, Transform, Velocity
+from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle
-from physicslab.scene import load_scene
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.trail import SAMPLES, TrailSystem
 from physicslab.world import World

@@ -7,13 +7,13 @@ import pytest
 from desk import FRAME, Desk, bits, empty_world
 
 from physicslab.components import Trail, Velocity
+from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
-from physicslab.scene import load_scene
-from physicslab.schedule import Stage
-from physicslab.systems.render import RenderSystem
+from physicslab.systems.frame.render import RenderSystem
+from physicslab.systems.schedule import Stage
 from physicslab.systems.trail import TrailSystem
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.theme import DARK, mixed
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.theme import DARK, mixed
 from physicslab.view.window import Window
 from physicslab.world import World
 

@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from physicslab.kernels.pairwise import attract_pairwise, depth_of_pairs
-from physicslab.kernels.tree import LEAF, levels_of
-from physicslab.kernels.tree_pull import LARGEST_ERROR, RMS_ERROR, attract_by_tree, depth_by_tree
+from physicslab.kernels.forces.pairwise import attract_pairwise, depth_of_pairs
+from physicslab.kernels.forces.tree import LEAF, levels_of
+from physicslab.kernels.forces.tree_pull import LARGEST_ERROR, RMS_ERROR, attract_by_tree, depth_by_tree
 
 type Array = NDArray[np.float64]
 LAWS = ("clamp", "plummer")

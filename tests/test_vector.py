@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.vector import Vector2
+from physicslab.ecs.vector import Vector2
 
 coordinates = st.floats(-1e6, 1e6)
 vectors = st.builds(Vector2, coordinates, coordinates)

@@ -9,15 +9,15 @@ from pathlib import Path
 import pygame
 import pytest
 
-from physicslab import compiling
-from physicslab.compiling import Compiling, Left
-from physicslab.config import WindowConfig
+from physicslab.desktop import compiling
+from physicslab.desktop.compiling import Compiling, Left
+from physicslab.ecs.config import WindowConfig
 from physicslab.kernels import motion, warm
 from physicslab.kernels.warm import Progress, Warmup, is_warm, load_all
-from physicslab.view.canvas import RecordingCanvas
-from physicslab.view.display import Display, wants_to_leave
-from physicslab.view.progress import draw_progress
-from physicslab.view.theme import DARK
+from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.display import Display, wants_to_leave
+from physicslab.view.canvas.theme import DARK
+from physicslab.view.panels.progress import draw_progress
 
 ECHO = (sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line.strip(), flush=True)")
 _SLOWLY = "import sys, time\nfor line in sys.stdin: time.sleep(0.02); print(line, end='', flush=True)"
@@ -191,7 +191,7 @@ def test_the_window_knows_every_kernel_from_the_start() -> None:
     """What is in no imported module could not be loaded while there is time for it."""
     code = """
 from physicslab import app
-app._import("physicslab.session_window")
+app._import("physicslab.desktop.session_window")
 from physicslab.kernels import KERNELS
 before = len(KERNELS)
 from physicslab.kernels.warm import load_all

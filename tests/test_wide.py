@@ -6,8 +6,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from physicslab.kernels import inlined
-from physicslab.kernels.block_layout import WIDE
-from physicslab.kernels.wide import (
+from physicslab.kernels.wide.float64x8 import (
     choose,
     greater,
     least,
@@ -21,6 +20,7 @@ from physicslab.kernels.wide import (
     take_vectors,
     true_lanes,
 )
+from physicslab.kernels.wide.layout import WIDE
 
 type Numbers = NDArray[np.float64]
 

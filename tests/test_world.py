@@ -13,13 +13,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Mass, Name, Spring, Transform, Velocity
-from physicslab.config import SHORTEST, PhysicsConfig, SimulationConfig
-from physicslab.scene import load_scene
-from physicslab.schedule import Stage, System, at
+from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import load_scene
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.schedule import Stage, System, at
 from physicslab.systems.spring import SpringSystem
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 

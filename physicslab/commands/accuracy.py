@@ -9,19 +9,19 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
-from physicslab.accuracy.catalogue import PROBLEMS, families, names, select
-from physicslab.accuracy.document import document
-from physicslab.accuracy.problem import Problem
-from physicslab.accuracy.scene_study import SceneStudy, scene_document, scene_text, study_scene
-from physicslab.accuracy.study import Study, study
-from physicslab.accuracy.tables import left_out_text, study_text, summary_text
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.output import Output
 from physicslab.commands.pictures import picture_directory
 from physicslab.commands.progress import Progress
-from physicslab.json_text import json_text
-from physicslab.scene import load_scene
-from physicslab.scene_checks import shown, suggestion
+from physicslab.files.checks import shown, suggestion
+from physicslab.files.json_text import json_text
+from physicslab.files.scene import load_scene
+from physicslab.lab.accuracy.catalogue import PROBLEMS, families, names, select
+from physicslab.lab.accuracy.document import document
+from physicslab.lab.accuracy.problem import Problem
+from physicslab.lab.accuracy.scene_study import SceneStudy, scene_document, scene_text, study_scene
+from physicslab.lab.accuracy.study import Study, study
+from physicslab.lab.accuracy.tables import left_out_text, study_text, summary_text
 from physicslab.scenes import SCENES
 
 __all__ = ["add_arguments", "execute"]
@@ -118,7 +118,7 @@ def _show(text: str, quiet: bool) -> None:
 
 
 def _draw(found: Study, directory: Path) -> None:
-    from physicslab.accuracy.plot import work_precision  # matplotlib takes a while, and may not be there
+    from physicslab.lab.accuracy.plot import work_precision  # matplotlib takes a while, and may not be there
 
     Output("--plot", str(directory / f"{found.problem.name}.png")).write(work_precision(found))
 

@@ -7,22 +7,22 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
-from physicslab.bench.catalogue import MOST_BESIDE, SCENES, groups, names, opened, select
-from physicslab.bench.document import document
-from physicslab.bench.engine import PEERS, missing_peers
-from physicslab.bench.measure import measure_scene
-from physicslab.bench.memory import measure_memory
-from physicslab.bench.report import BenchReport
-from physicslab.bench.result import SceneResult
-from physicslab.bench.scene import BenchScene
-from physicslab.bench.tables import report_text, scene_text
-from physicslab.bench.unused import UNUSED, Unused, measure_unused
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.output import Output
 from physicslab.commands.pictures import picture_directory
 from physicslab.commands.progress import Progress
-from physicslab.json_text import json_text
-from physicslab.scene_checks import shown, suggestion
+from physicslab.files.checks import shown, suggestion
+from physicslab.files.json_text import json_text
+from physicslab.lab.bench.catalogue import MOST_BESIDE, SCENES, groups, names, opened, select
+from physicslab.lab.bench.document import document
+from physicslab.lab.bench.engine import PEERS, missing_peers
+from physicslab.lab.bench.measure import measure_scene
+from physicslab.lab.bench.memory import measure_memory
+from physicslab.lab.bench.report import BenchReport
+from physicslab.lab.bench.result import SceneResult
+from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.bench.tables import report_text, scene_text
+from physicslab.lab.bench.unused import UNUSED, Unused, measure_unused
 from physicslab.scenes import SCENES as BUILT_IN
 
 __all__ = ["add_arguments", "execute"]
@@ -77,7 +77,7 @@ def execute(arguments: Namespace) -> int:
     if output is not None:
         output.write(json_text(document(report)).encode("utf-8"))
     if pictures is not None:
-        from physicslab.bench.plot import bench_picture  # matplotlib takes a while, and may not be there
+        from physicslab.lab.bench.plot import bench_picture  # matplotlib takes a while, and may not be there
 
         Output("--plot", str(pictures / "bench.png")).write(bench_picture(report))
     _check(report.scenes)

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from typing import BinaryIO, TextIO
 
 from physicslab.commands.command_error import FAILED, CommandError
-from physicslab.file_replacement import check_writable, replace_file
-from physicslab.scene_checks import printable
+from physicslab.files.checks import printable
+from physicslab.files.replace import check_writable, replace_file
 
 __all__ = ["Output"]
 

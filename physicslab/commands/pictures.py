@@ -7,7 +7,7 @@ from pathlib import Path
 
 from physicslab.commands.command_error import CommandError
 from physicslab.commands.output import Output
-from physicslab.scene_checks import shown
+from physicslab.files.checks import shown
 
 __all__ = ["picture_directory"]
 

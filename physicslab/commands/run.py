@@ -13,22 +13,22 @@ from collections.abc import Mapping
 from contextlib import nullcontext
 from pathlib import Path
 
-from physicslab.advice import advise
-from physicslab.bodies import Diverged
-from physicslab.columns import InvalidValue
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.numbers import MOST_STEPS, count, duration, positive_count, positive_duration
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
-from physicslab.config import INTEGRATORS
-from physicslab.diagnostics import Drift
-from physicslab.json_text import json_text
-from physicslab.report import RunRecord, find_not_finite, run_report, run_summary
-from physicslab.rescue import save_last_good
-from physicslab.scene import SceneError, load_scene
-from physicslab.scene_checks import shown
+from physicslab.desktop.rescue import save_last_good
+from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.run_report import RunRecord, find_not_finite, run_report, run_summary
+from physicslab.diagnostics.trajectory import TrajectoryWriter
+from physicslab.diagnostics.warnings import advise
+from physicslab.ecs.component import InvalidValue
+from physicslab.ecs.config import INTEGRATORS
+from physicslab.files.checks import shown
+from physicslab.files.json_text import json_text
+from physicslab.files.scene import SceneError, load_scene
 from physicslab.scenes import SCENES
-from physicslab.trajectory import TrajectoryWriter
+from physicslab.state.bodies import Diverged
 from physicslab.world import World
 
 __all__ = ["add_arguments", "execute"]
@@ -171,7 +171,7 @@ def _measure(world: World, record: RunRecord) -> None:
 def _picture(world: World) -> bytes:
     """Return a PNG of the world as it is now; pygame draws it, without a display."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
-    from physicslab.view.picture import save_png
+    from physicslab.view.picture.picture import save_png
 
     picture = io.BytesIO()
     save_png(world, picture)

@@ -8,7 +8,7 @@ import esper
 
 from physicslab.commands.output import Output
 from physicslab.components import Transform
-from physicslab.json_text import json_text
+from physicslab.files.json_text import json_text
 from physicslab.scenes import SCENES, Scene
 
 __all__ = ["add_arguments", "execute"]

@@ -9,12 +9,12 @@ from collections.abc import Iterator, Sequence
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
-from physicslab.json_text import json_text
-from physicslab.scene_checks import shown, suggestion
-from physicslab.stability.case import Case, Outcome, Verdict, run_case
-from physicslab.stability.catalogue import CASES, groups, names, select
-from physicslab.stability.document import document
-from physicslab.stability.tables import head_text, row_text, summary_text
+from physicslab.files.checks import shown, suggestion
+from physicslab.files.json_text import json_text
+from physicslab.lab.stability.case import Case, Outcome, Verdict, run_case
+from physicslab.lab.stability.catalogue import CASES, groups, names, select
+from physicslab.lab.stability.document import document
+from physicslab.lab.stability.tables import head_text, row_text, summary_text
 
 __all__ = ["add_arguments", "execute"]
 

@@ -1,6 +1,6 @@
 """How strongly a body is slowed by what it moves through."""
 
-from physicslab.columns import Component, component, field
+from physicslab.ecs.component import Component, component, field
 
 
 @component

@@ -1,6 +1,6 @@
 """What a hand does to a body."""
 
-from physicslab.columns import Component, Vector, component, field
+from physicslab.ecs.component import Component, Vector, component, field
 
 
 @component

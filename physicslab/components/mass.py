@@ -1,6 +1,6 @@
 """How a body resists forces and torques."""
 
-from physicslab.columns import Component, Derived, component, field
+from physicslab.ecs.component import Component, Derived, component, field
 
 LEAST = 1e-300
 """The smallest mass [kg] and moment of inertia [kg m^2]: of much smaller ones the inverse is infinite."""

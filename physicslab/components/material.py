@@ -1,6 +1,6 @@
 """What a body's surface is like."""
 
-from physicslab.columns import Component, component, field
+from physicslab.ecs.component import Component, component, field
 
 
 @component

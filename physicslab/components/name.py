@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from physicslab.scene_checks import is_line
+from physicslab.files.checks import is_line
 
 _LONGEST = 200
 """Characters of an id: it stands in reports, in labels and in messages, which are a line each."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from physicslab.columns import Component, InvalidValue, component, field
+from physicslab.ecs.component import Component, InvalidValue, component, field
 
 CIRCLE = 1
 """Code of a circle in the ``kind`` column; 0 is no shape."""

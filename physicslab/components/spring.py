@@ -1,6 +1,6 @@
 """What pulls two points together."""
 
-from physicslab.columns import Component, Vector, component, field
+from physicslab.ecs.component import Component, Vector, component, field
 
 OTHER_END = "another entity than a"
 """What ``b`` must be: a pull between two points of one body moves nothing."""

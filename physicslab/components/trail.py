@@ -1,6 +1,6 @@
 """How much of a body's path is shown."""
 
-from physicslab.columns import Component, component, field
+from physicslab.ecs.component import Component, component, field
 
 
 @component

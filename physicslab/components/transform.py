@@ -1,6 +1,6 @@
 """Where a body is."""
 
-from physicslab.columns import Component, Vector, component, field
+from physicslab.ecs.component import Component, Vector, component, field
 
 
 @component

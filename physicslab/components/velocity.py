@@ -1,6 +1,6 @@
 """How a body moves."""
 
-from physicslab.columns import Component, Vector, component, field
+from physicslab.ecs.component import Component, Vector, component, field
 
 
 @component

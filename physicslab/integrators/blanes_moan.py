@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from physicslab.integrators.integrator import Integrator
 from physicslab.integrators.splitting import splitting
-from physicslab.kernels.splitting import split
+from physicslab.kernels.ode.splitting import split
 
 __all__ = ["BLANES_MOAN"]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from physicslab.equations import Equations
 from physicslab.integrators.integrator import Integrator, StepTooSmall
-from physicslab.kernels.dop853 import EXHAUSTED, NOT_FINITE, dop853
+from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853
+from physicslab.ode.system import Equations
 
 if TYPE_CHECKING:
     from physicslab.world import World

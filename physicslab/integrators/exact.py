@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from physicslab.closed_form import closed_form
-from physicslab.equations import Equations
 from physicslab.integrators.integrator import Integrator
-from physicslab.kernels.propagate import propagate
+from physicslab.kernels.ode.propagate import propagate
+from physicslab.ode.closed_form import closed_form
+from physicslab.ode.system import Equations
 
 if TYPE_CHECKING:
     from physicslab.world import World

@@ -2,9 +2,9 @@
 
 The midpoint rule itself keeps what is quadratic, so the energy of a spring of no rest length; one that turns
 as it swings many times a step gains energy. Springs therefore answer with a discrete gradient of what they
-store (:func:`physicslab.kernels.springs.mean_spring_pull`), by which the energy is kept to the rounding of
-the search, and so no spring becomes longer than the energy allows. The price: areas in phase space are kept
-only where the force is linear. All other forces are taken at the middle of the step.
+store (:func:`physicslab.kernels.forces.springs.mean_spring_pull`), by which the energy is kept to the
+rounding of the search, and so no spring becomes longer than the energy allows. The price: areas in phase
+space are kept only where the force is linear. All other forces are taken at the middle of the step.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.equations import Equations, Slots
 from physicslab.integrators.integrator import Integrator, StepTooSmall
-from physicslab.kernels.implicit import implicit_midpoint
-from physicslab.schedule import ForceSystem
+from physicslab.kernels.ode.implicit import implicit_midpoint
+from physicslab.ode.system import Equations, Slots
+from physicslab.systems.schedule import ForceSystem
 
 if TYPE_CHECKING:
     from physicslab.world import World

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from physicslab.equations import Equations
-from physicslab.schedule import Stage
+from physicslab.ode.system import Equations
+from physicslab.systems.schedule import Stage
 
 if TYPE_CHECKING:
     from physicslab.world import World

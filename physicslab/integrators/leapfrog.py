@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from physicslab.integrators.integrator import Integrator
 from physicslab.integrators.splitting import splitting
-from physicslab.kernels.splitting import split
-from physicslab.schedule import Stage
+from physicslab.kernels.ode.splitting import split
+from physicslab.systems.schedule import Stage
 
 __all__ = ["LEAPFROG", "LEAPFROG_BESIDE_TETHERS"]
 
@@ -40,7 +40,8 @@ LEAPFROG = Integrator(
 
 _FORESEEN = ((Stage.FORESEE, 0.5), (Stage.SOLVE, 1.0), (Stage.FORESEE, -0.5))
 
-# What is tethered (see physicslab.tethers) is not kicked: the contact solver is shown ahead what comes.
+# What is tethered (see physicslab.stepping.split_forces) is not kicked: the contact solver is
+# shown ahead what comes.
 LEAPFROG_BESIDE_TETHERS = replace(
     LEAPFROG,
     substep=tuple(

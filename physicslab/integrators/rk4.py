@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from physicslab.equations import Equations
 from physicslab.integrators.integrator import Integrator
-from physicslab.kernels.classical import rk4
+from physicslab.kernels.ode.classical import rk4
+from physicslab.ode.system import Equations
 
 if TYPE_CHECKING:
     from physicslab.world import World

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from physicslab.equations import Equations
 from physicslab.integrators.integrator import Flow
-from physicslab.kernels.splitting import split
+from physicslab.kernels.ode.splitting import split
+from physicslab.ode.system import Equations
 
 if TYPE_CHECKING:
     from physicslab.world import World

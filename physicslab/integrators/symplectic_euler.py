@@ -2,8 +2,8 @@
 
 from physicslab.integrators.integrator import Integrator
 from physicslab.integrators.splitting import splitting
-from physicslab.kernels.splitting import split
-from physicslab.schedule import Stage
+from physicslab.kernels.ode.splitting import split
+from physicslab.systems.schedule import Stage
 
 __all__ = ["SYMPLECTIC_EULER"]
 

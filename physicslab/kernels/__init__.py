@@ -54,7 +54,7 @@ def cache_directory() -> Path:
     directory is named after a hash of every kernel's source and of numba's version.
     """
     digest = hashlib.sha256(numba.__version__.encode())
-    for source in sorted(Path(__file__).parent.glob("*.py")):
+    for source in sorted(Path(__file__).parent.rglob("*.py")):
         digest.update(source.read_bytes())
     name = f"kernels-{digest.hexdigest()[:16]}"
     try:

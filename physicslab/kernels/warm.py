@@ -32,8 +32,8 @@ _FIRST = (
     "contact",
     "impact",
     "impulse",
-    "block_lanes",
-    "block_contact",
+    "slots",
+    "refresh",
 )
 """Modules whose kernels almost every scene needs; they are compiled first."""
 _WORKER = (sys.executable, "-m", "physicslab.kernels", "worker")
@@ -46,7 +46,7 @@ def _mark() -> Path:
     written, the processor, and which Python it is.
     """
     digest = hashlib.sha256(f"{sys.version} {llvmlite.binding.get_host_cpu_name()}".encode())
-    for source in sorted(Path(__file__).parent.glob("*.py")):
+    for source in sorted(Path(__file__).parent.rglob("*.py")):
         status = source.stat()
         digest.update(f"{source} {status.st_mtime_ns} {status.st_size}".encode())
     return kernels.cache_directory() / f"complete-{digest.hexdigest()[:16]}"
@@ -59,9 +59,10 @@ def is_warm() -> bool:
 
 def load_all() -> list[str]:
     """Import every module of kernels; return their kernels' full names, in the order of ``KERNELS``."""
-    for module in pkgutil.iter_modules(kernels.__path__):
-        if module.name not in ("__main__", "warm"):
-            importlib.import_module(f"{kernels.__name__}.{module.name}")
+    prefix = f"{kernels.__name__}."
+    for module in pkgutil.walk_packages(kernels.__path__, prefix):
+        if module.name not in (f"{prefix}__main__", __name__):
+            importlib.import_module(module.name)
     return [name_of(jitted) for jitted in kernels.KERNELS]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TypedDict, Unpack
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
-from physicslab.vector import Vector2
+from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
 __all__ = ["BodyOptions", "Pair", "body"]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import Pair
 from physicslab.prefabs.box import box
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 __all__ = ["container"]

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.circle import circle
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 __all__ = ["gas"]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from physicslab.components import Spring
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import Pair
 from physicslab.prefabs.circle import circle
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 __all__ = ["pendulum"]

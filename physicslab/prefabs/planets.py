@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from physicslab.components import Mass, Trail, Transform, Velocity
-from physicslab.vector import Vector2
+from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
 __all__ = ["Planet", "binary", "planets"]

@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import BodyOptions, circle
 from physicslab.scenes.scene import Scene
 from physicslab.world import World

@@ -1,6 +1,6 @@
 """Two thousand elastic discs between four walls."""
 
-from physicslab.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import gas
 from physicslab.scenes.scene import Scene
 from physicslab.world import World

@@ -1,6 +1,6 @@
 """Five balls on strings, in a row."""
 
-from physicslab.config import SimulationConfig
+from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import pendulum
 from physicslab.scenes.scene import Scene
 from physicslab.world import World

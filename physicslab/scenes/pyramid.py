@@ -1,9 +1,9 @@
 """A pyramid of 465 boxes."""
 
-from physicslab.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, pyramid
 from physicslab.scenes.scene import Scene
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 __all__ = ["PYRAMID"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from physicslab.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.scenes.scene import Scene
 from physicslab.world import World

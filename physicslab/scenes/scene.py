@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from physicslab.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 

@@ -2,9 +2,9 @@
 
 import math
 
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box
 from physicslab.scenes.scene import Scene
-from physicslab.vector import Vector2
 from physicslab.world import World
 
 __all__ = ["SLOPE"]

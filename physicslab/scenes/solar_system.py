@@ -1,6 +1,6 @@
 """A star and five planets."""
 
-from physicslab.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import Planet, planets
 from physicslab.scenes.scene import Scene
 from physicslab.world import World

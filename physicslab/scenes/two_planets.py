@@ -1,6 +1,6 @@
 """Two planets on elliptic orbits."""
 
-from physicslab.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import binary
 from physicslab.scenes.scene import Scene
 from physicslab.world import World

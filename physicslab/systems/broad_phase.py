@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.kernels import block_lanes, grid, near_pairs
-from physicslab.schedule import Stage, System, at
+from physicslab.kernels.broad import grid, near_pairs
+from physicslab.kernels.wide import slots
+from physicslab.systems.schedule import Stage, System, at
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -55,7 +56,7 @@ class BroadPhaseSystem(System):
 
     kernels = (
         grid.still_holds, grid.fat_boxes, grid.find_pairs,
-        near_pairs.part, near_pairs.carry_over, near_pairs.sort_loose, block_lanes.list_loose,
+        near_pairs.part, near_pairs.carry_over, near_pairs.sort_loose, slots.list_loose,
     )  # fmt: skip
 
     def __init__(self) -> None:

@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape, Transform, Velocity
-from physicslab.kernels import block_contact, contact, near_pairs
-from physicslab.kernels.pair import NEAR, STILL
-from physicslab.schedule import Stage, System, at
+from physicslab.kernels.broad import near_pairs
+from physicslab.kernels.narrow import contact
+from physicslab.kernels.narrow.pair import NEAR, STILL
+from physicslab.kernels.wide import refresh
 from physicslab.systems.broad_phase import nothing_to_touch
+from physicslab.systems.schedule import Stage, System, at
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -95,7 +97,7 @@ class ContactSystem(System):
             contacts.refill(world)
         before = contacts.loose_count
         for lanes in contacts.blocks.kinds:
-            contacts.loose_count = block_contact.refresh(
+            contacts.loose_count = refresh.refresh(
                 *lanes.layout, contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
                 transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
                 self._first, h, STILL, NEAR, fall, contact.KEEP, contact.KEEP_TURN,

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Velocity
-from physicslab.equations import PackedForce
-from physicslab.kernels import drag, packed_forces
-from physicslab.kernels.resistance import drag_resistance
-from physicslab.schedule import ForceSystem, Stage, at
+from physicslab.kernels.forces import drag, packed_forces
+from physicslab.kernels.forces.resistance import drag_resistance
+from physicslab.ode.system import PackedForce
+from physicslab.systems.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
-    from physicslab.equations import Slots
+    from physicslab.ode.system import Slots
     from physicslab.world import World
 
 __all__ = ["DragSystem"]

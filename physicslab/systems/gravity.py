@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Transform, Velocity
-from physicslab.equations import PackedForce
-from physicslab.kernels import gravity, packed_forces
-from physicslab.kernels.tree_pull import LARGEST_ERROR, RMS_ERROR, THETA
-from physicslab.schedule import ForceSystem, Stage, at
+from physicslab.kernels.forces import gravity, packed_forces
+from physicslab.kernels.forces.tree_pull import LARGEST_ERROR, RMS_ERROR, THETA
+from physicslab.ode.system import PackedForce
+from physicslab.systems.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
-    from physicslab.equations import Slots
+    from physicslab.ode.system import Slots
     from physicslab.world import World
 
 __all__ = ["GravitySystem"]
@@ -109,7 +109,7 @@ class GravitySystem(ForceSystem):
         return len(self._attracting)
 
     def summation(self, world: World) -> str:
-        """Return how pairs are summed, which :mod:`physicslab.kernels.gravity` decides by their number."""
+        """Return how pairs are summed, as :mod:`physicslab.kernels.forces.gravity` decides by number."""
         n = self.attractors
         if world.physics.gravity_mode != "planet" or n <= gravity.FEW:
             return ""

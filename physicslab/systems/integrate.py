@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from physicslab.components import Transform, Velocity
 from physicslab.kernels import motion
-from physicslab.schedule import Stage, System, at
+from physicslab.systems.schedule import Stage, System, at
 
 if TYPE_CHECKING:
     from physicslab.world import World

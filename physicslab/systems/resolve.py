@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from physicslab.components import Transform, Velocity
-from physicslab.kernels import block_lanes, impact, impulse
-from physicslab.schedule import Stage, System, at
+from physicslab.kernels.solver import impact, impulse
+from physicslab.kernels.wide import slots
 from physicslab.systems.broad_phase import nothing_to_touch
+from physicslab.systems.schedule import Stage, System, at
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -85,7 +86,7 @@ class ResolveSystem(System):
         before = contacts.active
         if contacts.blocks.lanes:
             for lanes in contacts.blocks.kinds:
-                contacts.loose_count, contacts.active = block_lanes.wake(
+                contacts.loose_count, contacts.active = slots.wake(
                     *lanes.layout, contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
                     contacts.touching, contacts.active, velocity["linear"], velocity["angular"],
                     bodies.force, bodies.awake_inverse_mass, h,

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Velocity
-from physicslab.kernels import edits, islands, motion
-from physicslab.schedule import Stage, System, at
-from physicslab.sleep import Sleep
+from physicslab.kernels import motion
+from physicslab.kernels.sleep import edits, islands
+from physicslab.state.sleep import Sleep
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.contact import ContactSystem
+from physicslab.systems.schedule import Stage, System, at
 
 if TYPE_CHECKING:
     from physicslab.world import World

@@ -8,16 +8,16 @@ import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.columns import InvalidValue
 from physicslab.components import Mass, Name, Spring, Transform, Velocity
 from physicslab.components.spring import OTHER_END
-from physicslab.equations import PackedForce, spring_ends
-from physicslab.kernels import packed_forces, springs
-from physicslab.kernels.resistance import damper_resistance
-from physicslab.schedule import ForceSystem, Stage, at
+from physicslab.ecs.component import InvalidValue
+from physicslab.kernels.forces import packed_forces, springs
+from physicslab.kernels.forces.resistance import damper_resistance
+from physicslab.ode.system import PackedForce, spring_ends
+from physicslab.systems.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
-    from physicslab.equations import Slots
+    from physicslab.ode.system import Slots
     from physicslab.world import World
 
 __all__ = ["SpringSystem"]

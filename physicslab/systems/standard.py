@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from physicslab.schedule import System
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.drag import DragSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
+from physicslab.systems.schedule import System
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.trail import TrailSystem

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Trail, Transform
-from physicslab.schedule import Stage, System, at
+from physicslab.systems.schedule import Stage, System, at
 
 if TYPE_CHECKING:
     from physicslab.world import World

@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from physicslab.config import WindowConfig
-from physicslab.pace import Pace
-from physicslab.vector import Vector2
-from physicslab.view.camera import Camera
-from physicslab.view.canvas import Canvas, Rect
-from physicslab.view.error_study import ErrorStudy
-from physicslab.view.extent import extent_of
-from physicslab.view.hand import Hand
-from physicslab.view.overlays import Overlays
-from physicslab.view.recovery import Recovery
-from physicslab.view.sparks import Sparks
-from physicslab.view.spring_tool import SpringTool
-from physicslab.view.theme import DARK, Theme
-from physicslab.view.tools import HAND, Tool
-from physicslab.view.trails import TrailSwitch
+from physicslab.desktop.pace import Pace
+from physicslab.ecs.config import WindowConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.canvas import Canvas, Rect
+from physicslab.view.canvas.theme import DARK, Theme
+from physicslab.view.controls.hand import Hand
+from physicslab.view.controls.recovery import Recovery
+from physicslab.view.controls.spring_tool import SpringTool
+from physicslab.view.controls.tools import HAND, Tool
+from physicslab.view.overlay.overlays import Overlays
+from physicslab.view.panels.error_study import ErrorStudy
+from physicslab.view.picture.extent import extent_of
+from physicslab.view.picture.sparks import Sparks
+from physicslab.view.picture.trails import TrailSwitch
 from physicslab.world import World
 
 __all__ = ["Window"]

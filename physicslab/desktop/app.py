@@ -1,0 +1,74 @@
+"""Opens the window at once; what is to be shown in it, and numba with it, is imported while it is there."""
+
+from __future__ import annotations
+
+import threading
+import time
+from importlib import import_module
+
+from physicslab.desktop.garbage import loading
+from physicslab.ecs.config import WindowConfig
+from physicslab.view.canvas.display import Display, wants_to_leave
+from physicslab.view.canvas.theme import DARK
+from physicslab.view.panels.progress import draw_loading
+
+__all__ = ["FIRST_SCENE", "open_window"]
+
+FIRST_SCENE = "sandbox"
+"""The scene that is opened where none is named."""
+_PATIENCE = 0.5
+"""Time [s] after which it is said that something is being loaded: later starts are there sooner."""
+
+
+def open_window(scene: str | None) -> int:
+    """Open the sandbox on a scene and return the exit status when it is closed.
+
+    Parameters
+    ----------
+    scene : str, optional
+        A built-in scene's name or a path; a small playground where none is named.
+
+    Raises
+    ------
+    SceneError
+        If there is no such scene or it is not allowed.
+    OSError
+        If there is no screen to open a window on.
+    """
+    config = WindowConfig()
+    with Display.open(config, "PhysicsLab") as display:
+        if not _load(display, "physicslab.desktop.session_window"):
+            return 0
+        from physicslab.desktop.session_window import run_window
+
+        return run_window(display, config, FIRST_SCENE if scene is None else scene)
+
+
+def _load(display: Display, module: str) -> bool:
+    """Import a module in a thread while the window stays awake; return whether the user stayed.
+
+    The first time takes seconds, as Python has not kept the bytecode of numba yet. The thread holds frames up
+    for some milliseconds each, which an empty window does not show.
+    """
+    thread = threading.Thread(target=_import, args=(module,), daemon=True)
+    start = time.perf_counter()
+    draw_loading(display.canvas, DARK, "")
+    display.show()
+    thread.start()
+    while thread.is_alive():
+        if wants_to_leave():
+            return False
+        seconds = time.perf_counter() - start
+        draw_loading(display.canvas, DARK, f"Loading, {int(seconds)} s" if seconds > _PATIENCE else "")
+        display.show()
+    return True
+
+
+def _import(module: str) -> None:
+    try:
+        with loading():
+            import_module(module)
+            import_module("physicslab.kernels.warm").load_all()
+            import_module("physicslab.kernels").prepare()
+    except Exception:  # it is raised once more where the window can be closed and the reason told
+        return

@@ -1,0 +1,127 @@
+"""The desktop sandbox: a world in a window, frame by frame."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from physicslab.desktop.autosave import Autosave
+from physicslab.desktop.rescue import save_last_good
+from physicslab.files.scene import SceneError
+from physicslab.state.bodies import Diverged
+from physicslab.systems.frame.hud import HudSystem
+from physicslab.systems.frame.input import InputSystem
+from physicslab.systems.frame.render import RenderSystem
+from physicslab.systems.schedule import Stage
+from physicslab.view.controls.toolbar import Toolbar
+from physicslab.view.window import Window
+from physicslab.world import World
+
+__all__ = ["Sandbox"]
+
+
+class Sandbox:
+    """A world in a window. A call of :meth:`frame` is one frame; no real window is needed for it.
+
+    Parameters
+    ----------
+    world : World
+        What is shown; the systems of a frame are installed in it.
+    window : Window
+        Where it is shown.
+    clock : callable
+        Returns the time [s]; it limits how long the steps of a frame may take.
+    autosave : Autosave, optional
+        What keeps the state for the case that the program ends badly.
+
+    Attributes
+    ----------
+    world : World
+        The world that is shown.
+    toolbar : Toolbar
+        The buttons over it.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        window: Window,
+        clock: Callable[[], float] = time.perf_counter,
+        autosave: Autosave | None = None,
+    ) -> None:
+        self.window = window
+        self._clock = clock
+        self._autosave = autosave
+        self._told = False  # that the state cannot be kept
+        self._rescued: tuple[World, float] | None = None
+        self.toolbar = Toolbar(window)
+        hud = HudSystem(window, self.toolbar)
+        window.room = hud.room
+        self._systems = InputSystem(window, self.toolbar), RenderSystem(window), hud
+        self.show(world)
+        if autosave is not None:
+            autosave.settle(world)
+
+    def show(self, world: World) -> None:
+        """Show a world in place of the one that was shown, with nothing held and nothing begun."""
+        self.world = world
+        world.install(*self._systems)
+        window = self.window
+        window.spring_tool.cancel()
+        window.overlays.forget()
+        window.sparks.clear()
+        window.error, window.menu, window.next_world = "", "", None
+        window.go_home(world)
+
+    def frame(self, elapsed: float) -> None:
+        """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last."""
+        self.window.pace.begin(elapsed)
+        self.world.frame(Stage.INPUT, elapsed)
+        if self.window.next_world is not None:
+            self.window.hand.drop(self.world)
+            self.show(self.window.next_world)
+        self._advance()
+        self.world.frame(Stage.RENDER, elapsed)
+        self.world.frame(Stage.HUD, elapsed)
+        if self._autosave is not None:
+            self._keep(self._autosave)
+
+    def _keep(self, autosave: Autosave) -> None:
+        """Let the state be saved where that is due; say once where it cannot be."""
+        autosave.advance(self.world)
+        if autosave.failure and not self._told:
+            words = f"The state cannot be kept for the case of a crash: {autosave.failure}"
+            self.window.notify(words, 8.0, failed=True)
+        self._told = bool(autosave.failure)
+
+    def _advance(self) -> None:
+        """Make the steps that are due.
+
+        None is begun once they have taken as long as a frame may make up for: a world too heavy for the
+        machine runs slowly, and the window stays awake.
+        """
+        world, pace, dt = self.world, self.window.pace, self.world.simulation.dt
+        deadline = self._clock() + pace.max_dt
+        made, due = 0, pace.due(dt)
+        try:
+            while made < due and (made == 0 or self._clock() < deadline):
+                world.step(dt * pace.shortening)
+                self.window.sparks.advance(world, dt * pace.shortening, self.window.camera.scale)
+                made += 1
+        except Diverged as error:
+            pace.halt()
+            self.window.error = f"Stopped: {error}. {self._rescue()} R clears all."
+        else:
+            pace.done(made, dt)
+
+    def _rescue(self) -> str:
+        """Save the state before the step that failed, once, and return what to say of it."""
+        if self._rescued == (self.world, self.world.time):
+            return "The last good state is shown; it was saved before."
+        try:
+            path = save_last_good(self.world, self.world.name, Path.cwd())
+        except (OSError, SceneError) as error:
+            return f"The last good state is shown; it could not be saved: {error}."
+        self._rescued = self.world, self.world.time
+        return f"The last good state is shown, and saved as {path.name}."

@@ -1,0 +1,1 @@
+"""Figures and warnings about a world."""

@@ -1,0 +1,171 @@
+"""What a run came to: the document of ``run --json`` and the summary that people read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from physicslab.components import Transform, Velocity
+from physicslab.diagnostics.energy import Drift, Energy, measure_momentum, summation
+from physicslab.diagnostics.warnings import Advice, WorstAdvice
+from physicslab.files.writer import unique_name
+from physicslab.world import World
+
+__all__ = ["RunRecord", "body_names", "find_not_finite", "run_report", "run_summary"]
+
+
+@dataclass(slots=True)
+class RunRecord:
+    """What is gathered while a world runs.
+
+    Attributes
+    ----------
+    scene : str
+        What the scene is called.
+    drift : Drift
+        How far the energy has gone from where it began.
+    steps : int
+        Steps done.
+    wall_s : float
+        Seconds of stepping, without compiling and without measuring.
+    max_penetration : float
+        The deepest overlap after any step [m].
+    divided : int
+        Into how many parts a step was divided, at the most.
+    advice : WorstAdvice
+        What was not to be trusted on the way.
+    """
+
+    scene: str
+    drift: Drift
+    steps: int = 0
+    wall_s: float = 0.0
+    max_penetration: float = 0.0
+    divided: int = 1
+    advice: WorstAdvice = field(default_factory=WorstAdvice)
+
+
+def body_names(world: World) -> dict[int, str]:
+    """Name every entity with a Transform, in order, by its id or ``entity <number>``; no two alike."""
+    names: dict[int, str] = {}
+    taken: set[str] = set()
+    for entity in world.batch(Transform).entities.tolist():
+        names[entity] = unique_name(world.label(entity), taken)
+        taken.add(names[entity])
+    return names
+
+
+def run_report(world: World, record: RunRecord) -> dict[str, Any]:
+    """Return the document of a run, as the contract of ``run --json`` has it; SI units."""
+    momentum = measure_momentum(world)
+    return {
+        "scene": record.scene,
+        "time": world.time,
+        "steps": record.steps,
+        "dt": world.simulation.dt,
+        "substeps": world.simulation.substeps,
+        "integrator": world.method.integrator.name,
+        "integrator_reason": world.method.reason,
+        "collision_method": world.method.collisions,
+        "collision_reason": world.method.collision_reason,
+        "summation": summation(world),
+        "interpreted": list(world.interpreted),
+        "force_evaluations": world.force_evaluations,
+        "wall_s": record.wall_s,
+        "compile_s": world.schedule.compile_s,
+        "systems": [
+            {"name": name, "calls": timing.calls, "ms": timing.ms}
+            for name, timing in world.schedule.timings.items()
+        ],
+        "left_out": [{"name": left.name, "reason": left.reason} for left in world.schedule.left_out],
+        "energy": _energy(record.drift.latest, record.drift),
+        "momentum": list(momentum.linear),
+        "angular_momentum": momentum.angular,
+        "candidate_pairs": int(world.contacts.candidate_pairs),
+        "contacts": int(world.contacts.count),
+        "asleep": world.sleep.count,
+        "collisions": int(world.collisions),
+        "max_penetration": record.max_penetration,
+        "divided": record.divided,
+        "advice": [
+            {name: getattr(advice, name) for name in ("entity", "what", "value", "unit", "limit", "setting")}
+            for advice in record.advice.all
+        ],
+        "entities": _bodies(world),
+    }
+
+
+def _energy(now: Energy, drift: Drift) -> dict[str, float]:
+    potential = {"gravity": 0.0, "spring": 0.0} | now.potential
+    return {
+        "initial": drift.initial.total,
+        "final": now.total,
+        "kinetic_linear": now.kinetic_linear,
+        "kinetic_angular": now.kinetic_angular,
+        **{f"potential_{name}": stored for name, stored in potential.items()},
+        "max_relative_drift": drift.relative,
+    }
+
+
+def _bodies(world: World) -> dict[str, dict[str, Any]]:
+    transform, velocity, rows = world.table(Transform), world.table(Velocity), world.batch(Transform).rows
+    columns = zip(
+        transform["position"][rows].tolist(), transform["angle"][rows].tolist(),
+        velocity["linear"][rows].tolist(), velocity["angular"][rows].tolist(), strict=True,
+    )  # fmt: skip
+    keys = ("position", "angle", "linear", "angular")
+    return {
+        name: dict(zip(keys, values, strict=True))
+        for name, values in zip(body_names(world).values(), columns, strict=True)
+    }
+
+
+def find_not_finite(report: object, place: str = "") -> str | None:
+    """Return where in a report there is a number that is not finite, or ``None``.
+
+    >>> find_not_finite({"energy": {"initial": 1.0, "final": float("nan")}})
+    'energy.final'
+    """
+    if isinstance(report, float):
+        return None if math.isfinite(report) else place
+    items: Iterator[tuple[object, object]] = iter(())
+    if isinstance(report, dict):
+        items = iter(report.items())
+    elif isinstance(report, list):
+        items = iter(enumerate(report))
+    places = (find_not_finite(value, f"{place}.{key}" if place else str(key)) for key, value in items)
+    return next((found for found in places if found is not None), None)
+
+
+def run_summary(report: Mapping[str, Any], title: str) -> str:
+    """Return what people want to know of a run, on a few lines."""
+    energy, momentum = report["energy"], report["momentum"]
+    wall = report["wall_s"]
+    systems = ", ".join(f"{system['name']} {system['ms']:.1f} ms" for system in report["systems"])
+    lines = [
+        f"{report['scene']}: {title}" if title else str(report["scene"]),
+        f"  time        {report['time']:.9g} s in {report['steps']} steps of {report['dt']:.6g} s, "
+        f"{report['substeps']} substeps each",
+        f"  method      {report['integrator']}: {report['integrator_reason']}; "
+        f"{report['force_evaluations']} force evaluations",
+        f"  collisions  {report['collision_method']}: {report['collision_reason']}",
+        f"  took        {wall:.3g} s, and {report['compile_s']:.3g} s to compile or load kernels",
+        f"  energy      {energy['initial']:.9g} J before, {energy['final']:.9g} J after; "
+        f"largest relative drift {energy['max_relative_drift']:.3g}",
+        f"  momentum    [{momentum[0]:.6g}, {momentum[1]:.6g}] kg m/s, "
+        f"angular {report['angular_momentum']:.6g} kg m^2/s",
+        f"  contacts    {report['contacts']} of {report['candidate_pairs']} near pairs, "
+        f"{report['collisions']} collisions, deepest overlap {report['max_penetration']:.3g} m",
+        f"  systems     {systems or 'none'}",
+    ]
+    if report["asleep"]:
+        lines.insert(-1, f"  asleep      {report['asleep']} of {len(report['entities'])} bodies, at rest")
+    if report["summation"]:
+        lines.append(f"  summed      {report['summation']}")
+    if report["interpreted"]:
+        lines.append(f"  slower      {', '.join(report['interpreted'])}: computed by Python, call by call")
+    lines += [f"  advice      {words}" for words in (Advice(**found) for found in report["advice"])]
+    lines += [f"  left out    {left['name']}: {left['reason']}" for left in report["left_out"]]
+    return "\n".join(lines)

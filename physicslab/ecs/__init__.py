@@ -1,0 +1,1 @@
+"""Entities and components as rows of columns."""

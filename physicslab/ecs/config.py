@@ -1,0 +1,194 @@
+"""Configuration: frozen records that a world, a scene file and the window are set up with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar
+
+from physicslab.ecs.fields import Field, InvalidValue
+from physicslab.ecs.vector import Vector2
+
+__all__ = [
+    "GRAVITY_MODES",
+    "SOFTENING_LAWS",
+    "PhysicsConfig",
+    "SimulationConfig",
+    "WindowConfig",
+    "field_names",
+]
+
+GRAVITY_MODES = ("linear", "planet", "none")
+SOFTENING_LAWS = ("clamp", "plummer")
+INTEGRATORS = (
+    "auto",
+    "symplectic_euler",
+    "leapfrog",
+    "rk4",
+    "blanes_moan",
+    "dop853",
+    "exact",
+    "implicit_midpoint",
+)
+COLLISIONS = ("auto", "step", "exact")
+SHORTEST = 1e-100
+"""The shortest step [s]: the parts of shorter ones, and their squares, are soon no more than zero."""
+
+
+def _settle(config: PhysicsConfig | SimulationConfig) -> None:
+    """Check every field by its description and store it as the type it is read as."""
+    for spec in config.FIELDS:
+        value: Any = getattr(config, spec.name)
+        if value is None and spec.derived:
+            continue
+        stored = replace(spec, owner=config.section).check(value)
+        if spec.kind == "vector":
+            stored = Vector2(*stored)
+        elif spec.kind == "choice":
+            stored = spec.choices[stored - 1]
+        object.__setattr__(config, spec.name, stored)
+
+
+@dataclass(frozen=True, slots=True)
+class PhysicsConfig:
+    """The laws of one world.
+
+    Attributes
+    ----------
+    gravity_mode : str
+        ``"linear"`` (m g on every body with Mass), ``"planet"`` (pairwise, inverse square) or ``"none"``.
+    gravity : Vector2
+        Acceleration of the linear mode [m/s^2].
+    G : float
+        Constant of the planet mode [N m^2/kg^2].
+    softening, softening_law : float, str
+        Length [m] below which the inverse square law is softened, and how: ``"clamp"`` or ``"plummer"``.
+    linear_damping, angular_damping : float
+        Rates [1/s] at which velocities decay.
+    bounds : tuple of four floats, optional
+        Walls of the world ``(xmin, ymin, xmax, ymax)`` [m].
+    bounds_restitution, bounds_friction : float
+        The walls' material.
+    """
+
+    gravity_mode: str = "linear"
+    gravity: Vector2 = Vector2(0.0, -9.81)
+    G: float = 1.0
+    softening: float = 0.0
+    softening_law: str = "clamp"
+    linear_damping: float = 0.0
+    angular_damping: float = 0.0
+    bounds: tuple[float, float, float, float] | None = None
+    bounds_restitution: float = 0.5
+    bounds_friction: float = 0.3
+
+    section: ClassVar[str] = "physics"
+    FIELDS: ClassVar[tuple[Field, ...]] = (
+        Field("gravity_mode", "choice", choices=GRAVITY_MODES, meaning="which law of gravity"),
+        Field("gravity", "vector", unit="m/s^2", meaning="acceleration of the linear mode"),
+        Field("G", "number", unit="N m^2/kg^2", meaning="constant of the planet mode"),
+        Field("softening", "number", unit="m", minimum=0.0, meaning="where the inverse square is softened"),
+        Field("softening_law", "choice", choices=SOFTENING_LAWS, meaning="how it is softened"),
+        Field("linear_damping", "number", unit="1/s", minimum=0.0, meaning="rate at which velocities decay"),
+        Field("angular_damping", "number", unit="1/s", minimum=0.0, meaning="rate at which spins decay"),
+        Field("bounds_restitution", "number", minimum=0.0, maximum=1.0, meaning="restitution of the walls"),
+        Field("bounds_friction", "number", minimum=0.0, meaning="Coulomb friction coefficient of the walls"),
+    )
+
+    def __post_init__(self) -> None:
+        _settle(self)
+        if self.bounds is not None:
+            object.__setattr__(self, "bounds", _box(self.section, "bounds", self.bounds))
+
+
+def _box(owner: str, name: str, value: Any) -> tuple[float, ...]:
+    corner = Field(name, "vector", owner=owner)
+    try:
+        xmin, ymin, xmax, ymax = value
+        box = (*corner.check((xmin, ymin)), *corner.check((xmax, ymax)))
+    except (TypeError, ValueError):
+        box = ()
+    if not box or not (box[0] < box[2] and box[1] < box[3]):
+        words = "null or four finite numbers [xmin, ymin, xmax, ymax] m with xmin < xmax and ymin < ymax"
+        raise InvalidValue(owner, name, value, words)
+    return box
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationConfig:
+    """How one world is stepped.
+
+    Attributes
+    ----------
+    dt : float
+        Length of a step [s]: one frame's worth.
+    substeps : int
+        Into how many parts a step is divided.
+    iterations : int, optional
+        Sweeps of the contact solver a substep; ``None`` leaves it to the solver (one).
+    integrator : str
+        A method by name, or ``"auto"``.
+    sleeping : bool
+        Whether settled bodies may stop being simulated.
+    collisions : str
+        ``"step"`` (found and resolved within steps), ``"exact"`` (contact times located) or ``"auto"``.
+    tolerance : float
+        Error a step that an adaptive method accepts, as a share of the largest coordinate and speed.
+    """
+
+    dt: float = 1.0 / 60.0
+    substeps: int = 4
+    iterations: int | None = None
+    integrator: str = "auto"
+    sleeping: bool = True
+    collisions: str = "auto"
+    tolerance: float = 1e-17
+
+    section: ClassVar[str] = "simulation"
+    FIELDS: ClassVar[tuple[Field, ...]] = (
+        Field("dt", "number", unit="s", minimum=SHORTEST, meaning="length of a step"),
+        Field("substeps", "whole", minimum=1, maximum=10_000, meaning="parts that a step is divided into"),
+        Field("iterations", "whole", minimum=1, maximum=1_000, derived="from the solver", meaning="sweeps"),
+        Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),
+        Field("sleeping", "flag", meaning="whether settled bodies may stop being simulated"),
+        Field("collisions", "choice", choices=COLLISIONS, meaning="how contacts are found"),
+        Field("tolerance", "number", minimum=1e-20, maximum=1e-2, meaning="error a step of adaptive methods"),
+    )
+
+    def __post_init__(self) -> None:
+        _settle(self)
+
+
+@dataclass(frozen=True, slots=True)
+class WindowConfig:
+    """The window and its clock.
+
+    Attributes
+    ----------
+    size : tuple of two ints
+        Width and height at the start [px].
+    least_size : tuple of two ints
+        Width and height that the window is made no smaller than [px].
+    fps : int
+        Cap on the frame rate [1/s].
+    pixels_per_metre : float
+        Scale of the default camera.
+    max_dt : float
+        The longest time [s] that one frame makes up for; what lies beyond is dropped, and the HUD says so.
+    throw_window : float
+        How far back [s] the cursor's history counts for a throw.
+    max_throw_speed : float
+        Cap on the speed of a throw [m/s].
+    """
+
+    size: tuple[int, int] = (1280, 720)
+    least_size: tuple[int, int] = (640, 480)
+    fps: int = 60
+    pixels_per_metre: float = 100.0
+    max_dt: float = 0.1
+    throw_window: float = 0.15
+    max_throw_speed: float = 30.0
+
+
+def field_names(config: type[PhysicsConfig] | type[SimulationConfig]) -> tuple[str, ...]:
+    """Return the names of a record's fields, in order."""
+    return tuple(f.name for f in fields(config))

@@ -1,0 +1,172 @@
+"""Which entity has which row: keeps a world's tables in step with esper."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Set
+from typing import Any
+
+import esper
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.ecs.component import Batch, Component, Table
+
+__all__ = ["Roster"]
+
+
+class _Nothing:
+    """A component that no entity has: asking esper for it is cheap, and tells whether anything changed."""
+
+
+class Roster:
+    """The rows of one world. esper alone decides who has what; :meth:`synchronise` follows.
+
+    Row 0 is the world itself. The others are in the order of their entity ids, so that results never hang on
+    the order of a set. A removed entity leaves a blank row behind; blanks are closed up when they are many.
+
+    Attributes
+    ----------
+    tables : dict of component type to Table
+        Their columns share one numbering of rows.
+    row_of : dict of int to int
+        The row of each entity.
+    entities : int64 array (rows,)
+        The entity of each row; 0 for row 0 and for blank rows.
+    lookup : int64 array (newest + 1,)
+        The row of each entity id, -1 where there is none; ``lookup[0]`` is 0, the world.
+    newest : int
+        The highest entity id there has ever been.
+    """
+
+    def __init__(self) -> None:
+        self.tables: dict[type[Any], Table] = {}
+        self.row_of: dict[int, int] = {}
+        self.entities: NDArray[np.int64] = np.zeros(1, np.int64)
+        self.lookup: NDArray[np.int64] = np.zeros(1, np.int64)
+        self.newest = 0
+        self.capacity = 16
+        self._components: dict[int, tuple[Any, ...]] = {}
+        self._seen: list[Any] | None = None
+        self._batches: dict[tuple[type[Any], ...], Batch] = {}
+
+    def __len__(self) -> int:
+        return len(self.entities)
+
+    def synchronise(self) -> bool:
+        """Follow what esper's active context holds; return whether anything had changed.
+
+        esper hands out the same list object until something structural changes, which makes the test one
+        comparison.
+        """
+        self.bury_dead()
+        if esper.get_component(_Nothing) is self._seen:
+            return False
+        self._batches.clear()
+        living = set(esper.get_entities())
+        self._follow_entities(living)
+        changed: dict[int, tuple[Any, ...]] = {}
+        for entity in living:
+            components: tuple[Any, ...] = esper.components_for_entity(entity)
+            try:
+                if self._components.get(entity) == components:  # handles are equal only to themselves
+                    continue
+            except Exception:  # what a foreign component makes of == is no concern of ours
+                pass
+            changed[entity] = components
+        self._follow_components(changed)
+        self._components.update(changed)
+        self._seen = esper.get_component(_Nothing)
+        return True
+
+    def bury_dead(self) -> None:
+        """Finish what ``esper.delete_entity`` put off.
+
+        Raises
+        ------
+        KeyError
+            If one of them was never there. esper would fail on it at this and every later step; here it fails
+            once.
+        """
+        dead = esper._dead_entities
+        if dead:
+            unknown = dead.difference(esper.get_entities())
+            dead -= unknown
+            esper.clear_dead_entities()
+            if unknown:
+                raise KeyError(f"delete_entity({min(unknown)}): there is no such entity in this world")
+
+    def _follow_entities(self, living: Set[int]) -> None:
+        """Give each new entity a row, and blank the rows of those that are gone."""
+        fresh = sorted(living - self.row_of.keys())
+        if fresh and fresh[0] <= self.newest:  # ids started again: esper.clear_database() was called
+            self._blank(list(self.row_of))
+            fresh, self.newest = sorted(living), 0
+        else:
+            self._blank(self.row_of.keys() - living)
+        if len(self.row_of) + 1 < len(self) // 2 or not self.row_of:
+            self._close_up()
+        start = len(self)
+        self.entities = np.append(self.entities, np.array(fresh, np.int64))
+        self.row_of.update(zip(fresh, range(start, len(self)), strict=True))
+        while self.capacity < len(self):
+            self.capacity *= 2
+        for table in self.tables.values():
+            table.resize(len(self), self.capacity)
+        self.newest = max(self.newest, int(self.entities.max()))
+        self.lookup = np.full(self.newest + 1, -1, np.int64)
+        self.lookup[self.entities] = np.arange(len(self))
+        self.lookup[0] = 0
+
+    def _blank(self, gone: Iterable[int]) -> None:
+        """Release what the entities had and leave their rows empty."""
+        for entity in gone:
+            for table in self.tables.values():
+                if entity in table.handles:
+                    table.release(entity)
+            self.entities[self.row_of.pop(entity)] = 0
+            self._components.pop(entity, None)
+
+    def _close_up(self) -> None:
+        """Move the rows in use to the front."""
+        kept = np.concatenate(([0], np.flatnonzero(self.entities))).astype(np.int64)
+        self.entities = self.entities[kept]
+        self.row_of = {entity: row for row, entity in enumerate(self.entities.tolist()) if entity}
+        for table in self.tables.values():
+            table.compact(kept, self.row_of)
+
+    def _follow_components(self, changed: Mapping[int, Iterable[Any]]) -> None:
+        """Release what entities no longer have, then adopt what is new: a component may change hands."""
+        handles = {
+            entity: {type(handle): handle for handle in components if isinstance(handle, Component)}
+            for entity, components in changed.items()
+        }
+        for kind, table in self.tables.items():
+            for entity in table.handles.keys() & handles.keys():
+                if handles[entity].get(kind) is not table.handles[entity]:
+                    table.release(entity)
+        for entity, owned in handles.items():
+            for kind, handle in owned.items():
+                table = self.table(kind)
+                if entity not in table.handles:
+                    table.adopt(entity, handle, self.row_of[entity])
+
+    def rows_of(self, entities: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the row of each entity, -1 where there is no such entity; 0 is the world's."""
+        known = np.clip(entities, 0, self.newest)
+        return np.where(known == entities, self.lookup[known], -1)
+
+    def table(self, component: type[Any]) -> Table:
+        """Return a component's table; one of blank rows where no entity has the component."""
+        table = self.tables.get(component)
+        if table is None:
+            table = self.tables[component] = Table(component, self.capacity)
+            table.resize(len(self), self.capacity)
+        return table
+
+    def batch(self, *components: type[Any]) -> Batch:
+        """Return the rows whose entity has every one of ``components``."""
+        batch = self._batches.get(components)
+        if batch is None:
+            batch = Batch.of([self.table(component) for component in components], self.entities)
+            self._batches[components] = batch
+        return batch

@@ -1,0 +1,224 @@
+"""What is known of one value: its type, unit, range and meaning, and so whether it may be what it is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from numbers import Integral, Real
+from typing import Any, Literal
+
+import numpy as np
+
+from physicslab.ecs.vector import Vector2
+
+__all__ = ["REQUIRED", "Field", "InvalidValue", "Kind", "field"]
+
+Kind = Literal["number", "whole", "vector", "flag", "entity", "choice"]
+
+_LONGEST = 100
+"""Characters of a value that a message shows."""
+REQUIRED: Any = object()
+"""The default of a field that has none."""
+
+
+class InvalidValue(ValueError):
+    """A component or a configuration was given a value that it cannot hold.
+
+    Attributes
+    ----------
+    component, field : str
+        Where the value was going.
+    value : object
+        What was given.
+    allowed : str
+        What may be given, in words.
+    """
+
+    def __init__(self, component: str, field: str, value: object, allowed: str) -> None:
+        self.component, self.field, self.value, self.allowed = component, field, value, allowed
+        try:
+            shown = repr(value)
+        except (ValueError, RecursionError):  # a whole number of thousands of digits, or lists without end
+            shown = f"<{type(value).__name__}>"
+        if len(shown) > _LONGEST:
+            shown = f"{shown[: _LONGEST - 3]}..."
+        super().__init__(f"{component}.{field} = {shown}: must be {allowed}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.component, self.field, self.value, self.allowed)
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """What is known of one field: its type, unit, range and meaning.
+
+    The inspector, the scene file and every check are made from this record.
+
+    Attributes
+    ----------
+    name, kind : str
+        What it is called, and what sort of value it holds.
+    default : object
+        The value where none is given.
+    unit, meaning : str
+        SI unit ("1" for a pure number) and one line on what the number is.
+    minimum, maximum, above : float
+        Inclusive bounds, and an exclusive lower one.
+    choices : tuple of str
+        The words that a choice field takes.
+    derived : str
+        Where the value comes from when it is ``None`` ("from the Shape").
+    fixed : bool
+        Whether the field is settled when the component is made.
+    owner : str
+        The component or section that has the field.
+    """
+
+    name: str
+    kind: Kind
+    default: Any = REQUIRED
+    unit: str = "1"
+    meaning: str = ""
+    minimum: float = -math.inf
+    maximum: float = math.inf
+    above: float = -math.inf
+    choices: tuple[str, ...] = ()
+    derived: str = ""
+    fixed: bool = False
+    owner: str = ""
+
+    @property
+    def allowed(self) -> str:
+        """What the field may hold, in words."""
+        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+        match self.kind:
+            case "choice":
+                return "one of " + ", ".join(f'"{choice}"' for choice in self.choices)
+            case "flag":
+                return "true or false"
+            case "entity":
+                return "an entity or null"
+            case "vector":
+                return f"two finite numbers [x, y]{unit}"
+        words = "a whole number" if self.kind == "whole" else "a finite number"
+        if self.above > -math.inf:
+            words += f" > {self.above:g}"
+        if self.minimum > -math.inf and self.maximum < math.inf:
+            words += f" from {self.minimum:g} to {self.maximum:g}"
+        elif self.minimum > -math.inf:
+            words += f" >= {self.minimum:g}"
+        elif self.maximum < math.inf:
+            words += f" <= {self.maximum:g}"
+        return words + unit + (" or null" if self.derived else "")
+
+    @property
+    def lowest(self) -> float:
+        """The smallest finite number in the field's range."""
+        return max(self.minimum, math.nextafter(self.above, math.inf), -_LARGEST)
+
+    @property
+    def highest(self) -> float:
+        """The largest finite number in the field's range."""
+        return min(self.maximum, _LARGEST)
+
+    def check(self, value: object) -> Any:
+        """Return ``value`` as a column stores it, or raise :class:`InvalidValue`.
+
+        Vectors come back as a pair of floats, choices as their code (1, 2, ...), no entity as 0.
+        """
+        stored = _CONVERSIONS[self.kind](self, value)
+        if stored is None:
+            raise InvalidValue(self.owner, self.name, value, self.allowed)
+        return stored
+
+
+def field(
+    *,
+    default: Any = REQUIRED,
+    unit: str = "1",
+    meaning: str = "",
+    minimum: float = -math.inf,
+    maximum: float = math.inf,
+    above: float = -math.inf,
+    choices: tuple[str, ...] = (),
+    derived: str = "",
+    fixed: bool = False,
+) -> Any:
+    """Describe one field of a component; :class:`Field` says what the values mean.
+
+    Name, kind and owner are filled in by :func:`physicslab.ecs.component.component`. Without ``default``
+    the field is required. A ``derived`` field that is given as ``None`` is kept up to date by the world.
+    """
+    return Field("", "number", default, unit, meaning, minimum, maximum, above, choices, derived, fixed)
+
+
+_LARGEST = float(np.finfo(np.float64).max)
+
+
+def _finite(value: object) -> float | None:
+    """Return any finite real number as a float."""
+    if type(value) is float:
+        return value if math.isfinite(value) else None
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) else None
+
+
+def _number(field: Field, value: object) -> float | None:
+    number = _finite(value)
+    return number if number is not None and field.lowest <= number <= field.highest else None
+
+
+def _whole(field: Field, value: object) -> int | None:
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        return None
+    number = int(value)
+    return number if abs(number) < 2**63 and field.lowest <= number <= field.highest else None
+
+
+def _vector(field: Field, value: object) -> tuple[float, float] | None:
+    if isinstance(value, Vector2):
+        return (value.x, value.y) if math.isfinite(value.x) and math.isfinite(value.y) else None
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, tuple | list) or (
+        isinstance(value, Sequence) and not isinstance(value, str | bytes | bytearray)
+    ):
+        if len(value) != 2:
+            return None
+        x, y = _finite(value[0]), _finite(value[1])
+        return (x, y) if x is not None and y is not None else None
+    return None
+
+
+def _flag(field: Field, value: object) -> bool | None:
+    return bool(value) if isinstance(value, bool | np.bool_) else None
+
+
+def _entity(field: Field, value: object) -> int | None:
+    if value is None:
+        return 0
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        return None
+    entity = int(value)
+    return entity if 0 < entity < 2**63 else None
+
+
+def _choice(field: Field, value: object) -> int | None:
+    return field.choices.index(value) + 1 if isinstance(value, str) and value in field.choices else None
+
+
+_CONVERSIONS: Mapping[Kind, Callable[[Field, object], Any]] = {
+    "number": _number,
+    "whole": _whole,
+    "vector": _vector,
+    "flag": _flag,
+    "entity": _entity,
+    "choice": _choice,
+}
+"""How each kind of field turns a value into what its column stores; ``None`` for a value it cannot hold."""

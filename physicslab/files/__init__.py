@@ -1,0 +1,1 @@
+"""Scenes and other files on disk."""

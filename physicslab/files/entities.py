@@ -1,0 +1,190 @@
+"""The entities of a scene document, checked: their ids, their components and what refers to them.
+
+Nothing here lists the fields of a component: names, types and ranges come from ``Component.FIELDS``, so a
+component that someone adds is read, checked and refused like the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from physicslab.components import Held, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components.name import why_no_id
+from physicslab.components.spring import OTHER_END
+from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
+from physicslab.files.checks import (
+    SceneError,
+    checked_keys,
+    checked_object,
+    is_number,
+    refusal,
+    shown,
+    suggestion,
+)
+
+__all__ = ["UNSAVED", "check_contacts", "check_entities", "check_ids", "check_rests"]
+
+UNSAVED: frozenset[type[Any]] = frozenset({Held})
+"""Components that scene files do not hold: no hand reaches into a file."""
+
+type _Expected = tuple[tuple[str, ...], tuple[str, ...], str]
+_NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Trail)
+_MAY_REST = (Velocity, Mass, Shape)
+
+
+def check_ids(entities: object, source: str) -> dict[str, int]:
+    """Return the place, from 1, of each entity that has an id; check that they are a list of objects."""
+    if not isinstance(entities, list):
+        raise refusal(f"{source}: entities", entities, "a list of entities")
+    ids: dict[str, int] = {}
+    for number, entity in enumerate(entities, start=1):
+        checked_object(entity, _label(number, entity, source), 'an object {"id": ..., "Transform": ..., ...}')
+        if "id" not in entity:
+            continue
+        where = f"{source}: entity {number}: id"
+        name = entity["id"]
+        allowed = why_no_id(name)
+        if allowed is not None:
+            raise refusal(where, name, allowed)
+        if name in ids:
+            raise refusal(where, name, f"an id of its own; entity {ids[name]} has this one")
+        ids[name] = number
+    return ids
+
+
+def check_entities(
+    entities: Sequence[Mapping[str, Any]], ids: Mapping[str, int], source: str
+) -> list[tuple[str | None, list[Component]]]:
+    """Return each entity's id and components, in order; they refer to each other by place, from 1."""
+    made: list[tuple[str | None, list[Component]]] = []
+    expected = {name: _expected(kind) for name, kind in COMPONENTS.items() if kind not in UNSAVED}
+    known = ("id", *expected)
+    for number, entity in enumerate(entities, start=1):
+        where = _label(number, entity, source)
+        checked_keys(entity, f"{where}: ", "component", known)
+        components = [
+            _component(COMPONENTS[name], expected[name], values, ids, where)
+            for name, values in entity.items()
+            if name != "id"
+        ]
+        _check_together(components, entity, where)
+        for component in components:
+            if isinstance(component, Spring):
+                _check_ends(component, number, entities, where)
+        made.append((entity.get("id"), components))
+    return made
+
+
+def check_contacts(
+    rows: object, entities: Sequence[Mapping[str, Any]], ids: Mapping[str, int], source: str
+) -> list[list[Any]]:
+    """Return the rows of the contact solver's memory with places, from 1, for ids, and 0 for the bounds."""
+    if not isinstance(rows, list):
+        raise refusal(f"{source}: contacts", rows, "a list of lists")
+    mapped: list[list[Any]] = []
+    for index, row in enumerate(rows):
+        where = f"{source}: contacts[{index}]"
+        if not isinstance(row, list) or len(row) < 2:
+            raise refusal(where, row, "a list of two ids (null for the bounds) and numbers")
+        pair: list[int] = []
+        for place, name in enumerate(row[:2]):
+            number = ids.get(name, 0) if isinstance(name, str) else 0
+            if name is not None and (number == 0 or "Shape" not in entities[number - 1]):
+                raise refusal(
+                    f"{where}[{place}]", name, "the id of an entity with a Shape, or null for the bounds"
+                )
+            pair.append(number)
+        for place, value in enumerate(row[2:], start=2):
+            if not is_number(value):
+                raise refusal(f"{where}[{place}]", value, "a finite number")
+        mapped.append([*pair, *row[2:]])
+    return mapped
+
+
+def check_rests(
+    rows: object, entities: Sequence[Mapping[str, Any]], ids: Mapping[str, int], source: str
+) -> list[list[Any]]:
+    """Return who sleeps, and how long and how slowly others have rested, with places, from 1, for ids."""
+    if not isinstance(rows, list):
+        raise refusal(f"{source}: rests", rows, "a list of lists")
+    mapped: list[list[Any]] = []
+    seen: set[int] = set()
+    for index, row in enumerate(rows):
+        where = f"{source}: rests[{index}]"
+        if not isinstance(row, list) or len(row) not in (1, 3):
+            raise refusal(where, row, "an id for a sleeper, or an id, a time s and a speed m/s, in a list")
+        number = ids.get(row[0], 0) if isinstance(row[0], str) else 0
+        if not number or not all(kind.__name__ in entities[number - 1] for kind in _MAY_REST):
+            allowed = "the id of an entity with " + ", ".join(kind.__name__ for kind in _MAY_REST)
+            raise refusal(f"{where}[0]", row[0], allowed)
+        if number in seen:
+            raise refusal(f"{where}[0]", row[0], "an id that has no rest yet")
+        seen.add(number)
+        if len(row) == 3 and not (is_number(row[1]) and row[1] > 0.0):
+            raise refusal(f"{where}[1]", row[1], "a finite number > 0 s")
+        if len(row) == 3 and not (is_number(row[2]) and row[2] >= 0.0):
+            raise refusal(f"{where}[2]", row[2], "a finite number >= 0 m/s")
+        mapped.append([number, *row[1:]])
+    return mapped
+
+
+def _label(number: int, entity: object, source: str) -> str:
+    name = entity.get("id") if isinstance(entity, dict) else None
+    return f"{source}: entity {shown(name) if isinstance(name, str) else number}"
+
+
+def _expected(kind: type[Component]) -> _Expected:
+    """Return the names of a component's fields, of those that are entities, and what it must look like."""
+    names = tuple(spec.name for spec in kind.FIELDS)
+    ends = tuple(spec.name for spec in kind.FIELDS if spec.kind == "entity")
+    return names, ends, "an object {" + ", ".join(f'"{name}": ...' for name in names) + "}"
+
+
+def _component(
+    kind: type[Component], expected: _Expected, value: object, ids: Mapping[str, int], where: str
+) -> Component:
+    place = f"{where}: {kind.__name__}"
+    names, ends, allowed = expected
+    given = checked_object(value, place, allowed)
+    checked_keys(given, f"{place}.", "field", names)
+    values = dict(given) if ends else given
+    for name in ends:
+        if given.get(name) is not None:
+            values = {**values, name: _entity_of(given[name], ids, f"{place}.{name}")}
+    try:
+        return kind(**values)
+    except InvalidValue as error:
+        raise refusal(f"{where}: {error.component}.{error.field}", error.value, error.allowed) from error
+    except TypeError as error:  # a field without default was left out
+        raise SceneError(f"{where}: {error}") from error
+
+
+def _entity_of(name: object, ids: Mapping[str, int], where: str) -> int:
+    if isinstance(name, str) and name in ids:
+        return ids[name]
+    likely = suggestion(name, ids) if isinstance(name, str) else ""
+    raise refusal(where, name, f"the id of an entity in this scene, or null{likely}")
+
+
+def _check_together(components: Sequence[Component], entity: Mapping[str, Any], where: str) -> None:
+    """Check what no component can know of the others."""
+    for kind in _NEED_TRANSFORM:
+        name = kind.__name__
+        if name in entity and Transform.__name__ not in entity:
+            raise SceneError(f"{where}: {name} = {shown(entity[name])}: must have a Transform beside it")
+    of: dict[type[Any], Any] = {type(component): component for component in components}
+    fixed = Mass in of and of[Mass].fixed_rotation
+    if fixed and Velocity in of and of[Velocity].angular != 0.0:
+        angular = of[Velocity].angular
+        raise refusal(f"{where}: Velocity.angular", angular, "0 rad/s where Mass.fixed_rotation is true")
+
+
+def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any]], where: str) -> None:
+    for name, given in (("a", spring.a), ("b", spring.b)):
+        end = given or (number if name == "a" else None)
+        if end is not None and "Transform" not in entities[end - 1]:
+            value = entities[end - 1].get("id") if given else None
+            raise refusal(f"{where}: Spring.{name}", value, "the id of an entity with a Transform")
+    if spring.b == (spring.a or number):
+        raise refusal(f"{where}: Spring.b", entities[spring.b - 1].get("id"), OTHER_END)

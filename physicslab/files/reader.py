@@ -1,0 +1,172 @@
+"""From a scene document, the parsed JSON, to a world, with every check."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import esper
+
+from physicslab.ecs.component import Component, InvalidValue
+from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig, field_names
+from physicslab.ecs.fields import Field
+from physicslab.files.checks import (
+    SceneError,
+    checked_keys,
+    checked_object,
+    checked_text,
+    is_number,
+    refusal,
+    shown,
+)
+from physicslab.files.entities import check_contacts, check_entities, check_ids, check_rests
+from physicslab.kernels.solver.impulse import MOST_PARTS
+from physicslab.systems.standard import standard_systems
+from physicslab.world import World
+
+__all__ = ["FORMAT", "SceneDraft", "check_scene", "read_scene"]
+
+FORMAT = "physicslab-scene/1"
+"""What the key ``format`` of a scene says."""
+
+_KEYS = (
+    "format", "name", "title", "description", "time", "physics", "simulation", "entities", "contacts",
+    "rests", "solver",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class SceneDraft:
+    """The checked content of a scene, of which a world can be made.
+
+    Attributes
+    ----------
+    name, title, description : str
+        What the scene is called and about.
+    time : float
+        Where its clock stands [s].
+    physics, simulation : PhysicsConfig, SimulationConfig
+        The laws, and how they are stepped.
+    entities : list of (str or None, list of Component)
+        The id of each entity and its components. They refer to entities by place in this list, from 1.
+    contacts : list of lists of numbers
+        The contact solver's memory; the first two numbers of a row are entities, 0 for the bounds.
+    rests : list of lists of numbers
+        Who sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
+    solver : tuple of float and int
+        The time that the contacts' impulses stand for [s], and how many times as many substeps as asked for
+        the coming step needs.
+    """
+
+    name: str
+    title: str
+    description: str
+    time: float
+    physics: PhysicsConfig
+    simulation: SimulationConfig
+    entities: list[tuple[str | None, list[Component]]]
+    contacts: list[list[Any]]
+    rests: list[list[Any]]
+    solver: tuple[float, int]
+
+
+def read_scene(document: object, source: str = "scene") -> World:
+    """Return the world that a scene document describes, with the systems that it needs.
+
+    Parameters
+    ----------
+    document : dict
+        A scene as ``json.loads`` gives it.
+    source : str
+        What messages call the scene: its path or name.
+
+    Raises
+    ------
+    SceneError
+        If anything in it is not allowed; esper's active world is then the one it was.
+
+    Examples
+    --------
+    >>> world = read_scene({"format": FORMAT, "entities": [{"id": "ball", "Transform": {"angle": 1}}]})
+    >>> world.entity("ball")
+    1
+    >>> read_scene({"format": FORMAT, "entities": [{"id": "b", "Transform": {"angle": "up"}}]})
+    Traceback (most recent call last):
+    ...
+    physicslab.files.checks.SceneError: scene: entity "b": Transform.angle = "up": must be a finite number rad
+    """
+    draft = check_scene(document, source)
+    before = esper.current_world
+    world = World(*standard_systems(), physics=draft.physics, simulation=draft.simulation)
+    world.name, world.title, world.description = draft.name, draft.title, draft.description
+    world.time = draft.time
+    for number, (id_, components) in enumerate(draft.entities, start=1):
+        entity = world.spawn(*components, name=id_)
+        assert entity == number, "a new world numbers its entities from 1"
+    world.contacts.span, world.contacts.finer = draft.solver
+    if draft.contacts or draft.rests:
+        world.synchronise()
+        try:
+            world.contacts.restore(world, draft.contacts)
+        except (ValueError, OverflowError) as error:
+            esper.switch_world(before)
+            raise SceneError(f"{source}: contacts: {error}") from error
+        world.sleep.restore(world, draft.rests)
+    return world
+
+
+def check_scene(document: object, source: str = "scene") -> SceneDraft:
+    """Return the content of a scene document; the first thing not allowed is a :class:`SceneError`."""
+    scene = checked_object(document, source, 'an object {"format": ..., "entities": [...]}')
+    checked_keys(scene, f"{source}: ", "key", _KEYS)
+    if "format" not in scene:
+        raise SceneError(f"{source}: format is missing: must be {shown(FORMAT)}")
+    if scene["format"] != FORMAT:
+        raise refusal(f"{source}: format", scene["format"], shown(FORMAT))
+    if "entities" not in scene:
+        raise SceneError(f"{source}: entities is missing: must be a list of entities")
+    ids = check_ids(scene["entities"], source)
+    simulation = _config(SimulationConfig, scene.get("simulation", {}), source)
+    return SceneDraft(
+        name=checked_text(scene.get("name", ""), f"{source}: name"),
+        title=checked_text(scene.get("title", ""), f"{source}: title"),
+        description=checked_text(scene.get("description", ""), f"{source}: description", lines=True),
+        time=_time(scene.get("time", 0.0), f"{source}: time"),
+        physics=_config(PhysicsConfig, scene.get("physics", {}), source),
+        simulation=simulation,
+        entities=check_entities(scene["entities"], ids, source),
+        contacts=check_contacts(scene.get("contacts", []), scene["entities"], ids, source),
+        rests=check_rests(scene.get("rests", []), scene["entities"], ids, source),
+        solver=_solver(scene.get("solver", {}), simulation, f"{source}: solver"),
+    )
+
+
+_SPAN = Field("span", "number", unit="s", minimum=SHORTEST, owner="solver")
+_FINER = Field("finer", "whole", minimum=1, maximum=MOST_PARTS, owner="solver")
+
+
+def _solver(value: Any, simulation: SimulationConfig, where: str) -> tuple[float, int]:
+    """Return what the solver takes from the last step; what is left out is as the simulation asks."""
+    found = checked_object(value, where, 'an object {"span": ..., "finer": ...}')
+    checked_keys(found, f"{where}: ", "key", ("span", "finer"))
+    given: dict[str, Any] = {"span": simulation.dt / simulation.substeps, "finer": 1, **found}
+    try:
+        return float(_SPAN.check(given["span"])), int(_FINER.check(given["finer"]))
+    except InvalidValue as error:
+        raise SceneError(f"{where.removesuffix('solver')}{error}") from error
+
+
+def _time(value: Any, where: str) -> float:
+    if is_number(value) and value >= 0.0:
+        return float(value)
+    raise refusal(where, value, "a finite number >= 0 s")
+
+
+def _config[C: (PhysicsConfig, SimulationConfig)](config: type[C], value: object, source: str) -> C:
+    where = f"{source}: {config.section}"
+    given = checked_object(value, where, "an object of settings")
+    checked_keys(given, f"{where}.", "setting", field_names(config))
+    try:
+        return config(**given)
+    except InvalidValue as error:
+        raise refusal(f"{where}.{error.field}", error.value, error.allowed) from error

@@ -1,0 +1,152 @@
+"""Scenes by name and on disk: what opens one, and what saves one."""
+
+from __future__ import annotations
+
+import gc
+import json
+import math
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from physicslab.files.checks import JsonObject, SceneError, printable, suggestion
+from physicslab.files.json_text import json_text
+from physicslab.files.reader import check_scene, read_scene
+from physicslab.files.replace import replace_file
+from physicslab.files.writer import write_scene
+from physicslab.scenes import SCENES
+from physicslab.world import World
+
+__all__ = ["SceneError", "load_scene", "read_scene", "save_scene", "write_scene"]
+
+LARGEST_FILE = 100 * 2**20
+"""Bytes that a scene file may have."""
+MOST_BRACKETS = 1_000_000
+"""Objects and lists that a scene file may hold, 125,000 bodies: reading them takes up to 1.1 GB of memory."""
+MOST_VALUES = 8_000_000
+"""Values that it may hold, counted by the brackets and commas before them, those within texts included."""
+
+
+def load_scene(name_or_path: str | os.PathLike[str]) -> World:
+    """Return a new world: a built-in scene, or one from a file, with the systems that it needs.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        A built-in scene's name, or a path. Where there is a file of that name too, ``./drop`` is the file.
+
+    Returns
+    -------
+    World
+        esper's active world from here on, like any new one.
+
+    Raises
+    ------
+    SceneError
+        If there is no such scene, or anything in it is not allowed; one line that says what and where.
+
+    Examples
+    --------
+    >>> world = load_scene("drop")
+    >>> world.title
+    'A ball on a floor'
+    """
+    if isinstance(name_or_path, str) and name_or_path in SCENES:
+        return SCENES[name_or_path].build()
+    source = printable(os.fspath(name_or_path))
+    with _uncollected():
+        return read_scene(_parse(_read_text(name_or_path, source), source), source)
+
+
+def save_scene(world: World, path: str | os.PathLike[str]) -> None:
+    """Write a world to a scene file, from which :func:`load_scene` makes the same world, bit for bit.
+
+    A file that was there before is replaced only by one that is complete and can be read again.
+
+    Raises
+    ------
+    SceneError
+        If the world holds what no scene may: a number that is not finite, an id used twice, ...
+    OSError
+        If the file cannot be written.
+    """
+    source = printable(os.fspath(path))
+    document = write_scene(world)
+    check_scene(document, source)
+    replace_file(path, json_text(document).encode("utf-8"))
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Let nobody look for garbage meanwhile: of the millions of objects of a large scene, none is any.
+
+    Looking takes half of the time that such a scene takes to load.
+    """
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
+def _read_text(path: str | os.PathLike[str], source: str) -> str:
+    try:
+        return _read_bytes(path, source).decode("utf-8-sig")
+    except FileNotFoundError as error:
+        names = ", ".join(SCENES)
+        likely = suggestion(os.fspath(path), SCENES)
+        raise SceneError(
+            f"{source}: no such file, and no built-in scene{likely or f'; the built-in scenes are {names}'}"
+        ) from error
+    except UnicodeDecodeError as error:
+        raise SceneError(
+            f"{source}: is not UTF-8: byte {error.start} cannot be read; must be JSON in UTF-8"
+        ) from error
+    except OSError as error:
+        raise SceneError(f"{source}: cannot be read: {error.strerror}") from error
+    except SceneError:
+        raise
+    except ValueError as error:  # a null character or half a surrogate pair in the name
+        raise SceneError(f"{source}: is no file name: {error}") from error
+
+
+def _read_bytes(path: str | os.PathLike[str], source: str) -> bytes:
+    """Read a plain file, and never more of it than the limit: what is opened may grow, or have no end."""
+    # Without O_NONBLOCK, opening a pipe that nobody writes to would wait for ever.
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    if os.path.isdir(path):  # Windows would say "permission denied"
+        raise SceneError(f"{source}: is a directory, not a scene file")
+    with open(os.open(path, flags), "rb") as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise SceneError(f"{source}: is a pipe or a device; a scene must be a plain file")
+        content = file.read(LARGEST_FILE + 1)
+    if len(content) > LARGEST_FILE:
+        raise SceneError(f"{source}: is too large: a scene file must have at most {LARGEST_FILE:,} bytes")
+    return content
+
+
+def _parse(text: str, source: str) -> object:
+    # Counted before it is parsed: every one becomes a Python object, many times its size in the file.
+    brackets = text.count("{") + text.count("[")
+    if brackets > MOST_BRACKETS:
+        raise SceneError(
+            f"{source}: holds too much: a scene must have at most {MOST_BRACKETS:,} objects and lists"
+        )
+    if brackets + text.count(",") > MOST_VALUES:
+        raise SceneError(f"{source}: holds too much: a scene must have at most {MOST_VALUES:,} values")
+    try:
+        return json.loads(text, object_pairs_hook=JsonObject.of, parse_int=_whole)
+    except json.JSONDecodeError as error:
+        raise SceneError(
+            f"{source}: is not JSON: {error.msg} at line {error.lineno}, column {error.colno}"
+        ) from error
+    except RecursionError as error:
+        raise SceneError(f"{source}: is nested too deeply to be a scene") from error
+
+
+def _whole(digits: str) -> int | float:
+    """Read a whole number; one that no float can hold is infinite, which the check of its field refuses."""
+    return int(digits) if len(digits) < 310 else math.copysign(math.inf, -1.0 if digits[0] == "-" else 1.0)

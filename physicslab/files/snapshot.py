@@ -1,0 +1,83 @@
+"""A world held still: copies to write from while the world itself goes on."""
+
+from __future__ import annotations
+
+import copy
+from typing import TYPE_CHECKING, Any
+
+import esper
+
+from physicslab.components import Name, Shape
+from physicslab.ecs.component import Component
+from physicslab.ecs.entity_index import Roster
+
+if TYPE_CHECKING:
+    from physicslab.state.contacts import Contacts
+    from physicslab.world import World
+
+__all__ = ["Frozen"]
+
+
+class Frozen:
+    """The entities, components, contacts and laws of a world at one moment.
+
+    Making one copies columns, 1 to 3 ms for 4,000 bodies in contact; reading components from it is left to
+    when there is time.
+
+    Attributes
+    ----------
+    names : dict of int to str
+        The ids of the entities that have one.
+    entities : list of int
+        All entities, in order.
+    shaped : set of int
+        Those with a Shape.
+    contacts : Contacts
+        What the contact solver remembers.
+    rests : list of lists
+        Who sleeps, and how long the others have rested.
+    texts : dict of str to str
+        Name, title and description of the world.
+    time : float
+        Time of the world [s].
+    """
+
+    def __init__(self, world: World) -> None:
+        world.synchronise()
+        with world.active():
+            self.entities = world.entities()
+            named = [(entity, name.id) for entity, name in esper.get_component(Name)]
+        living = set(self.entities)
+        self.names = {entity: name for entity, name in named if entity in living}
+        self.texts = {key: getattr(world, key) for key in ("name", "title", "description")}
+        self.time, self.physics, self.simulation = world.time, world.physics, world.simulation
+        self.shaped = set(world.batch(Shape).entities.tolist())
+        self.contacts: Contacts = world.contacts.copied()
+        self.rests = world.sleep.export(world)
+        self._rows = dict(world.roster.row_of)
+        self._tables = _copied(world.roster)
+
+    def label(self, entity: int) -> str:
+        """Return the entity's id if it has one, else ``entity <number>``."""
+        return self.names.get(entity, f"entity {entity}")
+
+    def component(self, entity: int, kind: type[Any]) -> Component | None:
+        """Return a component as it was, or ``None`` where the entity had none."""
+        row, held = self._rows[entity], self._tables.get(kind)
+        if held is None or not held[0][row]:
+            return None
+        handle: Component = Component.__new__(kind)
+        handle._views, handle._row = held[1], row
+        return handle
+
+
+def _copied(roster: Roster) -> dict[type[Any], tuple[list[bool], list[Any]]]:
+    """Return of every table which rows are present, and its columns as flat views of copies."""
+    return {
+        kind: (
+            table.present.tolist(),
+            [memoryview(copy.copy(column).reshape(-1)) for column in table.columns],
+        )
+        for kind, table in roster.tables.items()
+        if table.handles
+    }

@@ -1,0 +1,156 @@
+"""From a world to a scene document."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Generator, Iterable, Mapping
+from typing import Any
+
+from physicslab.ecs.component import COMPONENTS, Component
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
+from physicslab.ecs.fields import REQUIRED, Field
+from physicslab.ecs.vector import Vector2
+from physicslab.files.checks import SceneError
+from physicslab.files.entities import UNSAVED
+from physicslab.files.reader import FORMAT
+from physicslab.files.snapshot import Frozen
+from physicslab.world import World
+
+__all__ = ["scene_pieces", "unique_name", "write_scene"]
+
+_FIRST = ("Transform", "Velocity", "Mass", "Shape", "Material", "Spring", "Trail")
+
+
+def write_scene(world: World) -> dict[str, Any]:
+    """Return the scene document of a world, from which :func:`read_scene` makes the same world, bit for bit.
+
+    Fields at their default are left out. An entity that others refer to and that has no id gets one in the
+    document, not in the world. What is held is written as if it had been let go. Plain esper components, for
+    which there are no columns, have no place in a scene.
+
+    Raises
+    ------
+    SceneError
+        If a component refers to an entity that is not there.
+    """
+    pieces = scene_pieces(Frozen(world))
+    while True:
+        try:
+            next(pieces)
+        except StopIteration as done:
+            document: dict[str, Any] = done.value
+            return document
+
+
+def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
+    """Write like :func:`write_scene`, stopping after every entity: the world may go on meanwhile.
+
+    The document is what the generator returns.
+    """
+    entities: dict[int, list[Component]] = {}
+    for number in frozen.entities:
+        entities[number] = _saved(frozen, number)
+        yield
+    contacts: list[list[Any]] = []
+    shaped = {0, *frozen.shaped}
+    for row in frozen.contacts.remembered():
+        if row is not None and shaped.issuperset(row[:2]):  # what is still there to touch
+            contacts.append(row)
+        yield
+    ids = dict(frozen.names)
+    referred = {end for row in contacts for end in row[:2]} | {rest[0] for rest in frozen.rests}
+    ids |= yield from _invented(entities, ids, referred)
+    document: dict[str, Any] = {"format": FORMAT} | {key: text for key, text in frozen.texts.items() if text}
+    if frozen.time:
+        document["time"] = frozen.time
+    document["physics"] = _settings(frozen.physics)
+    document["simulation"] = _settings(frozen.simulation)
+    document["entities"] = written = []
+    for number, components in entities.items():
+        label = frozen.label(number)
+        named = {"id": ids[number]} if number in ids else {}
+        written.append(named | {type(part).__name__: _fields(part, ids, label) for part in components})
+        yield
+    for memory in contacts:
+        memory[:2] = [ids.get(end) for end in memory[:2]]
+        yield
+    rests = [[ids[rest[0]], *rest[1:]] for rest in frozen.rests]
+    kept = {"contacts": contacts, "rests": rests, "solver": _solver(frozen)}
+    return document | {key: value for key, value in kept.items() if value}
+
+
+def _solver(frozen: Frozen) -> dict[str, Any]:
+    """Return for what time impulses stand, and how much finer the next step is, where not as asked."""
+    contacts, simulation = frozen.contacts, frozen.simulation
+    span = {"span": contacts.span} if contacts.span not in (0.0, simulation.dt / simulation.substeps) else {}
+    return span | ({"finer": contacts.finer} if contacts.finer != 1 else {})
+
+
+def unique_name(wanted: str, taken: Container[str]) -> str:
+    """Return ``wanted``, numbered if it is taken.
+
+    >>> unique_name("entity 3", ["entity 3", "floor"])
+    'entity 3 (2)'
+    """
+    name, count = wanted, 1
+    while name in taken:
+        count += 1
+        name = f"{wanted} ({count})"
+    return name
+
+
+def _saved(frozen: Frozen, entity: int) -> list[Component]:
+    """Return those of an entity's components that a file holds, the contract's first."""
+    order = [*_FIRST, *(name for name in COMPONENTS if name not in _FIRST)]
+    kinds = [COMPONENTS[name] for name in order if COMPONENTS[name] not in UNSAVED]
+    found = (frozen.component(entity, kind) for kind in kinds)
+    return [component for component in found if component is not None]
+
+
+def _invented(
+    entities: Mapping[int, Iterable[Component]], ids: Mapping[int, str], referred: set[int]
+) -> Generator[None, None, dict[int, str]]:
+    """Return ids for the entities that have none and are referred to, by components or in ``referred``."""
+    for components in entities.values():
+        yield
+        for component in components:
+            ends = (getattr(component, spec.name) for spec in component.FIELDS if spec.kind == "entity")
+            referred.update(end for end in ends if end is not None)
+    invented: dict[int, str] = {}
+    taken = set(ids.values())
+    for place, number in enumerate(entities, start=1):
+        if number in referred and number not in ids:
+            # Its place in the file: what the entity will be called when the scene is read.
+            invented[number] = unique_name(f"entity {place}", taken)
+            taken.add(invented[number])
+    return invented
+
+
+def _fields(component: Component, ids: Mapping[int, str], label: str) -> dict[str, Any]:
+    written: dict[str, Any] = {}
+    given = component.given()
+    for spec in component.FIELDS:
+        value = given[spec.name]
+        if spec.kind == "entity" and value is not None:
+            if value not in ids:
+                place = f"{label}: {type(component).__name__}.{spec.name}"
+                raise SceneError(f"{place} = {value}: must be an entity of this world")
+            written[spec.name] = ids[value]
+        elif not _is_default(spec, value):
+            written[spec.name] = list(value) if isinstance(value, Vector2) else value
+    return written
+
+
+def _is_default(spec: Field, value: Any) -> bool:
+    """Whether leaving the field out gives the same bits: -0.0 is not 0.0."""
+    if spec.default is REQUIRED or spec.default is None:
+        return value is None
+    if isinstance(value, Vector2):
+        return repr(value) == repr(Vector2(*spec.default))
+    return repr(value) == repr(float(spec.default) if isinstance(value, float) else spec.default)
+
+
+def _settings(config: PhysicsConfig | SimulationConfig) -> dict[str, Any]:
+    values = {name: getattr(config, name) for name in field_names(type(config))}
+    return {
+        name: list(value) if isinstance(value, Vector2 | tuple) else value for name, value in values.items()
+    }

@@ -1,0 +1,1 @@
+"""Impacts located in time."""

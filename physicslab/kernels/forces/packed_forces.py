@@ -1,0 +1,117 @@
+"""Gravity, springs and drag over packed coordinates, as :mod:`physicslab.kernels.forces.force_calls` has it.
+
+Each works by the same formulas as the loop over columns in the module of that force.
+"""
+
+import numpy as np
+
+from physicslab.kernels import allocating
+from physicslab.kernels.forces.drag import drag_factor
+from physicslab.kernels.forces.force_calls import force_kernel
+from physicslab.kernels.forces.gravity import FEW, attract, inverse_cube
+from physicslab.kernels.forces.springs import mean_spring_pull, spring_pull, turn_over, turned
+
+__all__ = ["drag", "planet_gravity", "springs", "uniform_gravity"]
+
+
+@force_kernel
+def uniform_gravity(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
+    """Add m g. ``numbers``: gx, gy, then the masses; ``whole``: how many, then where x of each is."""
+    for p in range(whole[0]):
+        i = whole[1 + p]
+        force[i] += numbers[2 + p] * numbers[0]
+        force[i + 1] += numbers[2 + p] * numbers[1]
+
+
+@allocating
+def _attract_packed(q, force, numbers, whole):  # type: ignore[no-untyped-def]
+    """Add the attraction of more than a few, as :func:`planet_gravity` has it, by columns of them."""
+    n = whole[0]
+    x, y, mass, ax, ay = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    for p in range(n):
+        i = whole[2 + p]
+        x[p], y[p], mass[p] = q[i], q[i + 1], numbers[2 + p]
+    attract(x, y, mass, numbers[1], whole[1] != 0, ax, ay)
+    for p in range(n):
+        i = whole[2 + p]
+        force[i] += numbers[0] * mass[p] * ax[p]
+        force[i + 1] += numbers[0] * mass[p] * ay[p]
+
+
+@force_kernel
+def planet_gravity(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
+    """Add the attraction of every pair.
+
+    ``numbers``: G, softening, then the masses; ``whole``: how many, whether Plummer's law holds, then where
+    x of each is.
+    """
+    n, plummer = whole[0], whole[1] != 0
+    G, softening = numbers[0], numbers[1]
+    if n > FEW:
+        _attract_packed(q, force, numbers, whole)  # type: ignore[no-untyped-call]
+        return
+    softening2 = softening * softening
+    for p in range(n):
+        i = whole[2 + p]
+        x, y, weight = q[i], q[i + 1], G * numbers[2 + p]
+        fx, fy = 0.0, 0.0
+        for other in range(p + 1, n):
+            j = whole[2 + other]
+            dx, dy = q[j] - x, q[j + 1] - y
+            f = weight * numbers[2 + other] * inverse_cube(dx * dx + dy * dy, softening2, plummer)
+            fx += f * dx
+            fy += f * dy
+            force[j] -= f * dx
+            force[j + 1] -= f * dy
+        force[i] += fx
+        force[i + 1] += fy
+
+
+@force_kernel
+def springs(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
+    """Add the pull of springs and dampers to both ends.
+
+    ``whole``: how many, then four a spring: where x and the angle are at A, and at B; an angle of -1 is one
+    that never changes. ``numbers``: seven a spring: the anchors at A and B in the body's own directions, or
+    in the world's where the angle never changes [m], rest length, stiffness, damping. Over a span, what the
+    springs store changes by just the work done, of the turning ends as well.
+    """
+    for s in range(whole[0]):
+        w, p = 1 + 4 * s, 7 * s
+        a, turn_a, b, turn_b = whole[w], whole[w + 1], whole[w + 2], whole[w + 3]
+        ax, ay, bx, by = numbers[p], numbers[p + 1], numbers[p + 2], numbers[p + 3]
+        spin_a, spin_b, near_a, near_b, give_a, give_b = 0.0, 0.0, 1.0, 1.0, 1.0, 1.0
+        if turn_a >= 0:
+            ax, ay = turned(q[turn_a], ax, ay)
+            near_a, give_a = turn_over(span * v[turn_a])
+            spin_a = give_a * v[turn_a]
+        if turn_b >= 0:
+            bx, by = turned(q[turn_b], bx, by)
+            near_b, give_b = turn_over(span * v[turn_b])
+            spin_b = give_b * v[turn_b]
+        dx = q[b] + near_b * bx - q[a] - near_a * ax
+        dy = q[b + 1] + near_b * by - q[a + 1] - near_a * ay
+        vx = v[b] - spin_b * by - v[a] + spin_a * ay
+        vy = v[b + 1] + spin_b * bx - v[a + 1] - spin_a * ax
+        if span == 0.0:
+            fx, fy = spring_pull(dx, dy, vx, vy, numbers[p + 4], numbers[p + 5], numbers[p + 6])
+        else:
+            fx, fy = mean_spring_pull(dx, dy, vx, vy, span, numbers[p + 4], numbers[p + 5], numbers[p + 6])
+        force[a] += fx
+        force[a + 1] += fy
+        force[b] -= fx
+        force[b + 1] -= fy
+        if turn_a >= 0:
+            force[turn_a] += give_a * (ax * fy - ay * fx)
+        if turn_b >= 0:
+            force[turn_b] -= give_b * (bx * fy - by * fx)
+
+
+@force_kernel
+def drag(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
+    """Add -(c + k |v|) v. ``whole``: how many, then where x of each is; ``numbers``: c and k of each."""
+    for p in range(whole[0]):
+        i = whole[1 + p]
+        f = drag_factor(v[i], v[i + 1], numbers[2 * p], numbers[2 * p + 1])
+        force[i] -= f * v[i]
+        force[i + 1] -= f * v[i + 1]

@@ -1,0 +1,1 @@
+"""Where near bodies touch."""

@@ -1,0 +1,1 @@
+"""Methods that integrate ordinary differential equations."""

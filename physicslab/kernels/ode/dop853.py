@@ -1,0 +1,204 @@
+"""Dormand and Prince's method of order 8, which chooses its own steps."""
+
+import math
+
+import numpy as np
+
+from physicslab.kernels import Numbers, Vectors, allocating_kernel, inlined
+from physicslab.kernels.forces.force_calls import Calls, accelerate
+from physicslab.kernels.ode.compensated import add
+from physicslab.kernels.ode.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, LAST_LOW, WEIGHTS
+
+__all__ = [
+    "EXHAUSTED",
+    "NOT_FINITE",
+    "TOO_SHORT",
+    "dop853",
+    "first_step",
+    "largest",
+    "make_stages",
+    "step_error",
+    "total",
+]
+
+TOO_SHORT = -1
+"""What is returned where no step is short enough."""
+NOT_FINITE = -2
+"""What is returned where the forces at the start are not finite."""
+EXHAUSTED = -3
+"""What is returned where more force evaluations were made than are allowed."""
+_SAFETY, _MOST, _LEAST = 0.9, 6.0, 0.2
+"""How far a step keeps below what the estimate allows, and how much it may grow or shrink at once."""
+_LEADS = 1e-4
+"""Such a share of the largest coordinate must be made in a step for the speed itself to be the measure."""
+_SHORTEST = 1e-13
+"""The shortest step, as a share of the time to go: what needs shorter ones has no end."""
+_NOISE = 1e6
+"""An estimate of more than so many times the tolerance is not taken for rounding."""
+
+
+@inlined
+def largest(values: Numbers, n: int) -> float:
+    """Return the largest magnitude among the first ``n``."""
+    found = 0.0
+    for i in range(n):
+        found = max(found, abs(values[i]))
+    return found
+
+
+@inlined
+def make_stages(
+    q: Numbers, v: Numbers, stage_q: Numbers, stage_v: Numbers, acceleration: Numbers, rates: Vectors,
+    pushes: Vectors, inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float, first: int, end: int,
+) -> None:  # fmt: skip
+    """Work out stages ``first`` to ``end - 1`` of a step from (q, v).
+
+    ``rates`` and ``pushes`` (n, 16) take q' and v' of each stage; those of the stages before ``first`` are
+    there. ``stage_q`` and ``stage_v`` are left at the last stage.
+    """
+    n = len(inverse_mass)
+    for stage in range(first, end):
+        for i in range(n):
+            moved, pushed = 0.0, 0.0
+            for other in range(stage):
+                moved += WEIGHTS[stage, other] * rates[i, other]
+                pushed += WEIGHTS[stage, other] * pushes[i, other]
+            stage_q[i] = q[i] + h * moved
+            stage_v[i] = v[i] + h * pushed
+        accelerate(stage_q, stage_v, acceleration, inverse_mass, damping, calls)
+        for i in range(n):
+            rates[i, stage] = stage_v[i]
+            pushes[i, stage] = acceleration[i]
+
+
+@inlined
+def total(values: Numbers) -> tuple[float, float]:
+    """Return the weighted sum of the stages, and what rounding leaves out of it."""
+    whole, low = 0.0, 0.0
+    for stage in range(LAST):
+        whole, low = add(whole, low + LAST_LOW[stage] * values[stage], WEIGHTS[LAST, stage] * values[stage])
+    return whole, low
+
+
+@inlined
+def step_error(
+    rates: Vectors, pushes: Vectors, h: float, q_scale: float, v_scale: float, tolerance: float
+) -> float:
+    """Return the estimated error of a step, 1 where it is just tolerated.
+
+    It is measured against the largest coordinate and the largest speed of all.
+    """
+    fifth, third = 0.0, 0.0
+    n = len(rates)
+    for i in range(n):
+        for values, scale in ((rates, q_scale), (pushes, v_scale)):
+            high, low = 0.0, 0.0
+            for stage in range(LAST):
+                high += ESTIMATE_5[stage] * values[i, stage]
+                low += ESTIMATE_3[stage] * values[i, stage]
+            if scale > 0.0:
+                fifth += (high / scale) ** 2
+                third += (low / scale) ** 2
+    if fifth == 0.0 and third == 0.0:
+        return 0.0
+    return abs(h) * fifth / math.sqrt((fifth + 0.01 * third) * 2 * n) / tolerance
+
+
+@inlined
+def first_step(pushes: Vectors, q_scale: float, v_scale: float, span: float, tolerance: float) -> float:
+    """Return a careful guess at a first step [s] from the state and its acceleration (stage 0)."""
+    push = 0.0
+    for i in range(len(pushes)):
+        push = max(push, abs(pushes[i, 0]))
+    guess = math.inf
+    if q_scale > 0.0:
+        if v_scale > 0.0:
+            guess = min(guess, q_scale / v_scale)
+        if push > 0.0:
+            guess = min(guess, math.sqrt(q_scale / push))
+    elif v_scale > 0.0 and push > 0.0:
+        guess = max(v_scale / push, 1e-6 * span)
+    return min(guess * math.pow(tolerance, 0.125), span)
+
+
+@inlined
+def _all_finite(q: Numbers, v: Numbers, n: int) -> bool:
+    """Whether every one of the first ``n`` numbers of both is finite; :func:`largest` may overlook NaN."""
+    finite = True
+    for i in range(n):
+        finite = finite and math.isfinite(q[i]) and math.isfinite(v[i])
+    return finite
+
+
+@allocating_kernel
+def dop853(
+    q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
+    span: float, tolerance: float, period: float, most: int,
+) -> int:  # fmt: skip
+    """Advance by ``span`` seconds; return the number of force evaluations, or why it cannot be (negative).
+
+    Within any ``period`` seconds of it at most ``most`` force evaluations are made: a long span may take
+    many, but none of its parts may take for ever.
+
+    A step is made again, shorter, where its error is estimated to be more than ``tolerance`` of the largest
+    coordinate or speed. Sums are compensated.
+    """
+    n = len(inverse_mass)
+    stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
+    rates, pushes = np.zeros((n, 16)), np.zeros((n, 16))
+    q_low, v_low = np.zeros(n), np.zeros(n)
+    q_scale, v_scale = largest(q, n), largest(v, n)
+    make_stages(q, v, stage_q, stage_v, acceleration, rates, pushes, inverse_mass, damping, calls, 0.0, 0, 1)
+    if not _all_finite(acceleration, stage_v, n):
+        return NOT_FINITE
+    evaluations, done, done_low = 1, 0.0, 0.0
+    h = first_step(pushes, q_scale, v_scale, span, tolerance)
+    grow, last_error, last_taken = _MOST, math.inf, 1.0
+    spent, mark = 0, 0.0
+    while True:
+        left = (span - done) - done_low
+        if left <= 0.0:
+            return evaluations
+        last = h >= left
+        taken = left if last else min(h, 0.5 * left) if h > 0.9 * left else h
+        if taken < _SHORTEST * span and not last:
+            return TOO_SHORT
+        if done - mark >= period:
+            spent, mark = 0, done
+        if spent > most - LAST:
+            return EXHAUSTED
+        make_stages(
+            q, v, stage_q, stage_v, acceleration, rates, pushes,
+            inverse_mass, damping, calls, taken, 1, LAST + 1,
+        )  # fmt: skip
+        evaluations += LAST
+        spent += LAST
+        q_reach, v_reach = max(q_scale, largest(stage_q, n)), max(v_scale, largest(stage_v, n))
+        # Where all is at rest, what counts is how far an error of the speed leads within the step.
+        error = step_error(rates, pushes, taken, q_reach, max(v_reach, _LEADS * q_reach / taken), tolerance)
+        if not (math.isfinite(error) and _all_finite(stage_q, stage_v, n)):
+            h, grow = _LEAST * taken, 1.0
+            last_error = math.inf
+            continue
+        factor = min(max(_SAFETY * math.pow(error, -0.125), _LEAST), grow) if error > 0.0 else grow
+        h = factor * taken
+        # Rounding falls no faster than the step, a kink of the force with its square: no step is better.
+        rounding = error < _NOISE and error > last_error * math.pow(taken / last_taken, 1.5)
+        if error > 1.0 and not rounding:
+            grow, last_error, last_taken = 1.0, error, taken
+            continue
+        if rounding:
+            h = taken
+        grow, last_error = _MOST, math.inf
+        for i in range(n):
+            moved, moved_low = total(rates[i])
+            pushed, pushed_low = total(pushes[i])
+            q_low[i] += taken * moved_low
+            v_low[i] += taken * pushed_low
+            q[i], q_low[i] = add(q[i], q_low[i], taken * moved)
+            v[i], v_low[i] = add(v[i], v_low[i], taken * pushed)
+            rates[i, 0], pushes[i, 0] = rates[i, LAST], pushes[i, LAST]
+        done, done_low = add(done, done_low, taken)
+        if last:
+            return evaluations
+        q_scale, v_scale = q_reach, v_reach

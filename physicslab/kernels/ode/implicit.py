@@ -1,0 +1,233 @@
+"""The implicit midpoint rule, leaning to the end where something resists, by Newton's method."""
+
+import math
+
+import numpy as np
+
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined
+from physicslab.kernels.forces.force_calls import Calls, accelerate_over
+from physicslab.kernels.ode.compensated import add
+from physicslab.kernels.ode.dop853 import largest
+
+__all__ = ["implicit_midpoint"]
+
+_MOST_ITERATIONS = 40
+_PARTS = 1024
+"""Into how many parts a step may be divided, by halves, where Newton's method finds no end."""
+_SLOW = 2
+"""After so many iterations with an old matrix it is worked out anew in each: stiff rods turn as they go."""
+_FAR = 1e-6
+"""Beyond such a change, as a share, the old matrix is not used again beside dampers: they turn as they go."""
+_SMALL = 1e-3
+"""The size of things [m] where all coordinates are zero."""
+_EPSILON = 2.220446049250313e-16
+
+
+@inlined
+def _factorise(matrix: Vectors, pivots: Rows, band: int) -> None:
+    """Turn a matrix (n, n) with ``band`` diagonals on either side into its triangular factors, in place."""
+    n = len(pivots)
+    for k in range(n):
+        foot, end = min(k + band + 1, n), min(k + 2 * band + 1, n)
+        best = k
+        for i in range(k + 1, foot):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        pivots[k] = best
+        if best != k:
+            for j in range(k, end):
+                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+        for i in range(k + 1, foot):
+            share = matrix[i, k] / matrix[k, k]
+            matrix[i, k] = share
+            for j in range(k + 1, end):
+                matrix[i, j] -= share * matrix[k, j]
+
+
+@inlined
+def _solve(matrix: Vectors, pivots: Rows, band: int, right: Numbers) -> None:
+    """Solve with the factors, in place."""
+    n = len(pivots)
+    for k in range(n):
+        best = pivots[k]
+        right[k], right[best] = right[best], right[k]
+        for i in range(k + 1, min(k + band + 1, n)):
+            right[i] -= matrix[i, k] * right[k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, min(k + 2 * band + 1, n)):
+            right[k] -= matrix[k, j] * right[j]
+        right[k] /= matrix[k, k]
+
+
+@inlined
+def _miss(
+    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
+    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
+) -> None:  # fmt: skip
+    """Work out by how much ``x`` misses the equations of the step.
+
+    It holds the mean velocity u; where something resists motion, behind it y, by which the end's is more.
+    ``stack`` holds y, u and v one behind the other, each as long as q.
+    """
+    n, size = len(inverse_mass), len(q)
+    mean = stack[size : 2 * size]
+    for i in range(n):
+        mean[i] = x[i]
+        stage_q[i] = q[i] + 0.5 * h * x[i]
+    accelerate_over(stage_q, mean, h, acceleration, inverse_mass, damping, calls)
+    if len(x) == n:
+        for i in range(n):
+            miss[i] = v[i] + 0.5 * h * acceleration[i] - x[i]
+        return
+    for i in range(n):
+        miss[n + i] = h * acceleration[i] - (x[i] - v[i]) - x[n + i]
+        stack[i], stack[2 * size + i] = x[n + i], v[i]
+    accelerate_over(stage_q, stack, h, acceleration, inverse_mass, damping, resistances)
+    for i in range(n):
+        miss[i] = x[n + i] - h * acceleration[i] - (x[i] - v[i])
+
+
+@allocating
+def _differentiate(
+    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
+    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
+    shifted: Numbers, order: Rows, band: int, matrix: Vectors,
+) -> int:  # fmt: skip
+    """Fill in minus the slope of :func:`_miss` by differences, and return the evaluations.
+
+    Columns further apart than the band is wide share no row, so they are shifted together (Curtis, Powell &
+    Reid, J. Inst. Maths Applics 13 (1974) 117).
+    """
+    n = len(order)
+    # Places move by sqrt(epsilon) of themselves.
+    shift = 1.5e-8 * max(largest(x, n) + largest(q, len(inverse_mass)) / h, _SMALL / h)
+    stride = min(2 * band + 1, n)
+    # One that turns bends so much within the shift that strong dampers need both sides.
+    both = n > len(inverse_mass)
+    moved, below = x.copy(), miss.copy()
+    for first in range(stride):
+        for j in range(first, n, stride):
+            moved[order[j]] = x[order[j]] + shift
+        _miss(
+            q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, shifted
+        )
+        if both:
+            for j in range(first, n, stride):
+                moved[order[j]] = x[order[j]] - shift
+            _miss(
+                q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, below
+            )
+        for j in range(first, n, stride):
+            moved[order[j]] = x[order[j]]
+            for i in range(max(j - 2 * band, 0), min(j + 2 * band + 1, n)):
+                matrix[i, j] = 0.0
+            for i in range(max(j - band, 0), min(j + band + 1, n)):
+                matrix[i, j] = (below[order[i]] - shifted[order[i]]) / (2.0 * shift if both else shift)
+    return 2 * stride if both else stride
+
+
+@inlined
+def _newton(
+    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
+    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
+    shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool,
+) -> tuple[int, int]:  # fmt: skip
+    """Solve for ``x``, beginning with what is in it; return the iterations (-1: no end) and evaluations.
+
+    ``known`` says that ``matrix`` and ``pivots`` hold factors that may still do.
+    """
+    n = len(order)
+    residual = shifted
+    before, evaluations, far = math.inf, 0, False
+    for iteration in range(1, _MOST_ITERATIONS + 1):
+        _miss(q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss)
+        evaluations += 1
+        if (iteration == 1 and not known) or iteration > _SLOW or far:
+            evaluations += _differentiate(
+                q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss,
+                shifted, order, band, matrix,
+            )  # fmt: skip
+            _factorise(matrix, pivots, band)
+        for i in range(n):
+            residual[i] = miss[order[i]]
+        _solve(matrix, pivots, band, residual)
+        change = largest(residual, n)
+        for i in range(n):
+            x[order[i]] += residual[i]
+        # Below this times epsilon, places cannot tell.
+        size = largest(x, n) + largest(q, len(inverse_mass)) / h
+        if change <= 4.0 * _EPSILON * size or (change >= 0.5 * before and change <= 1e-10 * size):
+            return iteration, evaluations
+        if not math.isfinite(change):
+            break
+        before, far = change, n > len(inverse_mass) and change > _FAR * size
+    return -1, evaluations
+
+
+@inlined
+def _search(
+    q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
+    inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
+    shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool,
+) -> tuple[int, int]:  # fmt: skip
+    """Solve for ``x`` as :func:`_newton` does, from where there is a solution nearby.
+
+    Where a spring swings many times a step, v is another way at the end of each and leads far away: the
+    search begins where the bodies are. Where that finds nothing, v may, as on a rod that turns fast.
+    """
+    evaluations = 0
+    for guess in range(2):
+        for i in range(len(order)):
+            x[i] = guess * v[i] if i < len(inverse_mass) else 0.0
+        iterations, tried = _newton(
+            q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss,
+            shifted, order, band, matrix, pivots, known and guess == 0,
+        )  # fmt: skip
+        evaluations += tried
+        if iterations > 0:
+            return iterations, evaluations
+    return -1, evaluations
+
+
+@allocating_kernel
+def implicit_midpoint(
+    q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls,
+    order: Rows, band: int, h: float, steps: int,
+) -> int:  # fmt: skip
+    """Advance by ``steps`` steps of ``h`` seconds.
+
+    Returns the number of force evaluations, or -1 if Newton's method finds no solution, not even of a small
+    part of a step. With the mean velocity u of the step and a, the acceleration over it, the velocity goes
+    from v to v + h a and the place from q to q + h u, where u - v = (1 + Z) (v + h a - u). Z = h W C is what
+    ``resistances`` and ``damping`` make of the matrix C of damping and the inverse masses W; with none,
+    u = v + h/2 a. ``order`` is the order of u, and of y = v + h a - u behind it where there is a Z, in which
+    those that hang together lie within ``band`` of each other. Sums are compensated.
+    """
+    n, m = len(inverse_mass), len(order)
+    stage_q, x, miss, shifted = q.copy(), np.zeros(m), np.empty(m), np.empty(m)
+    acceleration, stack = np.empty(len(q)), np.zeros(3 * len(q))
+    matrix, pivots = np.zeros((m, m)), np.zeros(m, np.int64)
+    q_low, v_low = np.zeros(n), np.zeros(n)
+    evaluations, known = 0, False
+    for _ in range(steps):
+        done, part = 0, _PARTS
+        while done < _PARTS:
+            span = h * part / _PARTS
+            iterations, tried = _search(
+                q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, span, miss,
+                shifted, order, band, matrix, pivots, known,
+            )  # fmt: skip
+            evaluations += tried
+            if iterations < 0 and part == 1:
+                return -1
+            known = part == _PARTS and 0 < iterations <= _SLOW
+            if iterations < 0:
+                part //= 2
+                continue
+            for i in range(n):
+                q[i], q_low[i] = add(q[i], q_low[i], span * x[i])
+                v[i], v_low[i] = add(v[i], v_low[i], x[i] - v[i] + (x[n + i] if m > n else x[i] - v[i]))
+            done += part
+            if done % (2 * part) == 0:
+                part *= 2
+    return evaluations

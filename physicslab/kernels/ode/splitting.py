@@ -1,0 +1,55 @@
+"""Methods that move and push in turn: every one a list of drifts and kicks."""
+
+import math
+
+import numpy as np
+
+from physicslab.kernels import Numbers, allocating_kernel
+from physicslab.kernels.forces.force_calls import Calls, accelerate
+from physicslab.kernels.ode.compensated import add
+
+__all__ = ["split"]
+
+
+@allocating_kernel
+def split(
+    q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
+    drifts: Numbers, kicks: Numbers, h: float, steps: int,
+) -> int:  # fmt: skip
+    """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
+
+    A step is kick, drift, kick, ..., drift, kick, with the shares ``kicks`` (n + 1,) and ``drifts`` (n,) of
+    h. A kick where nothing has moved since the last one uses its forces again. Damping v' = -c v goes with
+    the kicks and is solved exactly: v(h) = v e^(-c h) + a (1 - e^(-c h)) / c. Sums are compensated.
+    """
+    n = len(inverse_mass)
+    acceleration = np.empty(len(q))
+    undamped = np.empty(0)
+    q_low, v_low = np.zeros(n), np.zeros(n)
+    known, evaluations = False, 0
+    for _ in range(steps):
+        for stage in range(len(kicks)):
+            kick = kicks[stage] * h
+            if kick != 0.0:
+                if not known:
+                    accelerate(q, v, acceleration, inverse_mass, undamped, calls)
+                    known = True
+                    evaluations += 1
+                if len(damping) == 0:
+                    for i in range(n):
+                        v[i], v_low[i] = add(v[i], v_low[i], kick * acceleration[i])
+                else:
+                    for i in range(n):
+                        c = damping[i]
+                        if c > 0.0:
+                            gain = -math.expm1(-c * kick)
+                            change = (acceleration[i] / c - v[i]) * gain
+                        else:
+                            change = kick * acceleration[i]
+                        v[i], v_low[i] = add(v[i], v_low[i], change)
+            if stage < len(drifts):
+                drift = drifts[stage] * h
+                for i in range(n):
+                    q[i], q_low[i] = add(q[i], q_low[i], drift * v[i])
+                known = False
+    return evaluations

@@ -1,0 +1,1 @@
+"""Islands at rest, and what wakes them."""

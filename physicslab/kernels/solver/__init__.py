@@ -1,0 +1,1 @@
+"""Impulses at contacts, and whole steps."""

@@ -1,0 +1,340 @@
+"""Impulses that keep resting bodies apart and rub sliding ones."""
+
+import math
+
+from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
+from physicslab.kernels.records import Manifolds, Point, Points
+from physicslab.kernels.wide.solve import pressed, start_lanes, sweep_lanes
+
+__all__ = [
+    "MOST_PARTS", "UNEQUAL", "apply_impulse", "deepest", "follow_drift", "heaviest_load", "relative_velocity",
+    "relax", "separate", "solve",
+]  # fmt: skip
+
+
+_DEEP = 0.1
+"""Share beyond which overlap is taken away by moving."""
+UNEQUAL = 10.0
+"""From such a ratio of masses on, the lighter body of a pair may have to carry many times its weight."""
+MOST_PARTS = 16
+"""So many times more substeps than asked for are made, at the most, where one does."""
+
+
+@inlined
+def apply_impulse(
+    point: Point,
+    px: float,
+    py: float,
+    a: int,
+    b: int,
+    linear: Vectors,
+    angular: Numbers,
+    inverse_mass: Numbers,
+    inverse_inertia: Numbers,
+) -> None:
+    """Change the velocities of A by the impulse -(px, py) [N s] at the point and those of B by (px, py)."""
+    linear[a, 0] -= inverse_mass[a] * px
+    linear[a, 1] -= inverse_mass[a] * py
+    angular[a] -= inverse_inertia[a] * (point.arm_ax * py - point.arm_ay * px)
+    linear[b, 0] += inverse_mass[b] * px
+    linear[b, 1] += inverse_mass[b] * py
+    angular[b] += inverse_inertia[b] * (point.arm_bx * py - point.arm_by * px)
+
+
+@inlined
+def relative_velocity(point: Point, a: int, b: int, linear: Vectors, angular: Numbers) -> tuple[float, float]:
+    """Return the velocity of B's contact point against A's [m/s]."""
+    vx = linear[b, 0] - angular[b] * point.arm_by - linear[a, 0] + angular[a] * point.arm_ay
+    vy = linear[b, 1] + angular[b] * point.arm_bx - linear[a, 1] - angular[a] * point.arm_ax
+    return vx, vy
+
+
+@inlined
+def _sweep(
+    manifolds: Manifolds,
+    points: Points,
+    touching: Rows,
+    count: int,
+    linear: Vectors,
+    angular: Numbers,
+    inverse_mass: Numbers,
+    inverse_inertia: Numbers,
+    inverse_h: float,
+    push_rate: float,
+    mass_scale: float,
+    impulse_scale: float,
+    slop: float,
+    heaviest: float,
+) -> None:
+    """Go once through all contacts; friction goes by the newest normal impulse."""
+    for k in range(count):
+        p = touching[k]
+        manifold = manifolds[p]
+        a, b = manifold.a, manifold.b
+        nx, ny = manifold.normal_x, manifold.normal_y
+        ma, mb, ia, ib = inverse_mass[a], inverse_mass[b], inverse_inertia[a], inverse_inertia[b]
+        vax, vay, wa = linear[a, 0], linear[a, 1], angular[a]
+        vbx, vby, wb = linear[b, 0], linear[b, 1], angular[b]
+        for j in range(2 * p, 2 * p + manifold.count):
+            point = points[j]
+            rax, ray, rbx, rby = point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by
+            if point.ahead:
+                continue
+            vn = nx * (vbx - wb * rby - vax + wa * ray) + ny * (vby + wb * rbx - vay - wa * rax)
+            total = pressed(
+                point.normal_impulse, point.normal_mass, vn, point.separation, manifold.size, inverse_h,
+                push_rate, mass_scale, impulse_scale, slop, heaviest,
+            )  # fmt: skip
+            change = total - point.normal_impulse
+            point.normal_impulse = total
+            px, py = change * nx, change * ny
+            vax, vay, wa = vax - ma * px, vay - ma * py, wa - ia * (rax * py - ray * px)
+            vbx, vby, wb = vbx + mb * px, vby + mb * py, wb + ib * (rbx * py - rby * px)
+        if manifold.friction > 0.0:
+            for j in range(2 * p, 2 * p + manifold.count):
+                point = points[j]
+                rax, ray, rbx, rby = point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by
+                vt = nx * (vby + wb * rbx - vay - wa * rax) - ny * (vbx - wb * rby - vax + wa * ray)
+                limit = manifold.friction * point.normal_impulse
+                total = min(max(point.tangent_impulse - point.tangent_mass * vt, -limit), limit)
+                change = total - point.tangent_impulse
+                point.tangent_impulse = total
+                px, py = -change * ny, change * nx
+                vax, vay, wa = vax - ma * px, vay - ma * py, wa - ia * (rax * py - ray * px)
+                vbx, vby, wb = vbx + mb * px, vby + mb * py, wb + ib * (rbx * py - rby * px)
+        linear[a, 0], linear[a, 1], angular[a] = vax, vay, wa
+        linear[b, 0], linear[b, 1], angular[b] = vbx, vby, wb
+
+
+@kernel
+def solve(
+    manifolds: Manifolds,
+    points: Points,
+    touching: Rows,
+    count: int,
+    discs: Numbers,
+    disc_blocks: int,
+    disc_order: Rows,
+    disc_a: Rows,
+    disc_b: Rows,
+    boxes: Numbers,
+    box_blocks: int,
+    box_order: Rows,
+    box_a: Rows,
+    box_b: Rows,
+    linear: Vectors,
+    angular: Numbers,
+    inverse_mass: Numbers,
+    inverse_inertia: Numbers,
+    force: Vectors,
+    has_forces: bool,
+    h: float,
+    carried: float,
+    iterations: int,
+    hertz: float,
+    damping_ratio: float,
+    slop: float,
+) -> None:
+    """Start from the last substep's impulses, then go through all contacts, correcting overlap.
+
+    ``carried`` is how many times as long this substep is as the last one was: so many times the impulses of
+    what rests.
+
+    The contact spring of frequency ``hertz`` is integrated implicitly over h (Catto, Soft Constraints, GDC
+    2011): with omega = 2 pi hertz and q = 2 zeta + h omega, it takes omega / q of the overlap a second.
+    """
+    for k in range(count):
+        p = touching[k]
+        manifold = manifolds[p]
+        nx, ny = manifold.normal_x, manifold.normal_y
+        for j in range(2 * p, 2 * p + manifold.count):
+            point = points[j]
+            if point.ahead:
+                point.normal_impulse = point.tangent_impulse = 0.0
+                continue
+            point.normal_impulse *= carried
+            point.tangent_impulse *= carried
+            px = point.normal_impulse * nx - point.tangent_impulse * ny
+            py = point.normal_impulse * ny + point.tangent_impulse * nx
+            apply_impulse(
+                point, px, py, manifold.a, manifold.b, linear, angular, inverse_mass, inverse_inertia
+            )
+    lanes = discs, disc_blocks, disc_order, disc_a, disc_b, boxes, box_blocks, box_order, box_a, box_b
+    start_lanes(*lanes, linear, angular, carried)
+    heaviest = 0.0
+    if has_forces:
+        for i in range(len(inverse_mass)):
+            heaviest += h * math.sqrt(force[i, 0] * force[i, 0] + force[i, 1] * force[i, 1])
+    omega = 2.0 * math.pi * min(hertz, 0.25 / h)
+    q = 2.0 * damping_ratio + h * omega
+    stiffness = h * omega * q
+    for _ in range(iterations):
+        _sweep(
+            manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
+            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, heaviest,
+        )  # fmt: skip
+        sweep_lanes(
+            *lanes, linear, angular, 0.0,
+            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, heaviest,
+        )  # fmt: skip
+
+
+@inlined
+def follow_drift(
+    manifolds: Manifolds,
+    points: Points,
+    touching: Rows,
+    count: int,
+    linear: Vectors,
+    angular: Numbers,
+    h: float,
+) -> None:
+    """Bring separations up to date for a drift of h at the present velocities."""
+    for k in range(count):
+        p = touching[k]
+        manifold = manifolds[p]
+        for j in range(2 * p, 2 * p + manifold.count):
+            point = points[j]
+            vx, vy = relative_velocity(point, manifold.a, manifold.b, linear, angular)
+            point.separation += h * (vx * manifold.normal_x + vy * manifold.normal_y)
+
+
+@kernel
+def relax(
+    manifolds: Manifolds,
+    points: Points,
+    touching: Rows,
+    count: int,
+    discs: Numbers,
+    disc_blocks: int,
+    disc_order: Rows,
+    disc_a: Rows,
+    disc_b: Rows,
+    boxes: Numbers,
+    box_blocks: int,
+    box_order: Rows,
+    box_a: Rows,
+    box_b: Rows,
+    linear: Vectors,
+    angular: Numbers,
+    inverse_mass: Numbers,
+    inverse_inertia: Numbers,
+    h: float,
+    iterations: int,
+) -> None:
+    """Go through all contacts without correction, so that pushing bodies apart leaves no velocity behind.
+
+    ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call.
+    """
+    follow_drift(manifolds, points, touching, count, linear, angular, h)
+    lanes = discs, disc_blocks, disc_order, disc_a, disc_b, boxes, box_blocks, box_order, box_a, box_b
+    drift = h
+    for _ in range(iterations):
+        _sweep(
+            manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
+            1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0,
+        )  # fmt: skip
+        sweep_lanes(*lanes, linear, angular, drift, 1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0)
+        drift = 0.0
+
+
+@allocating_kernel
+def separate(
+    manifolds: Manifolds,
+    points: Points,
+    touching: Rows,
+    count: int,
+    position: Vectors,
+    inverse_mass: Numbers,
+    farthest: float,
+) -> None:
+    """Move bodies that overlap deeply apart, six tenths of the way and by ``farthest`` [m] at the most.
+
+    Only positions change: however many bodies lie on one spot, coming apart gives them no speed. What is
+    beyond the world's bounds, or within what nothing moves, is put back at once: the heaviest body presses no
+    other through a floor.
+    """
+    deep = False
+    for k in range(count):
+        manifold = manifolds[touching[k]]
+        for j in range(2 * touching[k], 2 * touching[k] + manifold.count):
+            deep = deep or points[j].separation < -_DEEP * manifold.size
+    if not deep:
+        return
+    before = position.copy()
+    for k in range(count):
+        p = touching[k]
+        manifold = manifolds[p]
+        if manifold.swept == 1:
+            continue
+        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        lowest = points[2 * p].separation
+        if manifold.count == 2:
+            lowest = min(lowest, points[2 * p + 1].separation)
+        moved_x = position[b, 0] - before[b, 0] - position[a, 0] + before[a, 0]
+        moved_y = position[b, 1] - before[b, 1] - position[a, 1] + before[a, 1]
+        depth = -(lowest + moved_x * nx + moved_y * ny) - _DEEP * manifold.size
+        if depth > 0.0:
+            share = 0.6 * depth / (inverse_mass[a] + inverse_mass[b])
+            position[a, 0] -= share * inverse_mass[a] * nx
+            position[a, 1] -= share * inverse_mass[a] * ny
+            position[b, 0] += share * inverse_mass[b] * nx
+            position[b, 1] += share * inverse_mass[b] * ny
+    for i in range(len(inverse_mass)):
+        x, y = position[i, 0] - before[i, 0], position[i, 1] - before[i, 1]
+        way = math.sqrt(x * x + y * y)
+        if way > farthest:
+            position[i, 0] = before[i, 0] + x * farthest / way
+            position[i, 1] = before[i, 1] + y * farthest / way
+    for k in range(count):
+        p = touching[k]
+        manifold = manifolds[p]
+        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        if manifold.swept == 1 or (inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0):
+            continue
+        i, sign = (b, 1.0) if inverse_mass[b] > 0.0 else (a, -1.0)
+        moved = sign * ((position[i, 0] - before[i, 0]) * nx + (position[i, 1] - before[i, 1]) * ny)
+        lowest = points[2 * p].separation
+        if manifold.count == 2:
+            lowest = min(lowest, points[2 * p + 1].separation)
+        depth = -(lowest + moved) - _DEEP * manifold.size
+        if depth > 0.0:
+            position[i, 0] += sign * depth * nx
+            position[i, 1] += sign * depth * ny
+
+
+@kernel
+def deepest(manifolds: Manifolds, points: Points, touching: Rows, count: int) -> float:
+    """Return the deepest overlap of all contacts [m]."""
+    depth = 0.0
+    for k in range(count):
+        p = touching[k]
+        for j in range(2 * p, 2 * p + manifolds[p].count):
+            depth = max(depth, -points[j].separation)
+    return depth
+
+
+@kernel
+def heaviest_load(manifolds: Manifolds, pairs: int, force: Vectors, inverse_mass: Numbers) -> float:
+    """Return how many times its own weight a body carries, at the most, of one that is far heavier.
+
+    By the forces that act on both, as they stand: whatever lies beside or below presses nothing.
+    """
+    heaviest = 0.0
+    for p in range(pairs):
+        manifold = manifolds[p]
+        if manifold.count <= 0:
+            continue
+        a, b = manifold.a, manifold.b
+        ma, mb = inverse_mass[a], inverse_mass[b]
+        if UNEQUAL * ma < mb and ma > 0.0:
+            heavy, light, sign = a, b, 1.0
+        elif UNEQUAL * mb < ma and mb > 0.0:
+            heavy, light, sign = b, a, -1.0
+        else:
+            continue
+        press = sign * (force[heavy, 0] * manifold.normal_x + force[heavy, 1] * manifold.normal_y)
+        x, y = force[light, 0], force[light, 1]
+        if press > 0.0:
+            heaviest = max(heaviest, press / math.sqrt(x * x + y * y))
+    return heaviest

@@ -1,0 +1,1 @@
+"""Eight contacts side by side."""

@@ -1,0 +1,243 @@
+"""Which contacts get lanes: those that move little, each in a block that moves no body twice."""
+
+import numpy as np
+
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.broad.near_pairs import sort_loose
+from physicslab.kernels.narrow.pair import NEAR, STILL
+from physicslab.kernels.records import Manifold, Manifolds, Point, Points
+from physicslab.kernels.wide.layout import (
+    BOX,
+    BOX_ROWS,
+    DISC,
+    DISC_ROWS,
+    WIDE,
+)  # fmt: skip
+from physicslab.kernels.wide.restore_slots import seat
+from physicslab.kernels.wide.slots import (
+    ACTIVE,
+    BOX_BLOCKS,
+    COLOURS,
+    DISC_BLOCKS,
+    LANES,
+    LOOSE,
+    RECORDED,
+    RESTING,
+    UNORDERED,
+    Masks,
+    Seats,
+    empty_lane,
+    list_loose,
+)
+
+__all__ = ["FEW", "FULL", "SETTLED", "SPARSE", "settle", "sort_blocks"]
+
+FEW = 64
+"""So many contacts, at the least, are worth a block: fewer are done by the time that they are sorted."""
+SETTLED, SPARSE, FULL = range(3)
+"""What came of settling: all that has settled has lanes; blocks are to be sorted anew; or made room for."""
+_SPARSE = 0.5
+"""Blocks less full than that are sorted anew."""
+_ENTRY = 0.25
+"""How slow a contact must be, of what is still: half of what sets it loose again."""
+
+_OF_FIXED = 48
+"""The first colour of contacts with what nothing moves: they are solved last, and so hold best."""
+
+
+@inlined
+def _is_settled(
+    manifold: Manifold, one: Point, two: Point, linear: Vectors, h: float, still: float, near: float
+) -> bool:
+    """Whether a contact may lie in a block: it is slow for its size, and overlaps little."""
+    if manifold.swept != 0 or manifold.struck != 0 or one.ahead != 0:
+        return False
+    a, b, deep = manifold.a, manifold.b, -0.1 * manifold.size
+    if one.separation < deep or (manifold.count == 2 and (two.separation < deep or two.ahead != 0)):
+        return False
+    ux, uy = (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h
+    slow = still if manifold.found == 0 else near
+    return bool(ux * ux + uy * uy <= slow * slow * manifold.size * manifold.size)
+
+
+@inlined
+def _survey(blocks: int, pair: Rows, colour: Rows, opened: Rows) -> tuple[int, int]:
+    """Find the first block of each colour that has room, the first empty one, and how many are needed.
+
+    Nothing of that hangs on what was before: a world read from a file goes on alike.
+    """
+    opened[:] = -1
+    last = 0
+    first_empty = -1
+    for k in range(blocks):
+        free = 0
+        for lane in range(k * WIDE, (k + 1) * WIDE):
+            free += 1 if pair[lane] < 0 else 0
+        if free == WIDE:
+            colour[k] = -1
+            if first_empty < 0:
+                first_empty = k
+            continue
+        last = k + 1
+        if free > 0 and opened[colour[k]] < 0:
+            opened[colour[k]] = k
+    return last, first_empty if 0 <= first_empty < last else last
+
+
+@inlined
+def _free_lane(home: int, blocks: int, c: int, pair: Rows, colour: Rows) -> int:
+    """Return the first free lane of the blocks of a colour from ``home`` on, or -1."""
+    for k in range(home, blocks):
+        if colour[k] == c:
+            for lane in range(k * WIDE, (k + 1) * WIDE):
+                if pair[lane] < 0:
+                    return lane
+    return -1
+
+
+@inlined
+def _admit(
+    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
+    opened: Rows, manifolds: Manifolds, points: Points, touching: Rows, count: int,
+    shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
+    inverse_mass: Numbers, inverse_inertia: Numbers, asleep: Flags,
+    h: float, still: float, near: float,
+) -> tuple[int, int]:  # fmt: skip
+    """Take the settled contacts of one kind into blocks; return how many there are, and how many came.
+
+    Two contacts of a body never share a block: each has one of ``COLOURS``, the first that neither of its
+    bodies has been given. ``used`` (rows,) are the colours of each body's contacts, ``opened`` (COLOURS,) the
+    block of each colour that may have room. What finds no room in ``data`` stays loose, and so does what
+    touches somebody ``asleep``: it is about to wake him.
+    """
+    rows, came = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
+    blocks, empty = _survey(blocks, pair, colour, opened)
+    for k in range(count):
+        p = touching[k]
+        manifold = manifolds[p]
+        i, j = manifold.a, manifold.b
+        discs, boxes = shape[i] == 1 and shape[j] == 1, shape[i] == 2 and shape[j] == 2
+        if manifold.wall >= 0 or not (discs if kind == DISC else boxes and manifold.found == 2):
+            continue
+        if asleep[i] or asleep[j]:
+            continue
+        if not _is_settled(manifold, points[2 * p], points[2 * p + 1], linear, h, still, near):
+            continue
+        taken = used[i] if inverse_mass[i] > 0.0 else np.uint64(0)
+        if inverse_mass[j] > 0.0:
+            taken |= used[j]
+        c = 0 if inverse_mass[i] > 0.0 and inverse_mass[j] > 0.0 else _OF_FIXED
+        while c < COLOURS and (taken >> np.uint64(c)) & np.uint64(1) != np.uint64(0):
+            c += 1
+        if c == COLOURS:
+            continue
+        lane = _free_lane(opened[c], blocks, c, pair, colour) if opened[c] >= 0 else -1
+        if lane < 0:
+            home = empty
+            if (home + 1) * rows > len(data):
+                continue
+            for free in range(WIDE):
+                empty_lane(data, rows, home, free, a, b, pair)
+            colour[home], lane = c, home * WIDE
+            blocks = max(blocks, home + 1)
+            empty += 1
+            while empty < blocks and colour[empty] >= 0:
+                empty += 1
+        opened[c] = lane // WIDE
+        seat(
+            kind, data, lane, a, b, pair, used, c, manifolds, points, p, radius, restitution, friction,
+            inverse_mass, inverse_inertia,
+        )  # fmt: skip
+        came += 1
+    return blocks, came
+
+
+@kernel
+def sort_blocks(blocks: int, colour: Rows, order: Rows) -> None:
+    """Write the blocks in the order of their colours.
+
+    Blocks of one colour share no body that moves: one need not wait for what the last one came to.
+    """
+    found = 0
+    for c in range(-1, COLOURS):
+        for k in range(blocks):
+            if colour[k] == c:
+                order[found] = k
+                found += 1
+
+
+@inlined
+def _keep_loose(manifolds: Manifolds, touching: Rows, count: int) -> int:
+    """Take the pairs that have lanes out of the list of those that touch; return how many are left."""
+    kept = 0
+    for k in range(count):
+        p = touching[k]
+        if manifolds[p].lane < 0:
+            touching[kept] = p
+            kept += 1
+    return kept
+
+
+@inlined
+def _trimmed(blocks: int, pair: Rows) -> int:
+    """Return how many blocks there are without the empty ones at the end."""
+    while blocks > 0:
+        for lane in range((blocks - 1) * WIDE, blocks * WIDE):
+            if pair[lane] >= 0:
+                return blocks
+        blocks -= 1
+    return blocks
+
+
+@inlined
+def _has_room(seats: Seats, blocks: int, active: int) -> bool:
+    """Whether so many contacts find room, whatever colours they get."""
+    return blocks + active // WIDE + COLOURS <= len(seats[4])
+
+
+@kernel
+def settle(
+    counts: Rows, discs: Seats, boxes: Seats, opened: Rows,
+    manifolds: Manifolds, points: Points, loose: Rows, resting: Rows, touching: Rows, quiet: Flags,
+    asleep: Flags,
+    shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
+    inverse_mass: Numbers, inverse_inertia: Numbers, h: float,
+) -> int:  # fmt: skip
+    """Take what has settled into blocks, and say what must be done first if that cannot be.
+
+    ``counts`` are those of :mod:`physicslab.kernels.wide.slots`. Returns ``SETTLED``, or ``SPARSE`` where
+    too many lanes stand empty, or ``FULL`` where there is no room for those that may come. Empty blocks at
+    the end are dropped in any case: what was there once makes no difference.
+    """
+    before = counts[DISC_BLOCKS], counts[BOX_BLOCKS]
+    counts[DISC_BLOCKS] = _trimmed(counts[DISC_BLOCKS], discs[3])
+    counts[BOX_BLOCKS] = _trimmed(counts[BOX_BLOCKS], boxes[3])
+    active, room = counts[ACTIVE], WIDE * (counts[DISC_BLOCKS] + counts[BOX_BLOCKS])
+    if room > 2 * COLOURS * WIDE and counts[LANES] < _SPARSE * room:
+        return SPARSE
+    came = 0
+    if active > 0 and (counts[LANES] > 0 or active >= FEW):
+        if not (
+            _has_room(discs, counts[DISC_BLOCKS], active) and _has_room(boxes, counts[BOX_BLOCKS], active)
+        ):
+            return FULL
+        for kind in (DISC, BOX):
+            data, a, b, pair, colour, used, _ = discs if kind == DISC else boxes
+            which = DISC_BLOCKS if kind == DISC else BOX_BLOCKS
+            counts[which], more = _admit(
+                kind, data, counts[which], a, b, pair, colour, used, opened, manifolds, points, touching,
+                active, shape, radius, restitution, friction, linear, inverse_mass, inverse_inertia,
+                asleep, h, _ENTRY * STILL, _ENTRY * NEAR,
+            )  # fmt: skip
+            came += more
+    if came > 0 or counts[DISC_BLOCKS] != before[0]:
+        sort_blocks(counts[DISC_BLOCKS], discs[4], discs[6])
+    if came > 0 or counts[BOX_BLOCKS] != before[1]:
+        sort_blocks(counts[BOX_BLOCKS], boxes[4], boxes[6])
+    if came > 0:
+        counts[LANES] += came
+        counts[ACTIVE] = _keep_loose(manifolds, touching, active)
+        counts[LOOSE], counts[RESTING] = list_loose(manifolds, counts[RECORDED], quiet, loose, resting)
+        sort_loose(manifolds, loose, counts[LOOSE], len(shape))
+        counts[UNORDERED] = 0
+    return SETTLED

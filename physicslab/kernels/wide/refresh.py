@@ -1,0 +1,172 @@
+"""Where settled contacts touch now, eight at a time; those that have settled no longer are set loose."""
+
+from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels.records import Manifolds, Points
+from physicslab.kernels.wide.float64x8 import (
+    Wide,
+    choose,
+    put,
+    root,
+    size_of,
+    take,
+    take_numbers,
+    take_vectors,
+    true_lanes,
+)
+from physicslab.kernels.wide.layout import (
+    ANGLE_A,
+    ANGLE_B,
+    ARM_AX,
+    ARM_AY,
+    ARM_BX,
+    ARM_BY,
+    BASE_X,
+    BASE_Y,
+    BOX,
+    BOX_ROWS,
+    DISC,
+    DISC_ROWS,
+    FOUND,
+    NORMAL_X,
+    NORMAL_Y,
+    ONE,
+    RADIUS_A,
+    RADIUS_B,
+    SEPARATION,
+    SIZE,
+    TWO,
+    WIDE,
+)  # fmt: skip
+from physicslab.kernels.wide.slots import Masks, give_up, store_lane
+
+__all__ = ["deepest_lane", "refresh"]
+
+_DEEP = 0.1
+"""Share of the smaller size: what overlaps more is taken apart by moving, which lanes know nothing of."""
+_ONE_SPOT = 1e-300
+"""Distance [m] below which there is no direction."""
+
+
+@fused
+def _restless(
+    data: Numbers, at: int, a: Rows, b: Rows, lane: int, linear: Vectors, still: float, h: float
+) -> int:
+    """Return which lanes' bodies move too fast for their size, ``still`` of it a substep, bit by bit."""
+    vax, vay = take_vectors(linear, a, lane)
+    vbx, vby = take_vectors(linear, b, lane)
+    ux, uy, limit = (vbx - vax) * h, (vby - vay) * h, still * take(data, at + SIZE)
+    return true_lanes(ux * ux + uy * uy > limit * limit)
+
+
+@fused
+def _refresh_discs(
+    data: Numbers, at: int, a: Rows, b: Rows, lane: int, position: Vectors, near: float, fall: float
+) -> int:
+    """Find normals and separations of a block of discs; return which are apart or overlap much."""
+    xa, ya = take_vectors(position, a, lane)
+    xb, yb = take_vectors(position, b, lane)
+    dx, dy = xb - xa, yb - ya
+    distance = root(dx * dx + dy * dy)
+    size, ra, rb = take(data, at + SIZE), take(data, at + RADIUS_A), take(data, at + RADIUS_B)
+    separation = distance - ra - rb
+    scale = choose(distance > 0.0, 1.0 / distance, 0.0)
+    put(data, at + NORMAL_X, dx * scale)
+    put(data, at + NORMAL_Y, dy * scale)
+    put(data, at + ONE + SEPARATION, separation)
+    apart, on_one_spot = separation > 0.5 * near * size + fall, distance < _ONE_SPOT
+    return true_lanes((apart | on_one_spot | (separation < -_DEEP * size)) & (ra > 0.0))
+
+
+@fused
+def _separation(
+    data: Numbers, point: int, x: Wide, y: Wide, nx: Wide, ny: Wide, turn_a: Wide, turn_b: Wide
+) -> Wide:
+    """Return the separations of points, to second order in how far the pairs have moved and turned."""
+    rax, ray = take(data, point + ARM_AX), take(data, point + ARM_AY)
+    rbx, rby = take(data, point + ARM_BX), take(data, point + ARM_BY)
+    ax, ay = turn_a * (-ray - 0.5 * turn_a * rax), turn_a * (rax - 0.5 * turn_a * ray)
+    bx, by = turn_b * (-rby - 0.5 * turn_b * rbx), turn_b * (rbx - 0.5 * turn_b * rby)
+    separation = take(data, point + FOUND) + (x + bx - ax) * nx + (y + by - ay) * ny
+    put(data, point + SEPARATION, separation)
+    return separation
+
+
+@fused
+def _refresh_boxes(
+    data: Numbers, at: int, a: Rows, b: Rows, lane: int, position: Vectors, angle: Numbers,
+    keep: float, keep_turn: float,
+) -> int:  # fmt: skip
+    """Update the separations of a block of boxes; return which points must be found anew."""
+    xa, ya = take_vectors(position, a, lane)
+    xb, yb = take_vectors(position, b, lane)
+    nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
+    x, y = xb - xa - take(data, at + BASE_X), yb - ya - take(data, at + BASE_Y)
+    turn_a = take_numbers(angle, a, lane) - take(data, at + ANGLE_A)
+    turn_b = take_numbers(angle, b, lane) - take(data, at + ANGLE_B)
+    one = _separation(data, at + ONE, x, y, nx, ny, turn_a, turn_b)
+    two = _separation(data, at + TWO, x, y, nx, ny, turn_a, turn_b)
+    size = take(data, at + SIZE)
+    moved = (
+        (size_of(x) + size_of(y) > keep * size)
+        | (size_of(turn_a) > keep_turn)
+        | (size_of(turn_b) > keep_turn)
+    )
+    deep = -_DEEP * size
+    return true_lanes(moved | (one < deep) | (two < deep))
+
+
+@kernel
+def refresh(
+    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
+    manifolds: Manifolds, points: Points, loose: Rows, loose_count: int,
+    position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers,
+    first: bool, h: float, still: float, near: float, fall: float, keep: float, keep_turn: float,
+) -> int:  # fmt: skip
+    """Find where the contacts of all blocks of a kind touch now; return how many pairs are loose.
+
+    What is too fast (looked at in the ``first`` substep of a step), has come apart, overlaps deeply, or whose
+    points must be found anew is written to its records and added to ``loose``.
+    """
+    rows = DISC_ROWS if kind == DISC else BOX_ROWS
+    slow = 0.5 * still if kind == DISC else 0.5 * near
+    for k in range(blocks):
+        at, lane = k * rows, k * WIDE
+        lost = _restless(data, at, a, b, lane, linear, slow, h) if first else 0
+        if kind == DISC:
+            lost |= _refresh_discs(data, at, a, b, lane, position, near, fall)
+        else:
+            lost |= _refresh_boxes(data, at, a, b, lane, position, angle, keep, keep_turn)
+        if lost != 0:
+            loose_count = _set_loose(
+                data, rows, k, lost, a, b, pair, colour, used, manifolds, points, loose, loose_count
+            )
+    return loose_count
+
+
+@inlined
+def _set_loose(
+    data: Numbers, rows: int, k: int, lost: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
+    manifolds: Manifolds, points: Points, loose: Rows, loose_count: int,
+) -> int:  # fmt: skip
+    """Give the lanes of a block that are ``lost`` back to their records; return how many pairs are loose."""
+    for lane in range(WIDE):
+        p = pair[k * WIDE + lane]
+        if p >= 0 and (lost >> lane) & 1:
+            store_lane(data, rows, k * WIDE + lane, p, manifolds, points)
+            manifolds[p].lane = -1
+            loose[loose_count] = p
+            loose_count += 1
+            give_up(data, rows, k * WIDE + lane, a, b, pair, colour, used)
+    return loose_count
+
+
+@kernel
+def deepest_lane(kind: int, data: Numbers, blocks: int) -> float:
+    """Return the deepest overlap in all blocks of a kind [m]."""
+    rows, depth = (DISC_ROWS if kind == DISC else BOX_ROWS), 0.0
+    for k in range(blocks):
+        for lane in range(WIDE):
+            depth = max(depth, -data[k * rows + ONE + SEPARATION + lane])
+            if kind == BOX:
+                depth = max(depth, -data[k * rows + TWO + SEPARATION + lane])
+    return depth

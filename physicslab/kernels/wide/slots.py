@@ -1,0 +1,217 @@
+"""Which settled contact has which lane of which block: taking contacts in, giving them back."""
+
+import math
+from typing import Annotated
+
+import numpy as np
+from numba import uint64
+from numpy.typing import NDArray
+
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
+from physicslab.kernels.records import Manifolds, Points
+from physicslab.kernels.wide.layout import (
+    ARM_AX,
+    ARM_AY,
+    ARM_BX,
+    ARM_BY,
+    BOX_ROWS,
+    DISC,
+    DISC_ROWS,
+    FOUND,
+    IMPULSE,
+    NORMAL_X,
+    NORMAL_Y,
+    ONE,
+    RADIUS_A,
+    RADIUS_B,
+    RUB,
+    SEPARATION,
+    SIZE,
+    TWO,
+    WIDE,
+)  # fmt: skip
+
+__all__ = [
+    "ACTIVE", "BOX_BLOCKS", "COLOURS", "COUNTED", "DISC_BLOCKS", "LANES", "LEFT", "LOOSE", "LYING",
+    "RECORDED", "RESTING", "UNORDERED", "Masks", "Seats",
+    "empty_lane", "follow_pairs", "give_up", "list_loose", "release", "store", "store_lane", "wake",
+]  # fmt: skip
+
+COLOURS = 64
+"""So many blocks, at the most, may move one body; what is left over stays loose."""
+Masks = Annotated[NDArray[np.uint64], uint64[::1]]
+"""A uint64 array (n,), bit by bit."""
+Seats = tuple[Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
+"""The blocks of a kind: data, rows of A and B, pairs, colours, the colours of each body, their order."""
+COUNTED = 10
+LYING, RECORDED, LOOSE, RESTING, ACTIVE, LEFT, LANES, DISC_BLOCKS, BOX_BLOCKS, UNORDERED = range(COUNTED)
+"""What kernels count that change it: near pairs that lie idle, those that have records, those of these that
+are loose, that rest with sleepers, that touch, that impacts have left to the solver; lanes in use, blocks;
+and whether loose pairs are out of order."""
+
+
+@inlined
+def empty_lane(data: Numbers, rows: int, k: int, lane: int, a: Rows, b: Rows, pair: Rows) -> None:
+    """Let lane number ``lane`` of block k stand for nothing: it moves nobody, and is never of interest."""
+    block = data[k * rows : (k + 1) * rows]
+    for row in range(0, rows, WIDE):
+        block[row + lane] = 0.0
+    block[SIZE + lane] = block[NORMAL_X + lane] = block[ONE + SEPARATION + lane] = 1.0
+    if rows == DISC_ROWS:
+        block[RADIUS_A + lane] = block[RADIUS_B + lane] = -0.5
+    else:
+        block[TWO + SEPARATION + lane] = block[ONE + FOUND + lane] = block[TWO + FOUND + lane] = 1.0
+    a[k * WIDE + lane] = b[k * WIDE + lane] = 0
+    pair[k * WIDE + lane] = -1
+
+
+@inlined
+def store_lane(data: Numbers, rows: int, lane: int, p: int, manifolds: Manifolds, points: Points) -> None:
+    """Write what the lane holds, impulses above all, into the records of its pair."""
+    at = lane // WIDE * rows + lane % WIDE
+    manifold = manifolds[p]
+    for j in range(manifold.count):
+        point = points[2 * p + j]
+        base = at + (ONE if j == 0 else TWO)
+        point.normal_impulse, point.tangent_impulse = data[base + IMPULSE], data[base + RUB]
+        point.separation = data[base + SEPARATION]
+    if rows == DISC_ROWS:
+        nx, ny, point = data[at + NORMAL_X], data[at + NORMAL_Y], points[2 * p]
+        manifold.normal_x, manifold.normal_y = nx, ny
+        point.arm_ax, point.arm_ay = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
+        point.arm_bx, point.arm_by = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny
+
+
+@kernel
+def store(data: Numbers, rows: int, blocks: int, pair: Rows, manifolds: Manifolds, points: Points) -> None:
+    """Write what every lane holds into the records of its pair; the lanes stay."""
+    for lane in range(blocks * WIDE):
+        if pair[lane] >= 0:
+            store_lane(data, rows, lane, pair[lane], manifolds, points)
+
+
+@kernel
+def list_loose(manifolds: Manifolds, pairs: int, quiet: Flags, loose: Rows, resting: Rows) -> tuple[int, int]:
+    """Write the pairs that have no lane, in the order of their records; return how many there are.
+
+    Where both bodies are ``quiet`` (rows,), none of which there may be, nothing is to be found out: of such
+    pairs those with points are written to ``resting``; how many is returned as well.
+    """
+    found, rest = 0, 0
+    for p in range(pairs):
+        if manifolds[p].lane >= 0:
+            continue
+        if len(quiet) > 0 and quiet[manifolds[p].a] and quiet[manifolds[p].b]:
+            if manifolds[p].count > 0:
+                resting[rest] = p
+                rest += 1
+            continue
+        loose[found] = p
+        found += 1
+    return found, rest
+
+
+@kernel
+def release(
+    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
+    manifolds: Manifolds, points: Points, asleep: Flags,
+) -> int:  # fmt: skip
+    """Give the contacts of sleepers back to their records; return how many."""
+    rows, released = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
+    for lane in range(blocks * WIDE):
+        p = pair[lane]
+        if p >= 0 and (asleep[a[lane]] or asleep[b[lane]]):
+            store_lane(data, rows, lane, p, manifolds, points)
+            manifolds[p].lane = -1
+            give_up(data, rows, lane, a, b, pair, colour, used)
+            released += 1
+    return released
+
+
+@allocating_kernel
+def follow_pairs(
+    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
+    manifolds: Manifolds, pairs: int,
+) -> int:  # fmt: skip
+    """After pairs were listed anew, find those of the lanes; return how many lanes are in use.
+
+    A lane whose pair is near no longer is given up.
+    """
+    rows, kept = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
+    before = pair[: blocks * WIDE].copy()
+    for lane in range(blocks * WIDE):
+        pair[lane] = -1
+    for p in range(pairs):
+        lane = manifolds[p].lane
+        if lane >= 0 and lane % 2 == kind:
+            pair[lane // 2] = p
+            kept += 1
+    for lane in range(blocks * WIDE):
+        if before[lane] >= 0 and pair[lane] < 0:
+            give_up(data, rows, lane, a, b, pair, colour, used)
+    return kept
+
+
+@inlined
+def give_up(
+    data: Numbers, rows: int, lane: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks
+) -> None:
+    """Empty a lane, for others to use."""
+    k = lane // WIDE
+    bit = np.uint64(1) << np.uint64(colour[k])
+    used[a[lane]] &= ~bit
+    used[b[lane]] &= ~bit
+    empty_lane(data, rows, k, lane % WIDE, a, b, pair)
+
+
+@inlined
+def _resting_speed(a: int, b: int, linear: Vectors, force: Vectors, inverse_mass: Numbers, h: float) -> float:
+    """Return up to which speed an approach is rest: what forces bring about in two substeps [m/s]."""
+    speed = abs(linear[a, 0]) + abs(linear[a, 1]) + abs(linear[b, 0]) + abs(linear[b, 1])
+    pull_a = math.sqrt(force[a, 0] * force[a, 0] + force[a, 1] * force[a, 1]) * inverse_mass[a]
+    pull_b = math.sqrt(force[b, 0] * force[b, 0] + force[b, 1] * force[b, 1]) * inverse_mass[b]
+    resting: float = 1e-9 * speed + 2.0 * h * max(pull_a, pull_b)
+    return resting
+
+
+@allocating_kernel
+def wake(
+    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
+    manifolds: Manifolds, points: Points, loose: Rows, loose_count: int, touching: Rows, count: int,
+    linear: Vectors, angular: Numbers, force: Vectors, inverse_mass: Numbers, h: float,
+) -> tuple[int, int]:  # fmt: skip
+    """Set loose what touches a struck body, may bounce, and approaches faster than rest.
+
+    Returns how many pairs are loose, and how many of them touch.
+    """
+    rows = DISC_ROWS if kind == DISC else BOX_ROWS
+    struck = np.zeros(len(angular), np.bool_)
+    for k in range(count):
+        manifold = manifolds[touching[k]]
+        if manifold.struck > 0:
+            struck[manifold.a] = struck[manifold.b] = True
+    for lane in range(blocks * WIDE):
+        p = pair[lane]
+        if p < 0 or not (struck[a[lane]] | struck[b[lane]]) or manifolds[p].restitution == 0.0:
+            continue
+        at, i, j = lane // WIDE * rows + lane % WIDE, a[lane], b[lane]
+        nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
+        lowest = 0.0
+        for k in range(manifolds[p].count):
+            base = at + (ONE if k == 0 else TWO)
+            if kind == DISC:
+                rax, ray = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
+                rbx, rby = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny
+            else:
+                rax, ray = data[base + ARM_AX], data[base + ARM_AY]
+                rbx, rby = data[base + ARM_BX], data[base + ARM_BY]
+            vx = linear[j, 0] - angular[j] * rby - linear[i, 0] + angular[i] * ray
+            vy = linear[j, 1] + angular[j] * rbx - linear[i, 1] - angular[i] * rax
+            lowest = min(lowest, vx * nx + vy * ny)
+        if lowest < 0.0 and lowest < -_resting_speed(i, j, linear, force, inverse_mass, h):
+            store_lane(data, rows, lane, p, manifolds, points)
+            manifolds[p].lane = -1
+            loose[loose_count], touching[count] = p, p
+            loose_count, count = loose_count + 1, count + 1
+            give_up(data, rows, lane, a, b, pair, colour, used)
+    return loose_count, count

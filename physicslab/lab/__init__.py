@@ -1,0 +1,1 @@
+"""Accuracy, stability and speed, measured."""

@@ -1,0 +1,152 @@
+"""One problem with every method: error against work."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from physicslab.components import Transform, Velocity
+from physicslab.integrators import INTEGRATORS, Integrator
+from physicslab.lab.accuracy.measure import Measurement, finish, measure
+from physicslab.lab.accuracy.problem import Problem
+from physicslab.lab.accuracy.settings import Setting, ladder, refusal, sees_velocity
+from physicslab.lab.accuracy.verdict import Verdict, measured_order, verdict
+from physicslab.state.bodies import Diverged
+
+__all__ = ["Curve", "Row", "Study", "rounding_floor", "study"]
+
+_LONG_S = 0.3
+"""A ladder ends with the rung that takes longer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One measurement and what it is worth."""
+
+    measurement: Measurement
+    verdict: Verdict
+
+
+@dataclass(slots=True)
+class Curve:
+    """One method on one problem.
+
+    Attributes
+    ----------
+    integrator : Integrator
+        The method.
+    rows : list of Row
+        From coarse to fine.
+    order : float, optional
+        With which power of the work its error falls, where that shows.
+    refused : str
+        Why the engine does not use it here; it then has no rows.
+    holds : bool
+        Whether the order that the method states holds for these forces.
+    """
+
+    integrator: Integrator
+    rows: list[Row] = field(default_factory=list)
+    order: float | None = None
+    refused: str = ""
+    holds: bool = True
+
+    @property
+    def best(self) -> float | None:
+        """The smallest error."""
+        return min(
+            (row.measurement.error for row in self.rows if row.measurement.error is not None), default=None
+        )
+
+
+@dataclass(slots=True)
+class Study:
+    """One problem with every method.
+
+    Attributes
+    ----------
+    problem : Problem
+        Which.
+    auto : Row
+        What ``auto`` does with it, stepped as a scene is that says nothing else.
+    curves : list of Curve
+        One for each method.
+    floor : float, optional
+        How much the error changes when the start moves by one rounding.
+    """
+
+    problem: Problem
+    auto: Row
+    curves: list[Curve]
+    floor: float | None
+
+    @property
+    def best(self) -> float | None:
+        """The smallest error of any method."""
+        errors = [self.auto.measurement.error, *(curve.best for curve in self.curves)]
+        return min((error for error in errors if error is not None), default=None)
+
+
+def study(problem: Problem, *, sparse: bool = False) -> Iterator[float | Study]:
+    """Compute a problem with every method; yield the share of the work that is done, then the result.
+
+    Where ``sparse``, every second rung of a ladder is left out, the finest not among them.
+    """
+    plan = []
+    for method in INTEGRATORS.values():
+        refused = refusal(problem, method)
+        holds = not (method.positions_only and sees_velocity(problem)) and not problem.touches
+        curve = Curve(method, refused=refused, holds=holds)
+        settings = [] if refused else list(ladder(problem, method))
+        plan.append((curve, settings[1 - len(settings) % 2 :: 2] if sparse else settings))
+    whole = 1 + sum(len(settings) for _, settings in plan)
+    floor = rounding_floor(problem)
+    auto = _row(problem, Setting("auto"), floor)
+    yield 1 / whole
+    done = 1
+    for curve, settings in plan:
+        for setting in settings:
+            curve.rows.append(_row(problem, setting, floor))
+            done += 1
+            yield done / whole
+            if curve.rows[-1].measurement.cpu_s > _LONG_S:
+                break
+        measured = [row.measurement for row in curve.rows]
+        # Where steps are chosen, what counts is how many there were.
+        efforts = [m.evaluations if curve.integrator.chooses_steps else m.steps for m in measured]
+        if curve.rows and curve.integrator.evaluations and problem.search is None:
+            even = not curve.integrator.chooses_steps
+            curve.order = measured_order(efforts, [m.error for m in measured], even=even)
+    yield Study(problem, auto, [curve for curve, _ in plan], floor)
+
+
+def _row(problem: Problem, setting: Setting, floor: float | None) -> Row:
+    found = measure(problem, setting)
+    worth = verdict(found.error, problem.good, problem.excellent, floor=floor, chaotic=problem.chaotic)
+    if worth in (Verdict.EXCELLENT, Verdict.GOOD) and found.watched.collisions:
+        worth = Verdict.SHORT  # right by chance: collisions are missing, or too many
+    return Row(found, worth)
+
+
+def rounding_floor(problem: Problem) -> float | None:
+    """Return how much the error changes when the start moves by one rounding; ``None`` where bodies touch.
+
+    Every coordinate and speed is moved to the next float up, and down, and the run is made as ``auto`` does.
+    No method that computes in floats can be relied on to do better than a few times this.
+    """
+    if problem.touches:
+        return None
+    errors = []
+    for way in (0.0, -math.inf, math.inf):
+        world = problem.build(Setting("auto").simulation(problem))
+        world.synchronise()
+        for column in (world.table(Transform)["position"], world.table(Velocity)["linear"]):
+            column[:] = np.where((column == 0.0) | (way == 0.0), column, np.nextafter(column, way))
+        try:
+            errors.append(finish(problem, world))
+        except (Diverged, ArithmeticError):
+            return None
+    return max(abs(error - errors[0]) for error in errors)

@@ -1,0 +1,159 @@
+"""Every scene of the benchmark, in one explicit list."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from physicslab.components import Velocity
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import load_scene
+from physicslab.lab.bench.quality import energy_change, overlap, sideways, sink
+from physicslab.lab.bench.scene import BenchScene
+from physicslab.prefabs import box, container, gas, pile, pyramid
+from physicslab.systems.schedule import System
+from physicslab.systems.standard import standard_systems
+from physicslab.world import World
+
+__all__ = ["MOST_BESIDE", "SCENES", "SIZES", "circles", "discs", "groups", "names", "opened", "select"]
+
+SIZES = (1_000, 2_000, 4_000, 8_000, 16_000)
+"""Bodies of the piles and gases."""
+MOST_BESIDE = 4_000
+"""Bodies of the largest scene that other engines run unless it is named: piles of more take them minutes."""
+_FEWER_STEPS = {8_000: 150, 16_000: 100}
+_AWAKE = SimulationConfig(sleeping=False)
+_OVERLAP = 0.02
+"""A tenth of a disc [m]: what lies deeper in each other is another pile to the eye."""
+_ENERGY = 1e-3
+"""By which a gas may gain or lose."""
+_PITCH = 0.25
+"""From one disc of a pile to the next at the start [m]: that of the prefab."""
+
+
+def _boxes(base: int) -> World:
+    """Return a pyramid of boxes of 1 m on a floor."""
+    laws = PhysicsConfig(gravity=Vector2(0.0, -10.0))
+    world = World(*standard_systems(), physics=laws, simulation=_AWAKE)
+    box(world, (0.0, -0.5), width=200.0, height=1.0, static=True, friction=0.6)
+    pyramid(world, base)
+    return world
+
+
+def discs(count: int, systems: tuple[System, ...] | None = None) -> World:
+    """Return discs of 0.2 m in a container, three times as wide as high whatever their number.
+
+    ``systems`` are every physics system there is, where none are given.
+    """
+    columns = max(3, round(1.82 * math.sqrt(count)))
+    world = World(*(systems or standard_systems()), simulation=_AWAKE)
+    height = _PITCH * math.ceil(count / columns)
+    container(world, width=_PITCH * columns + 1.25, height=height + 11.0)
+    pile(world, count, columns=columns)
+    return world
+
+
+def _gas(count: int) -> World:
+    """Return elastic discs that fill 17 % of a box, whatever their number."""
+    scale = math.sqrt(count / 2_000)
+    bounds = (-12.0 * scale, -7.5 * scale, 12.0 * scale, 7.5 * scale)
+    laws = PhysicsConfig(gravity_mode="none", bounds=bounds, bounds_restitution=1.0, bounds_friction=0.0)
+    world = World(*standard_systems(), physics=laws, simulation=_AWAKE)
+    gas(world, count, bounds)
+    return world
+
+
+def circles(systems: tuple[System, ...] | None = None) -> World:
+    """Return ten discs in a small container, which come to lie on each other."""
+    world = World(*(systems or standard_systems()), simulation=_AWAKE)
+    container(world, width=1.3, height=2.0)
+    pile(world, 10, columns=5)
+    return world
+
+
+def _pyramid_scene(base: int, drift: float, sunk: float) -> BenchScene:
+    count = base * (base + 1) // 2
+    return BenchScene(
+        name=f"pyramid_{base}", title=f"pyramid of {count:,} boxes", group="pyramids", size=count,
+        build=partial(_boxes, base), quality=(sideways(drift), sink(sunk)),
+    )  # fmt: skip
+
+
+def pile_scene(count: int) -> BenchScene:
+    """Return the pile of so many discs."""
+    return BenchScene(
+        name=f"pile_{count}", title=f"pile of {count:,} discs", group="piles", size=count,
+        build=partial(discs, count), steps=_FEWER_STEPS.get(count, 300), quality=(overlap(_OVERLAP),),
+    )  # fmt: skip
+
+
+def gas_scene(count: int) -> BenchScene:
+    """Return the gas of so many discs."""
+    return BenchScene(
+        name=f"gas_{count}", title=f"gas of {count:,} elastic discs", group="gases", size=count,
+        build=partial(_gas, count), steps=_FEWER_STEPS.get(count, 300), quality=(energy_change(_ENERGY),),
+    )  # fmt: skip
+
+
+_CIRCLES = BenchScene(
+    name="circles_10", title="ten discs at rest, many steps in one call", group="small", size=10,
+    build=circles, steps=6_000, quality=(overlap(_OVERLAP),), compiled_runs=True,
+)  # fmt: skip
+
+SCENES: dict[str, BenchScene] = {
+    scene.name: scene
+    for scene in (
+        _pyramid_scene(30, drift=0.05, sunk=0.10),
+        _pyramid_scene(60, drift=0.13, sunk=0.29),  # Box2D v3's figures, in C
+        *map(pile_scene, SIZES),
+        *map(gas_scene, SIZES),
+        _CIRCLES,
+    )
+}
+"""Every scene by name."""
+
+
+def groups() -> list[str]:
+    """Return the names of the groups, in order."""
+    return list(dict.fromkeys(scene.group for scene in SCENES.values()))
+
+
+def names() -> list[str]:
+    """Return what can be asked for: groups, and scenes."""
+    return [*groups(), *SCENES]
+
+
+def select(name: str) -> list[BenchScene]:
+    """Return the scene of a name, or those of a group; nothing if there is none.
+
+    >>> [scene.name for scene in select("pyramids")]
+    ['pyramid_30', 'pyramid_60']
+    """
+    if name in SCENES:
+        return [SCENES[name]]
+    return [scene for scene in SCENES.values() if scene.group == name]
+
+
+def opened(name: str) -> BenchScene:
+    """Return a built-in scene or a scene file, to be timed from its first step on, awake.
+
+    Raises
+    ------
+    SceneError
+        If it cannot be read.
+    """
+
+    def build() -> World:
+        world = load_scene(name)
+        world.simulation = replace(world.simulation, sleeping=False)
+        return world
+
+    world = build()
+    world.synchronise()
+    return BenchScene(
+        name=Path(name).stem, title=world.title or name, group="opened", size=len(world.batch(Velocity)),
+        build=build, seconds=0.0,
+    )  # fmt: skip

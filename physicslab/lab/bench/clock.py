@@ -1,0 +1,114 @@
+"""Times of engines that take turns, so that noise and heat are the same for all.
+
+What is told is CPU time, of all threads of the process: on an idle machine that is the time on the wall, and
+on one that does other work it leaves the waiting out. No engine gains by a second thread.
+"""
+
+from __future__ import annotations
+
+import gc
+import itertools
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.lab.bench.engine import Engine
+
+__all__ = ["TURN", "Spread", "Times", "take_turns"]
+
+
+class Spread:
+    """How much CPU time something took, again and again.
+
+    Attributes
+    ----------
+    median_ms, p90_ms : float
+        The middle one, and the one that nine of ten do not exceed [ms].
+    """
+
+    def __init__(self, milliseconds: NDArray[np.float64]) -> None:
+        self.median_ms, self.p90_ms = (float(found) for found in np.percentile(milliseconds, (50, 90)))
+
+
+class Times:
+    """What each step of an engine took.
+
+    Attributes
+    ----------
+    step, read : list of float
+        The step, and reading the state back after it [ms].
+    wall_ms : float
+        What all turns took on the wall [ms], by which the schedule's own figures are told.
+    """
+
+    def __init__(self) -> None:
+        self.step: list[float] = []
+        self.read: list[float] = []
+        self.wall_ms = 0.0
+
+    @property
+    def with_read(self) -> NDArray[np.float64]:
+        """A step and reading the state back [ms]."""
+        return np.add(self.step, self.read)
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Keep Python's garbage collector from striking one engine and not the other."""
+    gc.collect()
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
+
+
+TURN = 10
+"""Single steps that an engine takes before the next has its turn. With one each, all would be timed while
+they fetch from memory what the others have driven out of the caches; a program runs one engine."""
+_PORTION = 12
+"""Turns between two looks at how far all is: a whole number of times through the orders of three."""
+
+
+def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterator[list[Times]]:
+    """Advance all engines ``rounds`` times, in every order in turn; yield the times so far now and then.
+
+    Parameters
+    ----------
+    engines : sequence of Engine
+        Who takes part.
+    rounds : int
+        How many steps, or blocks of steps, each takes.
+    block : int
+        Steps of a block, in one call that is a turn; 0 for single ones, ``TURN`` in a turn, after each of
+        which the state is read back as well.
+    """
+    times = [Times() for _ in engines]
+    orders = itertools.cycle(itertools.permutations(range(len(engines))))
+    turns = [1] * rounds if block else [TURN] * (rounds // TURN) + [rounds % TURN] * (rounds % TURN > 0)
+    for start in range(0, len(turns), _PORTION):
+        with _no_collection():
+            for turn, order in zip(turns[start : start + _PORTION], orders, strict=False):
+                for i in order:
+                    for _ in range(turn):
+                        _advance(engines[i], times[i], block)
+        yield times
+
+
+def _advance(engine: Engine, spent: Times, block: int) -> None:
+    """Let an engine take a step, or a block of steps, and note what it took."""
+    entered, began = time.perf_counter_ns(), time.process_time_ns()
+    if block:
+        engine.run(block)
+    else:
+        engine.step()
+    stepped = time.process_time_ns()
+    spent.wall_ms += (time.perf_counter_ns() - entered) / 1e6
+    spent.step.append((stepped - began) / 1e6 / max(1, block))
+    if not block:
+        began = time.process_time_ns()
+        engine.read()
+        spent.read.append((time.process_time_ns() - began) / 1e6)

@@ -1,0 +1,73 @@
+"""What the benchmark found, as a document: numbers are finite or ``null``, times in ms, else SI units."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from physicslab.lab.bench.clock import Spread
+from physicslab.lab.bench.machine import machine
+from physicslab.lab.bench.report import BenchReport
+from physicslab.lab.bench.result import EngineResult, SceneResult
+
+__all__ = ["document"]
+
+
+def document(report: BenchReport) -> dict[str, Any]:
+    """Return every figure, what is asked of it, and the machine it was taken on."""
+    return {
+        "format": "physicslab-bench/1",
+        "machine": machine(peers=report.peers),
+        "scenes": [_scene(result) for result in report.scenes],
+        "growth": [asdict(growth) for growth in report.growths],
+        "unused": [
+            {
+                "scene": spent.case.name,
+                "steps": spent.case.steps,
+                "needed_ms": _spread(spent.bare),
+                "all_ms": _spread(spent.whole),
+                "ratio": spent.ratio,
+                "left_out": list(spent.left_out),
+                "same_bits": spent.same_bits,
+            }
+            for spent in report.unused
+        ],
+        "bytes_per_body": None if report.memory is None else asdict(report.memory),
+        "targets": [{**asdict(check), "met": check.met} for check in report.checks],
+    }
+
+
+def _scene(result: SceneResult) -> dict[str, Any]:
+    scene = result.scene
+    return {
+        "name": scene.name,
+        "title": scene.title,
+        "group": scene.group,
+        "bodies": scene.size,
+        "contacts": result.contacts,
+        "settled_s": scene.seconds,
+        "steps": result.steps,
+        "one_call": scene.compiled_runs,
+        "quality_limits": [
+            {"name": quality.name, "unit": quality.unit, "limit": quality.limit} for quality in scene.quality
+        ],
+        "systems_ms": result.systems,
+        "engines": [_engine(found) for found in result.engines.values()],
+    }
+
+
+def _engine(found: EngineResult) -> dict[str, Any]:
+    return {
+        "name": found.title,
+        "step_ms": _spread(found.step),
+        "step_and_read_ms": _spread(found.with_read),
+        "first_seconds_ms": _spread(found.begin),
+        "times_ours": found.ratio,
+        "times_ours_with_read": found.ratio_with_read,
+        "quality": found.quality,
+        "failure": found.failure,
+    }
+
+
+def _spread(spread: Spread | None) -> dict[str, float] | None:
+    return None if spread is None else {"median": spread.median_ms, "p90": spread.p90_ms}

@@ -1,0 +1,122 @@
+"""The engines that are timed, seen alike: step, run, read the state back."""
+
+from __future__ import annotations
+
+import importlib.util
+from abc import ABC, abstractmethod
+from typing import override
+
+from physicslab.components import Transform
+from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.peers.box2d_mirror import Box2DMirror
+from physicslab.lab.peers.peer import Peer
+from physicslab.lab.peers.pymunk_mirror import PymunkMirror
+from physicslab.world import World
+
+__all__ = ["OURS", "PEERS", "Engine", "OtherEngine", "OurEngine", "missing_peers"]
+
+OURS = "PhysicsLab"
+PEERS: tuple[type[Peer], ...] = (PymunkMirror, Box2DMirror)
+"""Who PhysicsLab is compared with."""
+
+
+def missing_peers() -> list[str]:
+    """Return which peers are not installed."""
+    return [peer.title for peer in PEERS if importlib.util.find_spec(peer.module) is None]
+
+
+class Engine(ABC):
+    """An engine with a world of its own in it.
+
+    Attributes
+    ----------
+    title : str
+        The engine's name.
+    world : World
+        What is simulated, as it was when :meth:`look` was called last.
+    """
+
+    title: str
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self.dt = world.simulation.dt
+
+    @abstractmethod
+    def step(self) -> None:
+        """Advance by one step of ``dt``."""
+
+    @abstractmethod
+    def run(self, steps: int) -> None:
+        """Advance by so many steps, in the way that is fastest."""
+
+    @abstractmethod
+    def read(self) -> object:
+        """Return where every body is, as a program would read it after each step."""
+
+    def look(self) -> World:
+        """Return the world with the state of now.
+
+        Raises
+        ------
+        Diverged
+            If the state is not finite.
+        """
+        return self.world
+
+
+class OurEngine(Engine):
+    """PhysicsLab."""
+
+    title = OURS
+
+    @override
+    def step(self) -> None:
+        self.world.step()
+
+    @override
+    def run(self, steps: int) -> None:
+        self.world.run(steps=steps)
+
+    @override
+    def read(self) -> object:
+        return self.world.table(Transform)["position"].copy()
+
+
+class OtherEngine(Engine):
+    """A peer, with a world of its own as its model.
+
+    Parameters
+    ----------
+    scene : BenchScene
+        What is built in it.
+    peer : type of Peer
+        Which engine.
+
+    Raises
+    ------
+    CannotBuild
+        If the engine has not what the scene holds.
+    """
+
+    def __init__(self, scene: BenchScene, peer: type[Peer]) -> None:
+        super().__init__(scene.build())
+        self.title = peer.title
+        self._peer = peer(self.world)
+
+    @override
+    def step(self) -> None:
+        self._peer.step(self.dt)
+
+    @override
+    def run(self, steps: int) -> None:
+        self._peer.run(self.dt, steps)
+
+    @override
+    def read(self) -> object:
+        return self._peer.positions()
+
+    @override
+    def look(self) -> World:
+        self._peer.bring_back()
+        return self.world

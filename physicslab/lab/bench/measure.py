@@ -1,0 +1,103 @@
+"""Time a scene, in PhysicsLab alone or beside its peers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from physicslab.lab.bench.clock import Spread, Times, take_turns
+from physicslab.lab.bench.engine import Engine, OtherEngine, OurEngine
+from physicslab.lab.bench.quality import Start
+from physicslab.lab.bench.result import EngineResult, SceneResult
+from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.peers.peer import CannotBuild, Peer
+from physicslab.state.bodies import Diverged
+from physicslab.world import World
+
+__all__ = ["measure_scene"]
+
+_BEGIN_S = 2.0
+"""For how long [s] a pile falls."""
+_BLOCK = 200
+"""Steps of one call where many are taken at once."""
+
+
+def measure_scene(scene: BenchScene, peers: Sequence[type[Peer]] = ()) -> Iterator[float | SceneResult]:
+    """Time a scene; yield the share that is done now and then, and at last the result."""
+    ours = OurEngine(scene.build())
+    result = SceneResult(scene, scene.steps)
+    result.engines[ours.title] = EngineResult(ours.title)
+    engines = [ours, *_others(scene, peers, result)]
+    starts = [Start.of(engine.world) for engine in engines]
+    dt = ours.world.simulation.dt
+    settling = round(scene.seconds / dt)
+    total = settling + scene.steps
+    try:
+        for times in take_turns(engines, settling):
+            yield len(times[0].step) / total
+        for engine, spent, start in zip(engines, times if settling else [], starts, strict=False):
+            result.engines[engine.title].begin = Spread(np.array(spent.step[: math.ceil(_BEGIN_S / dt)]))
+            _judge(result.engines[engine.title], engine, scene, start)
+        engines = [engine for engine in engines if not result.engines[engine.title].failure]
+        before = _spent(ours.world)
+        block = _BLOCK if scene.compiled_runs else 0
+        for times in take_turns(engines, math.ceil(scene.steps / max(1, block)), block):
+            yield (settling + len(times[0].step) * max(1, block)) / total
+    except Diverged as error:
+        result.ours.failure = str(error)
+    else:
+        _summarise(result, engines, times)
+        result.contacts = ours.world.contacts.count
+        result.systems = _shares(before, _spent(ours.world), times[0])
+    yield result
+
+
+def _others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult) -> list[Engine]:
+    """Build the scene in the peers; note which of them cannot hold it."""
+    others: list[Engine] = []
+    for peer in peers:
+        result.engines[peer.title] = EngineResult(peer.title)
+        try:
+            others.append(OtherEngine(scene, peer))
+        except CannotBuild as error:
+            result.engines[peer.title].failure = str(error)
+    return others
+
+
+def _judge(found: EngineResult, engine: Engine, scene: BenchScene, start: Start) -> None:
+    """Note how well an engine has simulated the scene so far."""
+    try:
+        world = engine.look()
+    except Diverged:
+        found.failure = "NaN"
+        return
+    for quality in scene.quality:
+        figure = quality.measure(world, start)
+        found.quality[quality.name] = figure if math.isfinite(figure) else None
+
+
+def _spent(world: World) -> dict[str, int]:
+    """Return what each system has cost so far [ns]."""
+    return {name: timing.nanoseconds for name, timing in world.schedule.timings.items()}
+
+
+def _shares(before: dict[str, int], after: dict[str, int], ours: Times) -> dict[str, float]:
+    """Return what systems take of a median step [ms]: noise that made some steps long takes no part."""
+    median = float(np.median(ours.step))
+    return {
+        name: (spent - before.get(name, 0)) / 1e6 / ours.wall_ms * median for name, spent in after.items()
+    }
+
+
+def _summarise(result: SceneResult, engines: Sequence[Engine], times: Sequence[Times]) -> None:
+    """Note medians, and ratios step by step."""
+    ours = times[0]
+    for engine, spent in zip(engines, times, strict=True):
+        found = result.engines[engine.title]
+        found.step = Spread(np.array(spent.step))
+        found.ratio = float(np.median(np.divide(spent.step, ours.step)))
+        if spent.read:
+            found.with_read = Spread(spent.with_read)
+            found.ratio_with_read = float(np.median(spent.with_read / ours.with_read))

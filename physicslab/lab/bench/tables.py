@@ -1,0 +1,167 @@
+"""What the benchmark found, as tables for people."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from physicslab.lab.bench.catalogue import MOST_BESIDE
+from physicslab.lab.bench.clock import Spread
+from physicslab.lab.bench.engine import OURS
+from physicslab.lab.bench.machine import machine_text
+from physicslab.lab.bench.report import BenchReport
+from physicslab.lab.bench.result import EngineResult, SceneResult
+
+__all__ = ["report_text", "scene_text"]
+
+type Rows = Sequence[Sequence[str]]
+
+
+def _table(rows: Rows, words: int = 1) -> str:
+    """Return rows aligned in columns: the first, with words, to the left, the others to the right."""
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    lines = (
+        "  ".join(f"{text:<{width}}" if i < words else f"{text:>{width}}" for i, (text, width) in pairs)
+        for row in rows
+        for pairs in [list(enumerate(zip(row, widths, strict=True)))]
+    )
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def _ms(spread: Spread | None, *, high: bool = False) -> str:
+    if spread is None:
+        return "-"
+    return f"{spread.p90_ms if high else spread.median_ms:#.3g}"
+
+
+def _number(figure: float | None, digits: int = 2) -> str:
+    return "-" if figure is None else f"{figure:.{digits}f}"
+
+
+def scene_text(result: SceneResult) -> str:
+    """Return a line that says that a scene is done."""
+    parts = [f"{found.title} {found.failure or _ms(found.step) + ' ms'}" for found in result.engines.values()]
+    return f"{result.scene.name}: " + ", ".join(parts)
+
+
+def report_text(report: BenchReport) -> str:
+    """Return every table there is something for, the machine first."""
+    blocks = [("", machine_text(peers=report.peers))]
+    if report.scenes:
+        blocks += [
+            ("ms of CPU time a step: median and p90 of the settled scene, median of the first 2 s",
+             _times(report)),
+            ("quality after 10 s", _quality(report)),
+            ("ms a step by system, as shares of the median", _systems(report)),
+        ]  # fmt: skip
+    if report.growths:
+        blocks.append((_growth_title(report), _growth(report)))
+    if report.unused:
+        blocks.append(
+            ("a step with the systems that the scene needs, and with all there are", _unused(report))
+        )
+    if report.memory is not None:
+        memory = report.memory
+        blocks.append(
+            ("bytes a body",
+             f"{memory.columns:.0f} in columns, {memory.spawned:.0f} with handles and esper's part, "
+             f"{memory.with_contacts:.0f} with the contacts of a pile")
+        )  # fmt: skip
+    if report.checks:
+        blocks.append(("what must be reached", _targets(report)))
+    return "\n\n".join(f"{title}\n{text}" if title else text for title, text in blocks)
+
+
+def _times(report: BenchReport) -> str:
+    peers = [name for name in _engines(report) if name != OURS]
+    head = ["scene", "bodies", "contacts", OURS, "p90", "first 2 s"]
+    for name in peers:
+        head += [name, "ratio", "read back", "ratio"]
+    return _table([head, *(_scene_row(result, peers) for result in report.scenes)])
+
+
+def _scene_row(result: SceneResult, peers: Sequence[str]) -> list[str]:
+    ours = result.ours
+    row = [result.scene.name, f"{result.scene.size}", f"{result.contacts}"]
+    row += [_ms(ours.step), _ms(ours.step, high=True), _ms(ours.begin)]
+    for name in peers:
+        found = result.engines.get(name, EngineResult(name))
+        row += [
+            _ms(found.step), _number(found.ratio), _ms(found.with_read), _number(found.ratio_with_read),
+        ]  # fmt: skip
+    return row
+
+
+def _engines(report: BenchReport) -> list[str]:
+    return list(dict.fromkeys(name for result in report.scenes for name in result.engines))
+
+
+def _quality(report: BenchReport) -> str:
+    engines = _engines(report)
+    rows = [["scene", "figure", *engines, "limit"]]
+    for result in report.scenes:
+        for quality in result.scene.quality:
+            figures = [_figure(result.engines.get(name), quality.name) for name in engines]
+            limit = f"{quality.limit:g} {quality.unit}".rstrip()
+            rows.append([result.scene.name, quality.name, *figures, limit])
+    return _table(rows, 2) if len(rows) > 1 else "nothing is looked at in scenes that were opened"
+
+
+def _figure(found: EngineResult | None, name: str) -> str:
+    if found is None or found.failure:
+        return "-" if found is None else found.failure
+    figure = found.quality.get(name)
+    return "-" if figure is None else f"{figure:.2g}"
+
+
+def _systems(report: BenchReport) -> str:
+    names = list(dict.fromkeys(name for result in report.scenes for name in result.systems))
+    rows = [["scene", *(name.removesuffix("System") for name in names), "beside them"]]
+    for result in report.scenes:
+        if result.ours.step is None:
+            continue
+        rest = result.ours.step.median_ms - sum(result.systems.values())
+        spent = [result.systems.get(name) for name in names]
+        rows.append([result.scene.name, *(_number(ms, 4) for ms in spent), _number(max(0.0, rest), 4)])
+    return _table(rows)
+
+
+def _growth_title(report: BenchReport) -> str:
+    title = "growth of a step's cost: ms for so many bodies, and the p of N^p"
+    alone = any(result.scene.size > MOST_BESIDE and len(result.engines) == 1 for result in report.scenes)
+    remark = f"; beyond {MOST_BESIDE:,}, which take others minutes, PhysicsLab alone"
+    return title + remark if report.peers and alone else title
+
+
+def _growth(report: BenchReport) -> str:
+    sizes = sorted({size for growth in report.growths for size in growth.sizes})
+    rows = [["scenes", "engine", *(f"{size}" for size in sizes), "p"]]
+    for growth in report.growths:
+        costs = dict(zip(growth.sizes, growth.ms, strict=True))
+        every = [f"{costs[size]:#.3g}" if size in costs else "-" for size in sizes]
+        rows.append([growth.group, growth.engine, *every, _number(growth.exponent, 3)])
+    return _table(rows, 2)
+
+
+def _unused(report: BenchReport) -> str:
+    rows = [["scene", "needed, ms", "all, ms", "ratio", "not run", "same bits"]]
+    rows += [
+        [
+            spent.case.name, _ms(spent.bare), _ms(spent.whole), _number(spent.ratio, 3),
+            ", ".join(name.removesuffix("System") for name in spent.left_out),
+            "yes" if spent.same_bits else "no",
+        ]
+        for spent in report.unused
+    ]  # fmt: skip
+    return _table(rows)
+
+
+def _targets(report: BenchReport) -> str:
+    rows = [["scene", "figure", "found", "must be", "verdict"]]
+    rows += [
+        [
+            check.name, check.what, _number(check.figure),
+            f"{'>=' if check.at_least else '<='} {check.limit:g}", check.verdict,
+        ]
+        for check in report.checks
+    ]  # fmt: skip
+    return _table(rows, 2)

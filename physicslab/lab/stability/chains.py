@@ -1,0 +1,94 @@
+"""Chains and nets of stiff springs."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from physicslab.components import Mass, Spring, Transform
+from physicslab.ecs.vector import Vector2
+from physicslab.lab.stability.case import Case
+from physicslab.lab.stability.worlds import energy_growth, largest, open_space, spawn_point
+from physicslab.prefabs import chain
+from physicslab.world import World
+
+__all__ = ["CHAINS"]
+
+_LINKS = 50
+_STIFF = 1e6
+_SIDE = 20
+_STEPS = 600
+_G = 9.81
+
+
+def _chain(touches: bool) -> tuple[World, list[int]]:
+    """Return a chain of 50 springs let go level: masses of 0.1 kg, and one of 100 kg at the end."""
+    world = open_space()
+    if touches:
+        balls = chain(world, _LINKS, (0.0, 0.0), (10.0, 0.0), radius=0.05, stiffness=_STIFF, damping=0.0)
+    else:
+        balls, link = [], 10.0 / _LINKS
+        for i in range(_LINKS):
+            ball = spawn_point(world, ((i + 1) * link, 0.0), mass=0.1)
+            before = balls[-1] if balls else None
+            world.add(ball, Spring(None, before, (0.0, 0.0), (0.0, 0.0), link, _STIFF, 0.0))
+            balls.append(ball)
+    world.component(balls[-1], Mass).mass = 100.0
+    return world, balls
+
+
+def _reach(touches: bool) -> float:
+    """Return the farthest that any mass gets from where the chain hangs, in lengths of the chain."""
+    world, balls = _chain(touches)
+    rows = [world.component(ball, Transform) for ball in balls]
+    return largest(world, _STEPS, lambda: max(row.position.magnitude for row in rows) / 10.0)
+
+
+def _chain_growth(touches: bool) -> float:
+    world, _ = _chain(touches)
+    return energy_growth(world, _STEPS, scale=100.0 * _G * 10.0)
+
+
+def _net_growth(steps: int) -> float:
+    """Return how the energy grows of a net of 20 x 20 masses, held at two corners and let go level."""
+    world, pitch = open_space(), 0.25
+    made = [
+        [spawn_point(world, (i * pitch, -j * pitch), mass=0.1) for i in range(_SIDE)] for j in range(_SIDE)
+    ]
+    for j in range(_SIDE):
+        for i in range(_SIDE):
+            for dj, di in ((0, 1), (1, 0)):
+                if i + di < _SIDE and j + dj < _SIDE:
+                    ends = (made[j][i], made[j + dj][i + di])
+                    world.spawn(Spring(*ends, (0.0, 0.0), (0.0, 0.0), pitch, _STIFF, 0.0))
+    for i in (0, _SIDE - 1):
+        world.add(made[0][i], Spring(None, None, (0.0, 0.0), Vector2(i * pitch, pitch), pitch, _STIFF, 0.0))
+    weight = 0.1 * _SIDE * _SIDE * _G
+    return energy_growth(world, steps, scale=weight * _SIDE * pitch)
+
+
+def _cases(touches: bool) -> list[Case]:
+    scene = "of discs that touch others" if touches else "of points"
+    prefix = "chain_touching" if touches else "chain"
+    title = f"chain {scene}: 50 springs of 1e6 N/m, 0.1 kg each, 100 kg at the end"
+    return [
+        Case(
+            name=f"{prefix}_bounded", title=title, group="chains",
+            right="it swings and stays together: nothing is farther from the hook than the chain is long",
+            figure="farthest from the hook, of its length", limit=1.05, measure=partial(_reach, touches),
+        ),
+        Case(
+            name=f"{prefix}_energy", title=title, group="chains", right="energy never grows",
+            figure="growth, of what the fall can give", limit=1e-6, measure=partial(_chain_growth, touches),
+        ),
+    ]  # fmt: skip
+
+
+CHAINS = [
+    *_cases(touches=False),
+    *_cases(touches=True),
+    Case(
+        name="net_energy", title="net of 20 x 20 masses on springs of 1e6 N/m, 2 s", group="chains",
+        right="bounded: energy never grows", figure="growth, of what the fall can give", limit=1e-6,
+        measure=partial(_net_growth, 120),
+    ),
+]  # fmt: skip

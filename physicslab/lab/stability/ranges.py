@@ -1,0 +1,177 @@
+"""Masses and sizes of every magnitude in one scene, and scenes that run for long."""
+
+from __future__ import annotations
+
+import gc
+import sys
+import time
+from dataclasses import dataclass
+from functools import cache, partial
+
+import numpy as np
+
+from physicslab.components import Transform, Velocity
+from physicslab.lab.stability.case import Case
+from physicslab.lab.stability.worlds import floor, largest, open_space, place
+from physicslab.prefabs import box, circle, container, pendulum, pile
+from physicslab.world import World
+
+__all__ = ["RANGES"]
+
+
+def _lost(world: World, bodies: list[int], steps: int) -> float:
+    """Return how many bodies are below the floor at any time, or not finite."""
+
+    def below() -> float:
+        rows = np.array([world.component(body, Transform).position.y for body in bodies])
+        return float((~(rows > -0.01)).sum())
+
+    world.run(steps=steps)
+    linear = world.table(Velocity)["linear"]
+    return below() + float((~np.isfinite(linear)).sum())
+
+
+def _masses() -> float:
+    """Return what is lost of bodies from 1e-9 to 1e9 kg that fall on a floor and on each other."""
+    world = open_space()
+    floor(world, width=1e5)  # what is squeezed out is flung far
+    exponents = range(-9, 10)
+    made = [
+        circle(world, (0.6 * (e % 5), 0.3 + 0.6 * n), radius=0.25, mass=10.0**e)
+        for n, e in enumerate(exponents)
+    ]
+    made += [box(world, (-5.0, 0.25 + 0.5 * n), mass=10.0**e) for n, e in enumerate((9, 0, -9))]
+    return _lost(world, made, 600)
+
+
+def _sizes() -> float:
+    """Return what is lost of bodies from 1 mm to 1 km that fall on a floor."""
+    world = open_space()
+    floor(world, width=1e5)
+    made = [
+        circle(world, (3.0 * radius, 1.5 * radius), radius=radius, mass=radius * radius)
+        for radius in (0.0005, 0.005, 0.05, 0.5, 5.0, 50.0, 500.0)
+    ]
+    return _lost(world, made, 300)
+
+
+def _pairs(count: int) -> int:
+    """Return how many pairs the broad phase hands on, of grains of 1 mm among bodies up to 1 km."""
+    world = open_space(gravity=None)
+    for i, radius in enumerate((0.05, 0.5, 5.0, 50.0, 500.0)):
+        circle(world, (-2.0 * radius - i, 0.0), radius=radius)
+    side = round(count**0.5)
+    for i in range(count):
+        circle(world, (1.0 + 0.0011 * (i % side), 0.0011 * (i // side)), radius=0.0005)
+    world.step()
+    return int(world.contacts.candidate_pairs)
+
+
+def _pair_growth() -> float:
+    """Return how many times the pairs there are of four times the grains, per grain."""
+    few, many = _pairs(1_000), _pairs(4_000)
+    return max(many, 1) / max(few, 1) / 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Endured:
+    """What a long run did.
+
+    Attributes
+    ----------
+    blocks_kept : float
+        Blocks of memory taken for good, a step.
+    drift : float
+        How far the box that rests was moved [m].
+    slowness : float
+        Time of the last tenth, of that of the second.
+    """
+
+    blocks_kept: float
+    drift: float
+    slowness: float
+
+
+def _mixed() -> World:
+    """Return a scene with a little of everything that lasts."""
+    world = open_space()
+    floor(world, restitution=1.0)
+    # Discs roll for ever: what they lie in keeps them from the box that should rest.
+    container(world, (-6.0, 2.0), width=1.0, height=2.0)
+    pile(world, 6, (-6.0, 2.1), columns=3)
+    circle(world, (3.0, 2.0), radius=0.25, restitution=1.0, friction=0.0, name="bouncing")
+    box(world, (5.0, 0.25), name="resting")
+    pendulum(world, (8.0, 6.0), damping=0.0)
+    return world
+
+
+@cache  # several cases look at one run
+def _endured(steps: int) -> _Endured:
+    """Run the mixed scene, and compare its last tenth with the time when it had settled."""
+    world = _mixed()
+    resting = world.entity("resting")
+    tenth = steps // 10
+    world.run(steps=tenth)
+    settled = place(world, resting)
+    gc.collect()
+    blocks = sys.getallocatedblocks()
+    first = _cpu_s(world, tenth)
+    drift = largest(world, steps - 3 * tenth, lambda: (place(world, resting) - settled).magnitude, every=100)
+    last = _cpu_s(world, tenth)
+    gc.collect()
+    kept = max(0.0, (sys.getallocatedblocks() - blocks) / steps)
+    return _Endured(kept, drift, last / first)
+
+
+def _cpu_s(world: World, steps: int) -> float:
+    start = time.process_time()
+    world.run(steps=steps)
+    return time.process_time() - start
+
+
+def _memory(steps: int) -> float:
+    return _endured(steps).blocks_kept
+
+
+def _drift(steps: int) -> float:
+    return _endured(steps).drift
+
+
+def _slowness(steps: int) -> float:
+    return _endured(steps).slowness
+
+
+RANGES = [
+    Case(
+        name="masses_1e-9_1e9", title="bodies from 1e-9 to 1e9 kg on a floor and on each other, 10 s",
+        group="ranges", right="finite, and nothing is lost", figure="bodies below the floor, or nowhere",
+        limit=0.0, measure=_masses,
+    ),
+    Case(
+        name="sizes_1mm_1km", title="discs from 1 mm to 1 km on a floor, 5 s", group="ranges",
+        right="finite, and nothing is lost", figure="bodies below the floor, or nowhere", limit=0.0,
+        measure=_sizes,
+    ),
+    Case(
+        name="sizes_pairs", title="1,000 and 4,000 grains of 1 mm among bodies up to 1 km", group="ranges",
+        right="the broad phase is not quadratic", figure="growth of pairs a grain", limit=1.5,
+        measure=_pair_growth,
+    ),
+    *(
+        Case(
+            name=f"steps_{name}_{kind}", title=f"a mixed scene, {steps:,} steps", group="endurance",
+            right=right, figure=figure, unit=unit, limit=limit, measure=partial(measure, steps),
+            long=steps > 100_000,
+        )
+        for name, steps in (("1e4", 10_000), ("1e6", 1_000_000))
+        for kind, right, figure, unit, limit, measure in (
+            ("memory", "no memory is taken for good", "blocks kept a step", "", 0.01, _memory),
+            ("drift", "what rests stays where it is", "how far it is moved", "m", 1e-6, _drift),
+        )
+    ),
+    Case(
+        name="steps_1e6_pace", title="a mixed scene, 1,000,000 steps", group="endurance",
+        right="it becomes no slower", figure="time of the last tenth, of the second", limit=1.2,
+        measure=partial(_slowness, 1_000_000), long=True,
+    ),
+]  # fmt: skip

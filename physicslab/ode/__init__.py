@@ -1,0 +1,1 @@
+"""Smooth motion as ordinary differential equations."""

@@ -1,0 +1,1 @@
+"""What a world holds: arrays and what must be true of them."""

@@ -1,0 +1,149 @@
+"""Settled contacts of one world, eight side by side."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Material, Shape
+from physicslab.kernels.wide import graph_colour, refresh, restore_slots, slots
+from physicslab.kernels.wide.layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE
+from physicslab.kernels.wide.slots import Seats
+
+if TYPE_CHECKING:
+    from physicslab.world import World
+
+__all__ = ["Blocks", "Lanes"]
+
+type _Numbers = NDArray[np.float64]
+type _Rows = NDArray[np.int64]
+
+
+class Lanes:
+    """The blocks of one kind of contact.
+
+    Attributes
+    ----------
+    kind, rows : int
+        ``DISC`` or ``BOX``, and how many numbers a block has.
+    count : int
+        How many blocks there are.
+    data : float64 array (capacity * rows,)
+        What they hold, as :mod:`physicslab.kernels.wide.layout` has it.
+    a, b, pair : int64 arrays (capacity * WIDE,)
+        Rows of the bodies in each lane, and which near pair it is; -1 for a free lane.
+    colour : int64 array (capacity,)
+        Which of a body's contacts each block holds.
+    order : int64 array (capacity,)
+        The blocks, those of one colour together: as they are solved.
+    used : uint64 array (rows of the world,)
+        The colours that each body has been given, bit by bit.
+    """
+
+    def __init__(self, kind: int) -> None:
+        self.kind, self.rows = kind, DISC_ROWS if kind == DISC else BOX_ROWS
+        self.data: NDArray[np.float64] = np.zeros(0)
+        self.a, self.b, self.pair, self.colour, self.order = (np.zeros(0, np.int64) for _ in range(5))
+        self.reset(1)
+
+    def reset(self, rows: int) -> None:
+        """Hold nothing, in a world of so many rows."""
+        self.count = 0
+        self.used: NDArray[np.uint64] = np.zeros(rows, np.uint64)
+
+    def make_room(self, blocks: int) -> None:
+        """See to it that so many blocks have room."""
+        if len(self.colour) < blocks:
+            room = 2 * blocks
+            data, (colour, order) = _in_lines(room * self.rows), np.zeros((2, room), np.int64)
+            data[: len(self.data)], colour[: len(self.colour)] = self.data, self.colour
+            order[: len(self.order)] = self.order
+            lanes = np.zeros((3, room * WIDE), np.int64)
+            lanes[:, : len(self.pair)] = self.a, self.b, self.pair
+            self.data, self.colour, self.order = data, colour, order
+            self.a, self.b, self.pair = (np.ascontiguousarray(lane) for lane in lanes)
+
+    def sort(self) -> None:
+        """Put the blocks in the order in which they are solved."""
+        graph_colour.sort_blocks(self.count, self.colour, self.order)
+
+    @property
+    def seats(self) -> Seats:
+        """What kernels want to know that count the blocks themselves."""
+        return self.data, self.a, self.b, self.pair, self.colour, self.used, self.order
+
+    @property
+    def layout(self) -> tuple[int, _Numbers, int, _Rows, _Rows, _Rows, _Rows, NDArray[np.uint64]]:
+        """What kernels that take lanes in or give them back want to know."""
+        return self.kind, self.data, self.count, self.a, self.b, self.pair, self.colour, self.used
+
+    @property
+    def solved(self) -> tuple[_Numbers, int, _Rows, _Rows, _Rows]:
+        """What kernels that only change impulses want to know."""
+        return self.data, self.count, self.order, self.a, self.b
+
+
+class Blocks:
+    """The settled contacts of a world, and what they were made of.
+
+    A contact is settled when its bodies move little for their size, it is not struck, and overlaps little.
+    Discs and boxes lie in blocks of their own; all else, and all in a world of few contacts, stays loose.
+
+    Attributes
+    ----------
+    discs, boxes : Lanes
+        The blocks.
+    lanes : int
+        How many contacts have one.
+    """
+
+    kernels = (
+        graph_colour.settle, restore_slots.seat_again, graph_colour.sort_blocks,
+        restore_slots.remember, restore_slots.outdated,
+        slots.store, slots.list_loose, slots.follow_pairs, slots.wake,
+        slots.release, refresh.refresh, refresh.deepest_lane,
+    )  # fmt: skip
+
+    def __init__(self) -> None:
+        self.discs, self.boxes = Lanes(DISC), Lanes(BOX)
+        self.lanes = 0
+        self._made_of: NDArray[np.float64] = np.zeros((0, 7))
+
+    @property
+    def kinds(self) -> tuple[Lanes, Lanes]:
+        """Both."""
+        return self.discs, self.boxes
+
+    def reset(self, rows: int) -> None:
+        """Forget every lane, in a world of so many rows."""
+        for lanes in self.kinds:
+            lanes.reset(rows)
+        self.lanes = 0
+
+    def remember(self, world: World) -> None:
+        """Keep the masses, sizes and materials that lanes hold as well."""
+        columns = _columns(world)
+        self._made_of = np.zeros((len(columns[0]), len(columns)))
+        restore_slots.remember(self._made_of, *columns)
+
+    def outdated(self, world: World) -> bool:
+        """Whether one of those has been changed."""
+        return bool(restore_slots.outdated(self._made_of, *_columns(world)))
+
+
+def _in_lines(size: int) -> NDArray[np.float64]:
+    """Return so many zeros from the start of a cache line on: what lies across two takes twice as long."""
+    line = WIDE * 8
+    room = np.zeros(size + WIDE)
+    start = -room.ctypes.data % line // 8
+    return room[start : start + size]
+
+
+def _columns(world: World) -> tuple[_Numbers, ...]:
+    shape, material, bodies = world.table(Shape), world.table(Material), world.bodies
+    return (
+        bodies.inverse_mass, bodies.inverse_inertia, material["restitution"], material["friction"],
+        shape["radius"], shape["width"], shape["height"],
+    )  # fmt: skip

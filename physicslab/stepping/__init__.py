@@ -1,0 +1,1 @@
+"""The ways to advance a state by a step."""

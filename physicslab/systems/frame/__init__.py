@@ -1,0 +1,1 @@
+"""The systems of a frame: input, picture, figures. They import pygame."""

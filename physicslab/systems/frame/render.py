@@ -1,0 +1,50 @@
+"""The picture of the world."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from physicslab.systems.schedule import Stage, System, at
+from physicslab.view.overlay.impulses import draw_impulses
+from physicslab.view.overlay.vectors import draw_vectors
+from physicslab.view.panels.panels import text_size
+from physicslab.view.picture.painting import draw_world
+
+if TYPE_CHECKING:
+    from physicslab.view.window import Window
+    from physicslab.world import World
+
+__all__ = ["RenderSystem"]
+
+
+class RenderSystem(System):
+    """Draws the world as the camera sees it, and changes nothing of it.
+
+    Parameters
+    ----------
+    window : Window
+        The camera, the theme and the canvas.
+    """
+
+    def __init__(self, window: Window) -> None:
+        self._window = window
+
+    @at(Stage.IMPACT)
+    def note_impacts(self, world: World, h: float) -> None:
+        """Remember what has just struck, for it is over long before the picture is drawn."""
+        overlays = self._window.overlays
+        if overlays.impulses:
+            overlays.impacts.note(world)
+
+    @at(Stage.RENDER)
+    def draw(self, world: World, elapsed: float) -> None:
+        """Draw the world, and the overlays that are on."""
+        window = self._window
+        camera, theme, canvas, overlays = window.camera, window.theme, window.canvas, window.overlays
+        draw_world(world, camera, theme, canvas, grid=window.grid)
+        window.sparks.draw(camera, theme, canvas)
+        if overlays.arrows:
+            draw_vectors(world, overlays, camera, theme, canvas)
+        if overlays.impulses:
+            draw_impulses(world, overlays, camera, theme, canvas, text_size(canvas) - 2)
+        window.spring_tool.draw(world, camera, window.pointer, theme, canvas)

@@ -1,0 +1,200 @@
+"""What can be drawn, whoever draws it; and a canvas that only takes note, for tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.view.canvas.theme import Colour
+
+if TYPE_CHECKING:
+    import pygame
+
+__all__ = [
+    "Align",
+    "Canvas",
+    "Look",
+    "Numbers",
+    "Painter",
+    "Paper",
+    "Points",
+    "RecordingCanvas",
+    "Rect",
+    "TextStyle",
+]
+
+type Numbers = NDArray[np.float64]
+"""A float64 array (n,)."""
+type Points = NDArray[np.float64]
+"""A float64 array (n, 2): right and down from the top left corner [px]."""
+type Rect = tuple[int, int, int, int]
+"""Left, top, width, height [px]."""
+type Painter = Callable[[pygame.Surface], None]
+"""Draws on a surface."""
+type Align = Literal["left", "centre", "right"]
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How bodies look, a row each.
+
+    Attributes
+    ----------
+    fill, rim : uint8 arrays (n, 3)
+        Red, green and blue inside and at the edge.
+    hatched : bool array (n,)
+        Whether slanting lines fill it, in place of a mark that shows its angle.
+    """
+
+    fill: NDArray[np.uint8]
+    rim: NDArray[np.uint8]
+    hatched: NDArray[np.bool_]
+
+    @classmethod
+    def plain(cls, fill: Colour, rim: Colour, count: int) -> Look:
+        """Return the same two colours for each of ``count`` bodies."""
+        rows = [np.tile(np.array(colour, np.uint8), (count, 1)) for colour in (fill, rim)]
+        return cls(rows[0], rows[1], np.zeros(count, np.bool_))
+
+
+@dataclass(frozen=True, slots=True)
+class TextStyle:
+    """The look of a line of text: its height [px], colour and weight."""
+
+    size: int
+    colour: Colour
+    bold: bool = False
+
+
+class Paper(Protocol):
+    """What words and panels can be put on: a canvas, or a part of it that is kept."""
+
+    def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
+        """Draw a rectangle with rounded corners and a thin outline."""
+
+    def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
+        """Write one line; ``at`` is its top left, top middle or top right."""
+
+    def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
+        """Return the width and height of one line [px]."""
+
+
+class Canvas(Paper, Protocol):
+    """A picture in the making. All lengths are pixels, y points down, and what comes later lies on top.
+
+    Angles are counter-clockwise as seen on the screen [rad]. What lies outside the picture is cut off, and
+    nothing that is not finite may be passed.
+    """
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height [px]."""
+
+    def clear(self, colour: Colour) -> None:
+        """Fill the whole picture."""
+
+    def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
+        """Draw discs, each with a rim and a line that shows its angle, or hatched."""
+
+    def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
+        """Draw boxes of the given widths and heights, each with a rim and a notch, or hatched."""
+
+    def lines(
+        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
+    ) -> None:
+        """Draw straight lines of one kind, with round ends; each may have an opacity of its own."""
+
+    def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
+        """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
+
+    def sheet(self, name: str, rect: Rect, version: object, draw: Callable[[Paper], None]) -> None:
+        """Draw words and panels that lie within ``rect`` [px] and stay for as long as ``version`` does.
+
+        What was drawn under the same ``name`` before may be put down once more in place of calling ``draw``;
+        if the version is the same, it is drawn in the same way relative to the corner of ``rect``.
+        """
+
+    def paint(self, painter: Painter) -> None:
+        """Let something else draw on the picture: widgets do that by themselves."""
+
+
+@dataclass(slots=True)
+class RecordingCanvas:
+    """A canvas that draws nothing and keeps a list of what it was asked for.
+
+    Attributes
+    ----------
+    size : tuple of two ints
+        Width and height [px].
+    calls : list of (str, dict)
+        The name of each method called, and what it was given.
+
+    Examples
+    --------
+    >>> canvas = RecordingCanvas((640, 480))
+    >>> canvas.clear((0, 0, 0))
+    >>> canvas.calls
+    [('clear', {'colour': (0, 0, 0)})]
+    """
+
+    size: tuple[int, int]
+    calls: list[tuple[str, dict[str, Any]]] = field(default_factory=list)
+
+    def called(self, name: str) -> list[dict[str, Any]]:
+        """Return what each call of a method was given."""
+        return [given for called, given in self.calls if called == name]
+
+    @property
+    def words(self) -> list[str]:
+        """Everything that was written."""
+        return [given["words"] for given in self.called("text")]
+
+    def clear(self, colour: Colour) -> None:
+        """Note the colour."""
+        self.calls.append(("clear", {"colour": colour}))
+
+    def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
+        """Note the discs."""
+        given = {"centre": centre, "radius": radius, "angle": angle, "look": look}
+        self.calls.append(("discs", given))
+
+    def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
+        """Note the boxes."""
+        given = {"centre": centre, "extent": extent, "angle": angle, "look": look}
+        self.calls.append(("boxes", given))
+
+    def lines(
+        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
+    ) -> None:
+        """Note the lines."""
+        given = {"start": start, "end": end, "colour": colour, "width": width, "opacity": opacity}
+        self.calls.append(("lines", given))
+
+    def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
+        """Note the lines."""
+        self.calls.append(("strokes", {"start": start, "end": end, "colour": colour, "width": width}))
+
+    def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
+        """Note the rectangle."""
+        given = {"rect": rect, "colour": colour, "outline": outline, "opacity": opacity}
+        self.calls.append(("panel", given))
+
+    def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
+        """Note the words."""
+        self.calls.append(("text", {"words": words, "at": at, "style": style, "align": align}))
+
+    def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
+        """Return a guess: letters a little over half as wide as high."""
+        return round(0.55 * style.size * len(words)), round(1.36 * style.size)
+
+    def sheet(self, name: str, rect: Rect, version: object, draw: Callable[[Paper], None]) -> None:
+        """Note each thing on it."""
+        draw(self)
+
+    def paint(self, painter: Painter) -> None:
+        """Note that something was to be drawn."""
+        self.calls.append(("paint", {"painter": painter}))

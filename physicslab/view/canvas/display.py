@@ -1,0 +1,142 @@
+"""The window on the screen: opened, watched and closed in one place."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import datetime
+from pathlib import Path
+
+import pygame
+
+from physicslab.ecs.config import WindowConfig
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.theme import DARK, Theme
+
+__all__ = ["Display", "wants_to_leave"]
+
+
+class Display:
+    """A real window with a canvas in it, and the clock that paces its frames.
+
+    Attributes
+    ----------
+    canvas : PygameCanvas
+        The picture in the window; it has the window's size at any time.
+    """
+
+    def __init__(self, canvas: PygameCanvas, fps: int) -> None:
+        self.canvas = canvas
+        self._period = 1.0 / fps
+        self._last = self._next = time.perf_counter()
+
+    @classmethod
+    @contextmanager
+    def open(cls, config: WindowConfig, title: str, theme: Theme = DARK) -> Iterator[Display]:
+        """Open a window for the length of a ``with`` block.
+
+        Raises
+        ------
+        OSError
+            If there is no screen to open it on.
+        """
+        try:
+            pygame.display.init()  # not pygame.init(): sound is not needed, and complains where there is none
+            pygame.font.init()
+            pygame.display.set_icon(_icon(theme))
+            surface = pygame.display.set_mode(config.size, pygame.RESIZABLE)
+        except pygame.error as error:
+            pygame.quit()
+            raise OSError(f"no window can be opened: {error}") from error
+        try:
+            pygame.display.set_caption(title)
+            _limit(config.least_size)
+            surface.fill(theme.background)
+            pygame.display.flip()  # at once, so that no black rectangle greets the user
+            yield cls(PygameCanvas(surface), config.fps)
+        finally:
+            pygame.quit()
+
+    @property
+    def title(self) -> str:
+        """What the window is called."""
+        return pygame.display.get_caption()[0]
+
+    @title.setter
+    def title(self, title: str) -> None:
+        if title != self.title:
+            pygame.display.set_caption(title)
+
+    @property
+    def left(self) -> float:
+        """Time [s] until the frame that is being made is due; negative once it is late."""
+        return self._next + self._period - time.perf_counter()
+
+    def show(self) -> float:
+        """Show what was drawn, wait until the next frame is due, and return the time since the last [s].
+
+        The waits aim at fixed times and not at fixed lengths, and are not rounded to milliseconds as those of
+        ``pygame.time.Clock.tick`` are: that would make 62.5 frames a second of 60, and a hitch of every 25th.
+        """
+        pygame.display.flip()
+        now = time.perf_counter()
+        self._next = max(self._next + self._period, now)
+        time.sleep(max(self._next - now, 0.0))
+        before, self._last = self._last, time.perf_counter()
+        return self._last - before
+
+    def save_screenshot(self, directory: Path) -> Path:
+        """Write a PNG of the window and return its path; raise ``OSError`` if that cannot be done."""
+        name = datetime.now().strftime("physicslab-%Y%m%d-%H%M%S")
+        path = directory / f"{name}.png"
+        count = 1
+        while path.exists():
+            count += 1
+            path = directory / f"{name}-{count}.png"
+        with path.open("wb") as stream:
+            pygame.image.save(self.canvas.surface, stream, path.name)
+        return path
+
+
+def wants_to_leave() -> bool:
+    """Whether Escape was pressed or the window closed, where nothing else is asked of the user.
+
+    All else that the user did is kept, in its order, for who asks next: a key that is pressed while a kernel
+    is waited for acts when it is there, and nothing seems held that is not.
+    """
+    events = pygame.event.get()  # of some types alone they would not come in their order
+    leaves = any(
+        event.type == pygame.QUIT or (event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE)
+        for event in events
+    )
+    for event in events:
+        if not leaves:
+            pygame.event.post(event)
+    return leaves
+
+
+def _limit(size: tuple[int, int]) -> None:
+    """Let the window be made no smaller than this [px], where SDL can be asked for it.
+
+    pygame-ce has no other way to a window made by ``set_mode``, and warns that this one will go.
+    """
+    with warnings.catch_warnings(), contextlib.suppress(AttributeError, pygame.error):
+        warnings.simplefilter("ignore", DeprecationWarning)
+        pygame.Window.from_display_module().minimum_size = size
+
+
+def _icon(theme: Theme) -> pygame.Surface:
+    """Return the program's icon: a ball that strikes a box. Nothing needs to be compiled for it."""
+    large = pygame.Surface((256, 256), pygame.SRCALPHA, 32)
+    pygame.draw.rect(large, theme.background, large.get_rect(), border_radius=56)
+    ball, box, *_ = theme.bodies
+    for colour, width in ((theme.fill(ball), 0), (ball, 16)):
+        pygame.draw.circle(large, colour, (92, 124), 56, width)
+    pygame.draw.line(large, ball, (92, 124), (124, 90), 16)
+    for colour, width in ((theme.fill(box), 0), (box, 16)):
+        pygame.draw.rect(large, colour, pygame.Rect(150, 92, 72, 88), width)
+    pygame.draw.line(large, theme.static, (36, 196), (220, 196), 16)
+    return pygame.transform.smoothscale(large, (64, 64))

@@ -1,0 +1,136 @@
+"""The hand that takes hold of a body, moves it, and lets it go or throws it."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+from physicslab.components import Held, Transform, Velocity
+from physicslab.ecs.config import WindowConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.world import World
+
+__all__ = ["Hand"]
+
+_BRIEFEST = 0.03
+"""Time [s] over which a speed can be told at all; a shorter pull is no throw."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Sample:
+    time: float
+    place: Vector2
+
+
+class Hand:
+    """Holds one body at a time by the point where it was taken.
+
+    A held body carries :class:`Held`: contacts and forces find it infinitely heavy, and it goes where the
+    hand goes. Its velocity is set so that it arrives there in the time that is about to be simulated; so what
+    it hits on the way is pushed, not jumped over.
+
+    Parameters
+    ----------
+    config : WindowConfig
+        How far back the hand's path counts for a throw, and how fast a throw may be.
+
+    Attributes
+    ----------
+    entity : int, optional
+        The body that is held.
+    """
+
+    def __init__(self, config: WindowConfig) -> None:
+        self._config = config
+        self.entity: int | None = None
+        self._before = (Vector2(), 0.0)
+        self._was_moved_by_time = False
+        self._path: deque[_Sample] = deque()
+
+    def take(self, world: World, entity: int, place: Vector2, now: float) -> bool:
+        """Take hold of a body at a point of the world [m]; return whether it can be held: walls cannot.
+
+        ``now`` is any clock [s] that runs with the hand, not with the simulation.
+        """
+        self.drop(world)
+        if not (world.has(entity, Transform) and world.has(entity, Velocity)):
+            return False
+        transform, velocity = world.component(entity, Transform), world.component(entity, Velocity)
+        grip = (place - transform.position).rotated(-transform.angle)
+        self._before = velocity.linear, velocity.angular
+        self._was_moved_by_time = False
+        velocity.linear, velocity.angular = Vector2(), 0.0
+        world.add(entity, Held(grip))
+        self.entity = entity
+        self._path = deque([_Sample(now, place)])
+        return True
+
+    def move(self, place: Vector2, now: float) -> None:
+        """Note where the hand is [m]."""
+        if self.entity is None:
+            return
+        self._path.append(_Sample(now, place))
+        while len(self._path) > 1 and self._path[0].time < now - self._config.throw_window - 1e-9:
+            self._path.popleft()
+
+    def lead(self, world: World, coming: float, paused: bool) -> None:
+        """Make the body follow.
+
+        Parameters
+        ----------
+        coming : float
+            Time [s] that will be simulated before the next call.
+        paused : bool
+            Whether time stands still: the body is then put where the hand is.
+        """
+        if self.entity is None:
+            return
+        if not world.has(self.entity, Held) or not world.has(self.entity, Transform):
+            self.entity = None  # it was removed, or taken out of the hand
+            return
+        transform = world.component(self.entity, Transform)
+        velocity = world.component(self.entity, Velocity)
+        grip = world.component(self.entity, Held).grip.rotated(transform.angle)
+        gap = self._path[-1].place - transform.position - grip
+        velocity.angular = 0.0
+        if coming > 0.0:
+            velocity.linear = gap / coming
+            self._was_moved_by_time = True
+        elif paused:
+            transform.position = transform.position + gap
+            velocity.linear = Vector2()
+
+    def release(self, world: World, place: Vector2, now: float, paused: bool) -> None:
+        """Let go at a point of the world [m]: the body keeps the velocity that the hand had of late.
+
+        While time stands still nothing is thrown; a body that was only put elsewhere goes on as before.
+        """
+        self.move(place, now)
+        if self.entity is not None and world.has(self.entity, Held):
+            velocity = world.component(self.entity, Velocity)
+            if not paused:
+                velocity.linear = self._throw()
+            elif not self._was_moved_by_time:
+                velocity.linear, velocity.angular = self._before
+        self._let_go(world)
+
+    def drop(self, world: World) -> None:
+        """Let go without a throw, as when the window is left: the body starts from rest."""
+        if self.entity is not None and world.has(self.entity, Held):
+            world.component(self.entity, Velocity).linear = Vector2()
+        self._let_go(world)
+
+    def _let_go(self, world: World) -> None:
+        if self.entity is not None and world.has(self.entity, Held):
+            world.discard(self.entity, Held)
+        self.entity = None
+
+    def _throw(self) -> Vector2:
+        """Return the mean velocity [m/s] over the last of the hand's path, no faster than allowed."""
+        first, last = self._path[0], self._path[-1]
+        span = last.time - first.time
+        if span < _BRIEFEST:
+            return Vector2()
+        velocity = (last.place - first.place) / span
+        fastest = self._config.max_throw_speed
+        return velocity if velocity.magnitude <= fastest else velocity.normalized * fastest

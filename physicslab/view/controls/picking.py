@@ -1,0 +1,58 @@
+"""Which body is at a place on the screen."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Shape, Transform
+from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.picture.bodies import POINT_RADIUS, body_rows
+from physicslab.world import World
+
+__all__ = ["body_at"]
+
+type Rows = NDArray[np.int64]
+type Numbers = NDArray[np.float64]
+
+_REACH = 7.0
+"""How near to the middle of a body a click need only be [px]: so that what appears small can be caught."""
+
+
+def body_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
+    """Return the body that is drawn on top at a place on the screen [px], or ``None``.
+
+    Where there is none, the nearest whose middle is within a few pixels is taken.
+    """
+    place, rows = camera.to_world(pixel), body_rows(world)
+    entities = world.roster.entities
+    point_gap = _distance(world, rows.points, place) - POINT_RADIUS / camera.scale
+    disc_gap = _distance(world, rows.discs, place) - world.table(Shape)["radius"][rows.discs]
+    box_gap = _box_gap(world, rows.boxes, place)
+    for kind, gap in ((rows.points, point_gap), (rows.discs, disc_gap), (rows.boxes, box_gap)):
+        hit = np.flatnonzero(gap <= 0.0)
+        if len(hit):
+            return int(entities[kind[hit[-1]]])
+    everything = np.concatenate((rows.boxes, rows.discs, rows.points))
+    distance = _distance(world, everything, place)
+    if len(distance) and np.fmin.reduce(distance) <= _REACH / camera.scale:
+        return int(entities[everything[int(np.nanargmin(distance))]])
+    return None
+
+
+def _distance(world: World, rows: Rows, place: Vector2) -> Numbers:
+    """Return how far the middle of each body is [m]."""
+    offset = world.table(Transform)["position"][rows] - (place.x, place.y)
+    distance: Numbers = np.hypot(offset[:, 0], offset[:, 1])
+    return distance
+
+
+def _box_gap(world: World, rows: Rows, place: Vector2) -> Numbers:
+    """Return how far outside of each box a place is, along the box's own axes [m]; negative inside."""
+    transform, shape = world.table(Transform), world.table(Shape)
+    offset, angle = transform["position"][rows] - (place.x, place.y), transform["angle"][rows]
+    c, s = np.cos(angle), np.sin(angle)
+    u, v = c * offset[:, 0] + s * offset[:, 1], c * offset[:, 1] - s * offset[:, 0]
+    gap: Numbers = np.maximum(np.abs(u) - 0.5 * shape["width"][rows], np.abs(v) - 0.5 * shape["height"][rows])
+    return gap

@@ -1,0 +1,168 @@
+"""Arrows: each kind has its own colour, head and shaft, so that no two are told apart by colour alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.view.canvas.canvas import Canvas, Numbers, Points
+from physicslab.view.canvas.theme import Colour, Theme
+
+__all__ = [
+    "CONTACT_NORMAL", "FORCE", "FRICTION_IMPULSE", "NORMAL_IMPULSE", "SHORTEST", "VELOCITY",
+    "ArrowKind", "Head", "dashes", "draw_arrows", "longest",
+]  # fmt: skip
+
+SHORTEST = 3.0
+"""Arrows shorter than this are left out [px]."""
+_LONGEST = 0.3
+"""Arrows are cut at this share of the smaller side of the picture."""
+_HEAD = 10.0
+"""Length of a head [px]; half of a short arrow at the most."""
+_DASH, _GAP = 5.0, 4.0
+"""The strokes of a broken shaft, and the spaces between them [px]."""
+_CROWD = 256
+"""More arrows than this of one kind are drawn finer, so that something is seen between them."""
+
+type Strokes = tuple[tuple[tuple[float, float], tuple[float, float]], ...]
+
+
+class Head(Enum):
+    """The strokes of a head of length 1 that points along x, its tip at the origin."""
+
+    CLOSED = (
+        ((0.0, 0.0), (-1.0, 0.42)), ((0.0, 0.0), (-1.0, -0.42)), ((-1.0, 0.42), (-1.0, -0.42)),
+    )  # fmt: skip
+    DOUBLE = (
+        ((0.0, 0.0), (-0.7, 0.42)), ((0.0, 0.0), (-0.7, -0.42)),
+        ((-0.6, 0.0), (-1.3, 0.42)), ((-0.6, 0.0), (-1.3, -0.42)),
+    )  # fmt: skip
+    BAR = (((0.0, 0.45), (0.0, -0.45)),)
+    DIAMOND = (
+        ((0.0, 0.0), (-0.6, 0.4)), ((0.0, 0.0), (-0.6, -0.4)),
+        ((-0.6, 0.4), (-1.2, 0.0)), ((-0.6, -0.4), (-1.2, 0.0)),
+    )  # fmt: skip
+    OPEN = (((0.0, 0.0), (-0.9, 0.45)), ((0.0, 0.0), (-0.9, -0.45)))
+
+
+_CUT: Strokes = (((-0.3, -0.55), (0.1, 0.55)), ((0.1, -0.55), (0.5, 0.55)))
+"""The mark across the middle of an arrow that is longer than it is drawn."""
+
+
+@dataclass(frozen=True, slots=True)
+class ArrowKind:
+    """What an arrow stands for, and how it looks.
+
+    Attributes
+    ----------
+    name : str
+        What the legend calls it.
+    paint : str
+        The field of the theme that holds its colour.
+    head : Head
+        The shape of its tip.
+    width : float
+        Of its strokes [px].
+    dashed : bool
+        Whether its shaft is broken.
+    """
+
+    name: str
+    paint: str
+    head: Head
+    width: float = 2.0
+    dashed: bool = False
+
+    def colour(self, theme: Theme) -> Colour:
+        """Return its colour."""
+        colour: Colour = getattr(theme, self.paint)
+        return colour
+
+
+VELOCITY = ArrowKind("Velocity", "velocity", Head.CLOSED)
+FORCE = ArrowKind("Force", "force", Head.DOUBLE)
+CONTACT_NORMAL = ArrowKind("Contact normal", "contact_normal", Head.BAR, width=1.4)
+NORMAL_IMPULSE = ArrowKind("Normal impulse", "normal_impulse", Head.DIAMOND)
+FRICTION_IMPULSE = ArrowKind("Friction impulse", "friction_impulse", Head.OPEN, dashed=True)
+
+
+def longest(canvas: Canvas) -> float:
+    """Return the length at which arrows are cut [px]."""
+    return _LONGEST * min(canvas.size)
+
+
+def draw_arrows(
+    start: Points,
+    span: Points,
+    kind: ArrowKind,
+    canvas: Canvas,
+    theme: Theme,
+    *,
+    opacity: float | Numbers = 1.0,
+    width: float | None = None,
+) -> None:
+    """Draw arrows of one kind from ``start``, each ``span`` long.
+
+    Shafts are one call of :meth:`Canvas.lines`, heads a second one; arrows that are cut have two strokes
+    across the middle. What is shorter than ``SHORTEST``, not finite, or out of the picture is left out.
+    Each arrow may have an opacity of its own.
+    """
+    limit = longest(canvas)
+    with np.errstate(invalid="ignore", over="ignore"):
+        length = np.hypot(span[:, 0], span[:, 1])
+        seen = (length >= SHORTEST) & np.isfinite(length)
+        for place, side in zip(start.T, canvas.size, strict=True):
+            seen &= (place > -limit) & (place < side + limit)
+    if not seen.any():
+        return
+    start, span, length = start[seen], span[seen], length[seen]
+    share = np.full(len(length), opacity) if isinstance(opacity, float) else opacity[seen]
+    unit = span / length[:, None]
+    cut = length > limit
+    length = np.minimum(length, limit)
+    end = start + length[:, None] * unit
+    colour, width = kind.colour(theme), kind.width if width is None else width
+    head = _HEAD + width
+    if len(length) > _CROWD:
+        width, head, share = max(0.5 * width, 1.0), 0.6 * _HEAD, 0.6 * share
+    if kind.dashed:
+        froms, tos, whose = dashes(start, end)
+        canvas.lines(froms, tos, colour, width, share[whose])
+    else:
+        canvas.lines(start, end, colour, width, share)
+    size = np.minimum(head, 0.5 * length)
+    froms, tos = _placed(kind.head.value, end, unit, size)
+    shares = np.tile(share, len(kind.head.value))
+    if cut.any():
+        middle = 0.5 * (start[cut] + end[cut])
+        marks = _placed(_CUT, middle, unit[cut], np.full(int(cut.sum()), _HEAD))
+        froms, tos = np.concatenate((froms, marks[0])), np.concatenate((tos, marks[1]))
+        shares = np.concatenate((shares, np.tile(share[cut], len(_CUT))))
+    canvas.lines(froms, tos, colour, width, shares)
+
+
+def _placed(strokes: Strokes, tip: Points, unit: Points, size: NDArray[np.float64]) -> tuple[Points, Points]:
+    """Return the starts and ends of strokes, placed at every tip: the first of each, then the second."""
+    along = unit * size[:, None]
+    across = np.stack((-along[:, 1], along[:, 0]), axis=1)
+    axes = np.concatenate((along.reshape(1, -1), across.reshape(1, -1)))
+    corners = np.array(strokes)  # (stroke, start or end, along and across)
+    froms, tos = ((corners[:, side] @ axes).reshape(len(strokes), -1, 2) + tip for side in (0, 1))
+    return froms.reshape(-1, 2), tos.reshape(-1, 2)
+
+
+def dashes(start: Points, end: Points) -> tuple[Points, Points, NDArray[np.int64]]:
+    """Return the strokes of broken lines, and of which line each is; the last of each ends where it does."""
+    span = end - start
+    length = np.hypot(span[:, 0], span[:, 1])
+    count = np.maximum(np.ceil(length / (_DASH + _GAP)), 1.0).astype(np.int64)
+    line = np.repeat(np.arange(len(count)), count)
+    place = np.arange(len(line)) - np.repeat(np.cumsum(count) - count, count)
+    unit = span / np.maximum(length, 1e-9)[:, None]
+    high = length[line] - place * (_DASH + _GAP)
+    low = np.maximum(high - _DASH, 0.0)
+    start, unit = start[line], unit[line]
+    return start + low[:, None] * unit, start + high[:, None] * unit, line

@@ -1,0 +1,126 @@
+"""Where bodies are that are out of sight: no body that was thrown away is lost silently."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Shape, Transform, Velocity
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
+from physicslab.view.canvas.theme import Theme
+from physicslab.world import World
+
+__all__ = ["draw_edge_arrows"]
+
+_SIDES: tuple[tuple[int, int], ...] = ((-1, 0), (1, 0), (0, -1), (0, 1))
+"""Left, right, up and down on the screen."""
+_STEP = 4
+"""How far an arrow makes way at a time [px]."""
+
+
+def draw_edge_arrows(
+    world: World, camera: Camera, taken: Sequence[Rect], size: int, canvas: Canvas, theme: Theme
+) -> None:
+    """Draw an arrow at each edge beyond which there are moving bodies, with their number.
+
+    Parameters
+    ----------
+    taken : sequence of Rect
+        What the arrows make way for [px].
+    size : int
+        Height of the text [px].
+    """
+    places = _out_of_sight(world, camera)
+    middle = 0.5 * np.array(camera.size)
+    # The side is that on which the way from the middle of the screen to the body leaves it.
+    offset = (places - middle) / middle
+    level = np.abs(offset[:, 0]) >= np.abs(offset[:, 1])
+    obstacles = list(taken)
+    for side in _SIDES:
+        here = (level == (side[0] != 0)) & (offset @ np.array(side, np.float64) > 0.0)
+        count = int(here.sum())
+        if count:
+            aim = middle + _mean_way(places[here] - middle)
+            style = TextStyle(size, theme.accent, bold=True)
+            rect = _free_place(_at_edge(aim, f"{count}", style, canvas), side, obstacles, canvas.size)
+            if rect is not None:
+                obstacles.append(rect)
+                _draw_arrow(rect, aim, f"{count}", style, canvas, theme)
+
+
+def _out_of_sight(world: World, camera: Camera) -> NDArray[np.float64]:
+    """Return where on the plane of the screen moving bodies are (n, 2) [px] that are not on it at all."""
+    rows = world.batch(Transform, Velocity).rows
+    place = camera.project(world.table(Transform)["position"][rows])
+    across, down = place[:, 0], place[:, 1]
+    width, height = camera.size
+    # Most bodies are in sight as a rule, by their middle alone: only the others are looked at closely.
+    beyond = np.flatnonzero((across < 0.0) | (across > width) | (down < 0.0) | (down > height))
+    rows, place, shape = rows[beyond], place[beyond], world.table(Shape)
+    reach = shape["radius"][rows] + 0.5 * np.hypot(shape["width"][rows], shape["height"][rows])
+    margin = (reach * camera.scale)[:, None]
+    out = ((place < -margin) | (place > np.array(camera.size) + margin)).any(axis=1)
+    found: NDArray[np.float64] = place[out & np.isfinite(place).all(axis=1)]
+    return found
+
+
+def _mean_way(offsets: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the mean of the directions (n, 2), a long way off: one that is far off counts no more."""
+    way: NDArray[np.float64] = (offsets / np.hypot(offsets[:, 0], offsets[:, 1])[:, None]).mean(axis=0)
+    return way * 1e5
+
+
+def _at_edge(aim: NDArray[np.float64], words: str, style: TextStyle, canvas: Canvas) -> Rect:
+    """Return the rectangle of an arrow at the edge, where the way from the middle to ``aim`` crosses it."""
+    screen_width, screen_height = canvas.size
+    text_width, text_height = canvas.text_size(words, style)
+    size = style.size
+    width, height, margin = text_width + 3 * size, text_height + size // 2, size // 2
+    half = 0.5 * np.array(canvas.size)
+    way = aim - half
+    crossing = half + way * float(np.min(half / np.maximum(np.abs(way), 1e-9)))
+    left = min(max(round(crossing[0]) - width // 2, margin), screen_width - width - margin)
+    top = min(max(round(crossing[1]) - height // 2, margin), screen_height - height - margin)
+    return left, top, width, height
+
+
+def _free_place(
+    rect: Rect, side: tuple[int, int], obstacles: Sequence[Rect], screen: tuple[int, int]
+) -> Rect | None:
+    """Move a rectangle away from the edge until nothing is in its way; ``None`` if there is no room."""
+    left, top, width, height = rect
+    while left >= 0 and top >= 0 and left + width <= screen[0] and top + height <= screen[1]:
+        if not any(_meet((left, top, width, height), obstacle) for obstacle in obstacles):
+            return left, top, width, height
+        left, top = left - _STEP * side[0], top - _STEP * side[1]
+    return None
+
+
+def _meet(a: Rect, b: Rect) -> bool:
+    gap = 3
+    return (
+        a[0] < b[0] + b[2] + gap and b[0] < a[0] + a[2] + gap
+        and a[1] < b[1] + b[3] + gap and b[1] < a[1] + a[3] + gap
+    )  # fmt: skip
+
+
+def _draw_arrow(
+    rect: Rect, aim: NDArray[np.float64], words: str, style: TextStyle, canvas: Canvas, theme: Theme
+) -> None:
+    size = style.size
+    left, top, width, height = rect
+    canvas.panel(rect, theme.panel, theme.accent, 0.95)
+    text_width, text_height = canvas.text_size(words, style)
+    canvas.text(words, (left + width - size - text_width, top + (height - text_height) // 2), style)
+    centre = np.array([left + 1.1 * size, top + 0.5 * height])
+    angle = math.atan2(aim[1] - centre[1], aim[0] - centre[0])
+    reach = 0.5 * size
+    tip, tail = (centre + sign * reach * np.array([math.cos(angle), math.sin(angle)]) for sign in (1, -1))
+    barbs = [
+        tip - 0.8 * reach * np.array([math.cos(angle + turn), math.sin(angle + turn)]) for turn in (0.6, -0.6)
+    ]
+    canvas.lines(np.array([tail, tip, tip]), np.array([tip, *barbs]), theme.accent, 2.0)

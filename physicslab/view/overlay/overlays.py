@@ -1,0 +1,81 @@
+"""Which overlays are on, and what they remember from frame to frame."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from physicslab.components import Shape, Velocity
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.canvas import Rect
+from physicslab.view.overlay.impacts import Impacts
+from physicslab.view.overlay.labels import Labels
+from physicslab.view.panels.gauge import Gauge
+from physicslab.world import World
+
+__all__ = ["Overlays"]
+
+_REACH = 0.13
+"""How long the strongest arrow is, as a share of the smaller side of the picture."""
+_SIZES = 2.0
+"""How long it is at the most in a crowd, in sizes of a body: no arrow is lost among the others."""
+_LEAST = 16.0
+"""How long it is at the least [px]."""
+
+
+class Overlays:
+    """The state of the overlays; all of it is the window's, none the world's.
+
+    Attributes
+    ----------
+    arrows, impulses : bool
+        Whether velocities, forces and normals are shown, and whether impulses are.
+    reach : float
+        The wanted length of the strongest arrow [m], chosen when an overlay is turned on.
+    velocity, force, impact, rest : Gauge
+        The scales: of velocities, forces, impulses of impacts, and impulses that hold bodies apart.
+    impacts : Impacts
+        What has struck lately.
+    labels : Labels
+        Where the numbers stand.
+    covered : list of Rect
+        What the HUD covers [px]; labels keep clear of it.
+    """
+
+    def __init__(self) -> None:
+        self.arrows = self.impulses = False
+        self.reach = 1.0
+        self.velocity, self.force = Gauge("m/s"), Gauge("N")
+        self.impact, self.rest = Gauge("N s"), Gauge("N s")
+        self.impacts = Impacts()
+        self.labels = Labels()
+        self.covered: list[Rect] = []
+
+    def toggle_arrows(self, world: World, camera: Camera) -> None:
+        """Show or hide velocities, forces and contact normals."""
+        self.arrows = not self.arrows
+        if self.arrows:
+            self.velocity, self.force = Gauge("m/s"), Gauge("N")
+            self._measure(world, camera)
+
+    def toggle_impulses(self, world: World, camera: Camera) -> None:
+        """Show or hide the impulses at contacts."""
+        self.impulses = not self.impulses
+        if self.impulses:
+            self.impact, self.rest = Gauge("N s"), Gauge("N s")
+            self._measure(world, camera)
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget what is no more."""
+        self.impacts.clear()
+        self.labels.clear()
+
+    def _measure(self, world: World, camera: Camera) -> None:
+        shape = world.table(Shape)
+        rows = world.batch(Shape, Velocity).rows
+        self.reach = _REACH * min(camera.size) / camera.scale
+        if len(rows) > 1:
+            size = np.maximum(
+                2.0 * shape["radius"][rows], np.maximum(shape["width"][rows], shape["height"][rows])
+            )
+            self.reach = min(self.reach, max(_SIZES * float(np.median(size)), _LEAST / camera.scale))

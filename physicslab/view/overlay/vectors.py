@@ -1,0 +1,50 @@
+"""Velocities, forces and contact normals, as arrows."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from physicslab.components import Transform, Velocity
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.canvas import Canvas
+from physicslab.view.canvas.theme import Theme
+from physicslab.view.overlay.arrows import CONTACT_NORMAL, FORCE, SHORTEST, VELOCITY, draw_arrows
+from physicslab.view.overlay.overlays import Overlays
+from physicslab.view.overlay.touches import resting_of
+from physicslab.world import World
+
+__all__ = ["NORMAL_LENGTH", "draw_vectors"]
+
+NORMAL_LENGTH = 26.0
+"""Of the arrows of contact normals, which are directions only [px]; shorter in a crowd."""
+
+
+def draw_vectors(world: World, overlays: Overlays, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+    """Draw the velocity of all that moves, the forces of the last substep, and the normals of contacts.
+
+    Forces are those added up by force systems (gravity, springs); what contacts do are impulses.
+    """
+    world.add_up_forces()
+    rows = world.batch(Transform, Velocity).rows
+    position = world.table(Transform)["position"][rows]
+    linear = world.table(Velocity)["linear"][rows]
+    pulled = rows[world.bodies.inverse_mass[rows] > 0.0]
+    force = world.bodies.force[pulled]
+    overlays.force.follow(np.hypot(force[:, 0], force[:, 1]), overlays.reach, world.time)
+    # What forces bring about in one step is rest, not motion, where contacts take it away again.
+    pull = np.hypot(force[:, 0], force[:, 1]) * world.bodies.inverse_mass[pulled] * world.simulation.dt
+    speed = np.concatenate((np.hypot(linear[:, 0], linear[:, 1]), pull))
+    overlays.velocity.follow(speed, overlays.reach, world.time)
+    flip = np.array((1.0, -1.0))  # the screen's y points down
+    if overlays.force.per_metre:
+        start = camera.project(world.table(Transform)["position"][pulled])
+        span = force * flip * (camera.scale / overlays.force.per_metre)
+        draw_arrows(start, span, FORCE, canvas, theme)
+    if overlays.velocity.per_metre:
+        span = linear * flip * (camera.scale / overlays.velocity.per_metre)
+        draw_arrows(camera.project(position), span, VELOCITY, canvas, theme)
+    touches = resting_of(world)
+    touches = touches[touches["normal"] > 0.0]
+    start = camera.project(touches["place"])
+    length = min(NORMAL_LENGTH, max(0.5 * overlays.reach * camera.scale, SHORTEST))
+    draw_arrows(start, touches["direction"] * flip * length, CONTACT_NORMAL, canvas, theme)

@@ -1,0 +1,1 @@
+"""Figures and text beside the world."""

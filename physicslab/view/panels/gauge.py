@@ -1,0 +1,63 @@
+"""Scales of arrows: round numbers that follow what is shown, slowly enough to be read."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.view.panels.quantities import round_quantity
+
+__all__ = ["Gauge"]
+
+_MEMORY = 4.0
+"""Time [s] in which the memory of a strong value fades to a third."""
+_LEAST, _MOST = 0.25, 1.3
+"""The strongest arrow may have from so much to so much of the wanted length before the scale changes."""
+
+
+class Gauge:
+    """Says how much of a quantity a metre of arrow stands for: 1, 2 or 5 times a power of ten.
+
+    The scale follows the strongest value of the last seconds. It hangs on the world alone: zooming enlarges
+    arrows together with all else, and what the legend says of them stays true.
+
+    Parameters
+    ----------
+    unit : str
+        Of the quantity.
+
+    Attributes
+    ----------
+    per_metre : float
+        How much one metre stands for; 0 before anything was shown.
+
+    Examples
+    --------
+    >>> gauge = Gauge("m/s")
+    >>> gauge.follow(np.array([3.0]), reach=1.5, time=0.0)
+    >>> gauge.words
+    '1 m = 2 m/s'
+    """
+
+    def __init__(self, unit: str) -> None:
+        self.unit = unit
+        self.per_metre = 0.0
+        self._peak = 0.0
+        self._time = 0.0
+
+    def follow(self, values: NDArray[np.float64], reach: float, time: float) -> None:
+        """Take in the magnitudes of a frame; the strongest should be about ``reach`` [m] long."""
+        strongest = float(np.max(values, initial=0.0, where=np.isfinite(values)))
+        faded = self._peak * math.exp(-max(time - self._time, 0.0) / _MEMORY)
+        self._peak, self._time = max(strongest, faded), time
+        wanted = self._peak / reach
+        if wanted > 1e-12 and not _LEAST * self.per_metre <= wanted <= _MOST * self.per_metre:
+            power = 10.0 ** math.floor(math.log10(wanted))
+            self.per_metre = next(k * power for k in (1.0, 2.0, 5.0, 10.0) if k * power >= wanted * 0.999)
+
+    @property
+    def words(self) -> str:
+        """The scale, as the legend says it."""
+        return f"1 m = {round_quantity(self.per_metre, self.unit)}" if self.per_metre else "none yet"

@@ -1,0 +1,141 @@
+"""Text in panels: lines of a label and a figure, and remarks that are broken to fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from physicslab.view.canvas.canvas import Canvas, Paper, Rect, TextStyle
+from physicslab.view.canvas.theme import Colour, Theme
+
+__all__ = ["Line", "Panel", "broken", "draw_pill", "lay_out", "text_size"]
+
+type Kind = Literal["heading", "figure", "detail", "remark", "gap"]
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One thing said in a panel.
+
+    Attributes
+    ----------
+    label, value : str
+        What stands at the left and at the right.
+    kind : str
+        ``"heading"``; ``"figure"``; ``"detail"``, a lesser figure; ``"remark"``, words that may take several
+        lines; ``"gap"``, some space.
+    """
+
+    label: str = ""
+    value: str = ""
+    kind: Kind = "figure"
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """Text laid out and ready to be drawn.
+
+    Attributes
+    ----------
+    rect : Rect
+        What it takes up on the screen [px].
+    texts : tuple
+        Words, place of their top left or top right [px], style, and on which side that is.
+    """
+
+    rect: Rect
+    texts: tuple[tuple[str, tuple[int, int], TextStyle, Literal["left", "right"]], ...]
+
+    def draw(self, canvas: Paper, theme: Theme) -> None:
+        """Draw the panel with its text."""
+        canvas.panel(self.rect, theme.panel, theme.outline, theme.panel_opacity)
+        for words, place, style, side in self.texts:
+            canvas.text(words, place, style, side)
+
+    def show(self, name: str, canvas: Canvas, theme: Theme) -> None:
+        """Draw it as a picture that is kept under a name."""
+        canvas.sheet(name, self.rect, (self, theme), lambda paper: self.draw(paper, theme))
+
+
+def text_size(canvas: Canvas) -> int:
+    """Return the height of text [px]: larger in a larger window."""
+    width, height = canvas.size
+    return min(max(round(min(height / 48, width / 68)), 12), 20)
+
+
+def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str]:
+    """Break words into lines no wider than ``width`` px; a word that is too long by itself is cut."""
+    lines: list[str] = []
+    line = ""
+    for word in words.split():
+        longer = f"{line} {word}" if line else word
+        if canvas.text_size(longer, style)[0] <= width:
+            line = longer
+            continue
+        if line:
+            lines.append(line)
+        line = word
+        while canvas.text_size(line, style)[0] > width and len(line) > 1:
+            cut = len(line) - 1
+            while cut > 1 and canvas.text_size(line[:cut], style)[0] > width:
+                cut -= 1
+            lines.append(line[:cut])
+            line = line[cut:]
+    return [*lines, line] if line else lines
+
+
+def _styles(kind: Kind, size: int, theme: Theme) -> tuple[TextStyle, TextStyle]:
+    small = max(size - 2, 10)
+    match kind:
+        case "heading":
+            return TextStyle(size, theme.heading, bold=True), TextStyle(small, theme.faint)
+        case "detail":
+            return TextStyle(small, theme.faint), TextStyle(small, theme.faint)
+        case "remark":
+            return TextStyle(small, theme.faint), TextStyle(small, theme.faint)
+        case _:
+            return TextStyle(size, theme.faint), TextStyle(size, theme.text)
+
+
+def lay_out(
+    lines: Iterable[Line], left: int, top: int, width: int, size: int, canvas: Canvas, theme: Theme
+) -> Panel:
+    """Lay lines out in a panel of a given place, width and text size [px]; its height follows."""
+    pad = round(0.7 * size)
+    inner = width - 2 * pad
+    y = top + pad
+    texts: list[tuple[str, tuple[int, int], TextStyle, Literal["left", "right"]]] = []
+    for line in lines:
+        if line.kind == "gap":
+            y += size // 2
+            continue
+        style, value_style = _styles(line.kind, size, theme)
+        room = inner - canvas.text_size(line.value + "  ", value_style)[0] if line.value else inner
+        height = canvas.text_size("Ag", style)[1]
+        if line.value:
+            drop = height - canvas.text_size("Ag", value_style)[1]
+            texts.append((line.value, (left + width - pad, y + drop), value_style, "right"))
+        pieces = broken(line.label, max(room, 1), canvas, style)
+        indent = size if line.kind == "detail" else 0
+        for piece in pieces:
+            texts.append((piece, (left + pad + indent, y), style, "left"))
+            y += height
+        y += height if not pieces else 0
+    return Panel((left, top, width, y + pad - top), tuple(texts))
+
+
+def draw_pill(
+    words: Sequence[str], middle: int, top: int, size: int, colour: Colour, canvas: Canvas, theme: Theme
+) -> Rect:
+    """Draw lines of words in a box around ``middle``, and return where it is [px]."""
+    style = TextStyle(size, colour, bold=True)
+    pad = round(0.55 * size)
+    widths = [canvas.text_size(line, style)[0] for line in words]
+    line_height = canvas.text_size("Ag", style)[1]
+    width, height = max(widths) + 4 * pad, line_height * len(words) + pad
+    rect = (middle - width // 2, top, width, height)
+    canvas.panel(rect, theme.panel, colour, 0.95)
+    for n, line in enumerate(words):
+        canvas.text(line, (middle, top + pad // 2 + n * line_height), style, "centre")
+    return rect

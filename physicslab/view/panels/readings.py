@@ -1,0 +1,128 @@
+"""What the HUD says of a world, line by line."""
+
+from __future__ import annotations
+
+from physicslab.diagnostics.energy import summation
+from physicslab.view.panels.figures import FrameMeter, WorldFigures
+from physicslab.view.panels.panels import Line
+from physicslab.view.panels.quantities import percentage, quantity, vector_quantity
+from physicslab.world import World
+
+__all__ = ["cost_lines", "figure_lines", "left_out_lines", "method_lines"]
+
+
+def figure_lines(world: World, figures: WorldFigures, frame_rate: float) -> list[Line]:
+    """Return what there is, how it moves, and what should not change."""
+    return [
+        Line(world.title or "PhysicsLab", kind="heading"),
+        Line("Frame rate", f"{frame_rate:.0f} FPS"),
+        Line("Time", f"{world.time:.2f} s"),
+        Line("Bodies", _bodies(figures)),
+        Line("Candidate pairs", f"{figures.candidate_pairs}"),
+        Line("Contacts", f"{figures.contacts}"),
+        *_energy_lines(world, figures),
+        *_error_lines(figures),
+        Line("Total momentum", quantity(figures.momentum.linear.magnitude, "kg m/s")),
+        Line("as a vector", vector_quantity(figures.momentum.linear, "kg m/s"), "detail"),
+        Line("Angular momentum", quantity(figures.momentum.angular, "kg m²/s")),
+        Line("Gravity", _gravity(world)),
+        *(Line(said, kind="remark") for said in [summation(world)] if said),
+    ]
+
+
+def _bodies(figures: WorldFigures) -> str:
+    return f"{figures.bodies}, {figures.asleep} asleep" if figures.asleep else f"{figures.bodies}"
+
+
+def _energy_lines(world: World, figures: WorldFigures) -> list[Line]:
+    energy, drift = figures.energy, figures.drift
+    lines = [
+        Line("Kinetic energy", quantity(energy.kinetic, "J")),
+        Line("linear", quantity(energy.kinetic_linear, "J"), "detail"),
+        Line("rotational", quantity(energy.kinetic_angular, "J"), "detail"),
+    ]
+    if energy.potential:
+        lines.append(Line("Potential energy", quantity(sum(energy.potential.values()), "J")))
+        lines += [Line(name, quantity(stored, "J"), "detail") for name, stored in energy.potential.items()]
+    change = drift.latest.total - drift.initial.total
+    return [
+        *lines,
+        Line("Total energy", quantity(energy.total, "J")),
+        Line("Energy drift", quantity(change, "J")),
+        Line("largest so far", f"{quantity(drift.largest, 'J')}, {percentage(drift.relative)}", "detail"),
+        Line("since the last edit", f"at {figures.since:.2f} s", "detail"),
+    ]
+
+
+def _error_lines(figures: WorldFigures) -> list[Line]:
+    if figures.known is None:
+        return []
+    return [
+        Line("Position error", quantity(figures.error, "m")),
+        Line(f"against {figures.known.what}", kind="detail"),
+    ]
+
+
+def _gravity(world: World) -> str:
+    physics = world.physics
+    if physics.gravity_mode == "none" or (physics.gravity_mode == "linear" and not physics.gravity):
+        return "off"
+    if physics.gravity_mode == "planet":
+        return f"G = {physics.G:.4g} N m²/kg²"
+    if physics.gravity.x == 0.0:
+        return f"{abs(physics.gravity.y):.4g} m/s² {'down' if physics.gravity.y < 0.0 else 'up'}"
+    return f"({physics.gravity.x:.3g}, {physics.gravity.y:.3g}) m/s²"
+
+
+def method_lines(world: World) -> list[Line]:
+    """Return how the world is stepped, and why so."""
+    simulation = world.simulation
+    parts = "substep" if simulation.substeps == 1 else "substeps"
+    return [
+        Line(kind="gap"),
+        Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
+        Line(world.method.integrator.title, kind="remark"),
+        Line(f"because: {world.method.reason}", kind="remark"),
+        *_division_lines(world),
+        *(Line(f"{_plain(name)} is computed by Python: slower", kind="remark") for name in world.interpreted),
+        *_collision_lines(world),
+    ]
+
+
+def _division_lines(world: World) -> list[Line]:
+    if world.divided <= 1:
+        return []
+    return [Line(f"the last step was divided into {world.divided}", kind="remark")]
+
+
+def _collision_lines(world: World) -> list[Line]:
+    method = world.method
+    if method.collisions == "none":
+        return []
+    words = {"exact": "Impacts at their exact times", "step": "Contacts found within steps"}
+    return [
+        Line(words[method.collisions], kind="remark"),
+        Line(f"because: {method.collision_reason}", kind="remark"),
+    ]
+
+
+def _plain(name: str) -> str:
+    return name.removesuffix("System")
+
+
+def cost_lines(world: World, meter: FrameMeter) -> list[Line]:
+    """Return what each system takes a frame."""
+    running = [system.name for system in world.schedule.running]
+    costs = {name: meter.cost.get(name, 0.0) for name in running}
+    lines = [Line("Running", "time per frame", "heading")]
+    lines += [Line(_plain(name), f"{cost:.2f} ms") for name, cost in costs.items()]
+    return [*lines, Line("Together", f"{sum(costs.values()):.2f} ms")]
+
+
+def left_out_lines(world: World) -> list[Line]:
+    """Return what the world does not need, and why."""
+    if not world.schedule.left_out:
+        return []
+    lines = [Line(kind="gap"), Line("Left out", kind="heading")]
+    lines += [Line(f"{_plain(out.name)}: {out.reason}", kind="remark") for out in world.schedule.left_out]
+    return lines

@@ -1,0 +1,128 @@
+"""Bodies as they appear on the screen: where, how large, in what colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Held, Mass, Shape, Transform, Velocity
+from physicslab.components.shape import BOX, CIRCLE
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.canvas import Canvas, Look
+from physicslab.view.canvas.theme import Theme
+from physicslab.world import World
+
+__all__ = ["POINT_RADIUS", "BodyRows", "body_rows", "draw_bodies", "own_colour"]
+
+type Rows = NDArray[np.int64]
+
+POINT_RADIUS = 5.0
+"""How large a body without a Shape appears [px]."""
+_SMALLEST = 0.9
+"""The least half extent of a body on the screen [px]: one that is far away is still seen."""
+
+
+@dataclass(frozen=True, slots=True)
+class BodyRows:
+    """Rows of bodies by how they are drawn; in each, static ones first, else in the order of their entities.
+
+    Attributes
+    ----------
+    boxes, discs, points : int64 arrays
+        Drawn in this order, so that points lie on top.
+    """
+
+    boxes: Rows
+    discs: Rows
+    points: Rows
+
+    def __len__(self) -> int:
+        return len(self.boxes) + len(self.discs) + len(self.points)
+
+
+def body_rows(world: World) -> BodyRows:
+    """Return the bodies of a world: what has a Transform, and a Shape, a Velocity or a Mass."""
+    rows = world.batch(Transform).rows
+    moves = world.table(Velocity).present[rows]
+    rows = np.concatenate((rows[~moves], rows[moves]))
+    kind = world.table(Shape)["kind"][rows]
+    is_body = world.table(Velocity).present[rows] | world.table(Mass).present[rows]
+    return BodyRows(rows[kind == BOX], rows[kind == CIRCLE], rows[(kind == 0) & is_body])
+
+
+@lru_cache(maxsize=8)
+def _palette(theme: Theme) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """Return rims and fills: of static, kinematic and held bodies, then of all others in turn."""
+    rims = (theme.static, theme.kinematic, theme.held, *theme.bodies)
+    return np.array(rims, np.uint8), np.array([theme.fill(rim) for rim in rims], np.uint8)
+
+
+_STATIC, _KINEMATIC, _HELD, _OWN = range(4)
+
+
+def own_colour(world: World, theme: Theme, rows: Rows) -> Rows:
+    """Return which of ``theme.bodies`` each body has."""
+    return world.roster.entities[rows] % len(theme.bodies)
+
+
+def _look(world: World, theme: Theme, rows: Rows) -> Look:
+    rims, fills = _palette(theme)
+    moves, held = world.table(Velocity).present[rows], world.table(Held).present[rows]
+    own = _OWN + own_colour(world, theme, rows)
+    fill = np.where(moves, np.where(world.table(Mass).present[rows], own, _KINEMATIC), _STATIC)
+    return Look(fills[fill], rims[np.where(held, _HELD, fill)], ~moves)
+
+
+def _marker_look(world: World, theme: Theme, rows: Rows) -> Look:
+    """Return the look of points: one colour throughout, and each its own, for a fixed sun is no wall."""
+    rims, _ = _palette(theme)
+    own = _OWN + own_colour(world, theme, rows)
+    colour = rims[np.where(world.table(Held).present[rows], _HELD, own)]
+    return Look(colour, colour, np.zeros(len(rows), np.bool_))
+
+
+def _on_screen(
+    centre: NDArray[np.float64], reach: NDArray[np.float64], size: tuple[int, int]
+) -> NDArray[np.bool_]:
+    """Whether each body can be seen; what is not finite cannot."""
+    # A column at a time: numpy is slow where the last axis is as short as two.
+    across, down = centre[:, 0], centre[:, 1]
+    with np.errstate(invalid="ignore"):
+        inside: NDArray[np.bool_] = (across > -reach) & (across < size[0] + reach)
+        inside &= (down > -reach) & (down < size[1] + reach)
+    return inside
+
+
+def draw_bodies(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+    """Draw every body that is on the screen."""
+    rows = body_rows(world)
+    _draw_boxes(world, rows.boxes, camera, theme, canvas)
+    _draw_discs(world, rows.discs, camera, theme, canvas)
+    centre = camera.project(world.table(Transform)["position"][rows.points])
+    radius = np.full(len(centre), POINT_RADIUS)
+    seen = _on_screen(centre, radius, camera.size)
+    if seen.any():
+        look = _marker_look(world, theme, rows.points[seen])
+        canvas.discs(centre[seen], radius[seen], np.zeros(len(look.rim)), look)
+
+
+def _draw_boxes(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+    transform, shape = world.table(Transform), world.table(Shape)
+    extent = np.stack((shape["width"][rows], shape["height"][rows]), axis=1) * camera.scale
+    extent = np.maximum(extent, 2.0 * _SMALLEST)
+    centre, angle = camera.project(transform["position"][rows]), transform["angle"][rows]
+    seen = _on_screen(centre, 0.5 * np.hypot(extent[:, 0], extent[:, 1]), camera.size) & np.isfinite(angle)
+    if seen.any():
+        canvas.boxes(centre[seen], extent[seen], angle[seen], _look(world, theme, rows[seen]))
+
+
+def _draw_discs(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+    transform = world.table(Transform)
+    radius = np.maximum(world.table(Shape)["radius"][rows] * camera.scale, _SMALLEST)
+    centre, angle = camera.project(transform["position"][rows]), transform["angle"][rows]
+    seen = _on_screen(centre, radius, camera.size) & np.isfinite(angle)
+    if seen.any():
+        canvas.discs(centre[seen], radius[seen], angle[seen], _look(world, theme, rows[seen]))

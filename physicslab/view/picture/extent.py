@@ -1,0 +1,78 @@
+"""The part of a world that there is something to see in."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Shape, Spring, Transform, Velocity
+from physicslab.view.canvas.camera import Extent
+from physicslab.view.picture.bodies import body_rows
+from physicslab.world import World
+
+__all__ = ["extent_of"]
+
+type Boxes = NDArray[np.float64]
+"""A float64 array (n, 4): xmin, ymin, xmax, ymax [m]."""
+
+_SURROUNDINGS = 4.0
+"""How much is shown at least, in sizes of the largest thing that moves."""
+
+
+def extent_of(world: World) -> Extent | None:
+    """Return the extent of all bodies, springs and bounds, or ``None`` where there are none.
+
+    What is static counts only as far as it is near the rest: a floor of a kilometre makes no speck of a ball.
+    """
+    world.synchronise()
+    rows = body_rows(world)
+    moves = world.table(Velocity).present
+    everything = np.concatenate((rows.boxes, rows.discs, rows.points))
+    shapes = _reach(world, everything)
+    movable = moves[everything]
+    lively = np.concatenate((shapes[movable], _fixed_ends(world), _bounds(world)))
+    still = shapes[~movable]
+    around = _union(lively)
+    if around is None:
+        return _union(still)
+    low, high = np.array(around[:2]), np.array(around[2:])
+    largest = np.nanmax(shapes[movable, 2:] - shapes[movable, :2], initial=0.0)
+    lacking = 0.5 * np.maximum(_SURROUNDINGS * largest - (high - low), 0.0)
+    low, high = low - lacking, high + lacking
+    reach = 0.5 * max(float((high - low).max()), 2.0 * _SURROUNDINGS * largest)
+    near = (still[:, :2] < high + reach).all(axis=1) & (still[:, 2:] > low - reach).all(axis=1)
+    clipped = (np.maximum(still[near, :2], low - reach), np.minimum(still[near, 2:], high + reach))
+    shown = np.concatenate((low, high)).reshape(1, 4)
+    return _union(np.concatenate((shown, np.concatenate(clipped, axis=1))))
+
+
+def _reach(world: World, rows: NDArray[np.int64]) -> Boxes:
+    transform, shape = world.table(Transform), world.table(Shape)
+    c, s = np.abs(np.cos(transform["angle"][rows])), np.abs(np.sin(transform["angle"][rows]))
+    width, height, radius = shape["width"][rows], shape["height"][rows], shape["radius"][rows]
+    half = np.stack(
+        (radius + 0.5 * (c * width + s * height), radius + 0.5 * (s * width + c * height)), axis=1
+    )
+    position = transform["position"][rows]
+    return np.concatenate((position - half, position + half), axis=1)
+
+
+def _fixed_ends(world: World) -> Boxes:
+    """Return the points of the world that springs hang from."""
+    spring = world.table(Spring)
+    rows = world.batch(Spring).rows
+    anchors = spring["anchor_b"][rows[spring["b"][rows] == 0]]
+    return np.concatenate((anchors, anchors), axis=1)
+
+
+def _bounds(world: World) -> Boxes:
+    bounds = world.physics.bounds
+    return np.array([bounds] if bounds is not None else [], np.float64).reshape(-1, 4)
+
+
+def _union(boxes: Boxes) -> Extent | None:
+    boxes = boxes[np.isfinite(boxes).all(axis=1)]
+    if not len(boxes):
+        return None
+    low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])

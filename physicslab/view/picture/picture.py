@@ -1,0 +1,58 @@
+"""A world as a picture file, without a window or a display."""
+
+from __future__ import annotations
+
+import os
+from typing import BinaryIO
+
+import pygame
+
+from physicslab.ecs.config import WindowConfig
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.theme import DARK, Theme
+from physicslab.view.picture.extent import extent_of
+from physicslab.view.picture.painting import draw_world
+from physicslab.world import World
+
+__all__ = ["save_png"]
+
+_WINDOW = WindowConfig()
+
+
+def save_png(
+    world: World,
+    path_or_stream: str | os.PathLike[str] | BinaryIO,
+    size: tuple[int, int] = _WINDOW.size,
+    theme: Theme = DARK,
+) -> None:
+    """Write a PNG of the world as it is now, all of it fitted into the picture.
+
+    Parameters
+    ----------
+    world : World
+        It is not changed.
+    path_or_stream : path or binary stream
+        Where to write. What is at that path already is replaced.
+    size : tuple of two ints
+        Width and height [px].
+    theme : Theme
+        The colours.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    surface = pygame.Surface(size, 0, 32)
+    camera = Camera(size, scale=_WINDOW.pixels_per_metre)
+    extent = extent_of(world)
+    if extent is not None:
+        camera.look_at(extent, camera.fitting_scale(extent))
+    with world.active():
+        draw_world(world, camera, theme, PygameCanvas(surface))
+    if isinstance(path_or_stream, str | os.PathLike):
+        with open(path_or_stream, "wb") as stream:
+            pygame.image.save(surface, stream, "picture.png")
+    else:
+        pygame.image.save(surface, path_or_stream, "picture.png")

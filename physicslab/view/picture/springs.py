@@ -1,0 +1,98 @@
+"""Springs as coils, and the pins they hang from."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Spring, Transform
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.canvas import Canvas, Look, Points
+from physicslab.view.canvas.theme import Theme
+from physicslab.world import World
+
+__all__ = ["coil", "draw_springs"]
+
+_TURN = 13.0
+"""About how long a turn of a coil is at rest [px]."""
+_FEWEST, _MOST = 4, 12
+"""How many turns a coil may have."""
+_LEAD = 0.12
+"""Share of a spring that is straight, at each end."""
+_WIDTH = 7.0
+"""Half width of a coil at rest [px]."""
+_SHORTEST = 26.0
+"""Length [px] below which a spring is a plain line."""
+_MANY = 500
+"""Number of springs above which each is a plain line."""
+_PIN = 4.0
+"""Radius of a pin [px]."""
+
+
+def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+    """Draw every spring, and a pin where it is fixed to the world."""
+    rows = world.batch(Spring).rows
+    if not len(rows):
+        return
+    spring, lookup = world.table(Spring), world.roster.lookup
+    own, a, b = world.batch(Spring).entities, spring["a"][rows], spring["b"][rows]
+    start = _end(world, lookup[np.where(a == 0, own, a)], spring["anchor_a"][rows])
+    end = _end(world, lookup[b], spring["anchor_b"][rows])
+    start, end = camera.project(start), camera.project(end)
+    rest = spring["rest_length"][rows] * camera.scale
+    seen = _on_screen(start, end, camera.size)
+    start, end, rest, fixed = start[seen], end[seen], rest[seen], (b == 0)[seen]
+    length = np.hypot(*(end - start).T)
+    plain = (length < _SHORTEST) if len(rows) <= _MANY else np.ones(len(length), np.bool_)
+    if plain.any():
+        canvas.lines(start[plain], end[plain], theme.spring, 1.6)
+    if not plain.all():
+        path = coil(start[~plain], end[~plain], rest[~plain])
+        canvas.lines(path[:, :-1].reshape(-1, 2), path[:, 1:].reshape(-1, 2), theme.spring, 1.6)
+    if fixed.any():
+        pins = end[fixed]
+        count = len(pins)
+        look = Look.plain(theme.pin, theme.pin, count)
+        canvas.discs(pins, np.full(count, _PIN), np.zeros(count), look)
+
+
+def coil(start: Points, end: Points, rest: NDArray[np.float64]) -> Points:
+    """Return the corners (n, k, 2) of zigzags between ends (n, 2), for springs of rest lengths (n,) [px].
+
+    The wire keeps its length: a spring that is pulled out grows slender, one that is pressed together wide.
+    """
+    along = end - start
+    length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-9)
+    across = np.stack((-along[:, 1], along[:, 0]), axis=1) / length[:, None]
+    # All have as many turns, so that they are one array.
+    turns = int(np.clip(round(float(np.median(rest)) / _TURN), _FEWEST, _MOST))
+    part = (1.0 - 2.0 * _LEAD) / (2 * turns)
+    natural = np.maximum(rest, _SHORTEST)
+    wire = np.hypot(part * natural, 2.0 * np.minimum(_WIDTH, 0.1 * natural))
+    swing = 0.5 * np.sqrt(np.maximum(wire * wire - (part * length) ** 2, 0.0))
+    swing = np.clip(swing, 1.0, 2.0 * _WIDTH)
+    share = np.concatenate(([0.0, _LEAD], _LEAD + part * (np.arange(2 * turns) + 0.5), [1.0 - _LEAD, 1.0]))
+    side = np.concatenate(([0.0, 0.0], np.resize([1.0, -1.0], 2 * turns), [0.0, 0.0]))
+    straight = start[:, None, :] + share[None, :, None] * along[:, None, :]
+    path: Points = straight + (swing[:, None] * side)[:, :, None] * across[:, None, :]
+    return path
+
+
+def _end(world: World, rows: NDArray[np.int64], anchor: Points) -> Points:
+    """Return where anchors in the bodies' own frames are in the world [m]; row 0 is the world itself."""
+    transform = world.table(Transform)
+    angle = transform["angle"][rows]
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = anchor[:, 0], anchor[:, 1]
+    place: Points = transform["position"][rows] + np.stack((c * x - s * y, s * x + c * y), axis=1)
+    return place
+
+
+def _on_screen(start: Points, end: Points, size: tuple[int, int]) -> NDArray[np.bool_]:
+    """Whether each spring can be seen; what is not finite cannot."""
+    margin = 2.0 * _WIDTH
+    with np.errstate(invalid="ignore"):
+        low, high = np.minimum(start, end), np.maximum(start, end)
+        inside: NDArray[np.bool_] = ((high > -margin) & (low < np.array(size) + margin)).all(axis=1)
+    # A line of more than a billion pixels is that of a body that is lost.
+    return inside & (np.abs(low) < 1e9).all(axis=1) & (np.abs(high) < 1e9).all(axis=1)
