@@ -2,7 +2,8 @@
 
 Each is a C function like a force of :mod:`physicslab.kernels.forces.packed_forces`, of the same numbers,
 behind how many coordinates there are. What it gets as ``v`` are three velocities one behind the other,
-each of so many numbers: y, to which it answers; u, the mean of the step; and v, that at the start. The end's is u + y.
+each of so many numbers: y, to which it answers; u, the mean of the step; and v, that at the start. At the
+end it is u + y.
 """
 
 import math
