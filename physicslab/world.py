@@ -104,14 +104,22 @@ class World(State):
     def _advance(self, h: float, steps: int) -> int:
         """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many."""
         with self._undoing():
-            stepper = self.stepper = self.steppers.ready(self, h)
-            self.compile(stepper.kernels)
             self.schedule.run(Stage.PREPARE, self, h)
-            made = stepper.advance(self, h, steps)
+            try:
+                made = self._best(h).advance(self, h, steps)
+            except NoClosedForm:  # a body was given another velocity, or another spring
+                self._choose()
+                made = self._best(h).advance(self, h, steps)
             self.schedule.run(Stage.FINISH, self, h * steps)
         self.steps += made.steps
         self.step_divisions = made.divisions
         return made.steps
+
+    def _best(self, h: float) -> Stepper:
+        """Return the best stepper for the coming step, with its kernels compiled."""
+        self.stepper = self.steppers.ready(self, h)
+        self.compile(self.stepper.kernels)
+        return self.stepper
 
     @contextmanager
     def _undoing(self) -> Iterator[None]:
