@@ -12,6 +12,7 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows, wake_all
 from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import Diverged, derive_masses
 from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
