@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from physicslab.lab.bench.catalogue import SCENES
-from physicslab.lab.stability.worlds import open_space
+from physicslab.lab.worlds import open_space
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 

@@ -29,8 +29,8 @@ from physicslab.components import Transform
 from physicslab.lab.peers.box2d_mirror import Box2DMirror
 from physicslab.lab.peers.peer import CannotBuild, Peer, find_contacts
 from physicslab.lab.peers.pymunk_mirror import PymunkMirror
-from physicslab.lab.stability.case import Case, run_case
-from physicslab.lab.stability.catalogue import CASES, select
+from physicslab.lab.stability.case import StabilityCase, run_case
+from physicslab.lab.stability.catalogue import CASES
 
 SUBSTEPS = 4
 NOT_ASKED = {
@@ -114,16 +114,16 @@ def passed(mirror: Peer) -> bool:
     return bool(x[last] > x[first])
 
 
-def ours(case: Case) -> Found:
+def ours(case: StabilityCase) -> Found:
     """Return what PhysicsLab makes of a case."""
     outcome = run_case(case)
     return Found(outcome.figure, str(outcome.verdict) if outcome.figure is not None else "stopped")
 
 
-def theirs(peer: type[Peer], substeps: int = 1) -> Callable[[Case], Found]:
+def theirs(peer: type[Peer], substeps: int = 1) -> Callable[[StabilityCase], Found]:
     """Return what measures a case in another engine."""
 
-    def measure(case: Case) -> Found:
+    def measure(case: StabilityCase) -> Found:
         try:
             with stepped_by(peer, substeps) as mirrors:
                 outcome = run_case(case)
@@ -138,7 +138,7 @@ def theirs(peer: type[Peer], substeps: int = 1) -> Callable[[Case], Found]:
     return measure
 
 
-def apart(measure: Callable[[Case], Found], case: Case, seconds: float) -> Found:
+def apart(measure: Callable[[StabilityCase], Found], case: StabilityCase, seconds: float) -> Found:
     """Measure in a process of its own, which an engine may end on numbers that it cannot work with."""
     context = multiprocessing.get_context("fork")
     here, there = context.Pipe(duplex=False)
@@ -154,9 +154,9 @@ def apart(measure: Callable[[Case], Found], case: Case, seconds: float) -> Found
         process.join()
 
 
-def chosen(names: list[str], long: bool) -> list[Case]:
+def chosen(names: list[str], long: bool) -> list[StabilityCase]:
     """Return the cases to run; two that differ by how PhysicsLab finds collisions are one."""
-    wanted = [case for name in names for case in select(name)] if names else list(CASES.values())
+    wanted = [case for name in names for case in CASES.select(name)] if names else list(CASES.values())
     return [
         case for case in wanted
         if case.group not in NOT_ASKED and case.name not in NOT_ASKED

@@ -10,7 +10,7 @@ from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import compile_kernels
 from physicslab.kernels.solver import impulse
 from physicslab.kernels.wide.layout import MASS_A, MASS_B, WIDE
-from physicslab.lab.stability.worlds import floor, open_space, place
+from physicslab.lab.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle, container, pile, pyramid
 from physicslab.world import World
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.accuracy.figures import number, record
-from physicslab.lab.accuracy.problem import Ladder, Problem, empty_world
+from physicslab.lab.accuracy.problem import Ladder, Problem
 from physicslab.lab.accuracy.states import distance
+from physicslab.lab.worlds import PLANETS, empty_world
 from physicslab.world import World
 
 __all__ = ["CHAOS", "crowd"]
@@ -22,7 +24,7 @@ _LIMITS = {5: (1e-4, 1e-11), 10: (1e-4, 1e-10), 15: (1e-4, 1e-10), 20: (1e-4, 6e
 
 
 def _pythagorean(simulation: SimulationConfig) -> World:
-    world = empty_world(simulation, planets=True)
+    world = empty_world(simulation, PLANETS)
     for i, (mass, where) in enumerate(((3, (1, 3)), (4, (-2, -1)), (5, (1, -1))), 1):
         world.spawn(Transform(where), Velocity(), Mass(mass), name=str(i))
     return world
@@ -79,7 +81,7 @@ def crowd() -> list[tuple[tuple[float, float], tuple[float, float]]]:
 
 
 def _crowd(simulation: SimulationConfig) -> World:
-    world = empty_world(simulation, planets=True, softening=CROWD_SOFTENING)
+    world = empty_world(simulation, replace(PLANETS, softening=CROWD_SOFTENING))
     for i, (where, how) in enumerate(crowd()):
         world.spawn(Transform(where), Velocity(how), Mass(1.0 / CROWD), name=str(i))
     return world

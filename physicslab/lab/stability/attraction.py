@@ -10,8 +10,8 @@ import numpy as np
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import Drift
 from physicslab.ecs.config import PhysicsConfig
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import open_space, spawn_point
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import open_space, spawn_point
 from physicslab.prefabs import binary
 from physicslab.state.bodies import Diverged
 from physicslab.world import World
@@ -64,7 +64,7 @@ def _pythagorean() -> float:
 
 ATTRACTION = [
     *(
-        Case(
+        StabilityCase(
             name=name, title=title, group="planets", right="a clear end that says when, or right: never NaN",
             figure="bodies that are nowhere, and no word of it", limit=0.0,
             measure=partial(_unclear, softening, apart),
@@ -75,12 +75,12 @@ ATTRACTION = [
             ("planets_head_on", "two bodies that fall into each other, softening 0", 0.0, 1.0),
         )
     ),
-    Case(
+    StabilityCase(
         name="planets_close", title="two bodies that pass at 1e-6 of their largest distance", group="planets",
         right="the adaptive method keeps the energy", figure="largest change of energy", limit=1e-6,
         measure=_close_encounter,
     ),
-    Case(
+    StabilityCase(
         name="planets_pythagorean", title="the Pythagorean problem, t = 70", group="planets",
         right="the adaptive method keeps the energy", figure="largest change of energy", limit=1e-6,
         measure=_pythagorean,
