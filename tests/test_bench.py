@@ -184,7 +184,7 @@ def test_a_run_that_diverges_is_told_in_the_end(
     ("arguments", "line"),
     [
         (["pile_4001"], '"pile_4001": is no scene; did you mean "pile_4000"?'),
-        (["qqqq"], '"qqqq": is no scene; the groups are pyramids, piles, gases, small; '),
+        (["qqqq"], '"qqqq": is no scene; the groups are pyramids, piles, gases, small, moving; '),
         (["pile_1000", "--json", "none/x.json"], "--json none/x.json: cannot be written"),
     ],
 )

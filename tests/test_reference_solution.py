@@ -1,4 +1,4 @@
-"""Motions that are known exactly, against references of twenty digits and against the engine."""
+"""Exact solutions, against references of twenty digits and against the engine."""
 
 import math
 

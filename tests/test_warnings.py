@@ -1,4 +1,4 @@
-"""ModelWarning: said where something is not to be trusted, and nowhere else."""
+"""Warnings: given where a world cannot be trusted, and nowhere else."""
 
 import itertools
 import json

@@ -30,7 +30,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def execute(arguments: Namespace) -> int:
-    """Study what was named, print a table of each, and write what was asked for."""
+    """Study what was named, print a table of each, and write the outputs that were chosen."""
     if arguments.list:
         return list_cases(PROBLEMS)
     scenes: dict[str, None] = {}

@@ -52,7 +52,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def execute(arguments: Namespace) -> int:
-    """Time what was named, print the tables, and write what was asked for."""
+    """Time what was named, print the tables, and write the outputs that were chosen."""
     if arguments.list:
         return list_cases(SCENES)
     extras: list[str] = []

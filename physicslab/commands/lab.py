@@ -109,11 +109,11 @@ class LabRun:
             progress.clear()
 
     def draw(self, name: str, picture: Callable[[], bytes]) -> None:
-        """Write a plot, where plots were asked for; only then is ``picture`` called."""
+        """Write a plot, if ``--plot`` was given; only then is ``picture`` called."""
         if self._pictures is not None:
             Output("--plot", str(self._pictures / f"{name}.png")).write(picture())
 
     def write(self, document: dict[str, object]) -> None:
-        """Write the document, where it was asked for."""
+        """Write the document, if ``--json`` was given."""
         if self._json is not None:
             self._json.write(json_text(document).encode("utf-8"))

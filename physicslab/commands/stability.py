@@ -1,4 +1,4 @@
-"""Run what is stiff, extreme or hostile, and say what falls short."""
+"""Run stiff, extreme and hostile cases: which pass, which fall short."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def execute(arguments: Namespace) -> int:
-    """Run what was named, print a line of each, and write what was asked for."""
+    """Run what was named, print a line of each, and write the outputs that were chosen."""
     if arguments.list:
         return list_cases(CASES)
     cases = chosen_cases(arguments.names or CASES, CASES, _unknown)

@@ -98,7 +98,7 @@ class Drift:
     def sample(self, world: World) -> None:
         """Measure the energy as it is now."""
         self.latest = measure_energy(world)
-        # numpy's maximum, unlike max, lets NaN through.
+        # numpy's maximum, unlike max, keeps NaN.
         self.largest = float(np.maximum(self.largest, abs(self.latest.total - self.initial.total)))
         self._scale = max(self._scale, self.latest.kinetic)
 

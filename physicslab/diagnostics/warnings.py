@@ -1,8 +1,8 @@
 """Warnings: where a world cannot be trusted as it is stepped, and which setting would help.
 
-The limits below are measured, and each says how; documentation takes its figures from here. Nothing here runs
-within a step: finding warnings costs some 50 us for a few bodies and below a millisecond for thousands, and is
-done ten times a second or once a measurement.
+The limits below are measured, as each describes; documentation takes its figures from here. Nothing here
+runs within a step: finding warnings costs some 50 us for a few bodies and below a millisecond for thousands,
+and is done ten times a second or once a measurement.
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ _SUBSTEPS_LIMIT = 10_000
 """Of a scene's configuration."""
 OVERLAP_LIMIT = 0.2
 """Overlap as a share of the smaller body. A stack of ten equal boxes stays below 0.005, 300 kg on 1 kg below
-0.08, a pile of 900 bodies that lands has 0.16 for a moment; a body that is pushed through another passes 0.3."""
+0.08, a pile of 900 bodies that lands has 0.16 for a moment; one that goes through another passes 0.3."""
 SPEED_LIMIT = 1.0
-"""Relative speed times the substep, in sizes of the smaller body, among several neighbours. A single impact is
-right at any speed, because the motion is swept; but a body collides with one neighbour a substep: of 20 discs
-of e = 1 in walls none is lost in 300 steps at 1, three at 2, twelve at 5."""
+"""Relative speed times the substep, in sizes of the smaller body, among several neighbours. A single impact
+is right at any speed, because the motion is swept; but a body collides with one neighbour a substep: of 20
+discs of e = 1 in walls none is lost in 300 steps at 1, three at 2, twelve at 5."""
 SPIN_LIMIT = 0.25
 """Angle that a box turns by in a substep [rad] near others. Places are swept, corners are not: a spinning box
 dropped on a floor lands 8 % off at 0.25, 25 % off at 0.5, anywhere at 1; energy never grows, up to 5."""
 MASS_RATIO_LIMIT = 3000.0
-"""Mass of a body over that of a lighter one that it lies on. On top of ten boxes of 1 m a body a thousand times
-as heavy sinks by 2 cm in 10 s, three thousand times by 4 cm, ten thousand times by 38 cm: substeps, which are
-made shorter for such loads, are then as short as they may be."""
+"""Mass of a body over that of a lighter one that it lies on. On top of ten boxes of 1 m a body a thousand
+times as heavy sinks by 2 cm in 10 s, three thousand times by 4 cm, ten thousand times by 38 cm: substeps,
+which are made shorter for such loads, are then as short as they may be."""
 DISTANCE_LIMIT = 1e9
 """Coordinate in sizes of a body: float64 keeps places there to 1e-7 of the body, and a tower to 1e-3."""
 

@@ -15,7 +15,7 @@ from physicslab.state.bodies import Diverged
 __all__ = ["Case", "Catalogue", "Job", "attempt", "cpu_time", "run_jobs"]
 
 type Job[Result] = Iterator[float | Result]
-"""Work that yields the share of it that is done (0 to 1) now and then, and at last what came of it."""
+"""Work that yields the share of it that is done (0 to 1) now and then, and at last the result."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

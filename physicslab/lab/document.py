@@ -28,7 +28,7 @@ def finite(number: float | None) -> float | None:
 def machine(*, peers: bool = False) -> dict[str, str | int]:
     """Return the processor's model, how many there are, and the versions of what was measured.
 
-    Nothing in it says whose machine it is.
+    It does not identify the machine.
     """
     found: dict[str, str | int] = {
         "cpu": _model(),

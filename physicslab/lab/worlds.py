@@ -52,7 +52,7 @@ def open_space(
     physics: PhysicsConfig | None = None,
     **simulation: float | str | bool,
 ) -> World:
-    """Return an empty world in which nothing sleeps unless that is asked for, so that creep is seen.
+    """Return an empty world in which nothing sleeps unless ``sleeping`` is given, so that creep is seen.
 
     Parameters
     ----------

@@ -18,13 +18,13 @@ __all__ = ["LEFT_OUT", "PROBLEMS"]
 PROBLEMS = Catalogue((*BALLISTIC, *OSCILLATORS, *STIFF, *ORBITS, *CHAOS, *IMPACTS, *FRICTION, *SLOPES))
 """Every problem by name, from the simplest on; families are those of one source."""
 
-_NO_RODS = "the engine has no rigid rods: a pendulum in it hangs on a spring (see elastic_pendulum)"
+_NO_RODS = "the engine has no rigid rods: a pendulum in it swings on a spring (see elastic_pendulum)"
 
 LEFT_OUT = (
     LeftOut("pendulum_period", _NO_RODS),
     LeftOut("pendulum_state", _NO_RODS),
     LeftOut("atwood", "the engine has no ropes over pulleys"),
-    LeftOut("plummer100", "its figures do not give the hundred places it starts from; see crowd100"),
+    LeftOut("plummer100", "its figures do not contain the hundred places it starts from; see crowd100"),
     LeftOut("galperin_n5", "314,159 collisions, of which only the number is on record"),
 )
 """Reference problems that are not among these, and why."""

@@ -63,9 +63,9 @@ CROWD, CROWD_SOFTENING, CROWD_TIME = 100, 0.05, 2.3
 def crowd() -> list[tuple[tuple[float, float], tuple[float, float]]]:
     """Return place [m] and velocity [m/s] of each of 100 bodies of 10 g, with no random numbers in it.
 
-    Radii are those of a Plummer disc by quantiles, directions go on by the golden angle, and every third body
-    goes round the other way, at two thirds of the speed of a circle. All are multiples of 2^-20, so that
-    every arithmetic begins at the same numbers.
+    Radii are those of a Plummer disc by quantiles, directions advance by the golden angle, and every third
+    body circles the other way; the speed is two thirds of that of a circular orbit. All are multiples of
+    2^-20, so that arithmetic of any precision begins at the same numbers.
     """
     golden = math.pi * (3.0 - math.sqrt(5.0))
     bodies = []
@@ -108,7 +108,7 @@ CHAOS = (
         excellent=1e-6,
         ladder=Ladder(128, 5),
         keeps=_ALL,
-        note="our own, in place of plummer100, whose start the figures do not tell",
+        note="our own, in place of plummer100, whose figures do not contain its start",
     ),
 )
 """Their problems."""

@@ -48,7 +48,7 @@ def _galperin(n: int, rungs: int) -> Problem:
         group="collision",
         source="galperin",
         compared=f"velocities and the large disc's place 1 s after the last of {_count(key)} collisions",
-        measure="largest error [m/s], [m]; excellent and good ask for the exact number of collisions as well",
+        measure="largest error [m/s], [m]; excellent and good need the exact number of collisions as well",
         build=build,
         times=(end,),
         error=error,

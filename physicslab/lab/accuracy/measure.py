@@ -81,7 +81,7 @@ def finish(problem: Problem, world: World) -> float:
     largest = 0.0
     for i, t in enumerate(problem.times):
         world.run(seconds=t - world.time)
-        largest = float(np.maximum(largest, problem.error(world, i)))  # numpy's lets NaN through
+        largest = float(np.maximum(largest, problem.error(world, i)))  # numpy's maximum keeps NaN
     return largest
 
 

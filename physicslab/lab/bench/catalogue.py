@@ -48,7 +48,7 @@ def _boxes(base: int) -> World:
 
 
 def discs(count: int, systems: tuple[System, ...] | None = None) -> World:
-    """Return discs of 0.2 m in a container, three times as wide as high whatever their number.
+    """Return discs of 0.2 m in a container, three times as wide as high for any number.
 
     ``systems`` are every physics system there is, where none are given.
     """
@@ -61,7 +61,7 @@ def discs(count: int, systems: tuple[System, ...] | None = None) -> World:
 
 
 def _gas(count: int) -> World:
-    """Return elastic discs that fill 17 % of a box, whatever their number."""
+    """Return elastic discs that fill 17 % of a box, for any number."""
     scale = math.sqrt(count / 2_000)
     bounds = (-12.0 * scale, -7.5 * scale, 12.0 * scale, 7.5 * scale)
     laws = PhysicsConfig(gravity_mode="none", bounds=bounds, bounds_restitution=1.0, bounds_friction=0.0)

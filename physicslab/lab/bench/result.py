@@ -1,4 +1,4 @@
-"""What came of a scene."""
+"""The results of a scene."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["EngineResult", "SceneResult"]
 
 @dataclass(slots=True)
 class EngineResult:
-    """What came of a scene in one engine.
+    """The results of a scene in one engine.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class EngineResult:
 
 @dataclass(slots=True)
 class SceneResult:
-    """What came of a scene.
+    """The results of a scene.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class SceneResult:
 
     @property
     def ours(self) -> EngineResult:
-        """What came of it in PhysicsLab."""
+        """The results in PhysicsLab."""
         return self.engines[OURS]
 
     @property

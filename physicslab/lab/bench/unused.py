@@ -49,7 +49,7 @@ class UnusedCase:
 
 @dataclass(frozen=True, slots=True)
 class Unused:
-    """What came of it.
+    """The results of a case.
 
     Attributes
     ----------

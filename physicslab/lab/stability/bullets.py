@@ -27,7 +27,7 @@ def _static(world: World, thickness: float) -> int:
 
 
 def _towards(world: World, thickness: float) -> int:
-    """Spawn a wall that comes on at 20 m/s, whatever it meets."""
+    """Spawn a wall that comes on at 20 m/s and is not slowed by impacts."""
     shape, material = Shape.box(thickness, 1e4), Material(1.0, 0.5)
     return world.spawn(Transform((0.0, 0.0)), Velocity((-20.0, 0.0)), shape, material)
 

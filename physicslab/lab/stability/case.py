@@ -1,4 +1,4 @@
-"""What a case of the stability lab is, and what came of one."""
+"""Cases of the stability lab, and their outcomes."""
 
 from __future__ import annotations
 
@@ -47,14 +47,14 @@ class StabilityCase(Case):
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came of a case.
+    """The result of a case.
 
     Attributes
     ----------
     case : StabilityCase
         Which.
     figure : float, optional
-        What was measured; ``None`` where the run stopped before its end, or came to no finite number.
+        What was measured; ``None`` where the run stopped before its end, or the number is not finite.
     failure : str
         Why there is no figure.
     wall_s : float
@@ -74,7 +74,7 @@ class Outcome:
 
 
 def run_case(case: StabilityCase) -> Outcome:
-    """Run a case and return what came of it, a run that diverged included."""
+    """Run a case and return its outcome; that of a run that diverged is no exception."""
     start = time.perf_counter()
     figure, failure = attempt(case.measure)
     return Outcome(case, figure, failure, time.perf_counter() - start)

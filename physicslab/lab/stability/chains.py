@@ -36,7 +36,7 @@ def _chain(touches: bool) -> tuple[World, list[int]]:
 
 
 def _reach(touches: bool) -> float:
-    """Return the farthest that any mass gets from where the chain hangs, in lengths of the chain."""
+    """Return the largest distance of a mass from the hook, in lengths of the chain."""
     world, balls = _chain(touches)
     rows = [world.component(ball, Transform) for ball in balls]
     return largest(world, _STEPS, lambda: max(row.position.magnitude for row in rows) / 10.0)

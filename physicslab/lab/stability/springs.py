@@ -53,7 +53,7 @@ def _rest_error(stiffness: float, touches: bool) -> float:
 
 
 def _energy(stiffness: float, touches: bool) -> float:
-    """Return what energy changed by; nothing where the engine says that it does not follow the motion."""
+    """Return the change of energy; 0 where the engine reports that it does not follow the motion."""
     world, _ = _hung(stiffness, _STRETCH, gravity=None, touches=touches)
     changed = energy_change(world, _STEPS)
     return 0.0 if "too fast to be followed" in world.method.reason else changed
@@ -132,7 +132,7 @@ def _of_spring(name: str, stiffness: float, *, touches: bool) -> list[StabilityC
         ),
         StabilityCase(
             name=f"{prefix}_{name}_energy", title=f"spring of {what}", group=group,
-            right="energy is kept where the oscillation can be resolved; where not, the engine says so",
+            right="energy is kept where the oscillation can be resolved; where not, the engine reports it",
             figure="largest change of energy that is not announced", limit=1e-6,
             measure=partial(_energy, stiffness, touches),
         ),
