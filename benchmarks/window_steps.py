@@ -28,7 +28,7 @@ from physicslab.lab.bench.engine import OurEngine
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.document import lab_document, machine_text
 from physicslab.lab.table import table
-from physicslab.systems.schedule import Stage
+from physicslab.systems.system import Stage
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.window import Window
 from physicslab.world import World

@@ -25,7 +25,7 @@ from physicslab.lab.bench.unused import UNUSED, Unused, measure_unused
 from physicslab.lab.case import Catalogue
 from physicslab.lab.document import machine_text
 from physicslab.lab.peers.pymunk_mirror import PymunkMirror
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.world import World
 
 

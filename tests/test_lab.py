@@ -22,7 +22,7 @@ from physicslab.lab.document import lab_document, machine
 from physicslab.lab.peers.peer import find_contacts
 from physicslab.lab.stability.catalogue import CASES
 from physicslab.lab.table import Columns, table
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 
 
 def test_jobs_run_one_after_the_other_and_count_by_their_weight() -> None:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from physicslab.components import Mass, Transform, Velocity
-from physicslab.diagnostics.forces import running_forces
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels import energy
 from physicslab.world import World
@@ -52,7 +51,7 @@ class Momentum:
 
 def _motion(world: World) -> tuple[float, float, float, float, float]:
     world.synchronise()
-    world.schedule.compile((energy.motion_totals,))
+    world.compile((energy.motion_totals,))
     velocity, mass = world.table(Velocity), world.table(Mass)
     return energy.motion_totals(
         world.table(Transform)["position"], velocity["linear"], velocity["angular"],
@@ -66,7 +65,7 @@ def measure_energy(world: World) -> Energy:
     translation, rotation, *_ = _motion(world)
     potential: dict[str, float] = {}
     with world.active():
-        for force in running_forces(world):
+        for force in world.schedule.forces:
             if force.potential is not None:
                 stored = force.potential_energy(world)
                 potential[force.potential] = potential.get(force.potential, 0.0) + stored
@@ -111,4 +110,4 @@ class Drift:
 
 def summation(world: World) -> str:
     """Return how the running forces are summed, where one does not add pair by pair; else nothing."""
-    return "; ".join(words for force in running_forces(world) if (words := force.summation(world)))
+    return "; ".join(words for force in world.schedule.forces if (words := force.summation(world)))

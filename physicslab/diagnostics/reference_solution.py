@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Transform, Velocity
-from physicslab.diagnostics.forces import running_forces
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.ode.kepler import propagate_kepler
-from physicslab.ode.system import why_not_smooth
+from physicslab.stepping.plan import why_not_smooth
 from physicslab.world import World
 
 __all__ = ["ReferenceSolution", "reference_solution"]
@@ -53,15 +52,15 @@ def reference_solution(world: World) -> ReferenceSolution | None:
     :func:`~physicslab.ode.closed_form.closed_form`), and for two bodies that attract each other.
     """
     world.synchronise()
-    if why_not_smooth(world) is not None or not len(world.batch(Transform, Velocity)):
+    if why_not_smooth(world, world.schedule) is not None or not len(world.batch(Transform, Velocity)):
         return None
     try:
-        form = closed_form(world)
+        form = closed_form(world, world.schedule.forces)
     except NoClosedForm:
         return _two_bodies(world)
     x = world.table(Transform)["position"][form.rows].copy()
     v = world.table(Velocity)["linear"][form.rows].copy()
-    world.schedule.compile((propagate,))
+    world.compile((propagate,))
 
     def positions_after(t: float) -> NDArray[np.float64]:
         positions, velocities = x.copy(), v.copy()
@@ -75,7 +74,7 @@ def reference_solution(world: World) -> ReferenceSolution | None:
 
 def _two_bodies(world: World) -> ReferenceSolution | None:
     """Return Kepler's solution where two bodies attract each other and nothing else acts."""
-    physics, forces = world.physics, [force.name for force in running_forces(world)]
+    physics, forces = world.physics, [force.name for force in world.schedule.forces]
     rows = world.batch(Transform, Mass).rows
     moving = np.flatnonzero(world.table(Transform).present & world.table(Velocity).present)
     alone = forces == ["GravitySystem"] and physics.gravity_mode == "planet" and physics.softening == 0.0

@@ -17,7 +17,7 @@ from physicslab.components.shape import BOX
 from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
 from physicslab.diagnostics.forces import fastest_force
 from physicslab.diagnostics.warning_records import ModelWarning, WorstWarnings
-from physicslab.ode.system import spring_ends
+from physicslab.state.packed import spring_ends
 from physicslab.world import World
 
 __all__ = [
@@ -58,7 +58,7 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
     Nothing is changed; the figures are those of the last step.
     """
     found = [*_refusals(world), *_division(world), *_rates(world), *_distance(world)]
-    if world.method.collisions == "step":
+    if world.plan.collisions == "step":
         graph = contact_graph(world)
         found += [
             *_overlap(world, graph), *_mass_ratios(world, graph), *_speeds(world, graph),
@@ -69,7 +69,7 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
 
 def _refusals(world: World) -> Iterator[ModelWarning]:
     """Yield settings that the engine could not follow."""
-    method = world.method
+    method = world.plan
     if method.refused:
         yield ModelWarning(None, method.refused, None, "", None, 'simulation.integrator = "auto"')
     if world.simulation.collisions == "exact" and method.collisions == "step":
@@ -84,7 +84,7 @@ def _division(world: World) -> Iterator[ModelWarning]:
 
 def _rates(world: World) -> Iterator[ModelWarning]:
     """Yield the fastest force, if it is too fast for the steps that are made."""
-    method, dt = world.method, world.simulation.dt
+    method, dt = world.plan, world.simulation.dt
     integrator = method.integrator if method.smooth else method.split_forces or method.stages
     if method.collisions == "exact" or integrator.chooses_steps or math.isinf(integrator.order):
         return

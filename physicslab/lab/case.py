@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 
 __all__ = ["Case", "Catalogue", "Job", "attempt", "cpu_time", "run_jobs"]
 

@@ -63,7 +63,7 @@ def measure(problem: Problem, setting: Setting) -> Measurement:
     if not failure and cpu_s < _REPEATED_BELOW_S:
         again = (problem.build(setting.simulation(problem)) for _ in range(3))
         cpu_s = statistics.median(_timed(problem, setting, other)[0] for other in again)
-    method = world.method
+    method = world.plan
     if method.integrator.chooses_steps:
         cost = method.integrator.evaluations
         dt, steps = None, (world.force_evaluations // cost if cost else len(problem.times))
@@ -88,13 +88,13 @@ def finish(problem: Problem, world: World) -> float:
 def _timed(problem: Problem, setting: Setting, world: World) -> tuple[float, float | None, str]:
     """Return the process time [s], the error, and what went wrong."""
     world.synchronise()
-    compiled = world.schedule.compile_s
+    compiled = world.compile_s
     search = problem.search
     if search is None:
         run = partial(finish, problem, world)
     else:
         run = partial(search, lambda: setting.simulation(problem))
     cpu_s, (error, failure) = cpu_time(partial(attempt, run))
-    if world.schedule.compile_s > compiled:  # kernels were loaded: what that took is no part of the method
-        cpu_s = max(0.0, cpu_s - (world.schedule.compile_s - compiled))
+    if world.compile_s > compiled:  # kernels were loaded: what that took is no part of the method
+        cpu_s = max(0.0, cpu_s - (world.compile_s - compiled))
     return cpu_s, error, failure

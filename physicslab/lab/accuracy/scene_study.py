@@ -134,7 +134,7 @@ def _limited(substeps: float) -> int:
 
 
 def _takes(load: Callable[[], World], plain: SimulationConfig, method: str) -> bool:
-    return not _prepared(load, dataclasses.replace(plain, integrator=method)).method.refused
+    return not _prepared(load, dataclasses.replace(plain, integrator=method)).plan.refused
 
 
 def _prepared(load: Callable[[], World], simulation: SimulationConfig) -> World:
@@ -163,7 +163,7 @@ def _tightest(load: Callable[[], World], plain: SimulationConfig) -> tuple[NDArr
 def _row(
     load: Callable[[], World], simulation: SimulationConfig, best: NDArray[np.float64] | None
 ) -> SceneRow:
-    method = _prepared(load, simulation).method
+    method = _prepared(load, simulation).plan
     parts = 1 if method.integrator.chooses_steps else method.substeps
     step = f"{simulation.dt / parts:.3g} s"
     if method.integrator.chooses_steps:

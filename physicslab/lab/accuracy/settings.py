@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from physicslab.diagnostics.forces import fastest_force, running_forces
+from physicslab.diagnostics.forces import fastest_force
 from physicslab.ecs.config import SimulationConfig
 from physicslab.integrators import Integrator
 from physicslab.lab.accuracy.problem import Problem
@@ -61,8 +61,8 @@ def refusal(problem: Problem, method: Integrator) -> str:
         return problem.not_used[method.name]
     world = problem.build(SimulationConfig(dt=problem.dt, integrator=method.name))
     world.synchronise()
-    if world.method.refused:
-        return world.method.refused
+    if world.plan.refused:
+        return world.plan.refused
     if method.chooses_steps and method.evaluations:
         rate, _ = fastest_force(world)
         work = problem.seconds * rate * method.evaluations / _STIFF_LIMIT
@@ -89,4 +89,4 @@ def sees_velocity(problem: Problem) -> bool:
     """Whether forces in a problem depend on velocities."""
     world = problem.build(SimulationConfig(dt=problem.dt))
     world.synchronise()
-    return any(force.sees_velocity(world) for force in running_forces(world))
+    return any(force.sees_velocity(world) for force in world.schedule.forces)

@@ -16,8 +16,8 @@ from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.case import Catalogue
 from physicslab.lab.worlds import open_space
 from physicslab.prefabs import box, container, gas, pile, pyramid
-from physicslab.systems.schedule import System
 from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import System
 from physicslab.world import World
 
 __all__ = [

@@ -56,7 +56,7 @@ def _energy(stiffness: float, touches: bool) -> float:
     """Return the change of energy; 0 where the engine reports that it does not follow the motion."""
     world, _ = _hung(stiffness, _STRETCH, gravity=None, touches=touches)
     changed = energy_change(world, _STEPS)
-    return 0.0 if "too fast to be followed" in world.method.reason else changed
+    return 0.0 if "too fast to be followed" in world.plan.reason else changed
 
 
 def _past_limit(damping: float, kind: str, touches: bool) -> float:
