@@ -7,15 +7,15 @@ import math
 import pytest
 
 from physicslab import cli
-from physicslab.lab.stability.case import Case, Verdict, run_case
-from physicslab.lab.stability.catalogue import CASES, select
+from physicslab.lab.stability.case import StabilityCase, Verdict, run_case
+from physicslab.lab.stability.catalogue import CASES
 from physicslab.state.masses import Diverged
 
 
 @pytest.mark.parametrize(
     "case", [pytest.param(case, id=case.name) for case in CASES.values() if not case.long]
 )
-def test_the_case_passes(case: Case) -> None:
+def test_the_case_passes(case: StabilityCase) -> None:
     outcome = run_case(case)
     assert outcome.verdict is Verdict.PASSED, f"{outcome.figure} > {case.limit}; {outcome.failure}"
 
@@ -26,8 +26,8 @@ def test_every_case_says_what_is_right() -> None:
         assert math.isfinite(case.limit) and case.limit >= 0.0, case.name
 
 
-def case_of(figure: float) -> Case:
-    return Case(
+def case_of(figure: float) -> StabilityCase:
+    return StabilityCase(
         name="x", title="X", group="g", right="r", figure="f", limit=1.0, unit="m", measure=lambda: figure
     )
 
@@ -53,9 +53,9 @@ def test_what_is_not_finite_falls_short(figure: float) -> None:
 
 
 def test_a_name_is_that_of_a_case_or_of_a_group() -> None:
-    assert select("spring_1_rest") == [CASES["spring_1_rest"]]
-    assert select("dampers") == [case for case in CASES.values() if case.group == "dampers"]
-    assert select("nothing") == []
+    assert CASES.select("spring_1_rest") == [CASES["spring_1_rest"]]
+    assert CASES.select("dampers") == [case for case in CASES.values() if case.group == "dampers"]
+    assert CASES.select("nothing") == []
 
 
 def test_the_command_prints_a_line_each_and_a_summary(capsys: pytest.CaptureFixture[str]) -> None:
@@ -64,7 +64,7 @@ def test_the_command_prints_a_line_each_and_a_summary(capsys: pytest.CaptureFixt
     assert err == ""
     head, *rows, last = out.splitlines()
     assert head.split()[:4] == ["case", "figure", "limit", "verdict"]
-    named = [case.name for case in select("dampers")]
+    named = [case.name for case in CASES.select("dampers")]
     assert [row.split()[0] for row in rows] == named
     assert all("passed" in row for row in rows)
     assert last.startswith(f"{len(named)} of {len(named)} cases passed, in ")
@@ -75,7 +75,7 @@ def test_the_document_alone_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -
     out, err = capsys.readouterr()
     assert err == ""
     found = json.loads(out, parse_constant=lambda word: pytest.fail(f"{word} in JSON"))
-    assert list(found) == ["format", "passed", "falls_short", "cases"]
+    assert list(found) == ["format", "machine", "passed", "falls_short", "cases"]
     assert (found["format"], found["passed"], found["falls_short"]) == ("physicslab-stability/1", 1, [])
     (case,) = found["cases"]
     assert list(case) == [

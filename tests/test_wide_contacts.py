@@ -14,7 +14,7 @@ from physicslab.kernels.solver import stages
 from physicslab.kernels.solver.arguments import Acting, Inverse, Softness
 from physicslab.kernels.wide import slots
 from physicslab.kernels.wide.layout import MASS_A, MASS_B, WIDE
-from physicslab.lab.stability.worlds import floor, open_space, place
+from physicslab.lab.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle, container, pile, pyramid
 from physicslab.world import World
 

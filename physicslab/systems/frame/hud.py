@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from physicslab.diagnostics.warnings import Advice, advise
+from physicslab.diagnostics.warnings import ModelWarning, find_warnings
 from physicslab.systems.system import Stage, System, at
 from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.controls.controls import CONTROLS
@@ -68,7 +68,7 @@ class HudSystem(System):
         self._world: World | None = None
         self._panels: list[Panel] = []
         self._legend: Legend | None = None
-        self._advice: tuple[Advice, ...] = ()
+        self._advice: tuple[ModelWarning, ...] = ()
         self._overlays = (False, False, True)
         self._middle = 0
         self._hint: Hint
@@ -170,7 +170,7 @@ class HudSystem(System):
     def _read(self, reading: str, world: World) -> None:
         """Look at the figures, the costs or what is not to be trusted."""
         if reading == "advice":
-            self._advice = advise(world)
+            self._advice = find_warnings(world)
             return
         if reading == "costs":
             self._lines[reading] = ([*cost_lines(world, self._meter), *left_out_lines(world)],)

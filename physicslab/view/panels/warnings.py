@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from physicslab.diagnostics.warnings import Advice
+from physicslab.diagnostics.warnings import ModelWarning
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.panels.panels import broken, draw_pill
@@ -18,7 +18,7 @@ _WIDEST = 60
 
 
 def draw_advice(
-    advice: Sequence[Advice], middle: int, top: int, room: int, size: int, canvas: Canvas, theme: Theme
+    advice: Sequence[ModelWarning], middle: int, top: int, room: int, size: int, canvas: Canvas, theme: Theme
 ) -> Rect | None:
     """Say what is not to be trusted, around ``middle`` and no wider than ``room`` px; return where [px].
 
