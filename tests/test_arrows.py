@@ -26,8 +26,8 @@ from physicslab.view.overlay.arrows import (
     draw_arrows,
     longest,
 )
+from physicslab.view.overlay.gauge import Gauge
 from physicslab.view.overlay.vectors import NORMAL_LENGTH
-from physicslab.view.panels.gauge import Gauge
 from physicslab.world import World
 
 KINDS = (VELOCITY, FORCE, CONTACT_NORMAL, NORMAL_IMPULSE, FRICTION_IMPULSE)

@@ -12,8 +12,8 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle, pendulum
 from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.quantities import length_of, percentage, quantity, vector_quantity
 from physicslab.view.panels.figures import EnergyWatch
-from physicslab.view.panels.quantities import length_of, percentage, quantity, vector_quantity
 from physicslab.view.panels.scale_bar import draw_scale_bar
 
 

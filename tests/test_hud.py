@@ -13,9 +13,9 @@ from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.view.canvas.canvas import Align, RecordingCanvas, Rect, TextStyle
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.panels.figures import FrameMeter
-from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
 
 SIZES = [(1280, 720), (800, 600), (1920, 1080), (1000, 1300), (720, 540), (2560, 1440)]

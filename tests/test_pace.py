@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.desktop.pace import Pace
+from physicslab.view.window.pace import Pace
 
 DT = 1.0 / 60.0
 

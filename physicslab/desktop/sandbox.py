@@ -15,7 +15,7 @@ from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.schedule import Stage
 from physicslab.view.controls.toolbar import Toolbar
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = ["Sandbox"]

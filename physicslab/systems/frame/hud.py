@@ -8,11 +8,11 @@ from physicslab.diagnostics.warnings import Advice, advise
 from physicslab.systems.schedule import Stage, System, at
 from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.controls.controls import CONTROLS
+from physicslab.view.controls.help import Help
+from physicslab.view.controls.hint import Hint
 from physicslab.view.overlay.edge_arrows import draw_edge_arrows
-from physicslab.view.overlay.legend import Legend, legend_of
 from physicslab.view.panels.figures import EnergyWatch, FrameMeter, measure_world
-from physicslab.view.panels.help import Help
-from physicslab.view.panels.hint import Hint
+from physicslab.view.panels.legend import Legend, legend_of
 from physicslab.view.panels.panels import Line, Panel, broken, draw_pill, lay_out, text_size
 from physicslab.view.panels.readings import cost_lines, figure_lines, left_out_lines, method_lines
 from physicslab.view.panels.refresh_timer import RefreshTimer
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from physicslab.view.canvas.canvas import Rect
     from physicslab.view.canvas.theme import Colour, Theme
     from physicslab.view.controls.toolbar import Toolbar
-    from physicslab.view.window import Window
+    from physicslab.view.window.window import Window
     from physicslab.world import World
 
 __all__ = ["HudSystem"]

@@ -11,11 +11,11 @@ from physicslab.systems.schedule import Stage, System, at
 from physicslab.view.controls import actions
 from physicslab.view.controls.controls import KEYS, RELEASES
 from physicslab.view.controls.spawning import spawn_box
+from physicslab.view.controls.tools import TOOLS, Tool
 
 if TYPE_CHECKING:
     from physicslab.view.controls.toolbar import Toolbar
-    from physicslab.view.controls.tools import Tool
-    from physicslab.view.window import Window
+    from physicslab.view.window.window import Window
     from physicslab.world import World
 
 __all__ = ["InputSystem"]
@@ -98,7 +98,7 @@ class InputSystem(System):
             self._window.help = self._window.error_study.shown = False
             return
         if event.button == pygame.BUTTON_LEFT:
-            self._tool = self._window.tool
+            self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)
         elif event.button == pygame.BUTTON_RIGHT:
             spawn_box(world, self._window)

@@ -11,7 +11,7 @@ from physicslab.view.panels.panels import text_size
 from physicslab.view.picture.painting import draw_world
 
 if TYPE_CHECKING:
-    from physicslab.view.window import Window
+    from physicslab.view.window.window import Window
     from physicslab.world import World
 
 __all__ = ["RenderSystem"]

@@ -11,7 +11,7 @@ from physicslab.files.scene import SceneError, load_scene, save_scene
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.scene_files import new_scene_path, newest_scene
 from physicslab.view.controls.tools import HAND, Tool
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
@@ -29,7 +29,7 @@ _ZOOM_STEP = 3.0
 def choose_tool(window: Window, tool: Tool) -> None:
     """Let the left mouse button do something else."""
     window.spring_tool.cancel()
-    window.tool = tool
+    window.tool = tool.name
     window.notify(tool.tells, 5.0)
 
 
@@ -230,7 +230,7 @@ def leave(world: World, window: Window) -> None:
         window.error_study.shown = False
     elif window.menu:
         window.menu = ""
-    elif window.tool is not HAND:
+    elif window.tool != HAND.name:
         choose_tool(window, HAND)
     else:
         close(world, window)

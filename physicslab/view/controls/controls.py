@@ -20,7 +20,7 @@ from physicslab.view.controls.tools import (
     end_spring,
     remove,
 )
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = ["CONTROLS", "KEYS", "RELEASES", "Control"]
@@ -81,7 +81,7 @@ class Control:
     def on(self, world: World, window: Window) -> bool:
         """Whether its button is marked."""
         if self.tool is not None:
-            return window.tool is self.tool
+            return window.tool == self.tool.name
         if self.menu:
             return window.menu == self.menu
         return self.state is not None and self.state(world, window)
@@ -89,7 +89,7 @@ class Control:
     def pressed(self, world: World, window: Window) -> None:
         """Do what its button does."""
         if self.tool is not None:
-            actions.choose_tool(window, HAND if window.tool is self.tool else self.tool)
+            actions.choose_tool(window, HAND if window.tool == self.tool.name else self.tool)
             return
         deed = self.click or self.action
         if deed is not None:

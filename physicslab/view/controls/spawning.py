@@ -5,15 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import binary, box, chain, circle, container, pendulum, pile, pyramid, stack
-
-if TYPE_CHECKING:
-    from physicslab.view.window import Window
-    from physicslab.world import World
+from physicslab.view.window.window import Window
+from physicslab.world import World
 
 __all__ = ["CIRCLE", "SPAWNS", "Spawn", "spawn_box", "spawn_circle", "spawn_pendulum"]
 

@@ -1,19 +1,18 @@
-"""What the left mouse button does in the world: one tool at a time."""
+"""What the left mouse button does in the world: one tool at a time, which the window knows by its name."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawn
+from physicslab.view.window.window import Window
+from physicslab.world import World
 
-if TYPE_CHECKING:
-    from physicslab.view.window import Window
-    from physicslab.world import World
-
-__all__ = ["HAND", "PAN", "REMOVE", "SPAWN_TOOLS", "SPRING", "Tool", "begin_spring", "end_spring", "remove"]
+__all__ = [
+    "HAND", "PAN", "REMOVE", "SPAWN_TOOLS", "SPRING", "TOOLS", "Tool", "begin_spring", "end_spring", "remove",
+]  # fmt: skip
 
 type Deed = Callable[[World, Window], None]
 
@@ -67,7 +66,7 @@ def begin_spring(world: World, window: Window) -> None:
     entity = body_at(world, window.camera, window.pointer)
     if entity is not None:
         window.spring_tool.begin(world, entity, window.place)
-    elif window.tool is SPRING:
+    elif window.tool == SPRING.name:
         window.notify("A spring begins on a body: press on one, and drag to where it shall end")
     else:
         window.notify(
@@ -98,9 +97,11 @@ def spawning(spawn: Spawn) -> Tool:
 
 
 HAND = spawning(CIRCLE)
-"""The tool at the start."""
+"""The tool at the start: that of a new window."""
 SPAWN_TOOLS = (HAND, *(spawning(spawn) for spawn in SPAWNS[1:]))
 """A tool for each thing there is to spawn."""
 SPRING = Tool("spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring)
 REMOVE = Tool("remove", "Remove", "Remove: click a body; its springs go with it.", remove, _nothing)
 PAN = Tool("pan", "Move the view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True)
+TOOLS = {tool.name: tool for tool in (*SPAWN_TOOLS, SPRING, REMOVE, PAN)}
+"""Every tool, by the name that ``Window.tool`` holds."""

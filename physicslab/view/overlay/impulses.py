@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points, Rect
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.arrows import FRICTION_IMPULSE, NORMAL_IMPULSE, dashes, draw_arrows, longest
 from physicslab.view.overlay.contact_samples import ContactSamples, resting_of, sliding
+from physicslab.view.overlay.gauge import Gauge
 from physicslab.view.overlay.impacts import Impacts
 from physicslab.view.overlay.labels import Key, Label
 from physicslab.view.overlay.overlays import Overlays
-from physicslab.view.panels.gauge import Gauge
-from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
 
 __all__ = ["IMPACT_WIDTH", "LABELLED", "REST_WIDTH", "draw_impulses", "said_of"]

@@ -7,9 +7,9 @@ import numpy as np
 from physicslab.components import Shape, Velocity
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Rect
+from physicslab.view.overlay.gauge import Gauge
 from physicslab.view.overlay.impacts import Impacts
 from physicslab.view.overlay.labels import Labels
-from physicslab.view.panels.gauge import Gauge
 from physicslab.world import World
 
 __all__ = ["Overlays"]

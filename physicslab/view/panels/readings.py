@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from physicslab.diagnostics.energy import summation
+from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity
 from physicslab.view.panels.figures import FrameMeter, WorldFigures
 from physicslab.view.panels.panels import Line
-from physicslab.view.panels.quantities import percentage, quantity, vector_quantity
 from physicslab.world import World
 
 __all__ = ["cost_lines", "figure_lines", "left_out_lines", "method_lines"]

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from physicslab.view.canvas.canvas import Canvas, TextStyle
+from physicslab.view.canvas.quantities import power_of_ten
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.panels.error_study import ErrorStudy, Sample
 from physicslab.view.panels.panels import broken, text_size
-from physicslab.view.panels.quantities import power_of_ten
 
 __all__ = ["draw_work_precision"]
 

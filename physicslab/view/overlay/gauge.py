@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.panels.quantities import round_quantity
+from physicslab.view.canvas.quantities import round_quantity
 
 __all__ = ["Gauge"]
 

@@ -5,21 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from physicslab.desktop.pace import Pace
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Rect
 from physicslab.view.canvas.theme import DARK, Theme
-from physicslab.view.controls.hand import Hand
-from physicslab.view.controls.recovery import Recovery
-from physicslab.view.controls.spring_tool import SpringTool
-from physicslab.view.controls.tools import HAND, Tool
 from physicslab.view.overlay.overlays import Overlays
 from physicslab.view.panels.error_study import ErrorStudy
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
+from physicslab.view.window.hand import Hand
+from physicslab.view.window.pace import Pace
+from physicslab.view.window.recovery import Recovery
+from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
 
 __all__ = ["Window"]
@@ -67,8 +66,8 @@ class Window:
         Why the world stopped; empty while all is well.
     help, grid, figures : bool
         Whether all keys are shown, the grid, and the panels of figures and costs.
-    tool : Tool
-        What the left mouse button does.
+    tool : str
+        What the left mouse button does: the name of a tool of :mod:`physicslab.view.controls.tools`.
     menu : str
         Which menu is open; empty where none is.
     room : callable
@@ -106,7 +105,7 @@ class Window:
         self.error = ""
         self.help = False
         self.grid = self.figures = True
-        self.tool: Tool = HAND
+        self.tool = "circle"
         self.menu = ""
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
         self.error_study = ErrorStudy()
