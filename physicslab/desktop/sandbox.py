@@ -107,7 +107,6 @@ class Sandbox:
         try:
             while made < due and (made == 0 or self._clock() < deadline):
                 world.step(dt * pace.shortening)
-                self.window.sparks.advance(world, dt * pace.shortening, self.window.camera.scale)
                 made += 1
         except Diverged as error:
             pace.halt()

@@ -15,7 +15,7 @@ from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.arrows import FRICTION_IMPULSE, NORMAL_IMPULSE, dashes, draw_arrows, longest
 from physicslab.view.overlay.contact_samples import ContactSamples, resting_of, sliding
 from physicslab.view.overlay.gauge import Gauge
-from physicslab.view.overlay.impacts import Impacts
+from physicslab.view.overlay.impacts import RecentImpacts, same_place
 from physicslab.view.overlay.labels import Key, Label
 from physicslab.view.overlay.overlays import Overlays
 from physicslab.world import World
@@ -39,9 +39,9 @@ def draw_impulses(
     """Draw the impulses of the impacts of the last second, and of what rests, with cones and numbers."""
     impacts = overlays.impacts.recent(world.time)
     impacts = impacts[np.argsort(impacts["time"], kind="stable")]  # the newest on top
-    resting = _without(resting_of(world), impacts)
+    resting = _without(resting_of(world), impacts, overlays.impacts.same_place)
     resting = resting[resting["normal"] > 0.0]
-    fresh = Impacts.freshness(impacts, world.time)
+    fresh = RecentImpacts.freshness(impacts, world.time)
     overlays.impact.follow(impacts["normal"], overlays.reach, world.time)
     overlays.rest.follow(resting["normal"], overlays.reach, world.time)
     _draw_touches(resting, overlays.rest, REST_WIDTH, 0.9, camera, theme, canvas)
@@ -61,11 +61,13 @@ def _under(at: tuple[float, float], covered: Sequence[Rect]) -> bool:
     return any(x <= at[0] < x + width and y <= at[1] < y + height for x, y, width, height in covered)
 
 
-def _without(touches: ContactSamples, others: ContactSamples) -> ContactSamples:
-    """Return the touches at other points than ``others``."""
-    place = ["a", "b", "point"]
-    kept: ContactSamples = touches[~np.isin(touches[place], others[place])] if len(others) else touches
-    return kept
+def _without(resting: ContactSamples, impacts: ContactSamples, distance: float) -> ContactSamples:
+    """Return the resting contacts but those nearer than ``distance`` [m] to an impact of the same pair."""
+    if not len(impacts):
+        return resting
+    struck = np.flatnonzero(np.isin(resting[["a", "b"]], impacts[["a", "b"]]))
+    hidden = same_place(resting[struck], impacts, distance).any(axis=1)
+    return np.delete(resting, struck[hidden])
 
 
 def _draw_touches(

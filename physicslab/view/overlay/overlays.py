@@ -8,7 +8,7 @@ from physicslab.components import Shape, Velocity
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.overlay.gauge import Gauge
-from physicslab.view.overlay.impacts import Impacts
+from physicslab.view.overlay.impacts import RecentImpacts
 from physicslab.view.overlay.labels import Labels
 from physicslab.world import World
 
@@ -33,8 +33,8 @@ class Overlays:
         The wanted length of the strongest arrow [m], chosen when an overlay is turned on.
     velocity, force, impact, rest : Gauge
         The scales: of velocities, forces, impulses of impacts, and impulses that hold bodies apart.
-    impacts : Impacts
-        What has struck lately.
+    impacts : RecentImpacts
+        The impacts of the last second.
     labels : Labels
         Where the numbers stand.
     covered : list of Rect
@@ -46,7 +46,7 @@ class Overlays:
         self.reach = 1.0
         self.velocity, self.force = Gauge("m/s"), Gauge("N")
         self.impact, self.rest = Gauge("N s"), Gauge("N s")
-        self.impacts = Impacts()
+        self.impacts = RecentImpacts()
         self.labels = Labels()
         self.covered: list[Rect] = []
 
