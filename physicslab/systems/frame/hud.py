@@ -12,6 +12,7 @@ from physicslab.view.controls.help import Help
 from physicslab.view.controls.hint import Hint
 from physicslab.view.overlay.edge_arrows import draw_edge_arrows
 from physicslab.view.panels.figures import EnergyWatch, FrameMeter, measure_world
+from physicslab.view.panels.laws import has_gravity
 from physicslab.view.panels.legend import Legend, legend_of
 from physicslab.view.panels.panels import Line, Panel, broken, draw_pill, lay_out, text_size
 from physicslab.view.panels.readings import cost_lines, figure_lines, left_out_lines, method_lines
@@ -253,7 +254,7 @@ class HudSystem(System):
         if window.pace.speed != 1.0:
             name = "SLOW MOTION" if window.pace.speed < 1.0 else "FAST MOTION"
             banners.append((f"{name} {window.pace.speed:g}x", theme.slow))
-        if world.physics.gravity_mode == "planet":
+        if world.physics.gravity_mode == "planet" and has_gravity(world):
             banners.append(("PLANET MODE", theme.planet))
         if window.pace.dropped > self._dropped:
             if window.now >= self._drop_until:
@@ -271,7 +272,7 @@ class HudSystem(System):
         notice = theme.error if window.notice_failed else theme.notice
         messages: list[tuple[list[str], Colour, int]] = []
         for words, colour in ((window.error, theme.error), (window.notice, notice)):
-            if words:
+            if words.strip():
                 style = TextStyle(size, colour, bold=True)
                 lines = broken(words, round(_MESSAGE * canvas.size[0]), canvas, style)
                 height = canvas.text_size("Ag", style)[1] * len(lines) + round(0.55 * size)

@@ -13,6 +13,7 @@ from pathlib import Path
 import pygame
 
 from physicslab.ecs.config import WindowConfig
+from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
 
@@ -52,7 +53,7 @@ class Display:
             pygame.quit()
             raise OSError(f"no window can be opened: {error}") from error
         try:
-            pygame.display.set_caption(title)
+            pygame.display.set_caption(drawable(title))
             _limit(config.least_size)
             surface.fill(theme.background)
             pygame.display.flip()  # at once, so that no black rectangle greets the user
@@ -67,6 +68,7 @@ class Display:
 
     @title.setter
     def title(self, title: str) -> None:
+        title = drawable(title)
         if title != self.title:
             pygame.display.set_caption(title)
 

@@ -11,6 +11,8 @@ from physicslab.files.scene import SceneError, load_scene, save_scene
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.scene_files import new_scene_path, newest_scene
 from physicslab.view.controls.tools import HAND, Tool
+from physicslab.view.panels.laws import has_gravity
+from physicslab.view.window.edits import announce_edit
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -24,6 +26,7 @@ __all__ = [
 
 _ZOOM_STEP = 3.0
 """How many notches of the wheel a key or a button zooms by."""
+_NO_GRAVITY = "This world was made without GravitySystem: no law of gravity acts in it"
 
 
 def choose_tool(window: Window, tool: Tool) -> None:
@@ -109,6 +112,7 @@ def clear(world: World, window: Window) -> None:
     window.hand.drop(world)
     window.spring_tool.cancel()
     world.clear()
+    announce_edit(world)
     window.overlays.forget()
     window.sparks.clear()
     window.error = ""
@@ -116,20 +120,28 @@ def clear(world: World, window: Window) -> None:
 
 def toggle_gravity(world: World, window: Window) -> None:
     """Turn the uniform pull on or off; where the scene has none to turn on, it is that of the Earth."""
+    if not has_gravity(world):
+        window.notify(_NO_GRAVITY, failed=True)
+        return
     if world.physics.gravity_mode == "linear" and world.physics.gravity:
         world.physics = replace(world.physics, gravity_mode="none")
     else:
         gravity = world.physics.gravity or PhysicsConfig().gravity
         world.physics = replace(world.physics, gravity_mode="linear", gravity=gravity)
+    announce_edit(world)
 
 
 def toggle_planets(world: World, window: Window) -> None:
     """Let bodies attract each other, or go back to the gravity there was before."""
+    if not has_gravity(world):
+        window.notify(_NO_GRAVITY, failed=True)
+        return
     if world.physics.gravity_mode == "planet":
         world.physics = replace(world.physics, gravity_mode=window.gravity_before)
     else:
         window.gravity_before = world.physics.gravity_mode
         world.physics = replace(world.physics, gravity_mode="planet")
+    announce_edit(world)
 
 
 def toggle_arrows(world: World, window: Window) -> None:

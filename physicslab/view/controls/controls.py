@@ -20,6 +20,7 @@ from physicslab.view.controls.tools import (
     end_spring,
     remove,
 )
+from physicslab.view.panels.laws import has_gravity
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -96,6 +97,10 @@ class Control:
             deed(world, window)
 
 
+def _gravity_is(world: World, mode: str) -> bool:
+    return has_gravity(world) and world.physics.gravity_mode == mode
+
+
 CONTROLS: tuple[Control, ...] = (
     Control("Left", "drag, throw, new circle", group="tools", icon="hand", tool=HAND,
             tip="Drag and throw bodies, click for a new circle"),
@@ -120,10 +125,10 @@ CONTROLS: tuple[Control, ...] = (
     Control("]", "twice the speed", "]", actions.faster, minor=True, group="time", icon="faster",
             tip="Twice the speed"),
     Control("G", "gravity", "g", actions.toggle_gravity, group="laws", icon="gravity",
-            state=lambda world, _: world.physics.gravity_mode == "linear" and bool(world.physics.gravity),
+            state=lambda world, _: _gravity_is(world, "linear") and bool(world.physics.gravity),
             tip="Uniform gravity on or off"),
     Control("O", "planets", "o", actions.toggle_planets, group="laws", icon="planets",
-            state=lambda world, _: world.physics.gravity_mode == "planet",
+            state=lambda world, _: _gravity_is(world, "planet"),
             tip="Planet mode: all bodies attract each other"),
     Control("V", "arrows", "v", actions.toggle_arrows, group="show", icon="arrows",
             state=lambda _, window: window.overlays.arrows, tip="Velocities, forces, contact normals"),

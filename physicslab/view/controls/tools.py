@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawn
+from physicslab.view.window.edits import announce_edit
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -59,6 +60,7 @@ def remove(world: World, window: Window) -> None:
     if window.hand.entity == entity:
         window.hand.drop(world)
     world.remove(entity)
+    announce_edit(world)
 
 
 def begin_spring(world: World, window: Window) -> None:
@@ -80,6 +82,8 @@ def end_spring(world: World, window: Window) -> None:
     refused = window.spring_tool.end(world, target, window.place)
     if refused:
         window.notify(refused)
+    else:
+        announce_edit(world)
 
 
 def spawning(spawn: Spawn) -> Tool:

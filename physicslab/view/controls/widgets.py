@@ -10,6 +10,7 @@ import pygame_gui
 from pygame_gui.core import ObjectID
 
 from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.controls.icons import draw_icon
 
@@ -93,6 +94,7 @@ class Button(pygame_gui.elements.UIButton):
 
     def say(self, words: str) -> None:
         """Write other words on it."""
+        words = drawable(words)
         if words != self.text:
             self.widgets.stir()
             self.set_text(words)

@@ -15,7 +15,7 @@ __all__ = ["coil", "draw_springs"]
 
 _TURN = 13.0
 """About how long a turn of a coil is at rest [px]."""
-_FEWEST, _MOST = 4, 12
+_MIN_TURNS, _MAX_TURNS = 4, 12
 """How many turns a coil may have."""
 _LEAD = 0.12
 """Share of a spring that is straight, at each end."""
@@ -39,7 +39,8 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
     start = _end(world, lookup[np.where(a == 0, own, a)], spring["anchor_a"][rows])
     end = _end(world, lookup[b], spring["anchor_b"][rows])
     start, end = camera.project(start), camera.project(end)
-    rest = spring["rest_length"][rows] * camera.scale
+    with np.errstate(over="ignore"):  # a rest length may be as long as numbers go
+        rest = spring["rest_length"][rows] * camera.scale
     seen = _on_screen(start, end, camera.size)
     start, end, rest, fixed = start[seen], end[seen], rest[seen], (b == 0)[seen]
     length = np.hypot(*(end - start).T)
@@ -65,11 +66,12 @@ def coil(start: Points, end: Points, rest: NDArray[np.float64]) -> Points:
     length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-9)
     across = np.stack((-along[:, 1], along[:, 0]), axis=1) / length[:, None]
     # All have as many turns, so that they are one array.
-    turns = int(np.clip(round(float(np.median(rest)) / _TURN), _FEWEST, _MOST))
+    turns = round(float(np.clip(np.median(rest) / _TURN, _MIN_TURNS, _MAX_TURNS)))
     part = (1.0 - 2.0 * _LEAD) / (2 * turns)
     natural = np.maximum(rest, _SHORTEST)
-    wire = np.hypot(part * natural, 2.0 * np.minimum(_WIDTH, 0.1 * natural))
-    swing = 0.5 * np.sqrt(np.maximum(wire * wire - (part * length) ** 2, 0.0))
+    with np.errstate(over="ignore"):
+        wire = np.hypot(part * natural, 2.0 * np.minimum(_WIDTH, 0.1 * natural))
+        swing = 0.5 * np.sqrt(np.maximum(wire * wire - (part * length) ** 2, 0.0))
     swing = np.clip(swing, 1.0, 2.0 * _WIDTH)
     share = np.concatenate(([0.0, _LEAD], _LEAD + part * (np.arange(2 * turns) + 0.5), [1.0 - _LEAD, 1.0]))
     side = np.concatenate(([0.0, 0.0], np.resize([1.0, -1.0], 2 * turns), [0.0, 0.0]))
