@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 from physicslab.ecs.config import PhysicsConfig
-from physicslab.ecs.fields import InvalidValue
-from physicslab.files.scene import SceneError, load_scene, save_scene
 from physicslab.view.canvas.theme import THEMES
-from physicslab.view.controls.scene_files import new_scene_path, newest_scene
 from physicslab.view.controls.tools import HAND, Tool
 from physicslab.view.panels.laws import has_gravity
 from physicslab.view.window.edits import announce_edit
@@ -17,8 +13,8 @@ from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "ask_screenshot", "choose_tool", "clear", "close", "enlarge", "faster", "fit", "go_home", "leave",
-    "next_theme", "open_scene", "reduce", "reopen", "save", "slower", "step", "study_error",
+    "choose_tool", "clear", "close", "enlarge", "faster", "fit", "go_home", "leave",
+    "next_theme", "reduce", "slower", "step",
     "toggle_arrows", "toggle_figures", "toggle_gravity", "toggle_grid", "toggle_help", "toggle_impulses",
     "toggle_menu", "toggle_pause", "toggle_planets", "toggle_slow_motion", "toggle_trails",
     "zoom", "zoom_in", "zoom_out",
@@ -66,45 +62,6 @@ def faster(world: World, window: Window) -> None:
 def step(world: World, window: Window) -> None:
     """Pause, and make one step."""
     window.pace.ask_step()
-
-
-def save(world: World, window: Window) -> None:
-    """Save the world to a new scene file where the program was started."""
-    try:
-        path = new_scene_path(Path.cwd(), world.name)
-        save_scene(world, path)
-    except (SceneError, OSError) as error:
-        window.notify(f"The scene could not be saved: {error}", 6.0, failed=True)
-    else:
-        window.scene_file = path
-        window.notify(f"Saved {path}")
-
-
-def reopen(world: World, window: Window) -> None:
-    """Open the scene file last saved or opened, or else the newest; where that fails, all stays as it is."""
-    try:
-        path = window.scene_file or newest_scene(Path.cwd())
-    except OSError as error:
-        window.notify(f"Not opened: {error}", 8.0, failed=True)
-        return
-    if path is None:
-        window.notify(f"There is no scene file in {Path.cwd()}: Ctrl+S saves one", failed=True)
-    else:
-        open_scene(window, path)
-
-
-def open_scene(window: Window, source: str | Path) -> None:
-    """Open a built-in scene by name, or a file; where that fails, all stays as it is."""
-    try:
-        opened = load_scene(source)
-        opened.synchronise()
-    except (SceneError, InvalidValue, OSError) as error:
-        window.notify(f"Not opened: {error}", 8.0, failed=True)
-        return
-    window.next_world = opened
-    if isinstance(source, Path):
-        window.scene_file = source
-    window.notify(f"Opened {source if isinstance(source, Path) else opened.title}")
 
 
 def clear(world: World, window: Window) -> None:
@@ -205,11 +162,6 @@ def go_home(world: World, window: Window) -> None:
     window.go_home(world)
 
 
-def ask_screenshot(world: World, window: Window) -> None:
-    """Ask for a picture of the window as soon as this frame is drawn."""
-    window.wants_screenshot = True
-
-
 def toggle_grid(world: World, window: Window) -> None:
     """Show the grid, or hide it."""
     window.grid = not window.grid
@@ -218,20 +170,6 @@ def toggle_grid(world: World, window: Window) -> None:
 def toggle_help(world: World, window: Window) -> None:
     """Show all keys, or the world and its figures again."""
     window.help = not window.help
-
-
-def study_error(world: World, window: Window) -> None:
-    """Measure error against run time of the scene as it is now; show it when that is done."""
-    if window.error_study.running:
-        window.error_study.stop()
-        window.notify("Measuring error against run time: stopped")
-        return
-    try:
-        window.error_study.start(world)
-    except (OSError, SceneError) as error:
-        window.notify(f"Error against run time could not be measured: {error}", failed=True)
-    else:
-        window.notify("Measuring error against run time of this scene; F5 stops it", 600.0)
 
 
 def leave(world: World, window: Window) -> None:

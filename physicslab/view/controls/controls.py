@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from physicslab.components import Trail
-from physicslab.view.controls import actions
+from physicslab.view.controls import actions, file_actions
 from physicslab.view.controls.actions import toggle_menu
 from physicslab.view.controls.spawning import spawn_pendulum
 from physicslab.view.controls.tools import (
@@ -151,15 +151,15 @@ CONTROLS: tuple[Control, ...] = (
             tip="The view at the start"),
     Control("L", "scenes", "l", lambda _, window: toggle_menu(window, "scenes"), minor=True,
             group="file", icon="scenes", menu="scenes", tip="Choose a scene"),
-    Control("Ctrl+S", "save the scene", "ctrl+s", actions.save, minor=True, group="file", icon="save",
+    Control("Ctrl+S", "save the scene", "ctrl+s", file_actions.save, minor=True, group="file", icon="save",
             tip="Save the scene to a new file"),
-    Control("Ctrl+O", "open the last scene saved", "ctrl+o", actions.reopen, minor=True, group="file",
+    Control("Ctrl+O", "open the last scene saved", "ctrl+o", file_actions.reopen, minor=True, group="file",
             icon="open", tip="Open the scene last saved"),
-    Control("F5", "error against run time", "f5", actions.study_error, minor=True, group="file",
+    Control("F5", "error against run time", "f5", file_actions.study_error, minor=True, group="file",
             icon="plot", state=lambda _, window: window.error_study.running,
             tip="Error against run time of this scene"),
-    Control("F12", "screenshot", "f12", actions.ask_screenshot, minor=True, group="file", icon="screenshot",
-            tip="Save a picture of the window"),
+    Control("F12", "screenshot", "f12", file_actions.ask_screenshot, minor=True, group="file",
+            icon="screenshot", tip="Save a picture of the window"),
     Control("F2", "other colours", "f2", actions.next_theme, minor=True, group="window", icon="theme",
             tip="Colours: dark, high contrast, projector"),
     Control("F1", "all keys", "f1", actions.toggle_help, group="window", icon="keys",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from physicslab.scenes import SCENES
-from physicslab.view.controls import actions
+from physicslab.view.controls import actions, file_actions
 from physicslab.view.controls.scene_files import scene_files
 from physicslab.view.controls.tools import SPAWN_TOOLS, Tool
 from physicslab.view.window.window import Window
@@ -46,7 +46,7 @@ def _things(world: World, window: Window) -> list[Choice]:
 def _scenes(world: World, window: Window) -> list[Choice]:
     def choice(title: str, source: str | Path) -> Choice:
         shown = (world.title or world.name) == title
-        return Choice(title, lambda _, window: actions.open_scene(window, source), shown)
+        return Choice(title, lambda _, window: file_actions.open_scene(window, source), shown)
 
     try:
         files = scene_files(Path.cwd())

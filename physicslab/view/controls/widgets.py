@@ -11,8 +11,9 @@ from pygame_gui.core import ObjectID
 
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
-from physicslab.view.canvas.theme import Colour, Theme
-from physicslab.view.controls.icons import draw_icon
+from physicslab.view.canvas.theme import Theme
+from physicslab.view.controls.icons import IconCache
+from physicslab.view.controls.widget_style import style_of
 
 __all__ = ["Button", "Plate", "Widgets"]
 
@@ -55,7 +56,7 @@ class Button(pygame_gui.elements.UIButton):
         """Draw the icon, in place of an image that a theme names."""
         if not self.icon:
             return False
-        plain, marked = self.widgets.icons(self.icon, self.rect.size)
+        plain, marked = self.widgets.icons.pictures(self.icon, self.rect.size)
         self.normal_images = self.hovered_images = self.disabled_images = [plain]
         self.selected_images = [marked]
         for state in ("normal", "hovered", "disabled", "selected"):
@@ -156,8 +157,8 @@ class Widgets:
     def __init__(self, size: tuple[int, int], theme: Theme, text_size: int) -> None:
         pygame.font.init()
         self._look = (theme, text_size)
-        self._icons: dict[tuple[str, tuple[int, int]], tuple[pygame.Surface, pygame.Surface]] = {}
-        self._manager = _Manager(size, _style(theme, text_size), enable_live_theme_updates=False)
+        self.icons = IconCache(theme)
+        self._manager = _Manager(size, style_of(theme, text_size), enable_live_theme_updates=False)
         self._styles: dict[int, Any] = {}  # by the height of the text
         self._plates: list[Plate] = []
         self._buttons: list[Button] = []
@@ -188,16 +189,6 @@ class Widgets:
         self._plates.append(plate)
         return plate
 
-    def icons(self, name: str, size: tuple[int, int]) -> tuple[pygame.Surface, pygame.Surface]:
-        """Return an icon as it is usually and as it is where its button is on."""
-        if (name, size) not in self._icons:
-            theme = self._look[0]
-            side = min(size)
-            self._icons[name, size] = (
-                draw_icon(name, side, theme.text), draw_icon(name, side, theme.accent, marked=True),
-            )  # fmt: skip
-        return self._icons[name, size]
-
     def stir(self) -> None:
         """Note that something changed."""
         self._unsettled = _SETTLING
@@ -215,10 +206,10 @@ class Widgets:
         recoloured = theme != self._look[0]
         self._look = (theme, text_size)
         if recoloured:
-            self._icons.clear()
+            self.icons = IconCache(theme)
             self._styles.clear()
         if text_size not in self._styles:
-            self._styles[text_size] = self._manager.create_new_theme(_style(theme, text_size))
+            self._styles[text_size] = self._manager.create_new_theme(style_of(theme, text_size))
         style = self._styles[text_size]
         if recoloured:
             self._manager.set_ui_theme(style, update_all_sprites=True)
@@ -275,37 +266,3 @@ class Widgets:
     def draw(self, surface: pygame.Surface) -> None:
         """Draw them all."""
         self._manager.draw_ui(surface)
-
-
-def _style(theme: Theme, text_size: int) -> dict[str, Any]:
-    """Return a theme as pygame_gui writes it."""
-
-    def button(ground: Colour, words: Colour) -> dict[str, str]:
-        paints = {
-            "normal": (ground, words), "hovered": (theme.key, theme.heading),
-            "active": (theme.key_rim, theme.heading), "selected": (theme.key, theme.accent),
-            "disabled": (ground, theme.faint),
-        }  # fmt: skip
-        return {
-            f"{state}_{part}": _written(colour)
-            for state, (under, over) in paints.items()
-            for part, colour in (
-                ("bg", under), ("text", over), ("border", over if state == "selected" else under)
-            )
-        }  # fmt: skip
-
-    font = {"name": "noto_sans", "size": str(text_size), "style": "regular"}
-    shape = {"shape": "rounded_rectangle", "shape_corner_radius": "5", "shadow_width": "0"}
-    panel = {"dark_bg": _written(theme.panel), "normal_border": _written(theme.outline)}
-    left = {"text_horiz_alignment": "left", "text_horiz_alignment_padding": str(text_size // 2)}
-    flat, framed = {**shape, "border_width": "1"}, {**shape, "shape_corner_radius": "8", "border_width": "1"}
-    return {
-        "@tool": {"colours": button(theme.panel, theme.text), "font": font, "misc": flat},
-        "@row": {"colours": button(theme.panel, theme.text), "font": font, "misc": {**flat, **left}},
-        "@bar": {"colours": panel, "misc": {"shadow_width": "0", "border_width": "0"}},
-        "@menu": {"colours": {**panel, "normal_border": _written(theme.key_rim)}, "misc": framed},
-    }
-
-
-def _written(colour: Colour) -> str:
-    return "rgb({}, {}, {})".format(*colour)
