@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["InputSystem"]
 
-_OF_THE_MOUSE = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL)
+_MOUSE_EVENTS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL)
 """What is offered to the toolbar first."""
 
 _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
@@ -28,10 +28,10 @@ _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
 
 
 class InputSystem(System):
-    """Turns what SDL reports into actions, and leads the body that is held.
+    """Turns SDL's events into actions, and moves the body that is held.
 
-    It reacts to reports alone and never asks for the state of keys and buttons, so that posted events are as
-    good as real ones.
+    It follows events alone and never reads the state of keys and buttons, so that posted events are as good
+    as real ones.
 
     Parameters
     ----------
@@ -61,14 +61,14 @@ class InputSystem(System):
 
     @at(Stage.INPUT)
     def handle(self, world: World, elapsed: float) -> None:
-        """Do everything that was asked for since the last frame."""
+        """Do what the events since the last frame call for."""
         window = self._window
         window.now += elapsed
         for event in pygame.event.get():
             handler = self._handlers.get(event.type)
             if handler is None:
                 continue
-            if event.type in _OF_THE_MOUSE and self._toolbar.take(world, event):
+            if event.type in _MOUSE_EVENTS and self._toolbar.take(world, event):
                 window.pointer = getattr(event, "pos", window.pointer)
             else:
                 handler(world, event)

@@ -33,7 +33,7 @@ class Theme:
     background, grid, axis : Colour
         Empty space, a line each metre or so, and the lines through the origin.
     bodies : tuple of Colour
-        The rims of moving bodies, in turn; told apart by the colour-blind too (after Okabe & Ito, 2008).
+        The rims of moving bodies, in turn; also for the colour-blind (after Okabe & Ito, 2008).
     fill_share : float
         How much of the rim's colour is in a body's fill, the rest being background.
     static, kinematic, held : Colour
@@ -41,7 +41,7 @@ class Theme:
     spring, pin, bounds : Colour
         Springs, the fixed points they hang from, the walls of the world.
     spark : Colour
-        What flies where bodies strike each other.
+        Sparks at impacts.
     panel, panel_opacity, outline : Colour, float, Colour
         What text stands on.
     text, faint, accent, heading : Colour

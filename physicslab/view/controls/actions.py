@@ -1,4 +1,4 @@
-"""What the user can do, one function each, whichever key or button asks for it."""
+"""What the user can do, one function each, whichever key or button calls it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def choose_tool(window: Window, tool: Tool) -> None:
     """Let the left mouse button do something else."""
     window.spring_tool.cancel()
     window.tool = tool.name
-    window.notify(tool.tells, 5.0)
+    window.notify(tool.usage, 5.0)
 
 
 def toggle_menu(window: Window, name: str) -> None:
@@ -61,7 +61,7 @@ def faster(world: World, window: Window) -> None:
 
 def step(world: World, window: Window) -> None:
     """Pause, and make one step."""
-    window.pace.ask_step()
+    window.pace.queue_step()
 
 
 def clear(world: World, window: Window) -> None:

@@ -1,4 +1,4 @@
-"""The controls in one table: what input obeys, and what the hint, the help and the toolbar show."""
+"""The controls in one table: what keys do, and what the hint, the help and the toolbar show."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Control:
     click : callable, optional
         What its button does, where that is not what the key does.
     state : callable, optional
-        Tells whether what it turns on is on.
+        Returns whether what it turns on is on.
     menu : str
         The menu that it opens.
     """
@@ -158,7 +158,7 @@ CONTROLS: tuple[Control, ...] = (
     Control("F5", "error against run time", "f5", file_actions.study_error, minor=True, group="file",
             icon="plot", state=lambda _, window: window.error_study.running,
             tip="Error against run time of this scene"),
-    Control("F12", "screenshot", "f12", file_actions.ask_screenshot, minor=True, group="file",
+    Control("F12", "screenshot", "f12", file_actions.request_screenshot, minor=True, group="file",
             icon="screenshot", tip="Save a picture of the window"),
     Control("F2", "other colours", "f2", actions.next_theme, minor=True, group="window", icon="theme",
             tip="Colours: dark, high contrast, projector"),

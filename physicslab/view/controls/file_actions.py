@@ -10,7 +10,7 @@ from physicslab.view.controls.scene_files import new_scene_path, newest_scene
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["ask_screenshot", "open_scene", "reopen", "save", "study_error"]
+__all__ = ["open_scene", "reopen", "request_screenshot", "save", "study_error"]
 
 
 def save(world: World, window: Window) -> None:
@@ -52,8 +52,8 @@ def open_scene(window: Window, source: str | Path) -> None:
     window.notify(f"Opened {source if isinstance(source, Path) else opened.title}")
 
 
-def ask_screenshot(world: World, window: Window) -> None:
-    """Ask for a picture of the window as soon as this frame is drawn."""
+def request_screenshot(world: World, window: Window) -> None:
+    """Let a picture of the window be kept as soon as this frame is drawn."""
     window.wants_screenshot = True
 
 

@@ -6,14 +6,15 @@ import math
 from collections.abc import Callable, Sequence
 
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
+from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.controls.menus import Choice
 from physicslab.view.controls.widgets import Button, Widgets
 
 __all__ = ["Popup"]
 
-_LONGEST = 46
-"""A title is cut at so many letters."""
+_MAX_TITLE = 46
+"""Letters of a title that are shown."""
 
 
 class Popup:
@@ -117,4 +118,4 @@ class Popup:
 
 
 def _cut(title: str) -> str:
-    return title if len(title) <= _LONGEST else title[: _LONGEST - 1] + "…"
+    return shortened(title, _MAX_TITLE)

@@ -26,7 +26,7 @@ class RecoveryBar:
         What its buttons are made of.
     window : Window
         What is on offer there.
-    ask : callable
+    choose : callable
         What is called with the choice that is clicked.
 
     Attributes
@@ -35,12 +35,12 @@ class RecoveryBar:
         What it takes up [px]; 0 where nothing is on offer.
     """
 
-    def __init__(self, widgets: Widgets, window: Window, ask: Callable[[Choice], None]) -> None:
+    def __init__(self, widgets: Widgets, window: Window, choose: Callable[[Choice], None]) -> None:
         self._window = window
         self._plate = widgets.plate()
         choices = (Choice("Restore it", restore_session), Choice("Discard", discard_session))
         # No lambda with a default: the widgets would take that for a parameter, and pass it what happened.
-        self._buttons = [(choice, widgets.button(partial(ask, choice))) for choice in choices]
+        self._buttons = [(choice, widgets.button(partial(choose, choice))) for choice in choices]
         self._top = self._room = 0
         self.height = 0
 

@@ -26,7 +26,7 @@ class Tool:
     ----------
     name, title : str
         Its icon, and what it is called.
-    tells : str
+    usage : str
         How it is used.
     press, release : callable
         What happens.
@@ -36,7 +36,7 @@ class Tool:
 
     name: str
     title: str
-    tells: str
+    usage: str
     press: Deed
     release: Deed
     pans: bool = False
@@ -96,8 +96,8 @@ def spawning(spawn: Spawn) -> Tool:
         elif not window.hand.take(world, entity, window.place, window.now):
             window.notify(f"{world.label(entity)} is static: it stays where it is")
 
-    tells = f"{spawn.title}: click {spawn.place}. Bodies can still be dragged."
-    return Tool(spawn.name, spawn.title, tells, press, let_go)
+    usage = f"{spawn.title}: click {spawn.place}. Bodies can still be dragged."
+    return Tool(spawn.name, spawn.title, usage, press, let_go)
 
 
 HAND = spawning(CIRCLE)

@@ -25,7 +25,7 @@ _BAR, _MENU = 1, 10
 
 
 class _Manager(pygame_gui.UIManager):
-    """A manager that goes by the reports of the mouse and not by its state: posted events are as good."""
+    """A manager that follows the events of the mouse and not its state: posted events are as good."""
 
     def _update_mouse_position(self) -> None:
         return
@@ -34,7 +34,7 @@ class _Manager(pygame_gui.UIManager):
 class Button(pygame_gui.elements.UIButton):
     """A button with an icon or a line of text, which may be marked as on.
 
-    It is made once; from then on it is put elsewhere, labelled anew, shown and hidden.
+    It is made once; from then on it is put elsewhere, labelled again, shown and hidden.
     """
 
     widgets: Widgets
@@ -74,30 +74,30 @@ class Button(pygame_gui.elements.UIButton):
         if tuple(self.rect) != rect:
             grown = tuple(self.rect.size) != rect[2:]
             self.set_relative_position(rect[:2])
-            self.widgets.stir()
-            if grown:  # what is only moved looks as before, and drawing it anew takes a millisecond
+            self.widgets.unsettle()
+            if grown:  # what is only moved looks as before, and drawing it again takes a millisecond
                 self.set_dimensions(rect[2:])
                 self.remake()
         self.reveal(True)
 
     def remake(self) -> None:
-        """Draw it anew at once; by itself it would wait until its size is the same for a while."""
+        """Draw it again at once; by itself it would wait until its size is the same for a while."""
         self._set_any_images_from_theme()
         self.rebuild()
         self._set_inactive()
-        self.widgets.stir()
+        self.widgets.unsettle()
 
     def reveal(self, shown: bool) -> None:
         """Show it, or hide it."""
         if bool(self.visible) != shown:
-            self.widgets.stir()
+            self.widgets.unsettle()
             self.show() if shown else self.hide()
 
     def say(self, words: str) -> None:
         """Write other words on it."""
         words = drawable(words)
         if words != self.text:
-            self.widgets.stir()
+            self.widgets.unsettle()
             self.set_text(words)
 
     def draw_on(self, icon: str) -> None:
@@ -109,13 +109,13 @@ class Button(pygame_gui.elements.UIButton):
     def mark(self, on: bool) -> None:
         """Mark it as on, or not; with an icon that is a bar below, not a colour alone."""
         if on != self.is_selected:
-            self.widgets.stir()
+            self.widgets.unsettle()
             self.select() if on else self.unselect()
 
     def allow(self, usable: bool) -> None:
         """Let it be pressed, or only be read, as a heading."""
         if usable != self.is_enabled:
-            self.widgets.stir()
+            self.widgets.unsettle()
             self.enable() if usable else self.disable()
 
 
@@ -132,12 +132,12 @@ class Plate(pygame_gui.elements.UIPanel):
             self.rebuild()
         if not self.visible:
             self.show()
-        self.widgets.stir()
+        self.widgets.unsettle()
 
     def vanish(self) -> None:
         """Hide it."""
         if self.visible:
-            self.widgets.stir()
+            self.widgets.unsettle()
             self.hide()
 
 
@@ -189,7 +189,7 @@ class Widgets:
         self._plates.append(plate)
         return plate
 
-    def stir(self) -> None:
+    def unsettle(self) -> None:
         """Note that something changed."""
         self._unsettled = _SETTLING
 
@@ -197,7 +197,7 @@ class Widgets:
         """Follow the size of the window [px]."""
         if size != self._manager.window_resolution:
             self._manager.set_window_resolution(size)
-            self.stir()
+            self.unsettle()
 
     def restyle(self, theme: Theme, text_size: int) -> None:
         """Take on other colours, and another height of text [px]."""
@@ -216,8 +216,8 @@ class Widgets:
             for button in self._buttons:
                 button.remake()
             return
-        # Where the text alone grows, only what has words changes, and most of that is hidden: to ask every
-        # widget to look for changes takes as long as a frame.
+        # Where the text alone grows, only what has words changes, and most of that is hidden: to let
+        # every widget look for changes takes as long as a frame.
         self._manager.ui_theme = style
         for widget in (*self._plates, *self._buttons):
             widget.ui_theme = style
@@ -247,7 +247,7 @@ class Widgets:
             if event.button not in self._held:
                 return False
             self._held.discard(event.button)
-        self.stir()
+        self.unsettle()
         self._manager.process_events(event)
         return True
 
@@ -258,7 +258,7 @@ class Widgets:
             here, there = self.covers(place), self.covers(self._manager.mouse_position)
             self._manager.mouse_position = place
             if here or there:
-                self.stir()
+                self.unsettle()
         if self._unsettled:
             self._unsettled -= 1
             self._manager.update(elapsed)

@@ -55,7 +55,7 @@ class ImpactReader:
 
 
 def _impacts_of_contact_step(world: World) -> NDArray[Any]:
-    """Return the impacts of the last step as its contact records tell them: an array of IMPACT (n,).
+    """Return the impacts of the last step from its contact records: an array of IMPACT (n,).
 
     TEMPORARY: to be removed, with its call above and ``_steps``, once contact steps write their impacts into
     the log. Impacts of the other steps of a frame are missing here, and normals are those after the step.

@@ -1,4 +1,4 @@
-"""Work that is done now and then, spread over frames."""
+"""Work that is done a few times a second, spread over frames."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["RefreshTimer"]
 
 
 class RefreshTimer:
-    """Says which job is due, one at a call at the most: two that fall together would make a slow frame.
+    """Returns which job is due, at most one a call: two in one frame would make it slow.
 
     Parameters
     ----------

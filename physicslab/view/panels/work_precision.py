@@ -20,17 +20,17 @@ _FLOOR = 1e-17
 """Errors below this are drawn at it [m]: zero has no place on a logarithmic scale."""
 _MARK = 5.0
 """Half the size of a mark [px]."""
-_CIRCLE = tuple((math.cos(n * math.pi / 6), math.sin(n * math.pi / 6)) for n in range(13))
+_RING = tuple((math.cos(n * math.pi / 6), math.sin(n * math.pi / 6)) for n in range(13))
 _MARKS = (
     ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)),
     ((0, -1.3), (1.2, 0.9), (-1.2, 0.9), (0, -1.3)),
     ((0, -1.4), (1.4, 0), (0, 1.4), (-1.4, 0), (0, -1.4)),
     ((-1.1, -1.1), (1.1, 1.1), (0, 0), (-1.1, 1.1), (1.1, -1.1)),
-    _CIRCLE,
+    _RING,
     ((0, -1.4), (0, 1.4), (0, 0), (-1.4, 0), (1.4, 0)),
     ((0, 1.3), (1.2, -0.9), (-1.2, -0.9), (0, 1.3)),
 )
-"""The marks of the methods in turn, as strokes: no two are told apart by colour alone."""
+"""The marks of the methods in turn, as strokes: no two differ by colour alone."""
 
 
 @dataclass(frozen=True, slots=True)

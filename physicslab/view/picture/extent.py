@@ -1,4 +1,4 @@
-"""The part of a world that there is something to see in."""
+"""The part of a world in which there is something to see."""
 
 from __future__ import annotations
 

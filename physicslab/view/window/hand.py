@@ -13,8 +13,8 @@ from physicslab.world import World
 
 __all__ = ["Hand"]
 
-_BRIEFEST = 0.03
-"""Time [s] over which a speed can be told at all; a shorter pull is no throw."""
+_MIN_THROW_TIME = 0.03
+"""Time [s] over which a speed can be measured at all; a shorter pull is no throw."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +134,7 @@ class Hand:
         """Return the mean velocity [m/s] over the last of the hand's path, no faster than allowed."""
         first, last = self._path[0], self._path[-1]
         span = last.time - first.time
-        if span < _BRIEFEST:
+        if span < _MIN_THROW_TIME:
             return Vector2()
         velocity = (last.place - first.place) / span
         fastest = self._config.max_throw_speed

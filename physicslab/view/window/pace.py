@@ -8,9 +8,9 @@ __all__ = ["Pace"]
 
 
 class Pace:
-    """Says how many steps are due in a frame, so that what happens does not hang on the frame rate.
+    """Counts the steps that are due in a frame, so that the motion does not depend on the frame rate.
 
-    Time that has passed on the wall is owed, and paid back in whole steps of ``dt``. Below full speed each
+    Elapsed wall time is owed, and made up for in whole steps of ``dt``. Below full speed each
     step is shorter and there are not fewer, so that it looks as smooth; above, there are more steps and none
     is longer, so that it is as accurate.
 
@@ -23,7 +23,7 @@ class Pace:
     Attributes
     ----------
     paused : bool
-        Whether time stands still; :meth:`ask_step` still gives single steps.
+        Whether time stands still; :meth:`queue_step` still gives single steps.
     slow_motion : bool
         Whether the world runs at a quarter of its speed, whatever speed was chosen.
     chosen : float
@@ -85,7 +85,7 @@ class Pace:
         if self.paused:
             return self._single
         # Rounded to the nearest, not down: frames as long as a step, give or take, get one step each, and no
-        # step hangs on the last bit of a sum of frame times.
+        # step depends on the last bit of a sum of frame times.
         return max(math.floor(self._owed / dt + 0.5), 0)
 
     def done(self, steps: int, dt: float) -> None:
@@ -101,8 +101,8 @@ class Pace:
         """Note that so much time is not made up for."""
         self.dropped += seconds
 
-    def ask_step(self) -> None:
-        """Pause, and ask for one step."""
+    def queue_step(self) -> None:
+        """Pause, and make one step due."""
         self.paused = True
         self._single += 1
 

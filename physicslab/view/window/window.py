@@ -75,7 +75,7 @@ class Window:
     spring_tool : SpringTool
         The spring that is being drawn with the mouse.
     error_study : ErrorStudy
-        Error against run time of the scene, when asked for.
+        Error against run time of the scene, measured when its key is pressed.
     scene_file : path, optional
         The scene file that was last saved or opened.
     next_world : World, optional
