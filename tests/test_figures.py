@@ -77,7 +77,7 @@ EDITS: dict[str, Callable[[Desk], None]] = {
 
 
 @pytest.mark.parametrize("edit", EDITS)
-def test_every_edit_starts_the_drift_anew(edit: str) -> None:
+def test_every_edit_begins_the_measuring_again(edit: str) -> None:
     world = empty_world()
     circle(world, (0, 0), mass=1.0)
     circle(world, (20, 0), mass=1.0)
@@ -187,7 +187,7 @@ def test_no_gravity_is_shown_where_no_system_applies_it() -> None:
     assert world.physics.gravity_mode == "linear" and world.physics.gravity.y == -9.81
 
 
-def test_a_watch_tells_worlds_apart() -> None:
+def test_a_watch_begins_again_with_another_world() -> None:
     watch = EnergyWatch()
     for mass in (1.0, 5.0):
         world = empty_world()

@@ -44,7 +44,7 @@ _MIN_ROOM = 0.45
 
 
 class HudSystem(System):
-    """Writes figures, costs, banners and the controls hint over the picture; the world knows nothing of it.
+    """Writes figures, costs, banners and the controls hint over the picture; the world does not depend on it.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ class HudSystem(System):
             self._help = None
             self._sides.place_all(self._frame, window.overlays, window.figures, self._message_height)
 
-    # ---- what is said --------------------------------------------------------------------------------------
+    # ---- what is shown -------------------------------------------------------------------------------------
 
     def _refresh(self, world: World) -> None:
         """Read what is due; all of it where another world or other overlays are shown."""
@@ -157,7 +157,7 @@ class HudSystem(System):
         self._sides.place(reading, self._frame, window.overlays, window.figures, self._message_height)
 
     def _announce(self, failure: str) -> None:
-        """Say how measuring the error ended."""
+        """Show how measuring the error ended."""
         words = f"Error against run time could not be measured: {failure}" if failure else ""
         self._window.notify(words, 6.0 if failure else 0.0, failed=bool(failure))
 

@@ -132,7 +132,7 @@ class InputSystem(System):
         actions.zoom(self._window, notches)
 
     def _leave(self, world: World, event: pygame.Event) -> None:
-        """Hold nothing while the user is elsewhere."""
+        """Let go of everything while another window has the focus."""
         self._window.hand.drop(world)
         self._window.spring_tool.cancel()
         self._panning, self._tool = 0, None

@@ -80,7 +80,7 @@ class Camera:
         self.size = size
 
     def pan(self, dx: float, dy: float) -> None:
-        """Move the picture by so many pixels, right and down."""
+        """Move the picture by a number of pixels, right and down."""
         self.centre = Vector2(self.centre.x - dx / self.scale, self.centre.y + dy / self.scale)
 
     def zoom(self, factor: float, at: tuple[float, float]) -> None:

@@ -13,7 +13,7 @@ _MAX_MARKS = 3
 
 
 def shortened(words: str, letters: int) -> str:
-    """Return text of at most so many letters, the last of which is an ellipsis where it was cut.
+    """Return text of at most ``letters`` letters, the last of which is an ellipsis where it was cut.
 
     >>> shortened("Five restitutions", 8), shortened("drop", 8)
     ('Five re…', 'drop')

@@ -53,7 +53,7 @@ class Control:
     minor : bool
         Whether it is left to the help panel, so that the hint stays short.
     group, icon, tip : str
-        On the toolbar: what it stands together with, its picture, and what is said of it.
+        On the toolbar: what it stands together with, its picture, and the words of its tip.
     tool : Tool, optional
         What its button makes of the left mouse button; where there is one, the button does nothing else.
     click : callable, optional

@@ -102,7 +102,7 @@ class IconCache:
 
 
 def draw_icon(name: str, side: int, colour: Colour, *, marked: bool = False) -> pygame.Surface:
-    """Return an icon for a button of a given side [px]; ``marked`` adds a bar below that says it is on."""
+    """Return an icon for a button of a given side [px]; ``marked`` adds a bar below."""
     large = pygame.Surface((_SMOOTHING * side,) * 2, pygame.SRCALPHA, 32)
     scale = _SMOOTHING * side * _SHARE / _GRID
     shift = 0.5 * _SMOOTHING * side * (1.0 - _SHARE)

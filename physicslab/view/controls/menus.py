@@ -18,12 +18,12 @@ __all__ = ["MENUS", "Choice"]
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A line of a menu.
+    """Something to choose: a line of a menu, or a button of a bar.
 
     Attributes
     ----------
     title : str
-        What it says.
+        Its words.
     choose : callable, optional
         What choosing it does; nothing where it is a heading.
     on : bool

@@ -39,7 +39,7 @@ class Popup:
 
     @property
     def titles(self) -> dict[str, Rect]:
-        """What each line that is shown says, and where it is [px]."""
+        """Where each line that is shown is [px], by its words."""
         return {
             row.text: (row.rect.left, row.rect.top, row.rect.width, row.rect.height)
             for row in self._rows
@@ -54,7 +54,7 @@ class Popup:
             row.reveal(False)
 
     def turn(self, pages: int) -> None:
-        """Go on by so many pages, and from the last to the first."""
+        """Go on by a number of pages, and from the last to the first."""
         self._page = (self._page + pages) % self._pages
 
     def open(
@@ -95,7 +95,7 @@ class Popup:
             row.mark(shown[n].on)
 
     def _paged(self, choices: list[Choice], room: int) -> list[Choice]:
-        """Return what is shown of the choices where there is room for so many lines."""
+        """Return what is shown of the choices where there is room for ``room`` lines."""
         self._turning: Choice | None = None
         self._pages = 1
         if len(choices) <= room:

@@ -46,7 +46,7 @@ class RecoveryBar:
 
     @property
     def places(self) -> dict[str, tuple[int, int, int, int]]:
-        """Where its buttons are, by what they say [px]."""
+        """Where its buttons are, by their words [px]."""
         return {
             choice.title: (button.rect.left, button.rect.top, button.rect.width, button.rect.height)
             for choice, button in self._buttons

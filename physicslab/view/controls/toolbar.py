@@ -24,7 +24,7 @@ __all__ = ["Toolbar"]
 _RESIZE_DELAY = 0.2
 """Time [s] that the window keeps its size before its text follows."""
 _PERIOD = 0.1
-"""Time [s] between two looks at what is on."""
+"""Time [s] after which the marks of the buttons are brought up to date."""
 _TIP_DELAY = 0.35
 """How long [s] the cursor rests on a button before its tip is shown."""
 _MORE = Control("", "", group="window", icon="more", menu="more", tip="More")
@@ -76,7 +76,7 @@ class Toolbar:
 
     @property
     def offers(self) -> dict[str, Rect]:
-        """Where the buttons of the recovery bar are, by what they say [px]."""
+        """Where the buttons of the recovery bar are, by their words [px]."""
         return self._bar.places
 
     def _settle(self) -> None:
@@ -98,7 +98,7 @@ class Toolbar:
 
     @property
     def lines(self) -> dict[str, Rect]:
-        """Where each line of the open menu is, by what it says [px]."""
+        """Where each line of the open menu is, by its words [px]."""
         return self._popup.titles
 
     @property

@@ -1,4 +1,4 @@
-"""What the left mouse button does in the world: one tool at a time, which the window knows by its name."""
+"""What the left mouse button does in the world: one tool at a time, named in the window."""
 
 from __future__ import annotations
 

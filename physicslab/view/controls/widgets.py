@@ -1,4 +1,4 @@
-"""Buttons that are clicked: the one module that knows pygame_gui."""
+"""Buttons that are clicked: the one module that imports pygame_gui."""
 
 from __future__ import annotations
 

@@ -14,14 +14,14 @@ __all__ = ["Gauge"]
 _MEMORY = 4.0
 """Time [s] in which the memory of a strong value fades to a third."""
 _MIN_LENGTH, _MAX_LENGTH = 0.25, 1.3
-"""While the longest arrow has from so much to so much of the wanted length, the scale stays."""
+"""While the longest arrow is within these shares of the wanted length, the scale stays."""
 
 
 class Gauge:
     """How much of a quantity a metre of arrow stands for: 1, 2 or 5 times a power of ten.
 
     The scale follows the strongest value of the last seconds. It depends on the world alone: zooming enlarges
-    arrows together with all else, and what the legend says of them stays true.
+    arrows together with all else, and the legend stays true.
 
     Parameters
     ----------
@@ -59,5 +59,5 @@ class Gauge:
 
     @property
     def words(self) -> str:
-        """The scale, as the legend says it."""
+        """The scale, as it stands in the legend."""
         return f"1 m = {round_quantity(self.per_metre, self.unit)}" if self.per_metre else "none yet"

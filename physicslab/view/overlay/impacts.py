@@ -16,9 +16,9 @@ __all__ = ["SHOWN", "ImpactReader", "RecentImpacts"]
 SHOWN = 1.0
 """How long an impact is shown [s]; it is the world's time, which stands still while paused."""
 _MAX_KEPT = 256
-"""Weaker impacts than so many others are left out."""
+"""The weakest impacts beyond that number are left out."""
 _SAME_PLACE = 0.15
-"""Impacts of a pair that are nearer to each other are one to the eye; in lengths of the longest arrow."""
+"""Impacts of a pair nearer than that look like one; in lengths of the longest arrow."""
 
 
 class ImpactReader:

@@ -27,7 +27,7 @@ LABELLED = 12
 IMPACT_WIDTH, REST_WIDTH = 3.0, 1.6
 """How thick arrows are drawn [px]: an impact's, and those of resting contact."""
 _KEEP_RATIO = 1.5
-"""Another contact takes the place of one whose numbers are shown where it is so many times as strong."""
+"""A contact must be that many times as strong as one whose numbers are shown to take its place."""
 
 _ROUNDING = 1e-9
 """Friction of so small a share of the normal impulse is rounding, and written as 0."""
@@ -65,9 +65,9 @@ def _without(resting: ContactSamples, impacts: ContactSamples, distance: float) 
     """Return the resting contacts but those nearer than ``distance`` [m] to an impact of the same pair."""
     if not len(impacts):
         return resting
-    struck = np.flatnonzero(np.isin(resting[["a", "b"]], impacts[["a", "b"]]))
-    hidden = same_place(resting[struck], impacts, distance).any(axis=1)
-    return np.delete(resting, struck[hidden])
+    candidates = np.flatnonzero(np.isin(resting[["a", "b"]], impacts[["a", "b"]]))
+    hidden = same_place(resting[candidates], impacts, distance).any(axis=1)
+    return np.delete(resting, candidates[hidden])
 
 
 def _draw_impulses_of(
@@ -118,8 +118,8 @@ def _draw_cones(
         tos = froms + np.concatenate([side * reach for side in sides])
         shares = np.tile(share[chosen], 2)
         if broken:
-            froms, tos, whose = dashes(froms, tos)
-            shares = shares[whose]
+            froms, tos, line = dashes(froms, tos)
+            shares = shares[line]
         canvas.lines(froms, tos, theme.friction_cone, 1.2, shares)
 
 

@@ -17,7 +17,7 @@ __all__ = ["Overlays"]
 _REACH = 0.13
 """Length of the longest arrow, as a share of the smaller side of the picture."""
 _MAX_IN_CROWD = 2.0
-"""Its length among several bodies is at most so many sizes of a body: no arrow is lost among the others."""
+"""Its greatest length among several bodies, in sizes of a body: no arrow is lost among the others."""
 _MIN_LENGTH = 16.0
 """Its length is at least that [px]."""
 

@@ -16,7 +16,7 @@ _MESSAGE_WIDTH = 0.56
 _MIN_DROPPED = 0.005
 """Less time [s], dropped within a few seconds, cannot be noticed."""
 _DROP_SHOWN = 3.0
-"""How long [s] the HUD speaks of time that was dropped."""
+"""How long [s] time that was dropped is shown."""
 
 
 class DroppedTime:
@@ -68,9 +68,9 @@ class Message:
 def lay_out_messages(words: Iterable[tuple[str, Colour]], size: int, canvas: Canvas) -> list[Message]:
     """Break messages into lines of a height [px]; those without words are left out."""
     messages: list[Message] = []
-    for said, colour in words:
+    for message, colour in words:
         style = TextStyle(size, colour, bold=True)
-        lines = broken(said, round(_MESSAGE_WIDTH * canvas.size[0]), canvas, style)
+        lines = broken(message, round(_MESSAGE_WIDTH * canvas.size[0]), canvas, style)
         if lines:
             height = canvas.text_size("Ag", style)[1] * len(lines) + round(0.55 * size)
             messages.append(Message(lines, colour, height))

@@ -113,8 +113,8 @@ class ErrorStudy:
     def _read(self, status: int) -> None:
         if status != 0:
             lines = self._log.read_text("utf-8", errors="replace").replace("\r", "\n").split("\n")
-            said = [line.strip() for line in lines if line.strip()]
-            self.failure = said[-1] if said else f"it ended with status {status}"
+            written = [line.strip() for line in lines if line.strip()]
+            self.failure = written[-1] if written else f"it ended with status {status}"
             return
         (found,) = json.loads(self._report.read_text("utf-8"))["scenes"]
         self.remark = f"{found['kind']}; distances after {found['seconds']:g} s from {found['reference']}"

@@ -17,12 +17,12 @@ type Kind = Literal["heading", "figure", "detail", "remark", "gap"]
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One thing said in a panel.
+    """One line of a panel.
 
     Attributes
     ----------
     label, value : str
-        What stands at the left and at the right.
+        The words at the left, and those at the right.
     kind : str
         ``"heading"``; ``"figure"``; ``"detail"``, a lesser figure; ``"remark"``, words that may take several
         lines; ``"gap"``, some space.

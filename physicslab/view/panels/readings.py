@@ -1,4 +1,4 @@
-"""What the HUD says of a world, line by line."""
+"""What the HUD shows of a world, line by line."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def figure_lines(world: World, figures: WorldFigures, frame_rate: float) -> list
         Line("as a vector", vector_quantity(figures.momentum.linear, "kg m/s"), "detail"),
         Line("Angular momentum", quantity(figures.momentum.angular, "kg m²/s")),
         Line("Gravity", gravity_in_words(world)),
-        *(Line(said, kind="remark") for said in [summation(world)] if said),
+        *(Line(remark, kind="remark") for remark in [summation(world)] if remark),
     ]
 
 

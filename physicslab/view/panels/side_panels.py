@@ -77,7 +77,7 @@ class SidePanels:
         self._placed: dict[str, Panel] = {}
 
     def take(self, side: str, versions: Sequence[Sequence[Line]]) -> None:
-        """Take what a side is to say, ``"figures"`` or ``"costs"``; shorter versions come later."""
+        """Take the lines of a side, ``"figures"`` or ``"costs"``: versions of them, the longest first."""
         self._versions[side] = versions
 
     def place_all(self, frame: Frame, overlays: Overlays, shown: bool, messages: int) -> None:
@@ -91,7 +91,7 @@ class SidePanels:
         Parameters
         ----------
         messages : int
-            Height of the messages above the controls hint [px]: less is said so that none lies over a panel.
+            Height of the messages above the controls hint [px]: panels keep above them.
         """
         size, width = frame.text_size, frame.canvas.size[0]
         panel_width, margin, right = round(_WIDTH * size), margin_of(size), sides_of(size, width)[1]

@@ -1,4 +1,4 @@
-"""Advice in the window: what is not to be trusted, in a few lines over the world."""
+"""Warnings in the window: what is not to be trusted, in a few lines over the world."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _MAX_WIDTH = 60
 def draw_advice(
     advice: Sequence[Advice], middle: int, top: int, room: int, size: int, canvas: Canvas, theme: Theme
 ) -> Rect | None:
-    """Say what is not to be trusted, around ``middle`` and no wider than ``room`` px; return where [px].
+    """Write what is not to be trusted, around ``middle`` and no wider than ``room`` px; return where [px].
 
-    The worst is said first. Nothing is drawn where there is nothing to say.
+    The worst comes first. Without a warning nothing is drawn.
     """
     if not advice:
         return None

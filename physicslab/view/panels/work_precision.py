@@ -101,7 +101,7 @@ def _powers(values: Sequence[float]) -> tuple[int, int]:
 
 
 def _draw_axes(frame: _Frame, size: int, canvas: Canvas, theme: Theme) -> None:
-    """Draw a line for every power of ten, labelled where there is room, and say what is what."""
+    """Draw a line for every power of ten, labelled where there is room, and name the axes."""
     style = TextStyle(size - 1, theme.faint)
     half = canvas.text_size("Ag", style)[1] // 2
     every = max(1, math.ceil((frame.error[1] - frame.error[0]) * 3 * half / max(frame.bottom - frame.top, 1)))

@@ -77,7 +77,7 @@ def _look(world: World, theme: Theme, rows: Rows) -> Look:
 
 
 def _marker_look(world: World, theme: Theme, rows: Rows) -> Look:
-    """Return the look of points: one colour throughout, and each its own, for a fixed sun is no wall."""
+    """Return the look of points: one colour in and around, also of a fixed one: it is no wall."""
     rims, _ = _palette(theme)
     own = _OWN + own_colour(world, theme, rows)
     colour = rims[np.where(world.table(Held).present[rows], _HELD, own)]

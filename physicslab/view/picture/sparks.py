@@ -1,4 +1,4 @@
-"""Sparks that fly where bodies strike each other; the world knows nothing of them."""
+"""Sparks that fly where bodies hit each other: a matter of the window, not of the world."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ def _turned(normal: Points, angle: Numbers) -> Points:
 def _chances(impacts: NDArray[Any], of_impact: NDArray[np.int64]) -> tuple[Numbers, Numbers, Numbers]:
     """Return for each spark the angle to the normal [rad], and its speed and life as shares of the largest.
 
-    They look random and depend only on what struck what, where and when: not on the frames in between.
+    They look random and depend only on the pair, the place and the time of the impact: not on the frames.
     """
     seed = _scrambled(of_impact.astype(np.uint64))
     for part in ("entity_a", "entity_b", "time", "x", "y"):

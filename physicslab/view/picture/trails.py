@@ -56,13 +56,13 @@ class TrailSwitch:
         A Trail that comes back is as long as it was.
         """
         world.synchronise()
-        worn = world.table(Trail).handles
-        if not worn:
+        with_trail = world.table(Trail).handles
+        if not with_trail:
             self.on = not self.on
             self.follow(world)
             return
         self.on = False
-        self._lengths = {entity: world.component(entity, Trail).length for entity in worn}
+        self._lengths = {entity: world.component(entity, Trail).length for entity in with_trail}
         for entity in self._lengths:
             world.discard(entity, Trail)
 
@@ -71,10 +71,10 @@ class TrailSwitch:
         if not self.on:
             return
         moving = world.batch(Transform, Velocity).entities
-        worn = world.batch(Transform, Velocity, Trail).entities
-        if len(moving) == len(worn):
+        with_trail = world.batch(Transform, Velocity, Trail).entities
+        if len(moving) == len(with_trail):
             return
-        for entity in np.setdiff1d(moving, worn).tolist():
+        for entity in np.setdiff1d(moving, with_trail).tolist():
             if world.has(entity, Velocity) and not world.has(entity, Trail):
                 length = self._lengths.get(entity)
                 world.add(entity, Trail() if length is None else Trail(length))

@@ -1,4 +1,4 @@
-"""What the systems of a frame share: the eye, the canvas, the clock and the hand."""
+"""What the systems of a frame share: camera, canvas, clock and hand."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _AROUND = 0.04
 
 
 class Window:
-    """The state of the sandbox's window; the world knows nothing of it.
+    """The state of the sandbox's window; no part of the world depends on it.
 
     Attributes
     ----------
@@ -130,11 +130,11 @@ class Window:
 
     @property
     def notice(self) -> str:
-        """What is to be said for a few seconds; empty when there is nothing."""
+        """The message that is shown for a few seconds; empty when there is none."""
         return self._notice if self.now < self._notice_until else ""
 
     def notify(self, words: str, seconds: float = 3.0, *, failed: bool = False) -> None:
-        """Say something for a while; ``failed`` marks what could not be done."""
+        """Show a message for a while; ``failed`` marks what could not be done."""
         self.notice_failed = failed
         self._notice, self._notice_until = words, self.now + seconds
 
