@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from desk import FRAME, Desk, empty_world
-from test_sparks import UNTIL_STEPS_LOG
 
 from physicslab.prefabs import circle
 from physicslab.view.canvas.canvas import RecordingCanvas
@@ -26,7 +25,7 @@ def rattling(collisions: str = "exact") -> World:
 
 
 @pytest.mark.parametrize("steps", [1, 3, 8])
-@pytest.mark.parametrize("collisions", ["exact", pytest.param("step", marks=UNTIL_STEPS_LOG)])
+@pytest.mark.parametrize("collisions", ["exact", "step"])
 def test_each_impact_is_read_once_however_many_steps_a_frame_has(steps: int, collisions: str) -> None:
     world, reader, read = rattling(collisions), ImpactReader(), []
     reader.follow(world)

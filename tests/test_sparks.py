@@ -14,10 +14,6 @@ from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.picture.sparks import Sparks
 from physicslab.world import World
 
-UNTIL_STEPS_LOG = pytest.mark.xfail(
-    strict=True, reason="contact steps do not write their impacts into the log yet"
-)
-
 
 def meeting(speed: float, mass: float = 1.0) -> World:
     """Return a world where two balls meet head-on at the origin, a few frames from now."""
@@ -87,7 +83,7 @@ def test_they_fly_apart_and_go_out() -> None:
     assert not len(watched.sparks)
 
 
-@pytest.mark.parametrize("collisions", ["exact", pytest.param("step", marks=UNTIL_STEPS_LOG)])
+@pytest.mark.parametrize("collisions", ["exact", "step"])
 def test_sparks_do_not_depend_on_how_many_steps_a_frame_has(collisions: str) -> None:
     flights = []
     for steps in (1, 2, 4):

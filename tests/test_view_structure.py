@@ -10,7 +10,7 @@ import pytest
 from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
-from physicslab.systems.schedule import Stage, System
+from physicslab.systems.system import Stage, System
 
 
 @pytest.mark.parametrize("folder", ["physicslab.view", "physicslab.systems.frame"])

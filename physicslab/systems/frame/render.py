@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.vectors import draw_vectors
@@ -12,6 +12,7 @@ from physicslab.view.panels.panels import text_size
 from physicslab.view.picture.painting import draw_world
 
 if TYPE_CHECKING:
+    from physicslab.state.state import State
     from physicslab.view.window.window import Window
     from physicslab.world import World
 
@@ -31,9 +32,9 @@ class RenderSystem(System):
         self._window = window
         self._impacts = ImpactReader()
 
-    def attach(self, world: World) -> None:
+    def attach(self, state: State) -> None:
         """Begin with the next impact of a world that was not shown before."""
-        self._impacts.follow(world)
+        self._impacts.follow(state)
 
     @at(Stage.RENDER)
     def draw(self, world: World, elapsed: float) -> None:

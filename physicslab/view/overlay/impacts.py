@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform
+from physicslab.state.state import State
 from physicslab.view.overlay.contact_samples import SAMPLE, ContactSamples, samples_of
 from physicslab.world import World
 
@@ -29,52 +29,25 @@ class ImpactReader:
     """
 
     def __init__(self) -> None:
-        self._world: World | None = None
+        self._state: State | None = None
         self._read = 0
-        self._steps = 0  # needed by _impacts_of_contact_step alone
 
-    def follow(self, world: World) -> None:
-        """Begin with the next impact of ``world``, unless it is the world that is read already."""
-        if world is not self._world:
-            self._world, self._read, self._steps = world, world.contacts.logged, world.steps
+    def follow(self, state: State) -> None:
+        """Begin with the next impact of ``state``, unless it is the world that is read already."""
+        if state is not self._state:
+            self._state, self._read = state, state.contacts.logged
 
-    def new(self, world: World) -> NDArray[Any]:
+    def new(self, state: State) -> NDArray[Any]:
         """Return the impacts since the last call, oldest first: an array of IMPACT (n,).
 
         Of more than the log holds, the oldest are missing.
         """
-        self.follow(world)
-        contacts = world.contacts
+        self.follow(state)
+        contacts = state.contacts
         first = max(min(self._read, contacts.logged), contacts.logged - len(contacts.log))
         self._read = contacts.logged
-        logged: NDArray[Any] = contacts.log[np.arange(first, contacts.logged) % len(contacts.log)]
-        if world.steps != self._steps and world.method.collisions == "step":
-            logged = np.concatenate((logged, _impacts_of_contact_step(world)))
-        self._steps = world.steps
-        return logged
-
-
-def _impacts_of_contact_step(world: World) -> NDArray[Any]:
-    """Return the impacts of the last step from its contact records: an array of IMPACT (n,).
-
-    TEMPORARY: to be removed, with its call above and ``_steps``, once contact steps write their impacts into
-    the log. Impacts of the other steps of a frame are missing here, and normals are those after the step.
-    """
-    contacts = world.contacts
-    near = contacts.manifolds[: contacts.recorded]
-    pairs = np.flatnonzero(near["impact_count"] > 0)
-    both = np.stack((2 * pairs, 2 * pairs + 1), axis=1).ravel()
-    both = both[contacts.points["impact_normal"][both] > 0.0]
-    pair, point = near[both // 2], contacts.points[both]
-    centre = world.table(Transform)["position"][pair["b"]]
-    found: NDArray[Any] = np.zeros(len(both), contacts.log.dtype)
-    found["time"] = world.time
-    for name in ("entity_a", "entity_b", "wall", "normal_x", "normal_y"):
-        found[name] = pair[name]
-    found["x"], found["y"] = centre[:, 0] + point["arm_bx"], centre[:, 1] + point["arm_by"]
-    found["approach_speed"] = point["approach_speed"]
-    found["normal_impulse"], found["tangent_impulse"] = point["impact_normal"], point["impact_tangent"]
-    return found
+        new: NDArray[Any] = contacts.log[np.arange(first, contacts.logged) % len(contacts.log)]
+        return new
 
 
 class RecentImpacts:

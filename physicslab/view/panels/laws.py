@@ -6,7 +6,6 @@ import numpy as np
 
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.systems.gravity import GravitySystem
-from physicslab.systems.schedule import ForceSystem
 from physicslab.world import World
 
 __all__ = ["energy_changers", "gravity_in_words", "has_gravity"]
@@ -34,14 +33,14 @@ def gravity_in_words(world: World) -> str:
 def energy_changers(world: World) -> list[str]:
     """Return what changes the energy of a world by law; where it is nothing, any change is an error."""
     found = []
-    if world.method.collisions != "none":
+    if world.plan.collisions != "none":
         found.append("impacts and friction")
     rows = world.batch(Spring).rows
     if np.any(world.table(Spring)["damping"][rows]):
         found.append("dampers")
     if world.physics.linear_damping or world.physics.angular_damping:
         found.append("damping")
-    forces = (system for system in world.schedule.running if isinstance(system, ForceSystem))
+    forces = world.schedule.forces
     found += [force.name.removesuffix("System").lower() for force in forces if force.potential is None]
     moving = world.batch(Transform, Velocity).rows
     if not world.table(Mass).present[moving].all():
