@@ -169,7 +169,9 @@ class World(State):
         """Go on with a run of which ``done`` steps are made, as far as one call goes; return how many."""
         self._synchronise()
         h = length.dt if done < length.whole else length.rest
-        wanted = 1 if self.schedule.observer is not None else stride - done % stride
+        if self.schedule.observer is not None:
+            return self._advance(h, 1)
+        wanted = stride - done % stride
         count = max(1, min(wanted, length.whole - done))
         best = self.steppers.ready(self, h)
         if not best.leaps:

@@ -71,7 +71,7 @@ class EventDriven:
         self._struck_at = np.full((len(self._pairs), 2), np.nan)
         self._bounds = np.array(state.physics.bounds or (0.0, 0.0, 0.0, 0.0))
         uniform = [force.uniform_acceleration(state) for force in schedule.forces]
-        self._gravity = np.array([(g.x, g.y) for g in uniform if g is not None]).reshape(-1, 2).sum(axis=0)
+        self._gravity = np.array([(g.x, g.y) for g in uniform if g is not None] or [(0.0, 0.0)]).sum(axis=0)
         looked_after = (*schedule.forces, schedule.find(ContactSystem), schedule.find(ResolveSystem))
         self._within = [system.name for system in looked_after if system is not None]
 

@@ -21,6 +21,7 @@ from physicslab.contacts.arguments import (
 )
 from physicslab.contacts.islands import all_asleep, keep_places
 from physicslab.contacts.wide import refill
+from physicslab.ecs.vector import Vector2
 from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.kernels.broad import grid, near_pairs
 from physicslab.kernels.solver import fused_contact as fused
@@ -76,9 +77,7 @@ class FusedContact:
         self._resolve = _found(schedule, ResolveSystem)
         self._sleep = schedule.find(SleepSystem)
         uniform = [force.uniform_acceleration(state) for force in schedule.forces]
-        self._gravity = (
-            sum(g.x for g in uniform if g is not None), sum(g.y for g in uniform if g is not None)
-        )  # fmt: skip
+        self._gravity = sum((g for g in uniform if g is not None), start=Vector2(0.0, 0.0))
         self._cost = np.zeros(fused.COSTS, np.int64)
         self.reason = "bodies can touch, and nothing looks at substeps"
 
