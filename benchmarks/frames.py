@@ -32,7 +32,7 @@ from physicslab.kernels.warm import load_all
 from physicslab.prefabs import container, gas, pile
 from physicslab.systems.standard import standard_systems
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 FRAME = 1.0 / 60.0

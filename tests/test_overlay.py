@@ -12,11 +12,11 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.impacts import SHOWN
 from physicslab.view.overlay.impulses import LABELLED
 from physicslab.view.overlay.labels import Label, Labels
-from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
 
 

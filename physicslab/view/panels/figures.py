@@ -83,12 +83,12 @@ class EnergyWatch:
         self._seen: tuple[World, int] | None = None
 
     def follow(self, world: World) -> None:
-        """Start anew if the world was edited; to be called in every frame, so that nothing is missed."""
+        """Begin again if the world was edited; to be called in every frame, so that nothing is missed."""
         if self._drift is None or self._seen != (world, world.revision):
             self.restart(world)
 
     def restart(self, world: World) -> Drift:
-        """Start anew from the energy as it is now."""
+        """Begin again from the energy as it is now."""
         self._drift = Drift(world)
         self.known = reference_solution(world)
         self._seen, self.since = (world, world.revision), world.time
@@ -127,7 +127,7 @@ class FrameMeter:
         return 1.0 / self._frame_time if self._frame_time > 0.0 else 0.0
 
     def note(self, world: World, elapsed: float) -> None:
-        """Take note of a frame, ``elapsed`` seconds after the last."""
+        """Count a frame, ``elapsed`` seconds after the last."""
         if elapsed <= 0.0:  # the first frame
             return
         share = 1.0 - math.exp(-elapsed / _SMOOTHING)
