@@ -15,10 +15,12 @@ import numpy as np
 
 from physicslab.components import Name
 from physicslab.components.name import why_no_id
-from physicslab.ecs.component import Batch, InvalidValue, Table
+from physicslab.ecs.batch import Batch
+from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.fields import Field
+from physicslab.ecs.table import Table
 from physicslab.integrators import StepTooSmall
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.ode.system import OdeSystem
