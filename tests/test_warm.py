@@ -190,7 +190,7 @@ def test_kernels_are_loaded_in_frames_that_have_time_left(
 def test_the_window_knows_every_kernel_from_the_start() -> None:
     """What is in no imported module could not be loaded while there is time for it."""
     code = """
-from physicslab import app
+from physicslab.desktop import app
 app._import("physicslab.desktop.session_window")
 from physicslab.kernels import KERNELS
 before = len(KERNELS)

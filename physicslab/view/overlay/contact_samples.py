@@ -70,7 +70,7 @@ def resting_of(world: World) -> ContactSamples:
 def impacts_of(world: World) -> ContactSamples:
     """Return the impacts of the step so far."""
     contacts = world.contacts
-    pairs = np.flatnonzero(contacts.manifolds["struck"][: contacts.recorded] > 0)
+    pairs = np.flatnonzero(contacts.manifolds["impact_count"][: contacts.recorded] > 0)
     both = np.stack((2 * pairs, 2 * pairs + 1), axis=1).reshape(-1)
     return _touches(
         world, both[contacts.points["impact_normal"][both] > 0.0], "impact_normal", "impact_tangent"

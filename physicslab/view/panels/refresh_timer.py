@@ -17,8 +17,8 @@ class RefreshTimer:
 
     Examples
     --------
-    >>> rota = Rota({"figures": 0.1, "advice": 0.5})
-    >>> [rota.due(0.0), rota.due(0.0), rota.due(0.0), rota.due(0.2)]
+    >>> timer = RefreshTimer({"figures": 0.1, "advice": 0.5})
+    >>> [timer.due(0.0), timer.due(0.0), timer.due(0.0), timer.due(0.2)]
     ['figures', 'advice', None, 'figures']
     """
 
