@@ -176,7 +176,7 @@ def test_kernels_are_loaded_in_frames_that_have_time_left(
     asleep = [Waiting(name) for name in "abc"]
     monkeypatch.setattr(compiling, "KERNELS", asleep)
     with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
-        display.show()
+        monkeypatch.setattr(Display, "left", property(lambda self: 0.012))
         waiting.advance(DARK)
         assert [kernel.compiled for kernel in asleep] == [True, False, False]
         monkeypatch.setattr(Display, "left", property(lambda self: 0.001))
