@@ -23,7 +23,7 @@ from physicslab.ecs.component import (
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.table import Table
 from physicslab.ecs.vector import Vector2
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
 with local_components():

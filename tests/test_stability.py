@@ -10,7 +10,7 @@ import pytest
 from physicslab import cli
 from physicslab.lab.stability.case import Case, Verdict, run_case
 from physicslab.lab.stability.catalogue import CASES, select
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 
 SLOW = {
     "steps_1e4_memory", "cradle_amplitude", "cradle_amplitude_damped", "crowd_1000_speed", "net_energy",
