@@ -284,7 +284,14 @@ def auto_verdict(name: str) -> Verdict:
     return verdict(found.error, problem.good, problem.excellent, floor=floor, chaotic=problem.chaotic)
 
 
-@pytest.mark.parametrize("name", [name for name in PROBLEMS if name not in SLOW and name not in SHORT])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else [])
+        for name in PROBLEMS
+        if name not in SHORT
+    ],
+)
 def test_auto_is_excellent_or_as_good_as_chaos_allows(name: str) -> None:
     assert auto_verdict(name) in (Verdict.EXCELLENT, Verdict.CHAOS)
 
@@ -364,6 +371,7 @@ def test_the_document_holds_finite_numbers_alone(capsys: pytest.CaptureFixture[s
         assert all(set(row) == wanted for row in curve["rows"])
 
 
+@pytest.mark.plot
 def test_a_table_and_pictures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     found, pictures = tmp_path / "found.json", tmp_path / "new" / "pictures"
     assert main(["accuracy", "damped", "damped_over", "--plot", str(pictures)]) == 2

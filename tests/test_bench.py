@@ -1,7 +1,6 @@
 """The benchmark: what it measures, prints and writes. How fast anything is, is never asserted."""
 
 import dataclasses
-import importlib.util
 import itertools
 import json
 import math
@@ -160,9 +159,9 @@ def test_the_document_alone_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -
     assert (growth["group"], growth["sizes"]) == ("piles", [5, 10, 20])
 
 
+@pytest.mark.plot
 @pytest.mark.usefixtures("small_scenes")
 def test_the_plot_is_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("matplotlib")
     assert cli.main(["bench", "piles", "--plot", str(tmp_path)]) == 0
     assert (tmp_path / "bench.png").read_bytes().startswith(b"\x89PNG")
 
@@ -214,10 +213,9 @@ def test_absent_peers_are_named_with_what_installs_them(
     )
 
 
+@pytest.mark.peers
 @pytest.mark.usefixtures("small_scenes")
 def test_peers_are_timed_beside(capsys: pytest.CaptureFixture[str]) -> None:
-    if importlib.util.find_spec("pymunk") is None or importlib.util.find_spec("Box2D") is None:
-        pytest.skip("no peers installed")
     assert cli.main(["bench", "pile_20", "circles_10", "--peers", "--json", "-"]) == 0
     found = json.loads(capsys.readouterr().out)
     for scene in found["scenes"]:
@@ -227,12 +225,11 @@ def test_peers_are_timed_beside(capsys: pytest.CaptureFixture[str]) -> None:
             assert engine["quality"]["deepest overlap"] >= 0.0
 
 
+@pytest.mark.peers
 @pytest.mark.usefixtures("small_scenes")
 def test_large_scenes_are_run_without_peers_unless_they_are_named(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if importlib.util.find_spec("pymunk") is None or importlib.util.find_spec("Box2D") is None:
-        pytest.skip("no peers installed")
     for module in ("commands.bench", "lab.bench.tables"):
         monkeypatch.setattr(f"physicslab.{module}.PEER_SIZE_LIMIT", 10)
     assert cli.main(["bench", "piles", "--peers"]) == 0

@@ -1,8 +1,9 @@
-"""The stability lab: every case passes, and what is written of them. Long cases are left to the command."""
+"""The stability lab: every case passes, and what is written of them. The longest are left to the command."""
 
 import dataclasses
 import json
 import math
+from typing import Any
 
 import pytest
 
@@ -11,10 +12,23 @@ from physicslab.lab.stability.case import StabilityCase, Verdict, run_case
 from physicslab.lab.stability.catalogue import CASES
 from physicslab.state.masses import Diverged
 
+SLOW = {
+    "steps_1e4_memory", "cradle_amplitude", "cradle_amplitude_damped", "crowd_1000_speed", "net_energy",
+    "step_10s_spring_touching", "chain_touching_energy", "chain_touching_bounded",
+}  # fmt: skip
+"""Cases that take more than a second of processor time each."""
 
-@pytest.mark.parametrize(
-    "case", [pytest.param(case, id=case.name) for case in CASES.values() if not case.long]
-)
+
+def parameter(case: StabilityCase) -> Any:
+    """Return a case as a parameter of a test, with its mark."""
+    return pytest.param(case, id=case.name, marks=[pytest.mark.slow] if case.name in SLOW else [])
+
+
+def test_slow_cases_are_cases() -> None:
+    assert CASES.keys() >= SLOW
+
+
+@pytest.mark.parametrize("case", [parameter(case) for case in CASES.values() if not case.long])
 def test_the_case_passes(case: StabilityCase) -> None:
     outcome = run_case(case)
     assert outcome.verdict is Verdict.PASSED, f"{outcome.figure} > {case.limit}; {outcome.failure}"
@@ -58,16 +72,19 @@ def test_a_name_is_that_of_a_case_or_of_a_group() -> None:
     assert CASES.select("nothing") == []
 
 
-def test_the_command_prints_a_line_each_and_a_summary(capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["stability", "dampers", "damper_1e6"]) == 0
+def test_the_command_prints_a_line_each_and_a_summary(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("first", "second"):
+        monkeypatch.setitem(CASES, name, dataclasses.replace(case_of(0.5), name=name))
+    assert cli.main(["stability", "g", "damper_1e6", "second"]) == 0
     out, err = capsys.readouterr()
     assert err == ""
     head, *rows, last = out.splitlines()
     assert head.split()[:4] == ["case", "figure", "limit", "verdict"]
-    named = [case.name for case in CASES.select("dampers")]
-    assert [row.split()[0] for row in rows] == named
+    assert [row.split()[0] for row in rows] == ["first", "second", "damper_1e6"], "each of them once"
     assert all("passed" in row for row in rows)
-    assert last.startswith(f"{len(named)} of {len(named)} cases passed, in ")
+    assert last.startswith("3 of 3 cases passed, in ")
 
 
 def test_the_document_alone_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
