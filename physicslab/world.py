@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import time
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,6 +19,7 @@ from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.fields import Field
 from physicslab.integrators import StepTooSmall
+from physicslab.kernels import working_ns
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.ode.system import OdeSystem
 from physicslab.state.bodies import Bodies, Diverged
@@ -453,7 +453,7 @@ class World:
         ode.gather(self)
         parts = 1 if method.integrator.chooses_steps else method.substeps
         h, count = (dt * steps, 1) if method.integrator.chooses_steps else (dt / parts, parts * steps)
-        start = time.perf_counter_ns()
+        start = working_ns()
         try:
             made = method.integrator.flow(self, ode, h, count)
         except StepTooSmall as error:
@@ -465,7 +465,7 @@ class World:
             self._flow(ode, dt, steps)
             return
         ode.scatter(self, dt * steps)
-        self.schedule.note("IntegrateSystem", steps, time.perf_counter_ns() - start)
+        self.schedule.note("IntegrateSystem", steps, working_ns() - start)
         for name in ode.forces:
             self.schedule.note(name, made, 0)  # their time is within the loop's
         self.force_evaluations += made

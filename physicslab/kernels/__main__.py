@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import gc
 import sys
-import time
 
 from physicslab.kernels import KERNELS, compile_kernels
 from physicslab.kernels.loading import prepare
@@ -19,11 +18,10 @@ def _fill() -> int:
     shown = Progress(-1, 0)
     with Warmup() as warmup:
         while not warmup.finished:
-            progress = warmup.poll()
+            progress = warmup.poll(0.1)
             if progress != shown:
                 print(progress.done, progress.total, progress.name, flush=True)
                 shown = progress
-            time.sleep(0.05)
     return 0 if shown.done == shown.total else 1
 
 

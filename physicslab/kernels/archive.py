@@ -17,7 +17,8 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from physicslab.kernels.cache import cache_directory, current_folders, platform_key, sources_key
+from physicslab.kernels.cache import cache_directory
+from physicslab.kernels.keys import current_folders, platform_key, sources_key
 
 __all__ = ["ArchiveError", "pack", "unpack"]
 

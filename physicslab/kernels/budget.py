@@ -16,6 +16,7 @@ from pathlib import Path
 
 from physicslab.kernels import cache
 from physicslab.kernels.compiler import KERNELS
+from physicslab.kernels.keys import platform_key
 from physicslab.kernels.loading import load, prepare
 from physicslab.kernels.warm import load_all, mark_warm, name_of
 
@@ -59,7 +60,9 @@ def _keep(fresh: Path, target: Path) -> None:
         os.replace(folder, target / folder.name)
 
 
-def check(costs: list[tuple[float, str]], each: float = LIMIT_EACH_S, total: float = LIMIT_TOTAL_S) -> list[str]:
+def check(
+    costs: list[tuple[float, str]], each: float = LIMIT_EACH_S, total: float = LIMIT_TOTAL_S
+) -> list[str]:
     """Return what exceeds the budget, a line each; nothing where all is within it."""
     found = [f"{name}: {cost:.1f} s, more than {each:g} s" for cost, name in costs if cost > each]
     whole = sum(cost for cost, _ in costs)
@@ -68,14 +71,16 @@ def check(costs: list[tuple[float, str]], each: float = LIMIT_EACH_S, total: flo
 
 def table(costs: list[tuple[float, str]]) -> str:
     """Return the costs as text, the largest first, with their sum and the processor that they are of."""
-    rows = [f"{cost:7.2f} s  {name.removeprefix('physicslab.kernels.')}" for cost, name in sorted(costs)[::-1]]
+    rows = [
+        f"{cost:7.2f} s  {name.removeprefix('physicslab.kernels.')}" for cost, name in sorted(costs)[::-1]
+    ]
     whole = sum(cost for cost, _ in costs)
     return "\n".join([*rows, f"{whole:7.2f} s  all {len(costs)} kernels, of processor time; {_processor()}"])
 
 
 def _processor() -> str:
     """Return the processor's own name, and numba's for its kind."""
-    kind = cache.platform_key()["processor"]
+    kind = platform_key()["processor"]
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:  # not Linux

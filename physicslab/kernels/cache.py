@@ -1,9 +1,7 @@
 """Where compiled kernels are kept between runs, and which of them are still right.
 
-numba's own cache does not see an edit in another module's callee and would return the old code. So each
-module's kernels lie in a folder named after a hash of its source, of the sources of all that it imports
-within this package, and of what else decides on machine code: numba, Python, the processor. An edit leaves
-the folders of modules that do not depend on it as they are.
+Each module's kernels lie in a folder named after a hash of all that decides on their machine code
+(:mod:`physicslab.kernels.keys`). An edit leaves the folders of modules that do not depend on it as they are.
 
 numba unpickles what lies there, so **a compiled kernel is a program that will be run**. The folder is used
 only if it is this user's, closed to all others (mode 0700), and no link. Its place is the environment
@@ -16,11 +14,9 @@ from __future__ import annotations
 
 import atexit
 import contextlib
-import hashlib
 import inspect
 import logging
 import os
-import platform
 import re
 import shutil
 import stat
@@ -33,126 +29,21 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import llvmlite
-import llvmlite.binding
-import numba
 import numba.core.config
 from numba.core.caching import CacheImpl, UserProvidedCacheLocator
 
-__all__ = [
-    "VARIABLE", "cache_directory", "cached", "current_folders", "depends_on", "folder_of", "is_kept", "mark",
-    "note_use", "platform_key", "prune", "sources_key", "use_directory",
-]  # fmt: skip
+from physicslab.kernels.keys import current_folders, folder_of, hash_of
+
+__all__ = ["VARIABLE", "cache_directory", "cached", "is_kept", "mark", "note_use", "prune", "use_directory"]
 
 VARIABLE = "PHYSICSLAB_KERNELS"
 """The environment variable that says where compiled kernels are to be kept."""
-_PACKAGE = __name__.rpartition(".")[0]
-_SOURCES = Path(__file__).parent
-_WITHOUT_CODE = frozenset(
-    f"{_PACKAGE}.{name}"
-    for name in ("__main__", "archive", "budget", "cache", "interpreter", "loading", "stand_ins", "warm")
-)
-"""Modules that decide when kernels are compiled and where they are kept, but not on a single instruction."""
-_IMPORT = re.compile(
-    r"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n]*)|import[ \t]+([^\n]+))", re.MULTILINE
-)
 _DAY = 86400.0
 _UNUSED = 30 * _DAY
 """Time [s] for which what is not used is kept."""
 _VERSIONS = 8
 """How many folders of one module are kept, however many were in use: those used last."""
 _log = logging.getLogger(__name__)
-
-
-# ---- which machine code is right ---------------------------------------------------------------------------
-
-
-@cache
-def _sources() -> dict[str, str]:
-    """Return the source of every module of this package, by the module's name."""
-    found = {}
-    for path in sorted(_SOURCES.rglob("*.py")):
-        parts = path.relative_to(_SOURCES).with_suffix("").parts
-        found[".".join((_PACKAGE, *parts)).removesuffix(".__init__")] = path.read_text(encoding="utf-8")
-    return found
-
-
-def _imports(source: str) -> Iterator[str]:
-    """Yield all that a source may import, as full names; some are names within modules."""
-    for module, names, modules in _IMPORT.findall(source):
-        if module:
-            yield module
-            yield from (f"{module}.{name}" for name in re.findall(r"\w+", names))
-        else:
-            yield from re.findall(r"[\w.]+", modules)
-
-
-@cache
-def depends_on(module: str) -> frozenset[str]:
-    """Return the modules of this package on which a module's machine code depends, itself included."""
-    sources = _sources()
-    found, waiting = {_PACKAGE}, [_PACKAGE, module]
-    while waiting:
-        name = waiting.pop()
-        found.add(name)
-        waiting += {part for part in _imports(sources[name]) if part in sources} - found - _WITHOUT_CODE
-    return frozenset(found)
-
-
-@cache
-def platform_key() -> dict[str, str]:
-    """Return what else than sources decides on machine code, and on the form in which it is kept, by name."""
-    settings: Any = numba.core.config
-    features = settings.CPU_FEATURES
-    if features is None:
-        features = llvmlite.binding.get_host_cpu_features().flatten()
-    return {
-        "numba": numba.__version__,
-        "llvmlite": llvmlite.__version__,
-        "Python": f"{sys.implementation.cache_tag}{getattr(sys, 'abiflags', '')}",
-        "system": f"{sys.platform} {platform.machine()}",
-        "processor": settings.CPU_NAME or llvmlite.binding.get_host_cpu_name(),
-        "processor features": _digest(features)[:16],
-    }
-
-
-def sources_key() -> str:
-    """Return a hash of all that the machine code of all kernels depends on in this package."""
-    sources = _sources()
-    return _digest(*(f"{name}\0{sources[name]}" for name in sorted(sources.keys() - _WITHOUT_CODE)))[:16]
-
-
-def _digest(*texts: str) -> str:
-    return hashlib.sha256("\0".join(texts).encode()).hexdigest()
-
-
-@cache
-def folder_of(module: str, path: str = "") -> str:
-    """Return the name of the folder for the kernels of a module.
-
-    Parameters
-    ----------
-    module : str
-        Its full name.
-    path : str, optional
-        Its file, of a module outside this package; its kernels depend on all of this package.
-    """
-    if module in _sources():
-        parts = [f"{name}\0{_sources()[name]}" for name in sorted(depends_on(module))]
-        name = module.removeprefix(f"{_PACKAGE}.")
-    else:
-        parts, name = [sources_key(), Path(path).read_text(encoding="utf-8")], f"other.{Path(path).stem}"
-    return f"{name}-{_digest(*platform_key().values(), *parts)[:16]}"
-
-
-def current_folders() -> dict[str, str]:
-    """Return the folder's name of every module of this package that may hold kernels."""
-    return {module: folder_of(module) for module in _sources() if module not in _WITHOUT_CODE}
-
-
-def mark() -> Path:
-    """Return the file that says that every kernel of this package is kept."""
-    return cache_directory() / f"complete-{_digest(*sorted(current_folders().values()))[:16]}"
 
 
 # ---- where it lies -----------------------------------------------------------------------------------------
@@ -241,10 +132,15 @@ def _remove_own(directory: Path, process: int) -> None:
         shutil.rmtree(directory, ignore_errors=True)
 
 
+def mark() -> Path:
+    """Return the file that says that every kernel of this package is kept."""
+    return cache_directory() / f"complete-{hash_of(*sorted(current_folders().values()))[:16]}"
+
+
 # ---- what numba is given -----------------------------------------------------------------------------------
 
 
-class _Locator(UserProvidedCacheLocator):  # type: ignore[misc]  # numba is typed in part
+class _Locator(UserProvidedCacheLocator):
     """Says to numba where a kernel is kept: by what decides on its code, and not by paths or dates."""
 
     def __init__(self, function: Callable[..., Any], path: str) -> None:
@@ -270,7 +166,8 @@ class _Locator(UserProvidedCacheLocator):  # type: ignore[misc]  # numba is type
 @contextmanager
 def cached() -> Iterator[None]:
     """Let what numba is given within a ``with`` block keep its code in the cache."""
-    settings, before = numba.core.config, CacheImpl._locator_classes
+    settings: Any = numba.core.config
+    before = CacheImpl._locator_classes
     chosen = getattr(settings, "CACHE_LOCATOR_CLASSES", "")
     CacheImpl._locator_classes = [_Locator, *before]  # read by numba when a function is decorated
     settings.CACHE_LOCATOR_CLASSES = ""

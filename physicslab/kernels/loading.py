@@ -1,4 +1,4 @@
-"""When kernels are compiled, or loaded from the cache: before they run, and at their first call at the latest."""
+"""When kernels are compiled, or loaded from the cache: before they run, at the latest at their first call."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from numba.core.registry import cpu_target
 from physicslab.kernels import cache
 
 __all__ = [
-    "ask_before_compiling", "at_first_call", "compile_kernels", "load", "load_kept", "prepare", "refuse_calls",
-    "seconds_waited", "separate_symbols", "working_ns",
+    "ask_before_compiling", "at_first_call", "compile_kernels", "load", "load_kept", "prepare",
+    "refuse_calls", "seconds_waited", "separate_symbols", "working_ns",
 ]  # fmt: skip
 
 type _Ask = Callable[[Sequence[Any]], Collection[Any] | None]

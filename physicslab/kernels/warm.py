@@ -18,6 +18,7 @@ from typing import Any
 
 from physicslab import kernels
 from physicslab.kernels import cache
+from physicslab.kernels.keys import current_folders
 
 __all__ = ["Progress", "Warmup", "is_warm", "load_all", "mark_warm", "name_of"]
 
@@ -53,7 +54,7 @@ def mark_warm() -> None:
     load_all()
     if not all(cache.is_kept(jitted.py_func) for jitted in _own()):
         return
-    folders = sorted({cache.current_folders()[jitted.__module__] for jitted in _own()})
+    folders = sorted({current_folders()[jitted.__module__] for jitted in _own()})
     with suppress(OSError):
         cache.mark().write_text("\n".join(folders), encoding="utf-8")
     cache.prune()
@@ -144,8 +145,9 @@ class Warmup:
     def _start_worker(self) -> None:
         environment = {**os.environ, cache.VARIABLE: str(cache.cache_directory())}
         process = subprocess.Popen(
-            self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1, env=environment
-        )
+            self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1,
+            env=environment,
+        )  # fmt: skip
         thread = threading.Thread(target=self._employ, args=(process,), daemon=True)
         self._processes.append(process)
         self._threads.append(thread)
@@ -205,13 +207,15 @@ class Warmup:
         """Whether these kernels were in the cache at the last :meth:`poll`."""
         return self._compiled.issuperset(names)
 
-    def poll(self) -> Progress:
-        """Return how far it is now, without waiting."""
+    def poll(self, wait: float = 0.0) -> Progress:
+        """Return how far it is, at once or after the next kernel; after ``wait`` seconds at the latest."""
         done, name, total = self._progress.done, self._progress.name, self._progress.total
         ended = not any(thread.is_alive() for thread in self._threads)
-        while not self._answers.empty():
-            done, name = done + 1, self._answers.get()
-            self._compiled.add(name)
+        with suppress(queue.Empty):
+            while True:
+                name = self._answers.get(timeout=wait) if wait else self._answers.get_nowait()
+                done, wait = done + 1, 0.0
+                self._compiled.add(name)
         self._progress = Progress(done, total, name)
         if done == total and not self.finished:
             mark_warm()

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.kernels import working_ns
 from physicslab.kernels.events import events, flight
 from physicslab.stepping.event_driven_limits import pairs_that_may_meet, turning_boxes
 from physicslab.systems.schedule import Stage
@@ -228,7 +228,7 @@ class EventDriven:
 
     def _run_events(self, world: World, span: float, dt: float, offset: float) -> tuple[float, int]:
         """Let bodies fly for ``span`` s, or until one comes to rest or is woken; return how long, and why."""
-        began = time.perf_counter_ns()
+        began = working_ns()
         contacts, bodies, physics = world.contacts, world.bodies, world.physics
         transform, velocity = world.table(Transform), world.table(Velocity)
         shape, material = world.table(Shape), world.table(Material)
@@ -251,7 +251,7 @@ class EventDriven:
         self._urgent = pair if why == events.WOKEN else -1
         contacts.logged += impacts
         world.collisions += impacts
-        world.schedule.note("IntegrateSystem", 1, time.perf_counter_ns() - began)
+        world.schedule.note("IntegrateSystem", 1, working_ns() - began)
         for name in self._within:
             world.schedule.note(name, 1, 0)  # their time is within the loop's
         return elapsed, why

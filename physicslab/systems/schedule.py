@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels import compile_kernels
+from physicslab.kernels import compile_kernels, load_kept, seconds_waited, working_ns
 
 if TYPE_CHECKING:
     from physicslab.ode.system import PackedForce, StateLayout
@@ -81,7 +80,8 @@ class System:
     needs : tuple of component types
         An entity must have all of them for the system to have work.
     kernels : tuple of kernels
-        What the system calls; compiled before the system first runs.
+        What the system calls. Those that are kept from earlier runs are loaded before it first runs, the
+        others are compiled when they are called.
     observes : bool
         Whether what it does at ``PREPARE`` and ``FINISH`` must happen at every step of a run.
     """
@@ -106,7 +106,7 @@ class System:
         return None
 
     def kernels_for(self, world: World) -> tuple[Any, ...]:
-        """Return which of ``kernels`` the world needs as it is; what it does not need is not waited for."""
+        """Return which of ``kernels`` the world needs as it is; the others are not loaded ahead."""
         return self.kernels
 
     def substep_factor(self, world: World) -> int:
@@ -235,7 +235,7 @@ class Schedule:
     timings : dict of str to Timing
         Calls and cost of every system that ever ran.
     compile_s : float
-        Seconds spent compiling kernels, or loading them.
+        Seconds that this process has spent on compiling kernels, or loading them, since this was made.
     """
 
     def __init__(self, systems: Iterable[System]) -> None:
@@ -245,7 +245,7 @@ class Schedule:
         self.running: tuple[System, ...] = ()
         self.left_out: tuple[LeftOut, ...] = ()
         self.timings: dict[str, Timing] = {}
-        self.compile_s = 0.0
+        self._waited_before = seconds_waited()
         self._calls: dict[Stage, list[tuple[Callable[[World, float], None], Timing]]] = {}
 
     def extend(self, systems: Iterable[System]) -> None:
@@ -271,16 +271,20 @@ class Schedule:
                 left_out.append(LeftOut(system.name, reason))
         self.running, self.left_out = tuple(running), tuple(left_out)
         self._calls = {stage: [] for stage in Stage}
-        # All at once: where other processes compile, they are then told of all that is waited for.
-        self.compile([needed for system in running for needed in system.kernels_for(world)])
+        load_kept([needed for system in running for needed in system.kernels_for(world)])
         for system in running:
             timing = self.timings.setdefault(system.name, Timing())
             for stage, method in self._marked[system].items():
                 self._calls[stage].append((getattr(system, method), timing))
 
     def compile(self, kernels: Iterable[Any]) -> None:
-        """Compile kernels, or load them, and note how long it took."""
-        self.compile_s += compile_kernels(kernels)
+        """Compile kernels that are about to be called, or load them."""
+        compile_kernels(kernels)
+
+    @property
+    def compile_s(self) -> float:
+        """Seconds that this process has spent on kernels since the schedule was made."""
+        return seconds_waited() - self._waited_before
 
     def runs(self, stage: Stage) -> bool:
         """Whether any system has work at ``stage``."""
@@ -295,9 +299,9 @@ class Schedule:
     def run(self, stage: Stage, world: World, h: float) -> None:
         """Call every running system of ``stage``, in order, and note what each cost."""
         for call, timing in self._calls.get(stage, ()):
-            start = time.perf_counter_ns()
+            start = working_ns()
             call(world, h)
-            timing.nanoseconds += time.perf_counter_ns() - start
+            timing.nanoseconds += working_ns() - start
             timing.calls += 1
 
     def run_beside(self, name: str, stage: Stage, world: World, h: float) -> None:
@@ -305,9 +309,9 @@ class Schedule:
         for system in self.running:
             method = self._marked[system].get(stage)
             if method is not None and system.name != name:
-                start = time.perf_counter_ns()
+                start = working_ns()
                 getattr(system, method)(world, h)
-                self.note(system.name, 1, time.perf_counter_ns() - start)
+                self.note(system.name, 1, working_ns() - start)
 
     def note(self, name: str, calls: int, nanoseconds: int) -> None:
         """Note what a system has cost that was not called by :meth:`run`."""
