@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any, cast
 
 import numba
+from numba.core.types import unliteral
 
 from physicslab.kernels.cache import cached
 from physicslab.kernels.loading import at_first_call, refuse_calls
@@ -36,8 +37,24 @@ def _inner[F: Callable[..., Any]](function: F, counts: bool = False, fastmath: A
     is taken over from the function that calls.
     """
     jitted = _njit(_nrt=counts, fastmath=fastmath, **_OF_INNER)(function)
+    _take_constants_as_values(jitted)
     refuse_calls(jitted)
     return cast(F, jitted)
+
+
+def _take_constants_as_values(jitted: Any) -> None:
+    """Let one compiled function serve every call, be an argument a constant or not.
+
+    numba would compile another for each constant, and one more for what it takes for a constant until it has
+    seen the loop that changes it. LLVM finds constants by itself where it inlines a call.
+    """
+    find = jitted.get_call_template
+
+    def find_by_types(arguments: Any, named: dict[str, Any]) -> Any:
+        values = [unliteral(argument) for argument in arguments]
+        return find(values, {name: unliteral(argument) for name, argument in named.items()})
+
+    jitted.get_call_template = find_by_types  # called by numba for a call that a kernel makes
 
 
 def inlined[F: Callable[..., Any]](function: F) -> F:
@@ -92,6 +109,7 @@ def _listed[F: Callable[..., Any]](function: F, counts: bool) -> F:
     with cached():
         make = _njit(cache=True, error_model="numpy", fastmath=False, no_cfunc_wrapper=True, _nrt=counts)
         jitted = make(function)
+    _take_constants_as_values(jitted)
     jitted.declared_signature = signature_of(function)
     jitted.compiled = False
     at_first_call(jitted)
