@@ -1,16 +1,15 @@
 """Inner functions of kernels, compiled so that tests can call them: of themselves they have no entry."""
 
 from collections.abc import Callable
-from typing import cast
+from typing import Any, cast
 
 import numba
 
 
-def compiled[**P, R](inner: Callable[P, R]) -> Callable[P, R]:
+def compiled[F: Callable[..., Any]](inner: F) -> F:
     """Return a compiled function that calls an inner function of kernels with its own arguments."""
 
-    @numba.njit(error_model="numpy")  # type: ignore[untyped-decorator]
-    def call(*arguments):  # type: ignore[no-untyped-def]
+    def call(*arguments: Any) -> Any:
         return inner(*arguments)
 
-    return cast(Callable[P, R], call)
+    return cast(F, numba.njit(error_model="numpy")(call))

@@ -6,13 +6,15 @@ are programs: an archive is to be trusted like one.
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import os
 import re
-import shutil
-import tempfile
+import secrets
+import struct
 import zipfile
+import zlib
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
@@ -25,9 +27,14 @@ __all__ = ["ArchiveError", "pack", "unpack"]
 _FORMAT = "physicslab-kernels/1"
 _MANIFEST = "manifest.json"
 _MEMBER = re.compile(r"([A-Za-z_][\w.]*-[0-9a-f]{16})/([\w.<>-]+\.nb[ic])", re.ASCII)
-_MANIFEST_LIMIT = 1 << 16
-_LIMIT = 1 << 28
-"""Size [bytes] of what an archive may hold in all; a full set of kernels is a twentieth of that."""
+_MANIFEST_LIMIT = 1 << 20
+_LIMIT = 1 << 27
+"""Size [bytes] of an archive, and of what it may hold in all; a full set of kernels is a tenth of that."""
+_DAMAGE = (
+    zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError, ValueError,
+    struct.error,
+)  # fmt: skip
+"""What Python raises on reading damaged archives in memory."""
 
 
 class ArchiveError(Exception):
@@ -44,12 +51,21 @@ def pack(folders: Collection[str] | None = None) -> bytes:
     """
     root, buffer = cache_directory(), io.BytesIO()
     chosen = current_folders().values() if folders is None else folders
+    files = {
+        f"{folder}/{path.name}": path.read_bytes()
+        for folder in sorted(chosen)
+        for path in sorted((root / folder).glob("*.nb[ic]"))
+    }
+    document = {
+        "format": _FORMAT,
+        "sources": sources_key(),
+        "platform": platform_key(),
+        "files": {name: _hash(content) for name, content in files.items()},
+    }
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        document = {"format": _FORMAT, "sources": sources_key(), "platform": platform_key()}
         archive.writestr(_MANIFEST, json.dumps(document, indent=1))
-        for folder in sorted(chosen):
-            for path in sorted((root / folder).glob("*.nb[ic]")):
-                archive.write(path, f"{folder}/{path.name}")
+        for name, content in files.items():
+            archive.writestr(name, content)
     return buffer.getvalue()
 
 
@@ -65,19 +81,25 @@ def unpack(path: Path) -> int:
     OSError
         If it cannot be read, or the cache cannot be written.
     """
-    root = cache_directory()
+    with open(path, "rb") as file:
+        content = file.read(_LIMIT + 1)
+    if len(content) > _LIMIT:
+        raise ArchiveError(f"is larger than {_LIMIT >> 20} MiB")
     try:
-        with zipfile.ZipFile(path) as archive:
-            _check(_manifest(archive))
-            members = _members(archive)
-            fresh = Path(tempfile.mkdtemp(prefix="importing-", dir=root))  # private, and on the same disk
-            try:
-                _write(archive, members, fresh, root)
-            finally:
-                shutil.rmtree(fresh, ignore_errors=True)
-    except (zipfile.BadZipFile, EOFError, NotImplementedError, RuntimeError, ValueError) as error:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            files = _files(archive)
+    except _DAMAGE as error:
         raise ArchiveError(f"is damaged, or no archive of kernels: {error}") from error
-    return len(members)
+    root = cache_directory()
+    for folder, name in sorted(files, key=lambda file: file[1].endswith(".nbi")):  # indices after their data
+        (root / folder).mkdir(mode=0o700, exist_ok=True)
+        fresh = root / folder / f"{name}.tmp.{secrets.token_hex(8)}"
+        try:
+            fresh.write_bytes(files[folder, name])
+            os.replace(fresh, root / folder / name)
+        finally:
+            fresh.unlink(missing_ok=True)
+    return len(files)
 
 
 def _manifest(archive: zipfile.ZipFile) -> dict[str, Any]:
@@ -101,9 +123,11 @@ def _check(manifest: dict[str, Any]) -> None:
         raise ArchiveError("does not fit: it holds the kernels of another version of physicslab")
 
 
-def _members(archive: zipfile.ZipFile) -> list[tuple[zipfile.ZipInfo, str, str]]:
-    """Return the files of an archive, each with its folder and name in the cache; refuse all others."""
-    allowed, found, size = set(current_folders().values()), [], 0
+def _files(archive: zipfile.ZipFile) -> dict[tuple[str, str], bytes]:
+    """Return the files of an archive that fits, by folder and name in the cache; refuse all others."""
+    manifest = _manifest(archive)
+    _check(manifest)
+    allowed, found, size = set(current_folders().values()), {}, 0
     for member in archive.infolist():
         if member.filename == _MANIFEST:
             continue
@@ -113,20 +137,14 @@ def _members(archive: zipfile.ZipFile) -> list[tuple[zipfile.ZipInfo, str, str]]
         size += member.file_size
         if size > _LIMIT:
             raise ArchiveError(f"holds more than {_LIMIT >> 20} MiB")
-        found.append((member, match[1], match[2]))
+        found[match[1], match[2]] = archive.read(member)  # of no more bytes than it says
     if not found:
         raise ArchiveError("holds no kernels")
+    hashes = {f"{folder}/{name}": _hash(content) for (folder, name), content in found.items()}
+    if hashes != manifest.get("files"):
+        raise ArchiveError("is damaged: its files are not those that its manifest names")
     return found
 
 
-def _write(
-    archive: zipfile.ZipFile, members: list[tuple[zipfile.ZipInfo, str, str]], fresh: Path, root: Path
-) -> None:
-    """Read every file of an archive, and only then put them where they belong: indices after their data."""
-    for number, (member, _, _) in enumerate(members):
-        (fresh / str(number)).write_bytes(archive.read(member))  # which checks its length and checksum
-    order = sorted(range(len(members)), key=lambda number: members[number][2].endswith(".nbi"))
-    for number in order:
-        _, folder, name = members[number]
-        (root / folder).mkdir(mode=0o700, exist_ok=True)
-        os.replace(fresh / str(number), root / folder / name)
+def _hash(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

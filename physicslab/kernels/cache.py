@@ -72,7 +72,7 @@ def _first_private() -> Path:
     """Return the first of the folders that may be used, or a temporary one."""
     for place in _places():
         try:
-            if all([_is_private(folder) for folder in place]):
+            if all(_is_private(folder) for folder in place):
                 return place[-1]
         except (OSError, RuntimeError, KeyError):  # no home, or one that cannot be written to
             continue

@@ -9,7 +9,6 @@ from collections.abc import Callable
 from typing import Any, cast
 
 import numba
-from numba.core.types import unliteral
 
 from physicslab.kernels.cache import cached
 from physicslab.kernels.loading import at_first_call, refuse_calls
@@ -26,6 +25,7 @@ FASTMATH = {"contract", "nsz", "arcp", "reassoc"}
 """What :func:`inlined_loosely` allows. NaN must survive, so that a diverging run is seen."""
 
 _OF_INNER = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_without_constant: Any = numba.types.unliteral
 _njit: Any = numba.njit  # its type hints know no option of the target
 
 
@@ -51,8 +51,8 @@ def _take_constants_as_values(jitted: Any) -> None:
     find = jitted.get_call_template
 
     def find_by_types(arguments: Any, named: dict[str, Any]) -> Any:
-        values = [unliteral(argument) for argument in arguments]
-        return find(values, {name: unliteral(argument) for name, argument in named.items()})
+        values = [_without_constant(argument) for argument in arguments]
+        return find(values, {name: _without_constant(argument) for name, argument in named.items()})
 
     jitted.get_call_template = find_by_types  # called by numba for a call that a kernel makes
 
