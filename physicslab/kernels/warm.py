@@ -20,7 +20,7 @@ from physicslab import kernels
 from physicslab.kernels import cache
 from physicslab.kernels.keys import current_folders
 
-__all__ = ["Progress", "Warmup", "is_warm", "load_all", "mark_warm", "name_of"]
+__all__ = ["Progress", "Warmup", "is_warm", "load_all", "mark_warm", "name_of", "rank_of"]
 
 _WORKERS_LIMIT = 4
 _FIRST = (
@@ -79,7 +79,7 @@ def name_of(jitted: Any) -> str:
     return f"{jitted.__module__}.{jitted.__name__}"
 
 
-def _rank(name: str) -> int:
+def rank_of(name: str) -> int:
     """Return how late a kernel is to be compiled, as far as that is known before there is a scene."""
     module = name.split(".")[-2]
     return _FIRST.index(module) if module in _FIRST else len(_FIRST)
@@ -118,7 +118,7 @@ class Warmup:
         self._command = command
         names = load_all()
         self._compiled = {name_of(jitted) for jitted in _own() if cache.is_kept(jitted.py_func)}
-        self._jobs = deque(sorted((name for name in names if name not in self._compiled), key=_rank))
+        self._jobs = deque(sorted((name for name in names if name not in self._compiled), key=rank_of))
         self._lock = threading.Lock()
         self._answers: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._workers = min(workers or min(os.cpu_count() or 1, _WORKERS_LIMIT), len(self._jobs))
