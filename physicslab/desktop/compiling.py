@@ -8,7 +8,7 @@ from types import TracebackType
 from typing import Any
 
 from physicslab.kernels import KERNELS, ask_before_compiling, load
-from physicslab.kernels.solver import contact_steps
+from physicslab.kernels.solver import fused_contact
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.view.canvas.display import Display, wants_to_leave
 from physicslab.view.canvas.theme import DARK, Theme
@@ -50,9 +50,9 @@ class Compiling:
     def __enter__(self) -> Compiling:
         if self._warmup is not None:
             self._warmup.__enter__()
-            ask_before_compiling(self._wait, self._expect)
+            ask_before_compiling(self._wait)
         else:
-            load(contact_steps.advance)  # 26 ms, for which no frame has room
+            load(fused_contact.advance)  # 26 ms, for which no frame has room
         return self
 
     def __exit__(
@@ -66,11 +66,6 @@ class Compiling:
     def finished(self) -> bool:
         """Whether nothing is being compiled any more."""
         return self._warmup is None or self._warmup.finished
-
-    def _expect(self, soon: Sequence[Any]) -> None:
-        """Have these kernels compiled before others; nothing waits for them yet."""
-        if self._warmup is not None:
-            self._warmup.hurry([name_of(jitted) for jitted in soon])
 
     def _wait(self, missing: Sequence[Any]) -> None:
         """Keep the window awake until other processes have compiled these kernels, or cannot.

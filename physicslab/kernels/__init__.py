@@ -24,7 +24,6 @@ from physicslab.kernels.loading import (
     ask_before_compiling,
     compile_kernels,
     load,
-    load_kept,
     prepare,
     seconds_waited,
     working_ns,
@@ -34,6 +33,6 @@ from physicslab.kernels.types import Flags, Numbers, Rows, Vectors
 __all__ = [
     "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
     "allocating", "allocating_kernel", "ask_before_compiling", "cache_directory", "cached", "compile_kernels",
-    "fused", "inlined", "inlined_loosely", "kernel", "load", "load_kept", "prepare", "seconds_waited",
+    "fused", "inlined", "inlined_loosely", "kernel", "load", "prepare", "seconds_waited",
     "working_ns",
 ]  # fmt: skip

@@ -17,21 +17,20 @@ from numba.core.registry import cpu_target
 from physicslab.kernels import cache
 
 __all__ = [
-    "ask_before_compiling", "at_first_call", "compile_kernels", "load", "load_kept", "prepare",
-    "refuse_calls", "seconds_waited", "separate_symbols", "working_ns",
+    "ask_before_compiling", "at_first_call", "compile_kernels", "load", "prepare", "refuse_calls",
+    "seconds_waited", "separate_symbols", "working_ns",
 ]  # fmt: skip
 
 type _Ask = Callable[[Sequence[Any]], Collection[Any] | None]
 
 _ask: _Ask | None = None
-_expect: Callable[[Sequence[Any]], None] | None = None
 _waited_ns = 0
 """Time [ns] that was spent on kernels instead of the work that needs them."""
 _waits_since = 0
 """When the wait began that is under way [ns]; 0 where none is."""
 
 
-def ask_before_compiling(ask: _Ask | None, expect: Callable[[Sequence[Any]], None] | None = None) -> None:
+def ask_before_compiling(ask: _Ask | None) -> None:
     """Set what is called with kernels that are needed and not loaded, in place of compiling them here.
 
     So a window can wait for other processes, and stay awake.
@@ -41,11 +40,9 @@ def ask_before_compiling(ask: _Ask | None, expect: Callable[[Sequence[Any]], Non
     ask : callable or None
         Called with kernels that are about to be called. When it returns they are compiled here, or loaded;
         but not those that it returns, for which something else answers until they are loaded.
-    expect : callable, optional
-        Called with kernels that will be needed soon and that the cache does not hold.
     """
-    global _ask, _expect
-    _ask, _expect = ask, expect
+    global _ask
+    _ask = ask
 
 
 def seconds_waited() -> float:
@@ -92,22 +89,6 @@ def compile_kernels(kernels: Iterable[Any]) -> float:
             if jitted not in elsewhere:
                 load(jitted)
     return (_waited_ns - before) / 1e9
-
-
-def load_kept(kernels: Iterable[Any]) -> None:
-    """Load those of the given kernels that the cache holds; the others are compiled when they are called.
-
-    Where other processes compile, they are given the others now.
-    """
-    missing = list(dict.fromkeys(jitted for jitted in kernels if not jitted.compiled))
-    if not missing:
-        return
-    with _waiting():
-        kept = [jitted for jitted in missing if cache.is_kept(jitted.py_func)]
-        for jitted in kept:
-            load(jitted)
-    if _expect is not None and len(kept) < len(missing):
-        _expect([jitted for jitted in missing if not jitted.compiled])
 
 
 def load(jitted: Any) -> None:
