@@ -77,9 +77,9 @@ def folders(monkeypatch: pytest.MonkeyPatch, edited: str) -> dict[str, str]:
     [
         ("narrow.sweep", {"narrow.sweep"}, {"motion", "raster", "solver.impulse", "ode.dop853"}),
         ("ode.compensated", {"ode.compensated", "ode.dop853", "events.events"}, {"raster", "solver.impulse"}),
-        ("raster", {"raster"}, {"motion", "energy", "solver.contact_steps"}),
-        ("compiler", {"motion", "raster", "solver.contact_steps", "forces.drag"}, set()),
-        ("loading", set(), {"motion", "raster", "solver.contact_steps", "forces.drag"}),
+        ("raster", {"raster"}, {"motion", "energy", "solver.fused_contact"}),
+        ("compiler", {"motion", "raster", "solver.fused_contact", "forces.drag"}, set()),
+        ("loading", set(), {"motion", "raster", "solver.fused_contact", "forces.drag"}),
     ],
 )
 def test_an_edit_makes_stale_what_depends_on_it(
@@ -87,6 +87,7 @@ def test_an_edit_makes_stale_what_depends_on_it(
 ) -> None:
     before, after = folders(monkeypatch, ""), folders(monkeypatch, module)
     changed = {name for name in before if before[name] != after[name]}
+    assert stale | kept <= before.keys()
     assert stale <= changed
     assert not kept & changed
     assert bool(changed) == bool(stale)
