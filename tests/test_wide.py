@@ -10,6 +10,7 @@ from physicslab.kernels.wide.float64x8 import (
     choose,
     greater,
     least,
+    mask_bits,
     put,
     put_numbers,
     put_vectors,
@@ -18,7 +19,6 @@ from physicslab.kernels.wide.float64x8 import (
     take,
     take_numbers,
     take_vectors,
-    true_lanes,
 )
 from physicslab.kernels.wide.layout import WIDE
 
@@ -43,7 +43,7 @@ def comparisons(x: Numbers, y: Numbers, limit: float, out: Numbers) -> int:
     put(out, 0, least(a, b))
     put(out, 8, greater(a, limit))
     put(out, 16, choose(inside | (b > 1.0), a, limit))
-    return true_lanes(inside)
+    return mask_bits(inside)
 
 
 @numba.njit(error_model="numpy")

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape, Velocity
 from physicslab.kernels.wide import graph_colour, restore_slots
-from physicslab.kernels.wide.graph_colour import FEW
+from physicslab.kernels.wide.graph_colour import MIN_WIDE
 from physicslab.kernels.wide.layout import WIDE
 from physicslab.kernels.wide.slots import COLOURS
 from physicslab.state.state import State
@@ -20,7 +20,7 @@ def add_constraints(state: State, h: float) -> None:
     contacts, bodies = state.contacts, state.bodies
     material, shape = state.table(Material), state.table(Shape)
     wide = contacts.wide
-    if not wide.filled and contacts.active < FEW:
+    if not wide.filled and contacts.active < MIN_WIDE:
         return
     state.compile(wide.kernels)
     known = wide.filled > 0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from physicslab.components import Material, Shape, Transform, Velocity
 from physicslab.contacts.near_pairs import list_all
 from physicslab.kernels.broad import near_pairs
-from physicslab.kernels.events import events, flight
+from physicslab.kernels.events import events, path
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
@@ -61,7 +61,7 @@ class EventDriven:
         self._pairs = pairs_that_may_meet(state)
         self._listed = False
         self._urgent = -1
-        self._paths = np.zeros((rows, flight.FIELDS))
+        self._paths = np.zeros((rows, path.FIELDS))
         moving = state.table(Velocity).present & state.table(Transform).present
         free = moving & (state.bodies.inverse_mass > 0.0)
         self._unpressed = np.where(free, events.BALLISTIC, np.where(moving, events.KINEMATIC, events.FIXED))

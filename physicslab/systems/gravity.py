@@ -102,7 +102,7 @@ class GravitySystem(ForceSystem):
     def summation(self, state: State) -> str:
         """Return how pairs are summed, as :mod:`physicslab.kernels.forces.gravity` decides by number."""
         n = self.attractors
-        if state.physics.gravity_mode != "planet" or n <= gravity.FEW:
+        if state.physics.gravity_mode != "planet" or n <= gravity.PLAIN_LIMIT:
             return ""
         if n < gravity.MANY:
             return f"each pair of {n} bodies, in vectors"

@@ -1,14 +1,14 @@
 """Forces that compiled integrators call by address, so that one loop serves any set of forces.
 
 The smooth motion of a world is q' = v, v' = W f(q, v): ``q`` holds two coordinates a body [m] and the angles
-[rad] of those that forces can turn, ``v`` their rates, W the inverse masses. What is fixed in place follows
-behind in both arrays and has no inverse mass. A force is a C function that adds to f; it reads what it needs
+[rad] of those that forces can turn, ``v`` their rates, W the inverse masses. Fixed bodies follow at the
+end of both arrays and have no inverse mass. A force is a C function that adds to f; it reads what it needs
 from two arrays of its own.
 
-A force is asked for at an instant, or over a span of time in which the coordinates go steadily from
-q - span/2 v to q + span/2 v. Springs then answer with a discrete gradient of their energy V, a force f whose
-work is all that V loses: f . (span v) = V(start) - V(end) (Gonzalez, J. Nonlinear Sci. 6 (1996) 449). Other
-forces answer with their value at the middle.
+A force is evaluated at an instant, or over a span of time in which the coordinates change linearly from
+q - span/2 v to q + span/2 v. Springs then return a discrete gradient of their energy V, a force f whose work
+is all that V loses: f . (span v) = V(start) - V(end) (Gonzalez, J. Nonlinear Sci. 6 (1996) 449). Other forces
+return their value at the middle.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class ForceKernel:
 
     @property
     def address(self) -> int:
-        """Where the C function lies in memory."""
+        """The address of the C function."""
         if not self.overloads:
             self.compile(_SIGNATURE)
         return int(self.overloads[_SIGNATURE.args].address)
@@ -117,7 +117,7 @@ def add_forces(q: Numbers, v: Numbers, force: Numbers, calls: Calls) -> None:
 def accelerate(
     q: Numbers, v: Numbers, acceleration: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls
 ) -> None:
-    """Work out v' at an instant, as :func:`accelerate_over` does."""
+    """Compute v' at an instant, as :func:`accelerate_over` does."""
     accelerate_over(q, v, 0.0, acceleration, inverse_mass, damping, calls)
 
 
@@ -126,7 +126,7 @@ def accelerate_over(
     q: Numbers, v: Numbers, span: float,
     acceleration: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
 ) -> None:  # fmt: skip
-    """Work out v' about a state, over ``span`` seconds: every force called, weighed, and damping taken off.
+    """Compute v' about a state, over ``span`` seconds: all forces times the inverse masses, less damping.
 
     ``acceleration`` is as long as ``q``; only what has an inverse mass is meaningful. ``damping`` (n,) [1/s],
     of v' = -c v, may be empty where nothing is damped.

@@ -1,4 +1,4 @@
-"""What the stages of a substep work on: arrays of a world, in named tuples."""
+"""The arguments of the stages of a substep: arrays of a world, in named tuples."""
 
 from typing import NamedTuple
 
@@ -60,7 +60,7 @@ class Bounds(NamedTuple):
 class Near(NamedTuple):
     """The near pairs: their records, points and counts, which are scalar, which of them touch.
 
-    Then the slots of discs and of boxes; the pairs without records, how near each must come to get one [m],
+    Then the slots of discs and of boxes; the pairs without records, the distance at which each gets one [m],
     and the entities of all rows.
     """
 
@@ -77,7 +77,7 @@ class Near(NamedTuple):
 
 
 class Log(NamedTuple):
-    """A ring of impacts, and the time [s] at which their moment is reckoned from."""
+    """A ring of impacts, and the time [s] from which theirs are counted."""
 
     impacts: Impacts
     time: float
