@@ -253,7 +253,7 @@ def test_misspelt_and_settled_fields() -> None:
         Transform().postion = (1, 2)  # type: ignore[attr-defined]
     with pytest.raises(TypeError, match="Transform has no field 'postion'; it has position, angle"):
         Transform(postion=(1, 2))  # type: ignore[call-arg]
-    with pytest.raises(AttributeError, match=r"Shape\.kind is settled"):
+    with pytest.raises(AttributeError, match=r"Shape\.kind is fixed"):
         Shape.circle(1).kind = "box"
     with pytest.raises(TypeError, match="at most 2 values, got 3"):
         Transform((0, 0), 0, 0)  # type: ignore[call-arg]

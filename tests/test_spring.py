@@ -232,7 +232,7 @@ def test_ends_are_settled() -> None:
     world = springs()
     world.spawn(Transform())
     spring = world.component(world.spawn(Spring(1)), Spring)
-    with pytest.raises(AttributeError, match=r"Spring\.b is settled"):
+    with pytest.raises(AttributeError, match=r"Spring\.b is fixed"):
         spring.b = 1
     spring.stiffness = 7
     assert world.table(Spring)["stiffness"].max() == 7

@@ -37,7 +37,7 @@ class Flow:
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
-        """Return what else than forces acts, or ``None``."""
+        """Return what acts besides forces, or ``None``."""
         return None if plan.smooth else plan.obstacle
 
     def holds(self, state: State) -> bool:
@@ -70,17 +70,17 @@ class Flow:
         try:
             made = method.flow(state, ode, span, count)
         except StepTooSmall as error:
-            what = f"{_liveliest(state, self._schedule)}: Velocity changes too fast: {error}"
+            what = f"{_fastest_changing(state, self._schedule)}: Velocity changes too fast: {error}"
             raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error
         ode.scatter(state, h * steps)
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - start)
         for system in ode.forces:
-            self._schedule.note(system.name, made, 0)  # their time is within the loop's
+            self._schedule.note(system.name, made, 0)  # their time is part of the loop's
         state.force_evaluations += made
 
 
-def _liveliest(state: State, schedule: Schedule) -> str:
-    """Return the label of the body whose velocity changes fastest as things stand."""
+def _fastest_changing(state: State, schedule: Schedule) -> str:
+    """Return the label of the body whose velocity changes fastest at present."""
     add_up_forces(state, schedule)
     force = state.bodies.force
     rates = np.hypot(force[:, 0], force[:, 1]) * state.bodies.inverse_mass

@@ -76,7 +76,7 @@ class GravitySystem(ForceSystem):
         return PackedForce(packed_forces.planet_gravity, parameters, indices)
 
     def strongest_rate(self, state: State) -> float:
-        """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair as they stand; 0 for uniform gravity."""
+        """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair at present; 0 for uniform gravity."""
         physics = state.physics
         if physics.gravity_mode == "linear":
             return 0.0

@@ -28,8 +28,8 @@ __all__ = [
 PLAIN_LIMIT = 100
 """Largest number of bodies for which pairs are summed one by one, each rounded by itself.
 
-Vectors are faster from about 40 on (10 us instead of 20 for 100 bodies), which makes no difference in practice,
-and their roots are accurate to two units in the last place only.
+Vectors are faster from about 40 on (10 us instead of 20 for 100 bodies), which makes no difference in
+practice, and their roots are accurate to two units in the last place only.
 """
 MANY = 8_000
 """Number of bodies from which a tree sums the forces.
