@@ -43,7 +43,7 @@ class Derived:
 
 
 def maker(spec: Field) -> Maker:
-    """Return the conversion of a value to the form that a detached component holds: a list for each column."""
+    """Return the conversion of a value to the form of a detached component: a list for each column."""
     check, low, high, default = spec.check, spec.lowest, spec.highest, spec.default
 
     def converted(value: object) -> object:

@@ -85,7 +85,7 @@ class Component:
         return {spec.name: getattr(self, spec.name) for spec in self.FIELDS}
 
     def given(self) -> dict[str, Any]:
-        """Return the arguments that make the same component: values, ``None`` for those the world computes."""
+        """Return the arguments to make the same component: values, ``None`` for those the world computes."""
         return {name: value if self.is_given(name) else None for name, value in self.values().items()}
 
     def is_given(self, name: str) -> bool:

@@ -24,7 +24,7 @@ class EntityIndex:
     """The rows of one world. esper owns the entities and their components; :meth:`synchronise` follows.
 
     Row 0 is the world itself. The others are in the order of their entity ids, so that results do not depend
-    on the order of a set. A removed entity leaves a blank row behind; blanks are closed up when they are many.
+    on the order of a set. A removed entity leaves a blank row; blanks are closed up when they are many.
 
     Attributes
     ----------
