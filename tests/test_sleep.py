@@ -284,7 +284,7 @@ def hold(world: World, first: int) -> None:
     world.add(first, Held())
 
 
-def attach_spring(world: World, first: int) -> None:
+def add_spring(world: World, first: int) -> None:
     world.spawn(Spring(first, anchor_b=(0.0, 3.0), stiffness=1.0))
 
 
@@ -326,7 +326,7 @@ def spawn_wall(world: World, first: int) -> None:
 
 
 EDITS: list[Callable[[World, int], None]] = [
-    change_velocity, change_place, change_angle, change_size, change_mass, change_material, hold, attach_spring,
+    change_velocity, change_place, change_angle, change_size, change_mass, change_material, hold, add_spring,
     change_laws, change_steps, move_floor, shrink_floor, grease_floor, remove_floor, free_floor, hollow_floor,
     spawn_wall,
 ]  # fmt: skip
