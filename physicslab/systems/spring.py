@@ -101,7 +101,7 @@ class SpringSystem(ForceSystem):
     def why_singular(self, state: State) -> str | None:
         """Return a reason if the energy could compress a spring to length zero, where it has no direction.
 
-        Estimated with a margin of four: kinetic energy, what springs store, a fall by twice a spring's length.
+        Estimated with a margin of four: kinetic energy, energy of springs, a fall by twice a spring's length.
         """
         spring, bodies = state.table(Spring), state.bodies
         rest, stiffness = spring["rest_length"][self._rows], spring["stiffness"][self._rows]
