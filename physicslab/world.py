@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
 
 import numpy as np
 
@@ -105,16 +104,27 @@ class World(State):
         self.time += h
 
     def _advance(self, h: float, steps: int) -> int:
-        """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many."""
-        with self._undoing():
-            stepper = self._best(h)
+        """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many.
+
+        Where that fails or is broken off, the world goes back to before the step.
+        """
+        if self._stepping:
+            raise RuntimeError("a system cannot step the world that is calling it")
+        self.checkpoint.take(motion_of(self), self.counts)
+        self._stepping = True
+        try:
             self.schedule.run(Stage.PREPARE, self, h)
             try:
-                made = stepper.advance(self, h, steps)
+                made = self._best(h).advance(self, h, steps)
             except NoClosedForm:  # a body was given another velocity, or another spring
                 self._choose()
                 made = self._best(h).advance(self, h, steps)
             self.schedule.run(Stage.FINISH, self, h * steps)
+        except BaseException:
+            self._go_back()
+            raise
+        finally:
+            self._stepping = False
         self.steps += made.steps
         self.step_divisions = made.divisions
         return made.steps
@@ -125,24 +135,13 @@ class World(State):
         self.compile(self.stepper.kernels)
         return self.stepper
 
-    @contextmanager
-    def _undoing(self) -> Iterator[None]:
-        """Go back to before the step within a ``with`` block that fails or is broken off."""
-        if self._stepping:
-            raise RuntimeError("a system cannot step the world that is calling it")
-        self.checkpoint.take(motion_of(self), self.counts)
-        self._stepping = True
-        try:
-            yield
-        except BaseException:
-            self.checkpoint.restore(motion_of(self))
-            self.force_evaluations, self.collisions, self.contacts.logged = self.checkpoint.counts
-            self.contacts.clear()  # what a failed step left there may not be finite either
-            wake_all(self)  # and nothing is known to hold any body
-            self._stale = True  # steppers hold numbers of the step that failed
-            raise
-        finally:
-            self._stepping = False
+    def _go_back(self) -> None:
+        """Stand where the step that failed began."""
+        self.checkpoint.restore(motion_of(self))
+        self.force_evaluations, self.collisions, self.contacts.logged = self.checkpoint.counts
+        self.contacts.clear()  # what a failed step left there may not be finite either
+        wake_all(self)  # and nothing is known to hold any body
+        self._stale = True  # steppers hold numbers of the step that failed
 
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.

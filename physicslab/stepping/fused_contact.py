@@ -26,7 +26,6 @@ from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.kernels.broad import grid, near_pairs
 from physicslab.kernels.loading import working_ns
 from physicslab.kernels.solver import fused_contact as fused
-from physicslab.kernels.solver.arguments import Motion
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
@@ -155,7 +154,7 @@ class FusedContact:
         began = time.perf_counter_ns()
         contacts, substeps = state.contacts, state.substeps
         self._cost[:] = 0
-        plan = fused.Plan(substeps, state.simulation.iterations or 1, h / substeps, h, state.time + made * h)
+        plan = (substeps, state.simulation.iterations or 1, h / substeps, h, state.time + made * h)
         why, done, substep, struck_before, struck, contacts.impulse_dt = fused.advance(
             steps, substep, stage, plan, *self._arguments(state, h / substeps)
         )
@@ -174,7 +173,7 @@ class FusedContact:
         if self._kept is not kept or self._h != h:
             self._kept, self._h, self._fixed = kept, h, self._fixed_arguments(state, h)
         motion, laws, marked = self._fixed
-        sleepers = fused.Sleepers(
+        sleepers = (
             self._sleep is not None, sleep.count, sleep.asleep, sleep.rest, sleep.slowest, marked,
             contacts.inactive, contacts.sleeping,
         )  # fmt: skip
@@ -187,12 +186,12 @@ class FusedContact:
     def _fixed_arguments(self, state: State, h: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:
         """Return the columns in order, the laws, and room for marks."""
         bodies, physics = state.bodies, state.physics
-        gravity = fused.Gravity(
+        gravity = (
             state.table(Mass)["mass"], bodies.inverse_mass, self._gravity.x, self._gravity.y,
             speculative_margin(state, h),
         )  # fmt: skip
         columns = (
-            motion_of(state), Motion(*state.checkpoint.columns), sizes_of(state), materials_of(state),
+            motion_of(state), tuple(state.checkpoint.columns), sizes_of(state), materials_of(state),
             inverse_in(state), bodies.sub_integrated, acting_in(state), gravity,
         )  # fmt: skip
         laws = (physics.linear_damping, physics.angular_damping), bounds_of(state)
