@@ -13,7 +13,7 @@ import os
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, cast, get_args, get_origin, get_type_hints
@@ -24,6 +24,8 @@ import numpy as np
 from numba import boolean, float64, int64, void
 from numba.core.registry import cpu_target
 from numpy.typing import NDArray
+
+from physicslab.kernels.interpreter import is_forced, stand_in
 
 __all__ = [
     "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
@@ -171,26 +173,37 @@ def _numba_type(hint: Any) -> Any:
     return {float: float64, int: int64, bool: boolean, type(None): void}[hint]
 
 
-def ask_before_compiling(ask: Callable[[Sequence[Any]], None] | None) -> None:
+def ask_before_compiling(ask: Callable[[Sequence[Any]], Collection[Any]] | None) -> None:
     """Have ``ask`` called with kernels that are needed and not there, before they are compiled; or nothing.
 
     When it returns they are compiled, or loaded: so a window can wait for other processes, and stay awake.
+    Those that it returns are not: they are interpreted until :func:`load` has loaded them.
     """
     global _ask
     _ask = ask
 
 
-_ask: Callable[[Sequence[Any]], None] | None = None
+_ask: Callable[[Sequence[Any]], Collection[Any]] | None = None
 
 
 def compile_kernels(kernels: Iterable[Any]) -> float:
-    """Compile the given kernels, or load them from the cache; return the seconds it took."""
+    """Compile the given kernels, or load them from the cache; return the seconds it took.
+
+    Where kernels are to be interpreted (:mod:`physicslab.kernels.interpreter`) they are made ready for that.
+    """
     start = time.perf_counter()
     missing = [jitted for jitted in kernels if not jitted.compiled]
-    if missing and _ask is not None:
-        _ask(missing)
+    if not missing:
+        return 0.0
+    if is_forced():
+        waiting: Collection[Any] = missing
+    else:
+        waiting = _ask(missing) if _ask is not None else ()
     for jitted in missing:
-        load(jitted)
+        if jitted in waiting:
+            stand_in(jitted)
+        else:
+            load(jitted)
     return time.perf_counter() - start
 
 

@@ -13,6 +13,7 @@ forces answer with their value at the middle.
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable
 from typing import Annotated, Any
 
@@ -25,6 +26,8 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from physicslab.kernels import KERNELS, Numbers, cached, inlined
+from physicslab.kernels.interpreter import twin_of
+from physicslab.kernels.stand_ins import Memory, stands_in_for
 
 __all__ = ["Calls", "ForceKernel", "accelerate", "accelerate_over", "force_kernel"]
 
@@ -33,6 +36,8 @@ Calls = Annotated[NDArray[np.int64], int64[:, ::1]]
 _pointer: Any = types.CPointer
 _REAL, _WHOLE = _pointer(float64), _pointer(int64)
 _SIGNATURE = void(_REAL, _REAL, float64, _REAL, _REAL, _WHOLE)
+_REALS, _WHOLES = ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int64)
+_C_FUNCTION = ctypes.CFUNCTYPE(None, _REALS, _REALS, ctypes.c_double, _REALS, _REALS, _WHOLES)
 
 
 class ForceKernel:
@@ -52,12 +57,15 @@ class ForceKernel:
         )
         self.overloads: dict[Any, Any] = {}
         self.compiled = False
+        self._stand_in: Any = None
+        self._stand_in_address = 0
 
     def compile(self, signature: Any) -> None:
         """Compile it, or load it from the cache."""
         with cached():
             make = numba.cfunc(signature, cache=True, error_model="numpy")
             self.overloads[signature.args] = make(self.py_func)
+        _KERNELS[self.address] = self
 
     def disable_compile(self) -> None:
         """There is one signature in any case."""
@@ -67,12 +75,33 @@ class ForceKernel:
         """The signatures that it has been compiled for: the one, or none."""
         return list(self.overloads)
 
+    def stand_in(self) -> None:
+        """Let the address be that of a C function which runs the Python body, until it is compiled."""
+        if self._stand_in is None:
+            # Kept for good: whoever was given its address may call it at any time.
+            self._stand_in = _C_FUNCTION(self._interpret)
+            address = ctypes.cast(self._stand_in, ctypes.c_void_p).value
+            assert address is not None
+            self._stand_in_address = address
+            _KERNELS[address] = self
+
+    def _interpret(self, q: Any, v: Any, span: float, force: Any, numbers: Any, whole: Any) -> None:
+        """Run the Python body on what lies behind pointers."""
+        with np.errstate(all="ignore"):
+            twin_of(self)(Memory(q), Memory(v), np.float64(span), Memory(force), Memory(numbers), whole)
+
     @property
     def address(self) -> int:
         """Where the C function lies in memory."""
         if not self.overloads:
+            if self._stand_in is not None:
+                return self._stand_in_address
             self.compile(_SIGNATURE)
         return int(self.overloads[_SIGNATURE.args].address)
+
+
+_KERNELS: dict[int, ForceKernel] = {}
+"""Forces by the addresses that were given out, of compiled code and of what stands in for it."""
 
 
 def force_kernel(function: Callable[..., None]) -> ForceKernel:
@@ -104,6 +133,20 @@ def _call_type(
 
 
 _call: Any = intrinsic(_call_type)
+
+
+@stands_in_for(_call)
+def _call_interpreted(
+    address: int, q: Numbers, v: Numbers, span: float, force: Numbers, numbers: int, whole: int
+) -> None:
+    """Call a force from a method that is interpreted itself."""
+    behind = ctypes.cast(int(numbers), _REALS), ctypes.cast(int(whole), _WHOLES)
+    known = _KERNELS.get(int(address))
+    if known is not None:
+        twin_of(known)(q, v, span, force, Memory(behind[0]), behind[1])
+        return
+    q_data, v_data, force_data = (ctypes.cast(array.ctypes.data, _REALS) for array in (q, v, force))
+    _C_FUNCTION(int(address))(q_data, v_data, span, force_data, *behind)
 
 
 @inlined
