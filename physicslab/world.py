@@ -17,19 +17,19 @@ from physicslab.components import Name
 from physicslab.components.name import why_no_id
 from physicslab.ecs.component import Batch, InvalidValue, Table
 from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
-from physicslab.ecs.entity_index import Roster
+from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.fields import Field
 from physicslab.integrators import StepTooSmall
 from physicslab.ode.closed_form import NoClosedForm
-from physicslab.ode.system import Equations
+from physicslab.ode.system import OdeSystem
 from physicslab.state.bodies import Bodies, Diverged
 from physicslab.state.contacts import Contacts
 from physicslab.state.sleep import Sleep
 from physicslab.stepping.checkpoint import Checkpoint
-from physicslab.stepping.event_driven import Flights
+from physicslab.stepping.event_driven import EventDriven
 from physicslab.stepping.fused_contact import CompiledSteps, why_not_compiled
-from physicslab.stepping.select import choose, provisional
-from physicslab.stepping.split_forces import Tethers
+from physicslab.stepping.select import choose, default_plan
+from physicslab.stepping.split_forces import SplitForces
 from physicslab.systems.schedule import ForceSystem, Schedule, Stage, System
 
 __all__ = ["World"]
@@ -63,7 +63,7 @@ class World:
     ----------
     method : Choice
         How the bodies are moved, and why so.
-    tethers : Tethers, optional
+    split_forces : Tethers, optional
         What moves the bodies that springs and drag act on where contacts act as well.
     revision : int
         How often its structure or its configuration changed: what was measured before is another world's.
@@ -72,7 +72,7 @@ class World:
     substeps : int
         Of how many parts the last step was, or each part of one that was divided: more than
         ``simulation.substeps`` where a system found that these would not do.
-    divided : int
+    step_divisions : int
         Into how many parts the last :meth:`step` was divided, which was longer than ``simulation.dt``; or 1.
 
     Notes
@@ -102,7 +102,7 @@ class World:
         self.name, self.title, self.description = "", "", ""
         self.time = 0.0
         self.steps = 0
-        self.divided = 1
+        self.step_divisions = 1
         # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
         self._names: set[str] = set()
         self.substeps = self._simulation.substeps
@@ -112,17 +112,17 @@ class World:
         self.bodies = Bodies()
         self.contacts = Contacts()
         self.sleep = Sleep()
-        self.roster = Roster()
+        self.entity_index = EntityIndex()
         self.schedule = Schedule((self.bodies, *systems))
         self.has_forces = False
-        self._equations: Equations | None = None
-        self._flights: Flights | None = None
+        self._ode: OdeSystem | None = None
+        self._event_driven: EventDriven | None = None
         self._compiled: CompiledSteps | None = None
-        self.tethers: Tethers | None = None
+        self.split_forces: SplitForces | None = None
         self._stale = True
         self._stepping = False
         self._before = Checkpoint()
-        self.method = provisional(self._simulation)
+        self.method = default_plan(self._simulation)
         self.context = f"physicslab-{next(_numbers)}"
         esper.switch_world(self.context)
         weakref.finalize(self, _forget, self.context)
@@ -175,7 +175,7 @@ class World:
         with self.active():
             for entity in esper.get_entities():
                 esper.delete_entity(entity)
-            self.roster.bury_dead()
+            self.entity_index.flush_deleted()
 
     def add(self, entity: int, component: Any) -> None:
         """Give an entity a component, in place of the one of that type if it has one."""
@@ -265,11 +265,11 @@ class World:
 
     def table(self, component: type[Any]) -> Table:
         """Return the columns of a component; rows are numbered alike in every table."""
-        return self.roster.table(component)
+        return self.entity_index.table(component)
 
     def batch(self, *components: type[Any]) -> Batch:
         """Return the rows of the entities that have all of ``components``."""
-        return self.roster.batch(*components)
+        return self.entity_index.batch(*components)
 
     # ---- configuration -------------------------------------------------------------------------------------
 
@@ -290,14 +290,14 @@ class World:
 
     @simulation.setter
     def simulation(self, simulation: SimulationConfig) -> None:
-        self.method = provisional(simulation)
+        self.method = default_plan(simulation)
         self._simulation = simulation
         self._stale = True
 
     @property
     def interpreted(self) -> tuple[str, ...]:
         """The forces that Python computes, step for step, where a compiled loop could run."""
-        return self._equations.interpreted if self._equations is not None else ()
+        return self._ode.interpreted if self._ode is not None else ()
 
     # ---- time ----------------------------------------------------------------------------------------------
 
@@ -316,17 +316,17 @@ class World:
         self._follow()
         if not self._stepping:
             self.bodies.derive(self)
-            if self._equations is not None and self._equations.outdated(self):
+            if self._ode is not None and self._ode.outdated(self):
                 self._choose()
-            if self._flights is not None and not self._flights.holds(self):
+            if self._event_driven is not None and not self._event_driven.holds(self):
                 self._choose()
-            if self.tethers is not None and self.tethers.outdated(self):
+            if self.split_forces is not None and self.split_forces.outdated(self):
                 self._choose()
             self.sleep.check(self)
 
     def _follow(self) -> None:
         """Follow what changed in the structure of the world since the last call, if anything did."""
-        if not self._stepping and (self.roster.synchronise() or self._stale):
+        if not self._stepping and (self.entity_index.synchronise() or self._stale):
             self._adapt()
 
     @_quiet
@@ -340,7 +340,7 @@ class World:
             self._remake()
             self.revision += 1
             self._stale = False
-            if not self.roster.synchronise():
+            if not self.entity_index.synchronise():
                 return
 
     def _remake(self) -> None:
@@ -356,20 +356,20 @@ class World:
     def _choose(self) -> None:
         """Choose the method for what there is, and make ready what it works with."""
         self.method = choose(self)
-        self._equations = Equations(self) if self.method.smooth else None
-        self.bodies.tethered[:] = False
-        self.tethers = None
-        if self.method.tethers is not None:
-            self.tethers = Tethers(self, self.method.tethers, self.method.tether_steps)
-        had_flights, self._flights = self._flights is not None, None
+        self._ode = OdeSystem(self) if self.method.smooth else None
+        self.bodies.sub_integrated[:] = False
+        self.split_forces = None
+        if self.method.split_forces is not None:
+            self.split_forces = SplitForces(self, self.method.split_forces, self.method.split_steps)
+        was_event_driven, self._event_driven = self._event_driven is not None, None
         if self.method.collisions == "exact":
-            self._flights = Flights(self)
-            self.schedule.compile(self._flights.kernels)
+            self._event_driven = EventDriven(self)
+            self.schedule.compile(self._event_driven.kernels)
         self._compiled = None
         if why_not_compiled(self) is None:
             self._compiled = CompiledSteps(self)
             self.schedule.compile(self._compiled.kernels)
-        self.contacts.stale |= had_flights or self._flights is not None
+        self.contacts.stale |= was_event_driven or self._event_driven is not None
         self.sleep.look_around(self)
 
     @_quiet
@@ -377,7 +377,8 @@ class World:
         """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps.
 
         What is longer than ``simulation.dt`` is divided, so that no substep is longer than the scene's own:
-        ``divided`` says into how many parts. A method that is exact or chooses its steps takes it whole.
+        ``step_divisions`` says into how many parts. A method that is exact or chooses its steps takes it
+        whole.
 
         Raises
         ------
@@ -393,26 +394,28 @@ class World:
             if compiled is not None and dt == self._simulation.dt and compiled.ready(self):
                 self._run_compiled(compiled, 1)
                 return
-            self.divided = parts = self._parts(dt)
+            self.step_divisions = parts = self._parts(dt)
             self._before.take(self)
             self._stepping = True
             try:
                 self.schedule.run(Stage.PREPARE, self, dt)
-                if self.tethers is not None:
-                    self.tethers.begin(self)
-                if self._equations is not None:
-                    self._flow(self._equations, dt / parts, parts)
-                elif self._flights is None and self.sleep.everything(self):
+                if self.split_forces is not None:
+                    self.split_forces.begin(self)
+                if self._ode is not None:
+                    self._flow(self._ode, dt / parts, parts)
+                elif self._event_driven is None and self.sleep.all_asleep(self):
                     self.substeps = self._simulation.substeps  # in which nothing would happen
-                elif self._flights is None:
-                    self.substeps = self.contacts.finer * self._simulation.substeps
+                elif self._event_driven is None:
+                    self.substeps = self.contacts.substep_factor * self._simulation.substeps
                     self._go_through(dt / parts / self.substeps, parts * self.substeps)
                 elif parts > 1:
-                    self._flights.run(self, dt / parts, parts)
+                    self._event_driven.run(self, dt / parts, parts)
                 else:
-                    self._flights.step(self, dt)
+                    self._event_driven.step(self, dt)
                 self.schedule.run(Stage.FINISH, self, dt)
-                self.contacts.finer = max((system.finer(self) for system in self.schedule.running), default=1)
+                self.contacts.substep_factor = max(
+                    (system.substep_factor(self) for system in self.schedule.running), default=1
+                )
             except Diverged:
                 self._go_back()
                 raise
@@ -429,7 +432,7 @@ class World:
     def _parts(self, dt: float) -> int:
         """Return into how many parts a step of ``dt`` is divided."""
         method = self.method.integrator
-        if self._equations is not None and (method.chooses_steps or math.isinf(method.order)):
+        if self._ode is not None and (method.chooses_steps or math.isinf(method.order)):
             return 1
         own = self._simulation.dt
         if dt / own > _MOST_PARTS:
@@ -443,27 +446,27 @@ class World:
             for stage, share in stages:
                 run(stage, self, share * h)
 
-    def _flow(self, equations: Equations, dt: float, steps: int) -> None:
+    def _flow(self, ode: OdeSystem, dt: float, steps: int) -> None:
         """Advance by ``steps`` steps of ``dt`` in one compiled loop; nothing but forces acts."""
         method = self.method
         self.schedule.compile(method.integrator.kernels)
-        equations.gather(self)
+        ode.gather(self)
         parts = 1 if method.integrator.chooses_steps else method.substeps
         h, count = (dt * steps, 1) if method.integrator.chooses_steps else (dt / parts, parts * steps)
         start = time.perf_counter_ns()
         try:
-            made = method.integrator.flow(self, equations, h, count)
+            made = method.integrator.flow(self, ode, h, count)
         except StepTooSmall as error:
             label = self.label(self._liveliest())
             what = f"{label}: Velocity changes too fast: {error}"
             raise Diverged(f"{what} (after t = {self.time:.9g} s)") from error
         except NoClosedForm:  # somebody gave a body another velocity, or another spring
             self.method = choose(self)
-            self._flow(equations, dt, steps)
+            self._flow(ode, dt, steps)
             return
-        equations.scatter(self, dt * steps)
+        ode.scatter(self, dt * steps)
         self.schedule.note("IntegrateSystem", steps, time.perf_counter_ns() - start)
-        for name in equations.forces:
+        for name in ode.forces:
             self.schedule.note(name, made, 0)  # their time is within the loop's
         self.force_evaluations += made
 
@@ -472,7 +475,7 @@ class World:
         self.add_up_forces()
         bodies = self.bodies
         rates = np.hypot(bodies.force[:, 0], bodies.force[:, 1]) * bodies.inverse_mass
-        return int(self.roster.entities[np.argmax(rates)])
+        return int(self.entity_index.entities[np.argmax(rates)])
 
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.
@@ -491,7 +494,7 @@ class World:
         The stages of a step leave them there; a compiled loop does not, and they are added up at the present
         state. Nothing that moves is changed.
         """
-        if self._equations is None and self._flights is None:
+        if self._ode is None and self._event_driven is None:
             return
         with self.active():
             for system in (self.bodies, *self.schedule.running):
@@ -511,10 +514,10 @@ class World:
             self._before.take(self)
             self._stepping = True
             try:
-                if self._flights is not None:
-                    self._flights.run(self, dt, parts)
-                elif self._equations is not None:
-                    self._flow(self._equations, dt, parts)
+                if self._event_driven is not None:
+                    self._event_driven.run(self, dt, parts)
+                elif self._ode is not None:
+                    self._flow(self._ode, dt, parts)
                 self.schedule.run(Stage.FINISH, self, dt * parts)
             except Diverged:
                 self._go_back()
@@ -536,7 +539,7 @@ class World:
 
     def _pass_over(self, steps: int) -> None:
         """Count steps in which nothing would happen, and calls of systems that would find nothing."""
-        self.divided, self.substeps = 1, self._simulation.substeps
+        self.step_divisions, self.substeps = 1, self._simulation.substeps
         for system in self.schedule.running:
             around = {Stage.PREPARE, Stage.FINISH} & system.marked().keys()
             self.schedule.note(system.name, steps * len(around), 0)
@@ -544,7 +547,7 @@ class World:
 
     def _run_compiled(self, compiled: CompiledSteps, steps: int) -> int:
         """Make ``steps`` steps or fewer in one compiled call, in this world's context; return how many."""
-        self.divided, self.substeps, self.contacts.finer = 1, self._simulation.substeps, 1
+        self.step_divisions, self.substeps, self.contacts.substep_factor = 1, self._simulation.substeps, 1
         self._before.make_room(self)  # the loop keeps the state itself
         self._stepping = True
         try:
@@ -569,23 +572,23 @@ class World:
             self.time += seconds  # which is nothing, or too short for anything to move
         while done < last:
             self.synchronise()
-            by_step = self._equations is None and self._flights is None
-            unseen = min(stride - done % stride, whole - done)
-            if unseen > 0 and not self.schedule.observed and self.sleep.everything(self):
-                self._pass_over(unseen)
-                done += unseen
-            elif self._compiled is not None and unseen > 0 and self._compiled.ready(self):
+            by_step = self._ode is None and self._event_driven is None
+            unverified = min(stride - done % stride, whole - done)
+            if unverified > 0 and not self.schedule.observed and self.sleep.all_asleep(self):
+                self._pass_over(unverified)
+                done += unverified
+            elif self._compiled is not None and unverified > 0 and self._compiled.ready(self):
                 before = self.steps
                 try:
                     with self.active():
-                        done += self._run_compiled(self._compiled, unseen)
+                        done += self._run_compiled(self._compiled, unverified)
                 except Diverged:
                     self.time = start + (done + self.steps - before) * dt
                     raise
             elif by_step or self.schedule.observed:
                 self.step(dt if done < whole else rest)
                 done += 1
-            elif self._equations and self.method.integrator.chooses_steps and stride >= last - done:
+            elif self._ode and self.method.integrator.chooses_steps and stride >= last - done:
                 self._leap(seconds - done * dt, 1, last - done)
                 done = last
             else:

@@ -90,7 +90,7 @@ def test_a_world_that_diverges_is_paused_and_says_so() -> None:
     ball = circle(world, (0, 0), name="ball")
     desk = Desk(world)
     desk.frames(2)
-    world.table(Velocity)["linear"][world.roster.row_of[ball]] = float("nan")
+    world.table(Velocity)["linear"][world.entity_index.row_of[ball]] = float("nan")
     desk.frames(3)
     assert desk.window.pace.due(FRAME) == 0
     assert "ball" in desk.window.error and "no longer finite" in desk.window.error

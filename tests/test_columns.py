@@ -60,7 +60,7 @@ def test_a_handle_and_its_column_are_one_memory() -> None:
     world = World()
     entity = world.spawn(Transform((1, 2), 0.5), Mass(3.0, fixed_rotation=True), Shape.box(1, 2))
     transform, mass = world.component(entity, Transform), world.component(entity, Mass)
-    row = world.roster.row_of[entity]
+    row = world.entity_index.row_of[entity]
 
     transform.position = (3, 4)
     mass.mass = 5

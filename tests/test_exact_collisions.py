@@ -129,9 +129,9 @@ def test_bounces_come_at_their_times_and_end_at_rest(by_step: bool) -> None:
     world.run(seconds=zeno + world.simulation.dt - 9.0)
     assert times(world)[-1] == pytest.approx(zeno, abs=0.02 * world.simulation.dt)
     assert abs(world.component(ball, Velocity).linear.y) < 1e-12
-    struck = world.collisions
+    impact_count = world.collisions
     world.run(seconds=5.0)
-    assert world.collisions == struck and world.contacts.count == 1
+    assert world.collisions == impact_count and world.contacts.count == 1
     transform, velocity = world.component(ball, Transform), world.component(ball, Velocity)
     assert (
         abs(transform.position.x) < 1e-12 and abs(transform.position.y - 0.25) < 1e-3
@@ -389,10 +389,12 @@ def test_friction_spins_a_disc_by_coulombs_law() -> None:
         world.run(seconds=0.5)
         j = 1.5 * math.sqrt(2 * G)
         stops = 4 / 3  # m_t v with m_t = 1 / (1/m + r^2/I) = 1/3
-        rub = min(mu * j, stops)
-        assert speed(world, ball) == pytest.approx(4 - rub, rel=1e-13)
-        assert world.component(ball, Velocity).angular == pytest.approx(-rub * 0.5 / 0.125, rel=1e-13)
-        assert world.contacts.impacts["tangent_impulse"][0] == pytest.approx(rub, rel=1e-13)
+        friction_impulse = min(mu * j, stops)
+        assert speed(world, ball) == pytest.approx(4 - friction_impulse, rel=1e-13)
+        assert world.component(ball, Velocity).angular == pytest.approx(
+            -friction_impulse * 0.5 / 0.125, rel=1e-13
+        )
+        assert world.contacts.impacts["tangent_impulse"][0] == pytest.approx(friction_impulse, rel=1e-13)
 
 
 def test_what_is_let_go_below_or_beside_a_box_just_falls() -> None:
@@ -498,7 +500,7 @@ def dull(world: World) -> None:
     circle(world, (0, 3), restitution=0.0)
 
 
-def lying(world: World) -> None:
+def proximity_count(world: World) -> None:
     circle(world, (0, 0.25), radius=0.25, restitution=0.5)
 
 
@@ -522,7 +524,7 @@ def many(world: World) -> None:
         (turning, "exact", {}, "step", "exact was asked for, and crate is a box that may turn"),
         (dull, "auto", {}, "step", "some pairs do not bounce"),
         (dull, "exact", {}, "exact", "asked for"),
-        (lying, "auto", {}, "step", "everything rests"),
+        (proximity_count, "auto", {}, "step", "everything rests"),
         (piled, "auto", {}, "step", "bodies rest on each other"),
         (many, "auto", {}, "step", "more than 32 bodies move"),
         (one_ball, "auto", {"linear_damping": 0.1}, "step", "velocities are damped"),
@@ -602,5 +604,5 @@ def test_a_saved_scene_goes_on_alike(tmp_path: Path) -> None:
 
 
 def test_the_event_loop_takes_what_it_says() -> None:
-    compile_kernels((events.fly,))
-    assert events.fly.py_func.__doc__  # type: ignore[attr-defined]
+    compile_kernels((events.run_events,))
+    assert events.run_events.py_func.__doc__  # type: ignore[attr-defined]

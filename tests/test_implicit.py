@@ -13,7 +13,7 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import implicit_midpoint
 from physicslab.kernels.forces import springs
-from physicslab.ode.system import Equations
+from physicslab.ode.system import OdeSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
@@ -89,10 +89,10 @@ def _whole(slots: object) -> tuple[object, int]:
 def test_neighbours_stand_close_together_in_the_order() -> None:
     world = net(8, 1e4)
     world.synchronise()
-    equations = Equations(world)
-    order, band = implicit_midpoint._banded(world, equations.slots)
-    assert sorted(order.tolist()) == list(range(equations.slots.moving_count))
-    assert band < 40 < equations.slots.moving_count
+    ode = OdeSystem(world)
+    order, band = implicit_midpoint._banded(world, ode.layout)
+    assert sorted(order.tolist()) == list(range(ode.layout.moving_count))
+    assert band < 40 < ode.layout.moving_count
 
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e9])

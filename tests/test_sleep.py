@@ -43,7 +43,7 @@ def sleeping_boxes(*places: float, friction: float = 0.5) -> tuple[World, list[i
 def sleepers(world: World) -> set[int]:
     """Return the entities that sleep."""
     assert world.sleep.count == np.count_nonzero(world.sleep.asleep)
-    return set(world.roster.entities[world.sleep.asleep].tolist())
+    return set(world.entity_index.entities[world.sleep.asleep].tolist())
 
 
 # ---- falling asleep ----------------------------------------------------------------------------------------
@@ -194,18 +194,18 @@ def test_a_discs_pile_sleeps_out_of_its_blocks_and_wakes_into_them() -> None:
     world.run(seconds=8.0)
     contacts = world.contacts
     assert world.sleep.count == 120
-    assert (contacts.blocks.lanes, contacts.active, contacts.loose_count) == (0, 0, 0)
-    assert contacts.count == contacts.resting_count > 200
+    assert (contacts.wide.filled, contacts.active, contacts.scalar_count) == (0, 0, 0)
+    assert contacts.count == contacts.sleeping_count > 200
     world.sleep.wake(world, world.sleep.asleep.copy())
     assert contacts.count > 200
     world.run(steps=2)
-    assert contacts.blocks.lanes > 0.7 * contacts.count > 140
+    assert contacts.wide.filled > 0.7 * contacts.count > 140
 
 
 # ---- waking ------------------------------------------------------------------------------------------------
 
 
-def struck(sleeping: bool) -> tuple[World, int, int]:
+def impact_count(sleeping: bool) -> tuple[World, int, int]:
     """Return a box on a floor with hardly any friction, at rest for a second, and a ball about to hit it."""
     world, (target,) = resting_boxes(0.0, friction=1e-9, sleeping=sleeping)
     world.component(target, Material).restitution = 0.5
@@ -215,8 +215,8 @@ def struck(sleeping: bool) -> tuple[World, int, int]:
 
 
 def test_a_blow_wakes_and_finds_the_bodys_own_mass() -> None:
-    world, target, ball = struck(sleeping=True)
-    awake, other, its_ball = struck(sleeping=False)
+    world, target, ball = impact_count(sleeping=True)
+    awake, other, its_ball = impact_count(sleeping=False)
     assert sleepers(world) == {target}
     before = measure_momentum(world).linear.x
     for each in (world, awake):
@@ -483,7 +483,7 @@ def test_a_pile_beside_a_sleeping_one_goes_on_from_a_file_bit_for_bit() -> None:
         pile(world, 120, (middle, higher), columns=columns)
     while world.sleep.count < 120:
         world.step()
-    assert world.contacts.blocks.lanes > 0 and world.sleep.count < 240
+    assert world.contacts.wide.filled > 0 and world.sleep.count < 240
     assert_goes_on_alike(world, 60)
 
 

@@ -165,7 +165,7 @@ def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWr
 def _measure(world: World, record: RunRecord) -> None:
     record.drift.sample(world)
     record.max_penetration = max(record.max_penetration, world.contacts.max_penetration)
-    record.divided = max(record.divided, world.divided)
+    record.divided = max(record.divided, world.step_divisions)
 
 
 def _picture(world: World) -> bytes:

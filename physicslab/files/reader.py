@@ -20,7 +20,7 @@ from physicslab.files.checks import (
     shown,
 )
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_rests
-from physicslab.kernels.solver.impulse import MOST_PARTS
+from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
@@ -103,7 +103,7 @@ def read_scene(document: object, source: str = "scene") -> World:
     for number, (id_, components) in enumerate(draft.entities, start=1):
         entity = world.spawn(*components, name=id_)
         assert entity == number, "a new world numbers its entities from 1"
-    world.contacts.span, world.contacts.finer = draft.solver
+    world.contacts.impulse_dt, world.contacts.substep_factor = draft.solver
     if draft.contacts or draft.rests:
         world.synchronise()
         try:
@@ -142,7 +142,7 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
 
 
 _SPAN = Field("span", "number", unit="s", minimum=SHORTEST, owner="solver")
-_FINER = Field("finer", "whole", minimum=1, maximum=MOST_PARTS, owner="solver")
+_FINER = Field("finer", "whole", minimum=1, maximum=MAX_SUBSTEP_FACTOR, owner="solver")
 
 
 def _solver(value: Any, simulation: SimulationConfig, where: str) -> tuple[float, int]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853
-from physicslab.ode.system import Equations
+from physicslab.ode.system import OdeSystem
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -18,8 +18,8 @@ _MOST = 1_000_000
 120,000 at the finest tolerance; a million take 0.2 s for two bodies."""
 
 
-def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
-    eq, tolerance = equations, equations.tolerance
+def _flow(world: World, ode: OdeSystem, h: float, steps: int) -> int:
+    eq, tolerance = ode, ode.tolerance
     made = dop853(
         eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, steps * h, tolerance, world.simulation.dt, _MOST
     )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.closed_form import closed_form
-from physicslab.ode.system import Equations
+from physicslab.ode.system import OdeSystem
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 __all__ = ["EXACT"]
 
 
-def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
+def _flow(world: World, ode: OdeSystem, h: float, steps: int) -> int:
     position, velocity = closed_form(world).advanced(world, steps * h)
-    n = 2 * len(equations.slots.moving)
-    equations.q[:n], equations.v[:n] = position.ravel(), velocity.ravel()
-    turning = slice(n, equations.slots.moving_count)
-    equations.q[turning] += steps * h * equations.v[turning]
+    n = 2 * len(ode.layout.moving)
+    ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
+    turning = slice(n, ode.layout.moving_count)
+    ode.q[turning] += steps * h * ode.v[turning]
     return 0
 
 

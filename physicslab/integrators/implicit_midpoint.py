@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.kernels.ode.implicit import implicit_midpoint
-from physicslab.ode.system import Equations, Slots
+from physicslab.ode.system import OdeSystem, StateLayout
 from physicslab.systems.schedule import ForceSystem
 
 if TYPE_CHECKING:
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 __all__ = ["IMPLICIT_MIDPOINT"]
 
 
-def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
-    eq = equations
+def _flow(world: World, ode: OdeSystem, h: float, steps: int) -> int:
+    eq = ode
     if eq.near is None:
-        eq.near = _banded(world, eq.slots)
+        eq.near = _banded(world, eq.layout)
     order, band = eq.near
     if len(eq.damping) or len(eq.resistances):
         # Beside each coordinate of the mean velocity stands that of what the end's has more.
@@ -43,7 +43,7 @@ def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
     return made
 
 
-def _banded(world: World, slots: Slots) -> tuple[NDArray[np.int64], int]:
+def _banded(world: World, slots: StateLayout) -> tuple[NDArray[np.int64], int]:
     """Return an order of the coordinates in which those that forces couple are near, and how near."""
     pairs = [system.couples(world) for system in world.schedule.running if isinstance(system, ForceSystem)]
     bodies = slots.moving.tolist()

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from physicslab.ode.system import Equations
+from physicslab.ode.system import OdeSystem
 from physicslab.systems.schedule import Stage
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Flow", "Integrator", "StepTooSmall"]
 
-type Flow = Callable[[World, Equations, float, int], int]
+type Flow = Callable[[World, OdeSystem, float, int], int]
 """Advances the equations of a world by so many steps of so many seconds; returns the force evaluations."""
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.ode.classical import rk4
-from physicslab.ode.system import Equations
+from physicslab.ode.system import OdeSystem
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 __all__ = ["RK4"]
 
 
-def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
-    eq = equations
+def _flow(world: World, ode: OdeSystem, h: float, steps: int) -> int:
+    eq = ode
     return rk4(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, h, steps)
 
 

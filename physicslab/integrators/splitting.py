@@ -8,7 +8,7 @@ import numpy as np
 
 from physicslab.integrators.integrator import Flow
 from physicslab.kernels.ode.splitting import split
-from physicslab.ode.system import Equations
+from physicslab.ode.system import OdeSystem
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -20,8 +20,8 @@ def splitting(*, drifts: tuple[float, ...], kicks: tuple[float, ...]) -> Flow:
     """Return the flow of the method kick, drift, kick, ..., drift, kick with these shares of the step."""
     drift_shares, kick_shares = np.array(drifts), np.array(kicks)
 
-    def flow(world: World, equations: Equations, h: float, steps: int) -> int:
-        eq = equations
+    def flow(world: World, ode: OdeSystem, h: float, steps: int) -> int:
+        eq = ode
         return split(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, drift_shares, kick_shares, h, steps)
 
     return flow

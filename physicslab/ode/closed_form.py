@@ -124,7 +124,7 @@ def _hang(world: World, form: ClosedForm) -> None:
     index = {row: i for i, row in enumerate(form.rows.tolist())}
     of_body: dict[int, list[tuple[int, NDArray[np.float64]]]] = {}
     for spring, end_a, end_b in zip(springs.tolist(), a.tolist(), b.tolist(), strict=True):
-        label = world.label(int(world.roster.entities[spring]))
+        label = world.label(int(world.entity_index.entities[spring]))
         moving = [end for end in (end_a, end_b) if velocity[end]]
         if not any(bodies.inverse_mass[end] > 0.0 for end in moving):
             continue
@@ -152,25 +152,25 @@ def _hang_body(world: World, form: ClosedForm, i: int, held: list[tuple[int, NDA
     """Put the springs of one body into the form."""
     row, table = int(form.rows[i]), world.table(Spring)
     inverse = world.bodies.inverse_mass[row]
-    numbers = [(float(table["rest_length"][s]), float(table["stiffness"][s]), float(table["damping"][s]))
+    parameters = [(float(table["rest_length"][s]), float(table["stiffness"][s]), float(table["damping"][s]))
                for s, _ in held]  # fmt: skip
     points = np.array([point for _, point in held])
-    stiffness = np.array([k for _, k, _ in numbers])
-    if all(rest == 0.0 and c == 0.0 for rest, _, c in numbers):
+    stiffness = np.array([k for _, k, _ in parameters])
+    if all(rest == 0.0 and c == 0.0 for rest, _, c in parameters):
         rate2 = float(stiffness.sum() * inverse)
         form.rate2[i] = rate2
         if rate2 > 0.0:
             form.centre[i] = stiffness @ points / stiffness.sum() + form.acceleration[i] / rate2
         return
-    _hang_in_line(world, form, i, points, np.array(numbers))
+    _hang_in_line(world, form, i, points, np.array(parameters))
 
 
 def _hang_in_line(
-    world: World, form: ClosedForm, i: int, points: NDArray[np.float64], numbers: NDArray[np.float64]
+    world: World, form: ClosedForm, i: int, points: NDArray[np.float64], parameters: NDArray[np.float64]
 ) -> None:
     """Put springs into the form that pull along one line, on which the body stays."""
     row = int(form.rows[i])
-    label = world.label(int(world.roster.entities[row]))
+    label = world.label(int(world.entity_index.entities[row]))
     position = world.table(Transform)["position"][row]
     velocity = world.table(Velocity)["linear"][row]
     reach = position - points
@@ -180,7 +180,7 @@ def _hang_in_line(
         along = next((v for v in (velocity, form.acceleration[i]) if v.any()), np.array((1.0, 0.0)))
         line = along / np.hypot(*along)
     normal = np.array((-line[1], line[0]))
-    rest, stiffness, damping = numbers.T
+    rest, stiffness, damping = parameters.T
     inverse = world.bodies.inverse_mass[row]
     rate = float(np.sqrt(stiffness.sum() * inverse))
     speed = float(np.hypot(*velocity)) + rate * float(lengths.max())  # what rounding is measured against

@@ -17,7 +17,7 @@ from physicslab.systems.schedule import ForceSystem, Stage
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["Equations", "PackedForce", "Slots", "spring_ends", "why_not_smooth"]
+__all__ = ["OdeSystem", "PackedForce", "StateLayout", "spring_ends", "why_not_smooth"]
 
 _REAL = ctypes.POINTER(ctypes.c_double)
 _WHOLE = ctypes.POINTER(ctypes.c_int64)
@@ -32,7 +32,7 @@ class PackedForce:
     ----------
     kernel : ForceKernel
         What adds to the forces.
-    numbers, whole : float64 array, int64 array
+    parameters, indices : float64 array, int64 array
         Whatever the kernel wants to know; it gets pointers to them.
     resistance : ForceKernel, optional
         What the force answers to another velocity than that of the moment, where it resists motion (see
@@ -40,12 +40,12 @@ class PackedForce:
     """
 
     kernel: ForceKernel
-    numbers: NDArray[np.float64]
-    whole: NDArray[np.int64]
+    parameters: NDArray[np.float64]
+    indices: NDArray[np.int64]
     resistance: ForceKernel | None = None
 
 
-class Slots:
+class StateLayout:
     """Where each row of a world stands among the packed coordinates.
 
     First two coordinates for every row that moves, then an angle for every row that forces may turn, then the
@@ -90,7 +90,7 @@ class Slots:
 
 def spring_ends(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Return the rows of the springs, of the bodies at their ends A, and at B (0 for the world)."""
-    batch, spring, rows_of = world.batch(Spring), world.table(Spring), world.roster.rows_of
+    batch, spring, rows_of = world.batch(Spring), world.table(Spring), world.entity_index.rows_of
     a = spring["a"][batch.rows]
     return batch.rows, rows_of(np.where(a == 0, batch.entities, a)), rows_of(spring["b"][batch.rows])
 
@@ -103,11 +103,11 @@ def _swung(world: World) -> NDArray[np.int64]:
     return np.concatenate((a[off_a], b[off_b]))
 
 
-class Equations:
+class OdeSystem:
     """Packed state and packed forces of a world in which nothing acts but forces.
 
-    ``q`` holds the coordinates as :class:`Slots` orders them, ``v`` their rates (zero for what is fixed);
-    q'' = ``inverse_mass`` * force - ``damping`` * v.
+    ``q`` holds the coordinates as :class:`StateLayout` orders them, ``v`` their rates (zero for what is
+    fixed); q'' = ``inverse_mass`` * force - ``damping`` * v.
 
     A force system that packs its force (:meth:`ForceSystem.packed`) is called without Python. One that does
     not is called back at its ``Stage.FORCE``, with the state that it reads in the world's tables: slower, and
@@ -146,7 +146,7 @@ class Equations:
         interpreted = [system for system in self._forces if not type(system).packs()]
         self.interpreted = tuple(system.name for system in interpreted)
         self.forces = tuple(system.name for system in self._forces)
-        self.slots = Slots(world, part, all_turn=bool(interpreted))
+        self.layout = StateLayout(world, part, all_turn=bool(interpreted))
         self.near: tuple[NDArray[np.int64], int] | None = None
         self.tolerance = world.simulation.tolerance
         self._error: BaseException | None = None
@@ -163,7 +163,7 @@ class Equations:
         """Take the state, the masses and the forces from the world's tables."""
         self.gather_state(world)
         bodies, physics = world.bodies, world.physics
-        moving, turning = self.slots.moving, self.slots.turning
+        moving, turning = self.layout.moving, self.layout.turning
         self.inverse_mass = np.concatenate(
             (np.repeat(bodies.inverse_mass[moving], 2), bodies.inverse_inertia[turning])
         )
@@ -178,7 +178,7 @@ class Equations:
     def gather_state(self, world: World) -> None:
         """Take the state alone, where masses and forces are those of the last :meth:`gather`."""
         transform, velocity = world.table(Transform), world.table(Velocity)
-        moving, turning, fixed = self.slots.moving, self.slots.turning, self.slots.fixed
+        moving, turning, fixed = self.layout.moving, self.layout.turning, self.layout.fixed
         position, linear = transform["position"], velocity["linear"]
         self.q = np.concatenate(
             (position[moving].ravel(), transform["angle"][turning], position[fixed].ravel())
@@ -192,7 +192,7 @@ class Equations:
         if self._error is not None:
             error, self._error = self._error, None
             raise error
-        slots, transform, velocity = self.slots, world.table(Transform), world.table(Velocity)
+        slots, transform, velocity = self.layout, world.table(Transform), world.table(Velocity)
         self._write(world, self.q, self.v)
         steady = slots.steady
         if len(steady):
@@ -203,7 +203,7 @@ class Equations:
             velocity["angular"][steady] = np.where(free, spin * np.exp(-c * span), spin)
 
     def _write(self, world: World, q: NDArray[np.float64], v: NDArray[np.float64]) -> None:
-        slots, transform, velocity = self.slots, world.table(Transform), world.table(Velocity)
+        slots, transform, velocity = self.layout, world.table(Transform), world.table(Velocity)
         n, d = 2 * len(slots.moving), slots.moving_count
         transform["position"][slots.moving] = q[:n].reshape(-1, 2)
         velocity["linear"][slots.moving] = v[:n].reshape(-1, 2)
@@ -212,22 +212,23 @@ class Equations:
 
     def _calls(self, world: World) -> None:
         packed = [
-            (system, system.packed(world, self.slots) if type(system).packs() else None)
+            (system, system.packed(world, self.layout) if type(system).packs() else None)
             for system in self._forces
         ]
         forces = [force for _, force in packed if force is not None]
         # Behind how many coordinates there are, as resistances get several velocities in one.
         resisting = [
-            (force.resistance, force.numbers, np.concatenate(([len(self.q)], force.whole)))
+            (force.resistance, force.parameters, np.concatenate(([len(self.q)], force.indices)))
             for force in forces
             if force.resistance is not None
         ]
         self._kept: list[Any] = [*forces, *resisting]  # while C may read them
         world.schedule.compile([*(force.kernel for force in forces), *(kernel for kernel, _, _ in resisting)])
         rows = [
-            (force.kernel.address, force.numbers.ctypes.data, force.whole.ctypes.data) for force in forces
+            (force.kernel.address, force.parameters.ctypes.data, force.indices.ctypes.data)
+            for force in forces
         ]
-        against = [(kernel.address, n.ctypes.data, whole.ctypes.data) for kernel, n, whole in resisting]
+        against = [(kernel.address, n.ctypes.data, indices.ctypes.data) for kernel, n, indices in resisting]
         self.resistances = np.array(against, np.int64).reshape(-1, 3)
         python = [system for system, force in packed if force is None]
         if python:
@@ -239,10 +240,10 @@ class Equations:
     def _caller(self, world: World, systems: Iterable[ForceSystem]) -> Any:
         """Return a C function that lets force systems written in Python act on the world's tables."""
         methods = [getattr(system, type(system).marked()[Stage.FORCE]) for system in systems]
-        slots, bodies = self.slots, world.bodies
+        slots, bodies = self.layout, world.bodies
         n, d, size = 2 * len(slots.moving), slots.moving_count, len(self.q)
 
-        def call(q: Any, v: Any, _span: float, force: Any, numbers: Any, whole: Any) -> None:
+        def call(q: Any, v: Any, _span: float, force: Any, parameters: Any, indices: Any) -> None:
             if self._error is not None:
                 return
             try:

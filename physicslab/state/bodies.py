@@ -39,8 +39,9 @@ class Bodies(System):
         The same, and zero for sleepers: what is simulated goes by these.
     unequal : bool
         Whether two bodies that may meet differ so much in mass that one may be too heavy for the other.
-    tethered : bool array (rows,)
-        What moves by a method of its own beside contacts (:class:`physicslab.stepping.split_forces.Tethers`).
+    sub_integrated : bool array (rows,)
+        What moves by a method of its own beside contacts
+        (:class:`physicslab.stepping.split_forces.SplitForces`).
     """
 
     kernels = (motion.clear, motion.kick, motion.find_not_finite)
@@ -57,7 +58,7 @@ class Bodies(System):
         self.inverse_inertia: NDArray[np.float64] = np.zeros(rows)
         self.awake_inverse_mass: NDArray[np.float64] = np.zeros(rows)
         self.awake_inverse_inertia: NDArray[np.float64] = np.zeros(rows)
-        self.tethered: NDArray[np.bool_] = np.zeros(rows, np.bool_)
+        self.sub_integrated: NDArray[np.bool_] = np.zeros(rows, np.bool_)
 
     def derive(self, world: World) -> None:
         """Work out moments of inertia and inverse masses from the components as they are now.
@@ -67,8 +68,8 @@ class Bodies(System):
         InvalidValue
             If a body is so large and heavy that its moment of inertia is not finite.
         """
-        if len(self.torque) != len(world.roster):
-            self._resize(len(world.roster))
+        if len(self.torque) != len(world.entity_index):
+            self._resize(len(world.entity_index))
             world.schedule.compile((motion.derive_masses,))
         mass, shape, velocity = world.table(Mass), world.table(Shape), world.table(Velocity)
         ratio, infinite = motion.derive_masses(
@@ -79,15 +80,15 @@ class Bodies(System):
         )  # fmt: skip
         if infinite >= 0:
             label, inertia = (
-                world.label(int(world.roster.entities[infinite])),
+                world.label(int(world.entity_index.entities[infinite])),
                 float(mass["inertia"][infinite]),
             )
             allowed = f"{_INERTIA.allowed}, of mass and Shape too"
             raise InvalidValue(f"{label}: Mass", "inertia", inertia, allowed)
-        self.unequal = ratio > impulse.UNEQUAL
-        self.lay_aside(world.sleep.asleep)
+        self.unequal = ratio > impulse.HEAVY_RATIO
+        self.set_inactive(world.sleep.asleep)
 
-    def lay_aside(self, asleep: NDArray[np.bool_]) -> None:
+    def set_inactive(self, asleep: NDArray[np.bool_]) -> None:
         """Let nothing move who is asleep."""
         np.copyto(self.awake_inverse_mass, self.inverse_mass)
         np.copyto(self.awake_inverse_inertia, self.inverse_inertia)
@@ -121,7 +122,7 @@ class Bodies(System):
         velocity = world.table(Velocity)
         motion.kick(
             velocity["linear"], velocity["angular"], self.force, self.torque,
-            self.awake_inverse_mass, self.awake_inverse_inertia, self.tethered,
+            self.awake_inverse_mass, self.awake_inverse_inertia, self.sub_integrated,
             physics.linear_damping, physics.angular_damping, h,
         )  # fmt: skip
 
@@ -132,7 +133,7 @@ class Bodies(System):
         for table, vectors, numbers in ((transform, "position", "angle"), (velocity, "linear", "angular")):
             row = motion.find_not_finite(table[vectors], table[numbers])
             if row >= 0:
-                label = world.label(int(world.roster.entities[row]))
+                label = world.label(int(world.entity_index.entities[row]))
                 raise Diverged(
                     f"{label}: {table.component.__name__} is no longer finite at t = {world.time + h:.9g} s; "
                     f"a smaller dt or more substeps may help"

@@ -18,14 +18,14 @@ from physicslab.kernels.solver import impulse
 from physicslab.kernels.wide import graph_colour, refresh, restore_slots, slots
 from physicslab.kernels.wide.graph_colour import FEW
 from physicslab.kernels.wide.layout import WIDE
-from physicslab.state.wide_contacts import Blocks
+from physicslab.state.wide_contacts import WideContacts
 
 if TYPE_CHECKING:
     from physicslab.world import World
 
 __all__ = ["Contact", "ContactPoint", "Contacts"]
 
-_NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap", "lane")
+_NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap", "slot")
 _KEPT = tuple(name for name in MANIFOLD.names or () if name not in _NO_ROWS)
 _WARM = ("feature", "normal_impulse", "tangent_impulse")
 
@@ -97,34 +97,34 @@ class Contacts:
         together are in order; those that have got their records since stand behind them.
     points : array of POINT (2 capacity,)
         Points 2 p and 2 p + 1 belong to pair p; the first ``manifolds[p]["count"]`` are in use.
-    idle : uint32 array (2 capacity,)
-        Rows of the discs that are near each other and have no record, two by two; the first ``lying`` pairs
-        are in use.
-    reach : float64 array (capacity,)
+    proximity : uint32 array (2 capacity,)
+        Rows of the discs that are near each other and have no record, two by two; the first
+        ``proximity_count`` pairs are in use.
+    activation_distance : float64 array (capacity,)
         How near these must come to get one [m].
     blocks : Blocks
         The settled contacts, eight side by side; what their records say is as old as the last :meth:`sync`.
-    loose : int64 array (capacity,)
-        The pairs with records that are in no block and not laid aside; the first ``loose_count`` are in use.
-    resting : int64 array (capacity,)
+    scalar : int64 array (capacity,)
+        The pairs with records that are in no block and not laid aside; the first ``scalar_count`` are in use.
+    sleeping : int64 array (capacity,)
         The pairs with points that were laid aside because both bodies sleep, or one does and nothing moves
-        the other; the first ``resting_count`` are in use.
-    quiet : bool array (rows,)
+        the other; the first ``sleeping_count`` are in use.
+    inactive : bool array (rows,)
         Whose pairs with each other are laid aside; empty where nobody sleeps.
     unordered : bool
         Whether pairs were set loose since those were last listed in order.
     touching : int64 array (capacity,)
         The loose pairs with points; the first ``active`` are in use. Points may have positive separation:
         they would meet within a substep.
-    recorded, lying, count : int
+    recorded, proximity_count, count : int
         How many near pairs have records, how many lie idle, and how many have points, wherever they lie.
     left : int
         How many pairs the impacts of this substep have left to the solver.
     opened : int64 array (COLOURS,)
         Room in which blocks with free lanes are noted.
-    span : float
+    impulse_dt : float
         The time [s] that the points' impulses stand for; 0 before there were any.
-    finer : int
+    substep_factor : int
         How many times as many substeps as asked for the coming step needs.
     stale : bool
         Whether the pairs must be found anew because bodies came, went or changed.
@@ -138,15 +138,15 @@ class Contacts:
     """How many impacts are kept."""
 
     def __init__(self) -> None:
-        self.recorded = self.lying = self.loose_count = self.resting_count = 0
+        self.recorded = self.proximity_count = self.scalar_count = self.sleeping_count = 0
         self.active = self.left = 0
-        self.blocks = Blocks()
-        self.quiet: NDArray[np.bool_] = np.zeros(0, np.bool_)
+        self.wide = WideContacts()
+        self.inactive: NDArray[np.bool_] = np.zeros(0, np.bool_)
         self.opened = np.zeros(slots.COLOURS, np.int64)
         self._counts = np.zeros(slots.COUNTED, np.int64)
-        self._synced, self._seats = True, False
+        self._synced, self._restoring = True, False
         self.unordered = False
-        self.span, self.finer = 0.0, 1
+        self.impulse_dt, self.substep_factor = 0.0, 1
         self.stale = True
         self.log: NDArray[Any] = np.zeros(self.LOGGED, IMPACT)
         self.logged = 0
@@ -167,72 +167,79 @@ class Contacts:
         self.manifolds: NDArray[Any] = np.zeros(capacity, MANIFOLD)
         self.points: NDArray[Any] = np.zeros(2 * capacity, POINT)
         self.touching: NDArray[np.int64] = np.zeros(capacity, np.int64)
-        self.loose: NDArray[np.int64] = np.zeros(capacity, np.int64)
-        self.idle: NDArray[np.uint32] = np.zeros(2 * capacity, np.uint32)
-        self.reach: NDArray[np.float64] = np.zeros(capacity)
+        self.scalar: NDArray[np.int64] = np.zeros(capacity, np.int64)
+        self.proximity: NDArray[np.uint32] = np.zeros(2 * capacity, np.uint32)
+        self.activation_distance: NDArray[np.float64] = np.zeros(capacity)
         self._table: NDArray[np.int64] = np.zeros(16, np.int64)
-        self.resting: NDArray[np.int64] = np.zeros(capacity, np.int64)
+        self.sleeping: NDArray[np.int64] = np.zeros(capacity, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.
         self._spare_manifolds, self._spare_points = self.manifolds.copy(), self.points.copy()
 
     @property
     def candidate_pairs(self) -> int:
         """How many pairs are near each other."""
-        return self.recorded + self.lying
+        return self.recorded + self.proximity_count
 
     @property
     def count(self) -> int:
         """How many near pairs have points."""
-        return self.active + self.blocks.lanes + self.resting_count
+        return self.active + self.wide.filled + self.sleeping_count
 
     def changed(self) -> None:
         """Note that lanes hold what their records do not say."""
-        self._synced = not self.blocks.lanes
+        self._synced = not self.wide.filled
 
     def sync(self) -> None:
         """Write what lanes hold into the records of their pairs, if that is not there already."""
         if not self._synced:
-            for lanes in self.blocks.kinds:
-                slots.store(lanes.data, lanes.rows, lanes.count, lanes.pair, self.manifolds, self.points)
+            for constraints in self.wide.kinds:
+                slots.store(
+                    constraints.data,
+                    constraints.rows,
+                    constraints.count,
+                    constraints.pair,
+                    self.manifolds,
+                    self.points,
+                )
             self._synced = True
 
     def dissolve(self, rows: int) -> None:
         """Give every contact back to its record, in a world of so many rows."""
-        if self.blocks.lanes:
+        if self.wide.filled:
             self.sync()
-            self.manifolds["lane"] = -1
-            self._list_loose(rows)
-        self.blocks.reset(rows)
+            self.manifolds["slot"] = -1
+            self._list_scalar(rows)
+        self.wide.reset(rows)
 
     def in_order(self, rows: int) -> None:
         """Put the loose pairs in order, where some were set loose since: a file tells no other order."""
         if self.unordered:
-            near_pairs.sort_loose(self.manifolds, self.loose, self.loose_count, rows)
+            near_pairs.sort_scalar(self.manifolds, self.scalar, self.scalar_count, rows)
             self.unordered = False
 
-    def _list_loose(self, rows: int) -> None:
-        self.loose_count, self.resting_count = slots.list_loose(
-            self.manifolds, self.recorded, self.quiet, self.loose, self.resting
+    def _list_scalar(self, rows: int) -> None:
+        self.scalar_count, self.sleeping_count = slots.list_scalar(
+            self.manifolds, self.recorded, self.inactive, self.scalar, self.sleeping
         )
         self.unordered = True
         self.in_order(rows)
 
-    def lay_aside(self, quiet: NDArray[np.bool_], rows: int) -> None:
-        """Look no more at the pairs of which both bodies are ``quiet`` (rows,), and again at all others."""
-        self.quiet = quiet
+    def set_inactive(self, inactive: NDArray[np.bool_], rows: int) -> None:
+        """Leave out the pairs of which both bodies are ``inactive`` (rows,), and take in all others."""
+        self.inactive = inactive
         if not self.stale:  # else that is done when they are listed
-            self._list_loose(rows)
-            loose = self.loose[: self.loose_count]
-            touching = loose[self.manifolds["count"][loose] > 0]
+            self._list_scalar(rows)
+            scalar = self.scalar[: self.scalar_count]
+            touching = scalar[self.manifolds["count"][scalar] > 0]
             self.active = len(touching)
             self.touching[: self.active] = touching
 
     def release(self, asleep: NDArray[np.bool_]) -> None:
         """Give the contacts of sleepers back to their records."""
-        if self.blocks.lanes:
-            self.blocks.lanes -= sum(
-                slots.release(*lanes.layout, self.manifolds, self.points, asleep)
-                for lanes in self.blocks.kinds
+        if self.wide.filled:
+            self.wide.filled -= sum(
+                slots.release(*constraints.layout, self.manifolds, self.points, asleep)
+                for constraints in self.wide.kinds
             )
 
     def rescale(self, pairs: NDArray[np.bool_], before: float, after: float) -> None:
@@ -242,51 +249,53 @@ class Contacts:
             for name in ("normal_impulse", "tangent_impulse"):
                 self.points[name][: len(chosen)][chosen] *= after / before
 
-    def settle(self, world: World, h: float) -> None:
+    def add_constraints(self, world: World, h: float) -> None:
         """Take what has settled into blocks."""
-        blocks, bodies, material, shape = self.blocks, world.bodies, world.table(Material), world.table(Shape)
-        if not blocks.lanes and self.active < FEW:
+        blocks, bodies, material, shape = self.wide, world.bodies, world.table(Material), world.table(Shape)
+        if not blocks.filled and self.active < FEW:
             return
         world.schedule.compile(blocks.kernels)
-        known = blocks.lanes > 0
+        known = blocks.filled > 0
         while True:
             counts = self.counted()
-            came = graph_colour.settle(
-                counts, blocks.discs.seats, blocks.boxes.seats, self.opened,
-                self.manifolds, self.points, self.loose, self.resting, self.touching,
-                self.quiet, world.sleep.asleep,
+            came = graph_colour.add_constraints(
+                counts, blocks.discs.slots, blocks.boxes.slots, self.opened,
+                self.manifolds, self.points, self.scalar, self.sleeping, self.touching,
+                self.inactive, world.sleep.asleep,
                 shape["kind"], shape["radius"], material["restitution"], material["friction"],
                 world.table(Velocity)["linear"], bodies.awake_inverse_mass, bodies.awake_inverse_inertia, h,
             )  # fmt: skip
             self.recount(counts)
             if came != graph_colour.FULL:
                 break
-            for lanes in blocks.kinds:
-                lanes.make_room(lanes.count + self.active // WIDE + slots.COLOURS)
+            for constraints in blocks.kinds:
+                constraints.make_room(constraints.count + self.active // WIDE + slots.COLOURS)
         if came == graph_colour.SPARSE:
-            self.dissolve(len(world.roster))
-        if blocks.lanes and not known:
+            self.dissolve(len(world.entity_index))
+        if blocks.filled and not known:
             blocks.remember(world)
 
     def counted(self) -> NDArray[np.int64]:
         """Return the counts that kernels change, in the order of :mod:`physicslab.kernels.wide.slots`."""
-        discs, boxes = self.blocks.kinds
+        discs, boxes = self.wide.kinds
         self._counts[:] = (
-            self.lying, self.recorded, self.loose_count, self.resting_count, self.active, self.left,
-            self.blocks.lanes, discs.count, boxes.count, self.unordered,
+            self.proximity_count, self.recorded, self.scalar_count, self.sleeping_count, self.active,
+            self.left,
+            self.wide.filled, discs.count, boxes.count, self.unordered,
         )  # fmt: skip
         return self._counts
 
     def recount(self, counts: NDArray[np.int64]) -> None:
         """Take over the counts that a kernel has changed."""
-        discs, boxes = self.blocks.kinds
+        discs, boxes = self.wide.kinds
         (
-            self.lying, self.recorded, self.loose_count, self.resting_count, self.active, self.left,
-            self.blocks.lanes, discs.count, boxes.count, unordered,
+            self.proximity_count, self.recorded, self.scalar_count, self.sleeping_count, self.active,
+            self.left,
+            self.wide.filled, discs.count, boxes.count, unordered,
         ) = counts.tolist()  # fmt: skip
         self.unordered = bool(unordered)
 
-    def part(
+    def partition(
         self, world: World, couples: NDArray[np.uint32], found: int, pairs: NDArray[np.int64], walls: int
     ) -> None:
         """Take a new list of near pairs: ``found`` of bodies, in no order, and ``walls`` of the bounds.
@@ -294,25 +303,26 @@ class Contacts:
         Pairs of discs of which nothing is remembered lie idle until they come near.
         """
         self._make_table()
-        if len(self.reach) < found:
-            self.idle, self.reach = np.zeros(4 * found, np.uint32), np.zeros(2 * found)
+        if len(self.activation_distance) < found:
+            self.proximity, self.activation_distance = np.zeros(4 * found, np.uint32), np.zeros(2 * found)
         shape = world.table(Shape)
-        count, self.lying = near_pairs.part(
+        count, self.proximity_count = near_pairs.partition(
             couples, found, pairs, walls, shape["kind"], shape["radius"], world.bodies.inverse_mass,
-            world.roster.entities, self.manifolds, self.recorded, self.stale, self._table,
-            self.idle, self.reach,
+            world.entity_index.entities, self.manifolds, self.recorded, self.stale, self._table,
+            self.proximity, self.activation_distance,
         )  # fmt: skip
         self._relist(world, pairs, count, noted=True)
 
-    def promote(self, world: World, h: float, fall: float) -> None:
+    def activate(self, world: World, h: float, speculative_margin: float) -> None:
         """Give records to the idle pairs that come near within a substep of ``h`` seconds.
 
-        ``fall`` is how far [m] the forces may bring two bodies together within it.
+        ``speculative_margin`` is how far [m] the forces may bring two bodies together within it.
         """
-        self.lying, self.recorded, self.loose_count = near_pairs.promote(
-            self.idle, self.reach, self.lying, self.manifolds, self.points, self.recorded,
-            self.loose, self.loose_count, world.roster.entities,
-            world.table(Transform)["position"], world.table(Velocity)["linear"], h, fall,
+        self.proximity_count, self.recorded, self.scalar_count = near_pairs.activate(
+            self.proximity, self.activation_distance, self.proximity_count, self.manifolds, self.points,
+            self.recorded,
+            self.scalar, self.scalar_count, world.entity_index.entities,
+            world.table(Transform)["position"], world.table(Velocity)["linear"], h, speculative_margin,
         )  # fmt: skip
 
     def _make_table(self) -> None:
@@ -326,17 +336,17 @@ class Contacts:
         Pairs known before stay as they are. What touches is still to be found out.
         """
         self._make_table()
-        self.lying = 0
+        self.proximity_count = 0
         self._relist(world, pairs, count, noted=False)
 
     def _relist(self, world: World, pairs: NDArray[np.int64], count: int, *, noted: bool) -> None:
-        entities = world.roster.entities
+        entities = world.entity_index.entities
         if self.stale:
             self.sync()
             # Rows may be others now: what had a lane takes its seat again.
-            self._seats |= self.blocks.lanes > 0
-            self.blocks.reset(len(entities))
-        most = count + self.lying
+            self._restoring |= self.wide.filled > 0
+            self.wide.reset(len(entities))
+        most = count + self.proximity_count
         if len(self._spare_manifolds) < most:
             room = most + most // 4  # a record takes 400 bytes, and there are two sets of them
             self._spare_manifolds, self._spare_points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
@@ -348,67 +358,69 @@ class Contacts:
         self.points, self._spare_points = self._spare_points, self.points
         self.recorded, self.active, self.stale = count, 0, False
         if len(self.touching) < most:
-            self.touching, self.loose, self.resting = np.zeros((3, most + most // 4), np.int64)
-        if self._seats:
-            self._seat_again(world)
-        elif self.blocks.lanes:
-            self.blocks.lanes = sum(
-                slots.follow_pairs(*lanes.layout, self.manifolds, count) for lanes in self.blocks.kinds
+            self.touching, self.scalar, self.sleeping = np.zeros((3, most + most // 4), np.int64)
+        if self._restoring:
+            self._restore_slots(world)
+        elif self.wide.filled:
+            self.wide.filled = sum(
+                slots.follow_pairs(*constraints.layout, self.manifolds, count)
+                for constraints in self.wide.kinds
             )
-        self._list_loose(len(entities))
+        self._list_scalar(len(entities))
 
     def refill(self, world: World) -> None:
         """Let lanes hold masses, sizes and materials as they are now, if somebody has changed one of them."""
-        if self.blocks.lanes and self.blocks.outdated(world):
-            rows = len(world.roster)
+        if self.wide.filled and self.wide.outdated(world):
+            rows = len(world.entity_index)
             self.sync()
-            self.blocks.reset(rows)
-            self._seat_again(world)
-            self._list_loose(rows)
+            self.wide.reset(rows)
+            self._restore_slots(world)
+            self._list_scalar(rows)
 
-    def _seat_again(self, world: World) -> None:
+    def _restore_slots(self, world: World) -> None:
         """Put the contacts whose records name a lane, as those of a file do, back into that."""
-        self._seats, material = False, world.table(Material)
+        self._restoring, material = False, world.table(Material)
         near, asleep = self.manifolds[: self.recorded], world.sleep.asleep
-        near["lane"][asleep[near["a"]] | asleep[near["b"]]] = -1  # sleepers have none
-        world.schedule.compile(self.blocks.kernels)
-        for lanes in self.blocks.kinds:
-            lanes.count, seated = restore_slots.seat_again(
-                lanes.kind, lanes.data, lanes.a, lanes.b, lanes.pair, lanes.colour, lanes.used,
+        near["slot"][asleep[near["a"]] | asleep[near["b"]]] = -1  # sleepers have none
+        world.schedule.compile(self.wide.kernels)
+        for constraints in self.wide.kinds:
+            constraints.count, restored = restore_slots.restore_slots(
+                constraints.kind, constraints.data, constraints.a, constraints.b, constraints.pair,
+                constraints.colour, constraints.used,
                 self.manifolds, self.points, self.recorded,
                 world.table(Shape)["kind"], world.table(Shape)["radius"],
                 material["restitution"], material["friction"],
                 world.bodies.inverse_mass, world.bodies.inverse_inertia,
             )  # fmt: skip
-            lanes.sort()
-            self.blocks.lanes += seated
-        self.blocks.remember(world)
+            constraints.sort()
+            self.wide.filled += restored
+        self.wide.remember(world)
 
     def clear(self) -> None:
         """Forget every pair."""
-        self.blocks.reset(1)
-        self.recorded = self.lying = self.loose_count = self.resting_count = self.active = 0
+        self.wide.reset(1)
+        self.recorded = self.proximity_count = self.scalar_count = self.sleeping_count = self.active = 0
         self.stale = self._synced = True
-        self.finer = 1
+        self.substep_factor = 1
 
     @property
     def max_penetration(self) -> float:
         """The deepest overlap now [m]."""
         compile_kernels((impulse.deepest,))
-        pairs = ((self.touching, self.active), (self.resting, self.resting_count))
+        pairs = ((self.touching, self.active), (self.sleeping, self.sleeping_count))
         depth = max(float(impulse.deepest(self.manifolds, self.points, *listed)) for listed in pairs)
-        lanes = [refresh.deepest_lane(k.kind, k.data, k.count) for k in self.blocks.kinds if k.count]
-        return max(depth, *lanes) if lanes else depth
+        constraints = [refresh.deepest_wide(k.kind, k.data, k.count) for k in self.wide.kinds if k.count]
+        return max(depth, *constraints) if constraints else depth
 
     def listed(self, world: World) -> tuple[Contact, ...]:
         """Return every contact and every impact of the last step, in the order of entities."""
-        return tuple(self._describe(world, p) for p in self._told())
+        return tuple(self._describe(world, p) for p in self._reported())
 
-    def _told(self) -> list[int]:
+    def _reported(self) -> list[int]:
         self.sync()
         near = self.manifolds[: self.recorded]
-        told = (near["count"] > 0) | (near["struck"] > 0)
-        return [p for p in self._ordered() if told[p]]
+        reported = (near["count"] > 0) | (near["impact_count"] > 0)
+        return [p for p in self._ordered() if reported[p]]
 
     def _ordered(self) -> list[int]:
         """Return the numbers of all records in the order of entities."""
@@ -418,7 +430,7 @@ class Contacts:
 
     def between(self, world: World, a: int, b: int) -> Contact | None:
         """Return the contact of two entities, seen as A and B in the order given, or ``None``."""
-        for p in self._told():
+        for p in self._reported():
             manifold = self.manifolds[p]
             pair = int(manifold["entity_a"]), int(manifold["entity_b"])
             if pair == (a, b):
@@ -457,11 +469,15 @@ class Contacts:
         """Return what :meth:`remembered` needs, in copies that no step changes."""
         self.sync()
         held = Contacts.__new__(Contacts)
-        held.recorded, held.span, held.finer = self.recorded, self.span, self.finer
+        held.recorded, held.impulse_dt, held.substep_factor = (
+            self.recorded,
+            self.impulse_dt,
+            self.substep_factor,
+        )
         held.manifolds = self.manifolds[: self.recorded].copy()
         held.points = self.points[: 2 * self.recorded].copy()
-        held.blocks = Blocks()
-        for mine, copy in zip(self.blocks.kinds, held.blocks.kinds, strict=True):
+        held.wide = WideContacts()
+        for mine, copy in zip(self.wide.kinds, held.wide.kinds, strict=True):
             copy.colour = mine.colour.copy()
         return held
 
@@ -476,18 +492,18 @@ class Contacts:
         for p in self._ordered():
             manifold = self.manifolds[p]
             pair = [int(manifold["entity_a"]), int(manifold["entity_b"]), int(manifold["wall"])]
-            lane = int(manifold["lane"])
-            seat = [lane, int(self.blocks.kinds[lane % 2].colour[lane // 2 // WIDE])] if lane >= 0 else []
+            slot = int(manifold["slot"])
+            fill_slot = [slot, int(self.wide.kinds[slot % 2].colour[slot // 2 // WIDE])] if slot >= 0 else []
             if manifold["count"] <= 0:
                 yield None
             elif manifold["found"] == 2:
                 kept = [manifold[name].item() for name in _KEPT[1:]]
                 both = [value for j in (2 * p, 2 * p + 1) for value in self.points[j].item()]
-                yield [*pair, *kept, *both, *seat]
+                yield [*pair, *kept, *both, *fill_slot]
             else:
                 warm = [self.points[j][name].item() for j in (2 * p, 2 * p + 1) for name in _WARM]
                 ahead = int(self.points[2 * p]["ahead"] + 2 * self.points[2 * p + 1]["ahead"])
-                rest = seat or ([ahead] if ahead else [])
+                rest = fill_slot or ([ahead] if ahead else [])
                 yield [*pair, *warm, *rest] if rest or any(warm[1:3] + warm[4:]) else None
 
     def export(self) -> list[list[float]]:
@@ -512,7 +528,7 @@ class Contacts:
             if len(row) == light + 1 and row[-1] not in (1, 2, 3):
                 raise ValueError(f"points that strike next: {row[-1]!r}: must be 1, 2 or 3")
             manifold = self.manifolds[p]
-            manifold["lane"] = self._take_seat(*row[-2:]) if len(row) in (light + 2, heavy + 2) else -1
+            manifold["slot"] = self._take_slot(*row[-2:]) if len(row) in (light + 2, heavy + 2) else -1
             manifold["entity_a"], manifold["entity_b"], manifold["wall"] = row[:3]
             if len(row) >= heavy:
                 for name, value in zip(_KEPT[1:], row[3:], strict=False):
@@ -527,18 +543,18 @@ class Contacts:
                     self.points[j][name] = next(values)
             if len(row) == light + 1:
                 self.points["ahead"][2 * p : 2 * p + 2] = int(row[-1]) & 1, int(row[-1]) >> 1
-        self.recorded, self.lying, self.active, self.stale = len(ordered), 0, 0, True
+        self.recorded, self.proximity_count, self.active, self.stale = len(ordered), 0, 0, True
 
-    def _take_seat(self, lane: float, colour: float) -> int:
+    def _take_slot(self, slot: float, colour: float) -> int:
         """Note that a lane is that of a contact that will be found again, in a block of a colour."""
-        if not (lane == int(lane) and lane >= 0):
-            raise ValueError(f"a lane of {lane!r}: must be a whole number >= 0")
+        if not (slot == int(slot) and slot >= 0):
+            raise ValueError(f"a lane of {slot!r}: must be a whole number >= 0")
         if not (colour == int(colour) and 0 <= colour < slots.COLOURS):
             raise ValueError(f"a colour of {colour!r}: must be a whole number from 0 to 63")
-        lanes, block = self.blocks.kinds[int(lane) % 2], int(lane) // 2 // WIDE
+        constraints, block = self.wide.kinds[int(slot) % 2], int(slot) // 2 // WIDE
         if block > 2 * len(self.manifolds) + 1024:  # no world has so many: memory is not to hang on a file
             return -1
-        lanes.make_room(block + 1)
-        lanes.colour[block] = int(colour)
-        self._seats = True
-        return int(lane)
+        constraints.make_room(block + 1)
+        constraints.colour[block] = int(colour)
+        self._restoring = True
+        return int(slot)

@@ -41,21 +41,21 @@ class Sleep:
         Forces [N] and torque [N m] on each sleeper; not a number where they are not known yet.
     on : bool
         Whether bodies of this world may sleep.
-    unseen : bool
+    unverified : bool
         Whether sleepers came from a file, so that it is still to be seen what holds them.
-    accompanied : bool
+    has_observers : bool
         Whether somebody acts within a substep beside the contact step.
-    meddled : bool
+    has_external_writers : bool
         Whether somebody acts within a step who is not of the engine, and may change anything.
     """
 
     kernels = (
-        islands.join_marked, islands.list_resting, edits.note_figures, edits.find_edited,
+        islands.join_marked, islands.list_sleeping, edits.note_figures, edits.find_edited,
         edits.find_overlapped,
     )  # fmt: skip
 
     def __init__(self) -> None:
-        self.on = self.unseen = self.accompanied = self.meddled = False
+        self.on = self.unverified = self.has_observers = self.has_external_writers = False
         self.count = 0
         self.asleep: _Marks = np.zeros(1, np.bool_)
         self.rest, self.slowest = np.zeros(1), np.zeros(1)
@@ -69,9 +69,9 @@ class Sleep:
 
     def follow(self, world: World) -> None:
         """Let every entity keep what it has where rows are numbered anew."""
-        if world.roster.entities is self._followed:
+        if world.entity_index.entities is self._followed:
             return
-        self._followed = world.roster.entities
+        self._followed = world.entity_index.entities
         entities, before = self._followed.copy(), self._entities  # the roster blanks rows where they stand
         row = np.full(max(int(entities.max()), int(before.max())) + 1, -1)
         row[before] = np.arange(len(before))
@@ -87,16 +87,18 @@ class Sleep:
         self.count = int(np.count_nonzero(self.asleep))
         self._gone = np.union1d(self._gone, np.setdiff1d(before, entities)) if self.count else before[:0]
         world.contacts.stale = True
-        self._lay_aside_contacts(world)
+        self._set_contacts_inactive(world)
 
     def look_around(self, world: World) -> None:
         """Note who acts on the world beside the contact step."""
-        self.accompanied = self.meddled = False
+        self.has_observers = self.has_external_writers = False
         for system in world.schedule.running:
             if type(system).__module__ != COMPILED.get(system.name):
                 stages = type(system).marked().keys() - OF_FRAMES
-                self.accompanied |= bool(stages - {Stage.PREPARE, Stage.FINISH})
-                self.meddled |= bool(stages) and not type(system).__module__.startswith("physicslab.systems.")
+                self.has_observers |= bool(stages - {Stage.PREPARE, Stage.FINISH})
+                self.has_external_writers |= bool(stages) and not type(system).__module__.startswith(
+                    "physicslab.systems."
+                )
 
     def check(self, world: World, *, within: bool = False) -> None:
         """Wake whom an edit concerns: whose own numbers have changed, or those of what touches them.
@@ -106,7 +108,7 @@ class Sleep:
         if not self.count:
             self._gone = self._gone[:0]
             return
-        marked = self.asleep & world.bodies.tethered
+        marked = self.asleep & world.bodies.sub_integrated
         if self._laws != (world.physics, world.simulation):
             marked |= self.asleep
         figures, edited = self._figures(world), np.zeros(len(self.asleep), np.bool_)
@@ -144,11 +146,11 @@ class Sleep:
         self.rest[woken] = self.slowest[woken] = 0.0
         self.count = int(np.count_nonzero(self.asleep))
         touches = (count > 0) & (a >= 0) & (b >= 0) & (woken[a] | woken[b])
-        world.contacts.rescale(touches, self._span(world), world.contacts.span)
-        self._lay_aside(world)
+        world.contacts.rescale(touches, self._span(world), world.contacts.impulse_dt)
+        self._set_inactive(world)
         return woken
 
-    def lull(self, world: World, falling: _Marks) -> None:
+    def fall_asleep(self, world: World, falling: _Marks) -> None:
         """Let bodies fall asleep."""
         velocity = world.table(Velocity)
         velocity["linear"][falling] = velocity["angular"][falling] = 0.0
@@ -161,8 +163,8 @@ class Sleep:
         contacts = world.contacts
         contacts.release(self.asleep)
         self._begin(world)
-        contacts.rescale((count > 0) & (falling[a] | falling[b]), contacts.span, self._span(world))
-        self._lay_aside(world)
+        contacts.rescale((count > 0) & (falling[a] | falling[b]), contacts.impulse_dt, self._span(world))
+        self._set_inactive(world)
 
     def _begin(self, world: World) -> None:
         """Note how everything is from which an edit will be told."""
@@ -180,15 +182,15 @@ class Sleep:
         """Wake everybody, and begin all rests anew."""
         self.asleep[:] = False
         self.rest[:] = self.slowest[:] = 0.0
-        self.count, self.unseen = 0, False
-        self._lay_aside(world)
+        self.count, self.unverified = 0, False
+        self._set_inactive(world)
 
-    def everything(self, world: World) -> bool:
+    def all_asleep(self, world: World) -> bool:
         """Whether a step would change nothing but the clock: all that can be moved sleeps, and nothing moves.
 
         Nobody must act within the step but the engine's own contact step.
         """
-        if not self.count or self.unseen or self.accompanied or world.contacts.stale:
+        if not self.count or self.unverified or self.has_observers or world.contacts.stale:
             return False
         if self.count != np.count_nonzero(world.bodies.inverse_mass):
             return False
@@ -208,16 +210,16 @@ class Sleep:
         )  # fmt: skip
         return figures
 
-    def _lay_aside(self, world: World) -> None:
+    def _set_inactive(self, world: World) -> None:
         """Tell bodies and contacts who sleeps now."""
-        world.bodies.lay_aside(self.asleep)
-        self._lay_aside_contacts(world)
+        world.bodies.set_inactive(self.asleep)
+        self._set_contacts_inactive(world)
 
-    def _lay_aside_contacts(self, world: World) -> None:
+    def _set_contacts_inactive(self, world: World) -> None:
         if self.count:
-            world.contacts.lay_aside(self.asleep | ~world.table(Velocity).present, len(self.asleep))
+            world.contacts.set_inactive(self.asleep | ~world.table(Velocity).present, len(self.asleep))
         else:
-            world.contacts.lay_aside(np.zeros(0, np.bool_), len(self.asleep))
+            world.contacts.set_inactive(np.zeros(0, np.bool_), len(self.asleep))
 
     def _span(self, world: World) -> float:
         """Return the time [s] for which impulses of sleepers stand."""
@@ -243,21 +245,21 @@ class Sleep:
         if not (self.on and rows):
             return
         for entity, *rested in rows:
-            row = world.roster.row_of[entity]
+            row = world.entity_index.row_of[entity]
             if rested:
                 self.rest[row], self.slowest[row] = rested
             else:
                 self.asleep[row] = True
         self.count = int(np.count_nonzero(self.asleep))
-        self.unseen = self.count > 0
+        self.unverified = self.count > 0
         self.forces[:] = np.nan
         self._begin(world)
-        self._lay_aside(world)
+        self._set_inactive(world)
 
 
 def _touching(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Return of every near pair the rows as they are now, -1 for what is gone, and how many points it has."""
     near = world.contacts.manifolds[: world.contacts.recorded]
-    roster = world.roster
-    a, b = (np.ascontiguousarray(roster.rows_of(near[name])) for name in ("entity_a", "entity_b"))
+    entity_index = world.entity_index
+    a, b = (np.ascontiguousarray(entity_index.rows_of(near[name])) for name in ("entity_a", "entity_b"))
     return a, b, np.ascontiguousarray(near["count"])

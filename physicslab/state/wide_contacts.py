@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 from physicslab.components import Material, Shape
 from physicslab.kernels.wide import graph_colour, refresh, restore_slots, slots
 from physicslab.kernels.wide.layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE
-from physicslab.kernels.wide.slots import Seats
+from physicslab.kernels.wide.slots import Slots
 
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["Blocks", "Lanes"]
+__all__ = ["WideConstraints", "WideContacts"]
 
 type _Numbers = NDArray[np.float64]
 type _Rows = NDArray[np.int64]
 
 
-class Lanes:
+class WideConstraints:
     """The blocks of one kind of contact.
 
     Attributes
@@ -60,17 +60,17 @@ class Lanes:
             data, (colour, order) = _in_lines(room * self.rows), np.zeros((2, room), np.int64)
             data[: len(self.data)], colour[: len(self.colour)] = self.data, self.colour
             order[: len(self.order)] = self.order
-            lanes = np.zeros((3, room * WIDE), np.int64)
-            lanes[:, : len(self.pair)] = self.a, self.b, self.pair
+            constraints = np.zeros((3, room * WIDE), np.int64)
+            constraints[:, : len(self.pair)] = self.a, self.b, self.pair
             self.data, self.colour, self.order = data, colour, order
-            self.a, self.b, self.pair = (np.ascontiguousarray(lane) for lane in lanes)
+            self.a, self.b, self.pair = (np.ascontiguousarray(slot) for slot in constraints)
 
     def sort(self) -> None:
         """Put the blocks in the order in which they are solved."""
         graph_colour.sort_blocks(self.count, self.colour, self.order)
 
     @property
-    def seats(self) -> Seats:
+    def slots(self) -> Slots:
         """What kernels want to know that count the blocks themselves."""
         return self.data, self.a, self.b, self.pair, self.colour, self.used, self.order
 
@@ -85,7 +85,7 @@ class Lanes:
         return self.data, self.count, self.order, self.a, self.b
 
 
-class Blocks:
+class WideContacts:
     """The settled contacts of a world, and what they were made of.
 
     A contact is settled when its bodies move little for their size, it is not struck, and overlaps little.
@@ -95,32 +95,32 @@ class Blocks:
     ----------
     discs, boxes : Lanes
         The blocks.
-    lanes : int
+    constraints : int
         How many contacts have one.
     """
 
     kernels = (
-        graph_colour.settle, restore_slots.seat_again, graph_colour.sort_blocks,
+        graph_colour.add_constraints, restore_slots.restore_slots, graph_colour.sort_blocks,
         restore_slots.remember, restore_slots.outdated,
-        slots.store, slots.list_loose, slots.follow_pairs, slots.wake,
-        slots.release, refresh.refresh, refresh.deepest_lane,
+        slots.store, slots.list_scalar, slots.follow_pairs, slots.wake,
+        slots.release, refresh.refresh, refresh.deepest_wide,
     )  # fmt: skip
 
     def __init__(self) -> None:
-        self.discs, self.boxes = Lanes(DISC), Lanes(BOX)
-        self.lanes = 0
+        self.discs, self.boxes = WideConstraints(DISC), WideConstraints(BOX)
+        self.filled = 0
         self._made_of: NDArray[np.float64] = np.zeros((0, 7))
 
     @property
-    def kinds(self) -> tuple[Lanes, Lanes]:
+    def kinds(self) -> tuple[WideConstraints, WideConstraints]:
         """Both."""
         return self.discs, self.boxes
 
     def reset(self, rows: int) -> None:
         """Forget every lane, in a world of so many rows."""
-        for lanes in self.kinds:
-            lanes.reset(rows)
-        self.lanes = 0
+        for constraints in self.kinds:
+            constraints.reset(rows)
+        self.filled = 0
 
     def remember(self, world: World) -> None:
         """Keep the masses, sizes and materials that lanes hold as well."""

@@ -16,7 +16,7 @@ from physicslab.systems.schedule import Stage
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["Flights"]
+__all__ = ["EventDriven"]
 
 type _State = list[NDArray[np.float64]]
 """Copies of the columns below."""
@@ -31,7 +31,7 @@ _MOST_PARTS = 1000
 """How often flights may be broken off within a step before all bodies are left to the contact step."""
 
 
-class Flights:
+class EventDriven:
     """Flights and impacts of one world, until its structure changes.
 
     A body flies in closed form from impact to impact. One that comes to rest on another is handed over to the
@@ -46,17 +46,17 @@ class Flights:
         What it calls.
     """
 
-    kernels = (events.fly,)
+    kernels = (events.run_events,)
 
     def __init__(self, world: World) -> None:
-        rows = len(world.roster)
+        rows = len(world.entity_index)
         self._pairs = pairs_that_may_meet(world)
         self._listed = False
         self._urgent = -1
-        self._flights = np.zeros((rows, flight.FIELDS))
+        self._paths = np.zeros((rows, flight.FIELDS))
         moving = world.table(Velocity).present & world.table(Transform).present
         free = moving & (world.bodies.inverse_mass > 0.0)
-        self._unpressed = np.where(free, events.FLYING, np.where(moving, events.CARRIED, events.FIXED))
+        self._unpressed = np.where(free, events.BALLISTIC, np.where(moving, events.KINEMATIC, events.FIXED))
         self._mode = self._unpressed.copy()
         self._face = np.zeros(len(self._pairs), np.int64)
         self._due = np.zeros((len(self._pairs), 5))
@@ -84,8 +84,8 @@ class Flights:
         while done < steps:
             self._begin(world)
             gone = 0.0
-            if not (self._mode == events.RESTING).any():
-                gone, why = self._fly(world, dt * (steps - done), dt, done * dt)
+            if not (self._mode == events.IN_CONTACT).any():
+                gone, why = self._run_events(world, dt * (steps - done), dt, done * dt)
                 if why == events.DONE:
                     return
                 whole = min(int(gone / dt), steps - done - 1)
@@ -103,15 +103,17 @@ class Flights:
             self._list_touching(world)
             self._listed = True
         near = contacts.manifolds[: contacts.recorded]
-        if near["struck"].any():
-            near["struck"] = 0
+        if near["impact_count"].any():
+            near["impact_count"] = 0
             points = contacts.points[: 2 * contacts.recorded]
             for name in _FELT:
                 points[name] = 0.0
             self._struck_at[:] = np.nan
         self._mode[:] = self._unpressed
         if contacts.count:
-            self._mode[self._pressed(world) & (self._unpressed == events.FLYING)] = events.RESTING
+            self._mode[self._held_by_contacts(world) & (self._unpressed == events.BALLISTIC)] = (
+                events.IN_CONTACT
+            )
 
     def _point_to_impacts(self, world: World) -> None:
         """Let the arms of what was struck in flight lead from where B is now to where the impact was."""
@@ -129,7 +131,7 @@ class Flights:
         contacts.active = len(touching)
         contacts.touching[: len(touching)] = touching
 
-    def _pressed(self, world: World) -> NDArray[np.bool_]:
+    def _held_by_contacts(self, world: World) -> NDArray[np.bool_]:
         """Return which rows the contact step has left with a contact that holds them."""
         contacts = world.contacts
         near = contacts.manifolds[: contacts.recorded]
@@ -150,48 +152,52 @@ class Flights:
         while left > 0.0:
             parts += 1
             if parts > _MOST_PARTS:
-                self._mode[self._mode == events.FLYING] = events.RESTING
-            if (self._mode == events.RESTING).any():
+                self._mode[self._mode == events.BALLISTIC] = events.IN_CONTACT
+            if (self._mode == events.IN_CONTACT).any():
                 elapsed = self._both(world, left, dt, offset + (span - left))
             else:
-                elapsed, why = self._fly(world, left, dt, offset + (span - left))
-                if why == events.CROWDED:
-                    self._mode[self._mode == events.FLYING] = events.RESTING
+                elapsed, why = self._run_events(world, left, dt, offset + (span - left))
+                if why == events.TOO_MANY_IMPACTS:
+                    self._mode[self._mode == events.BALLISTIC] = events.IN_CONTACT
             left = left - elapsed if elapsed < left else 0.0
 
     def _both(self, world: World, span: float, dt: float, offset: float) -> float:
         """Let some bodies rest and the others fly until the flights break off; return the time gone by."""
-        resting = self._mode == events.RESTING
+        in_contact = self._mode == events.IN_CONTACT
         pairs = np.flatnonzero(self._left_to_contacts())
         before, kept, collisions = _state(world), _contacts(world, pairs), world.collisions
         after = self._rest(world, pairs, span, dt)
         elapsed = span
-        if (self._mode == events.FLYING).any():
+        if (self._mode == events.BALLISTIC).any():
             # To those that fly, what rests moves as it will: from where, how fast and to where is known.
             way = after[0] - before[0] - span * before[2]
-            self._flights[:, _PULL] = self._gravity
-            self._flights[resting, _PULL] = 2.0 * way[resting] / (span * span) if span > _SHORT * dt else 0.0
-            struck = world.collisions - collisions
+            self._paths[:, _PULL] = self._gravity
+            self._paths[in_contact, _PULL] = (
+                2.0 * way[in_contact] / (span * span) if span > _SHORT * dt else 0.0
+            )
+            impact_count = world.collisions - collisions
             _restore(world, before)
-            elapsed, _ = self._fly(world, span, dt, offset)
-            flown = _state(world)
+            elapsed, _ = self._run_events(world, span, dt, offset)
+            advanced = _state(world)
             if elapsed < span:
-                world.collisions -= struck
+                world.collisions -= impact_count
                 _restore(world, before)
                 _restore_contacts(world, pairs, kept)
                 after = self._rest(world, pairs, elapsed, dt)
-            for whole, part in zip(flown, after, strict=True):
-                whole[resting] = part[resting]
-            _restore(world, flown)
+            for whole, part in zip(advanced, after, strict=True):
+                whole[in_contact] = part[in_contact]
+            _restore(world, advanced)
         if elapsed > _SHORT * dt:
-            self._mode[resting & (self._mode == events.RESTING) & ~self._pressed(world)] = events.FLYING
+            self._mode[in_contact & (self._mode == events.IN_CONTACT) & ~self._held_by_contacts(world)] = (
+                events.BALLISTIC
+            )
         return elapsed
 
     def _left_to_contacts(self) -> NDArray[np.bool_]:
         """Return of which pairs the contact step takes care: one rests, and the other does not fly."""
         one, other = self._mode[self._pairs[:, 0]], self._mode[self._pairs[:, 1]]
-        resting = (one == events.RESTING) | (other == events.RESTING)
-        left: NDArray[np.bool_] = resting & (one != events.FLYING) & (other != events.FLYING)
+        in_contact = (one == events.IN_CONTACT) | (other == events.IN_CONTACT)
+        left: NDArray[np.bool_] = in_contact & (one != events.BALLISTIC) & (other != events.BALLISTIC)
         return left
 
     def _rest(self, world: World, pairs: NDArray[np.int64], span: float, dt: float) -> _State:
@@ -204,7 +210,7 @@ class Flights:
         others = np.ones(len(near), np.bool_)
         others[pairs] = False
         near["count"][others] = -1  # the contact step passes over them
-        struck, felt = near["struck"].copy(), [points[name].copy() for name in _FELT]
+        impact_count, felt = near["impact_count"].copy(), [points[name].copy() for name in _FELT]
         substeps, run = world.simulation.substeps, world.schedule.run
         for _ in range(substeps):
             for stage, share in world.method.stages.substep:
@@ -212,27 +218,29 @@ class Flights:
                     run(stage, world, share * span / substeps)
         near["count"][others] = 0
         # The step's first look at contacts has begun a new record; what they felt in flight belongs to it.
-        new = struck > near["struck"]
-        near["struck"][new] += struck[new]
+        new = impact_count > near["impact_count"]
+        near["impact_count"][new] += impact_count[new]
         both = np.repeat(new, 2)
         for name, before in zip(_FELT, felt, strict=True):
             joined = np.maximum if name == "approach_speed" else np.add
             points[name][both] = joined(points[name][both], before[both])
         return _state(world)
 
-    def _fly(self, world: World, span: float, dt: float, offset: float) -> tuple[float, int]:
+    def _run_events(self, world: World, span: float, dt: float, offset: float) -> tuple[float, int]:
         """Let bodies fly for ``span`` s, or until one comes to rest or is woken; return how long, and why."""
         began = time.perf_counter_ns()
         contacts, bodies, physics = world.contacts, world.bodies, world.physics
         transform, velocity = world.table(Transform), world.table(Velocity)
         shape, material = world.table(Shape), world.table(Material)
-        flying = self._mode == events.FLYING
-        self._flights[:, _PULL] = np.where(
-            (self._mode == events.RESTING)[:, None], self._flights[:, _PULL], flying[:, None] * self._gravity
+        ballistic = self._mode == events.BALLISTIC
+        self._paths[:, _PULL] = np.where(
+            (self._mode == events.IN_CONTACT)[:, None],
+            self._paths[:, _PULL],
+            ballistic[:, None] * self._gravity,
         )
-        elapsed, impacts, why, pair = events.fly(
+        elapsed, impacts, why, pair = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,
-            self._flights, self._mode, self._face, self._due, self._struck_at,
+            self._paths, self._mode, self._face, self._due, self._struck_at,
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
             shape["kind"], shape["radius"], shape["width"], shape["height"],
             material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,

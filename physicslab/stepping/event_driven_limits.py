@@ -45,7 +45,7 @@ def why_not_exact(world: World) -> str | None:
         return "something moves that is nowhere"
     rows = turning_boxes(world)
     if len(rows):
-        return f"{world.label(int(world.roster.entities[rows[0]]))} is a box that may turn"
+        return f"{world.label(int(world.entity_index.entities[rows[0]]))} is a box that may turn"
     if _count_pairs(world) > MOST_PAIRS:
         return f"more than {MOST_PAIRS} pairs may meet"
     return None
@@ -132,8 +132,8 @@ def _why_at_rest(world: World, moving: NDArray[np.int64], pairs: NDArray[np.int6
     free = world.bodies.inverse_mass > 0.0
     if (lies & free[a] & free[b]).any():
         return "bodies rest on each other"
-    lying = np.unique(np.concatenate((a[lies & free[a]], b[lies & free[b]])))
-    if len(moving) and len(lying) == int(free[moving].sum()):
+    proximity_count = np.unique(np.concatenate((a[lies & free[a]], b[lies & free[b]])))
+    if len(moving) and len(proximity_count) == int(free[moving].sum()):
         return "everything rests"
     return None
 

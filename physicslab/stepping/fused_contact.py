@@ -14,14 +14,14 @@ from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.kernels.solver import contact_steps
 from physicslab.kernels.solver.contact_steps import (
     BEGIN,
-    CROWDED,
+    BLOCKS_FULL,
     DIVERGED,
-    DROWSY,
     FIND,
-    STIRRED,
-    STRIKE,
+    IMPACTS,
+    PAIRS_STALE,
+    SLEEP_PENDING,
     SYSTEMS,
-    UNLISTED,
+    WAKE_PENDING,
 )
 from physicslab.systems.schedule import Stage
 
@@ -61,7 +61,7 @@ def why_not_compiled(world: World) -> str | None:
             return f"{name} is not among the systems"
     if world.method.collisions != "step":
         return "collisions are not found within steps"
-    if world.method.stages is not LEAPFROG or world.tethers is not None:
+    if world.method.stages is not LEAPFROG or world.split_forces is not None:
         return f"bodies are not moved by {LEAPFROG.name} alone"
     if world.physics.gravity_mode == "planet" and "GravitySystem" in running:
         return "planets attract each other"
@@ -112,7 +112,7 @@ class CompiledSteps:
         heavy = world.bodies.unequal and world.has_forces
         if heavy or contacts.stale:
             return False
-        return not (world.sleep.unseen or world.sleep.everything(world))
+        return not (world.sleep.unverified or world.sleep.all_asleep(world))
 
     def run(self, world: World, steps: int, before: Checkpoint) -> int:
         """Make ``steps`` steps or fewer, at least one, and return how many; the clock goes with them.
@@ -126,7 +126,7 @@ class CompiledSteps:
         """
         h = world.simulation.dt / world.simulation.substeps
         contacts = world.contacts
-        contacts.in_order(len(world.roster))
+        contacts.in_order(len(world.entity_index))
         contacts.refill(world)
         self._contact.begin(world, h)
         made, substep, stage, steps = 0, 0, BEGIN, min(steps, _MOST)
@@ -135,29 +135,29 @@ class CompiledSteps:
             made += done
             if why == DIVERGED:
                 world.bodies.check_finite(world, world.simulation.dt)
-            elif why == UNLISTED:
+            elif why == PAIRS_STALE:
                 self._timed("BroadPhaseSystem", self._broad_phase.search, world, h)
                 stage = FIND
-            elif why == CROWDED:
+            elif why == BLOCKS_FULL:
                 self._contact.begin(world, h)  # another step than the one before may have begun
-                self._timed("ContactSystem", self._contact.settle, world, h)
-                self._rouse(world, h)
-                stage = STRIKE
-            elif why == STIRRED:
-                self._rouse(world, h)
-                stage = STRIKE
-            elif why == DROWSY and self._sleep is not None:
-                self._timed("SleepSystem", self._sleep.lull, world, world.simulation.dt)
+                self._timed("ContactSystem", self._contact.add_constraints, world, h)
+                self._wake_touched_islands(world, h)
+                stage = IMPACTS
+            elif why == WAKE_PENDING:
+                self._wake_touched_islands(world, h)
+                stage = IMPACTS
+            elif why == SLEEP_PENDING and self._sleep is not None:
+                self._timed("SleepSystem", self._sleep.put_islands_to_sleep, world, world.simulation.dt)
                 stage = BEGIN
-                if world.sleep.everything(world):
+                if world.sleep.all_asleep(world):
                     break
         world.sleep.keep(world)
         return made
 
-    def _rouse(self, world: World, h: float) -> None:
+    def _wake_touched_islands(self, world: World, h: float) -> None:
         """Wake whom something touches."""
         if self._sleep is not None:
-            self._timed("SleepSystem", self._sleep.rouse, world, h)
+            self._timed("SleepSystem", self._sleep.wake_touched_islands, world, h)
 
     def _advance(
         self, world: World, before: Checkpoint, steps: int, substep: int, stage: int, h: float
@@ -167,7 +167,7 @@ class CompiledSteps:
         contacts, substeps = world.contacts, world.simulation.substeps
         self._cost[:] = 0
         counts = contacts.counted()
-        why, done, substep, struck_before, struck, contacts.span = contact_steps.advance(
+        why, done, substep, struck_before, impact_count, contacts.impulse_dt = contact_steps.advance(
             steps, substeps, substep, stage, h, *self._numbers(world, before, h, counts)
         )
         contacts.recount(counts)
@@ -178,7 +178,7 @@ class CompiledSteps:
         if done:
             world.force_evaluations += done * substeps * world.has_forces
             before.count(world)
-        world.collisions += struck - struck_before
+        world.collisions += impact_count - struck_before
         self._note(world, done, time.perf_counter_ns() - began)
         return why, done, substep
 
@@ -191,20 +191,21 @@ class CompiledSteps:
         return (
             world.simulation.iterations or 1,
             state, before.columns, sizes, materials,
-            (bodies.awake_inverse_mass, bodies.awake_inverse_inertia), bodies.tethered,
+            (bodies.awake_inverse_mass, bodies.awake_inverse_inertia), bodies.sub_integrated,
             (bodies.force, bodies.torque, world.table(Mass)["mass"], world.has_forces, *physics.gravity),
             (
                 self._sleep is not None, sleep.count, world.simulation.dt, bodies.inverse_mass,
                 sleep.asleep, sleep.rest, sleep.slowest, np.zeros_like(sleep.asleep),
-                contacts.quiet, contacts.resting,
+                contacts.inactive, contacts.sleeping,
             ),
-            (physics.linear_damping, physics.angular_damping), self._contact.fall(world, h),
+            (physics.linear_damping, physics.angular_damping), self._contact.speculative_margin(world, h),
             self._broad_phase.fat,
             (self._broad_phase.bounds, physics.bounds_restitution, physics.bounds_friction),
-            (contacts.idle, contacts.reach, world.roster.entities),
-            (contacts.manifolds, contacts.points, contacts.loose, contacts.touching),
-            counts, contacts.blocks.discs.seats, contacts.blocks.boxes.seats, contacts.opened,
-            (resolve.hertz, resolve.damping_ratio, resolve.slop, resolve.max_push), contacts.span, self._cost,
+            (contacts.proximity, contacts.activation_distance, world.entity_index.entities),
+            (contacts.manifolds, contacts.points, contacts.scalar, contacts.touching),
+            counts, contacts.wide.discs.slots, contacts.wide.boxes.slots, contacts.opened,
+            (resolve.hertz, resolve.damping_ratio, resolve.slop, resolve.max_push), contacts.impulse_dt,
+            self._cost,
         )  # fmt: skip
 
     def _note(self, world: World, steps: int, nanoseconds: int) -> None:

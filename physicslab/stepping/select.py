@@ -11,18 +11,18 @@ from physicslab.integrators.blanes_moan import BLANES_MOAN
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.exact import EXACT
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
-from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_BESIDE_TETHERS
+from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_WITH_SPLIT_FORCES
 from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.ode.system import why_not_smooth
 from physicslab.stepping.event_driven_limits import why_not_exact, why_not_worthwhile
-from physicslab.stepping.split_rows import tethered_rows
+from physicslab.stepping.split_rows import sub_integrated_rows
 from physicslab.systems.schedule import ForceSystem, Stage
 
 if TYPE_CHECKING:
     from physicslab.ecs.config import SimulationConfig
     from physicslab.world import World
 
-__all__ = ["Choice", "choose", "provisional"]
+__all__ = ["StepPlan", "choose", "default_plan"]
 
 _MANY = 200
 """From so many attracting bodies on, sampling their forces costs more than accuracy is worth."""
@@ -33,7 +33,7 @@ _MOST_STEPS = 1000
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class StepPlan:
     """A method, and why it.
 
     Attributes
@@ -55,9 +55,9 @@ class Choice:
         Why so, for people.
     stages : Integrator
         The method by whose stages the contact step goes; where collisions are exact, only for what rests.
-    tethers : Integrator, optional
+    split_forces : Integrator, optional
         What moves the bodies that springs and drag act on between contacts; ``None`` where kicks do.
-    tether_steps : int
+    split_steps : int
         Its steps each half substep.
     """
 
@@ -69,21 +69,21 @@ class Choice:
     collisions: str = "none"
     collision_reason: str = "nothing can touch"
     stages: Integrator = LEAPFROG
-    tethers: Integrator | None = None
-    tether_steps: int = 1
+    split_forces: Integrator | None = None
+    split_steps: int = 1
 
 
-def provisional(simulation: SimulationConfig) -> Choice:
+def default_plan(simulation: SimulationConfig) -> StepPlan:
     """Return the choice for a world of which nothing is known yet."""
     name = simulation.integrator
     if name == "auto":
-        return Choice(LEAPFROG, "nothing moves", simulation.substeps, smooth=False)
+        return StepPlan(LEAPFROG, "nothing moves", simulation.substeps, smooth=False)
     method = INTEGRATORS[name]
     stages = method if method.substep else LEAPFROG
-    return Choice(method, "asked for", simulation.substeps, smooth=False, stages=stages)
+    return StepPlan(method, "asked for", simulation.substeps, smooth=False, stages=stages)
 
 
-def choose(world: World) -> Choice:
+def choose(world: World) -> StepPlan:
     """Return the method for what a world holds, or the one that its configuration asks for if it can."""
     if not world.schedule.runs(Stage.CONTACT):
         return _mover(world)
@@ -102,15 +102,15 @@ def choose(world: World) -> Choice:
     return _flights(world, "few bodies, which bounce")
 
 
-def _flights(world: World, reason: str) -> Choice:
+def _flights(world: World, reason: str) -> StepPlan:
     """Return the choice for bodies whose collisions are exact."""
     method = "between impacts bodies fly in closed form; what rests goes by leapfrog"
-    return Choice(
+    return StepPlan(
         EXACT, method, world.simulation.substeps, smooth=False, collisions="exact", collision_reason=reason
     )
 
 
-def _mover(world: World) -> Choice:
+def _mover(world: World) -> StepPlan:
     """Return what moves bodies where collisions, if there are any, are found within steps."""
     simulation = world.simulation
     obstacle = why_not_smooth(world)
@@ -118,13 +118,13 @@ def _mover(world: World) -> Choice:
         if obstacle is not None:
             return _beside_contacts(world, obstacle)
         return _best(world)
-    choice = provisional(simulation)
+    choice = default_plan(simulation)
     method = choice.integrator
     if obstacle is not None:
         if method.substep:
             return choice
         reason = f"{method.name} was asked for, which advances bodies under forces alone, and {obstacle}"
-        return Choice(LEAPFROG, reason, simulation.substeps, smooth=False, refused=reason)
+        return StepPlan(LEAPFROG, reason, simulation.substeps, smooth=False, refused=reason)
     if method is EXACT:
         try:
             closed_form(world)
@@ -134,15 +134,15 @@ def _mover(world: World) -> Choice:
     return replace(choice, substeps=1 if method.chooses_steps else simulation.substeps, smooth=True)
 
 
-def _best(world: World) -> Choice:
+def _best(world: World) -> StepPlan:
     """Return the method for a world in which nothing but forces acts."""
     substeps, h = world.simulation.substeps, world.simulation.dt
     forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
     python = [system.name for system in forces if not type(system).packs()]
     if python:
-        return Choice(LEAPFROG, f"the force of {python[0]} is written in Python", substeps, smooth=True)
+        return StepPlan(LEAPFROG, f"the force of {python[0]} is written in Python", substeps, smooth=True)
     try:
-        return Choice(EXACT, f"{closed_form(world).what}: solved in closed form", 1, smooth=True)
+        return StepPlan(EXACT, f"{closed_form(world).what}: solved in closed form", 1, smooth=True)
     except NoClosedForm as error:
         why = str(error)
     attractors = max((getattr(system, "attractors", 0) for system in forces), default=0)
@@ -150,31 +150,31 @@ def _best(world: World) -> Choice:
     rate = _fastest(world, [f for f in forces if not (planets and hasattr(f, "attractors"))])
     needed = _steps(rate, h)
     if needed > _MOST_STEPS:
-        return Choice(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
+        return StepPlan(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
     if planets and attractors >= _MANY and world.physics.softening > 0.0:
-        return Choice(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
+        return StepPlan(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
     if planets:
-        return Choice(DOP853, "planets may come close: the step follows them", 1, smooth=True)
+        return StepPlan(DOP853, "planets may come close: the step follows them", 1, smooth=True)
     if _sees_velocity(world, forces):
-        return Choice(DOP853, f"forces hang on velocities, and {why}", 1, smooth=True)
+        return StepPlan(DOP853, f"forces hang on velocities, and {why}", 1, smooth=True)
     if any(system.may_be_singular(world) for system in forces):
-        return Choice(
+        return StepPlan(
             DOP853, "a spring may be pressed together to nothing: the step follows it", 1, smooth=True
         )
     reason = f"conservative and smooth; {needed} steps of omega h = {rate * h / needed:.2g}"
-    return Choice(BLANES_MOAN, reason, needed, smooth=True)
+    return StepPlan(BLANES_MOAN, reason, needed, smooth=True)
 
 
-def _beside_contacts(world: World, obstacle: str) -> Choice:
+def _beside_contacts(world: World, obstacle: str) -> StepPlan:
     """Return the choice where more than forces acts within a step: kicks, or a method for what is tethered.
 
     Other stages than those of leapfrog know of no flow.
     """
     substeps = world.simulation.substeps
-    kicks = Choice(LEAPFROG, obstacle, substeps, smooth=False)
+    kicks = StepPlan(LEAPFROG, obstacle, substeps, smooth=False)
     forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
     moved = any(system.name == "IntegrateSystem" for system in world.schedule.running)
-    if not moved or not tethered_rows(world).any():
+    if not moved or not sub_integrated_rows(world).any():
         return kicks
     python = [system.name for system in forces if not type(system).packs()]
     if python:
@@ -191,7 +191,9 @@ def _beside_contacts(world: World, obstacle: str) -> Choice:
     else:
         method, how = BLANES_MOAN, f"steps of omega h = {rate * half / needed:.2g}"
     reason = f"{obstacle}; between contacts what springs or drag act on goes by {method.name}: {how}"
-    return replace(kicks, reason=reason, stages=LEAPFROG_BESIDE_TETHERS, tethers=method, tether_steps=needed)
+    return replace(
+        kicks, reason=reason, stages=LEAPFROG_WITH_SPLIT_FORCES, split_forces=method, split_steps=needed
+    )
 
 
 def _fastest(world: World, forces: list[ForceSystem]) -> float:

@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 
 from physicslab.components import Velocity
 from physicslab.integrators import Integrator, StepTooSmall
-from physicslab.ode.system import Equations
+from physicslab.ode.system import OdeSystem
 from physicslab.state.bodies import Diverged
-from physicslab.stepping.split_rows import tethered_rows
+from physicslab.stepping.split_rows import sub_integrated_rows
 from physicslab.systems.schedule import ForceSystem
 
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["Tethers"]
+__all__ = ["SplitForces"]
 
 _GENTLE = 1.0
 """omega h up to which a force hardly changes within a substep, and contacts are told what it will do."""
@@ -25,7 +25,7 @@ _TOLERANCE = 1e-12
 """Relative error of a step of methods that choose their steps, at the least."""
 
 
-class Tethers:
+class SplitForces:
     """Moves what springs and drag act on, under all forces, by a method that follows them.
 
     A substep is half a flow, the contacts, half a flow. That is the leapfrog of the contact step, in which
@@ -39,7 +39,7 @@ class Tethers:
     Parameters
     ----------
     world : World
-        Whose bodies. Its ``bodies.tethered`` is set.
+        Whose bodies. Its ``bodies.sub_integrated`` is set.
     method : Integrator
         What moves them.
     steps : int
@@ -53,13 +53,13 @@ class Tethers:
 
     def __init__(self, world: World, method: Integrator, steps: int) -> None:
         self._method, self._steps = method, steps
-        rows = tethered_rows(world)
-        self._equations = Equations(world, rows)
+        rows = sub_integrated_rows(world)
+        self._ode = OdeSystem(world, rows)
         # Contacts are good to far fewer digits than a free flight: more would only cost time.
-        self._equations.tolerance = max(world.simulation.tolerance, _TOLERANCE)
-        world.bodies.tethered[:] = rows & world.table(Velocity).present
+        self._ode.tolerance = max(world.simulation.tolerance, _TOLERANCE)
+        world.bodies.sub_integrated[:] = rows & world.table(Velocity).present
         h = world.simulation.dt / world.simulation.substeps
-        self.gentle: NDArray[np.bool_] = world.bodies.tethered & (world.bodies.inverse_mass > 0.0)
+        self.gentle: NDArray[np.bool_] = world.bodies.sub_integrated & (world.bodies.inverse_mass > 0.0)
         for system in world.schedule.running:
             rates = system.rates(world) if isinstance(system, ForceSystem) else None
             if rates is not None:
@@ -68,19 +68,19 @@ class Tethers:
 
     def outdated(self, world: World) -> bool:
         """Whether a number was changed that the layout, or the choice of a method, hangs on."""
-        return self._equations.outdated(world)
+        return self._ode.outdated(world)
 
     def begin(self, world: World) -> None:
         """Take the forces and masses as they are now; they stay for a step."""
-        self._equations.gather(world)
+        self._ode.gather(world)
 
     def move(self, world: World, h: float) -> None:
         """Advance what is tethered by a time h."""
-        equations = self._equations
-        equations.gather_state(world)
+        ode = self._ode
+        ode.gather_state(world)
         try:
-            made = self._method.flow(world, equations, h / self._steps, self._steps)
+            made = self._method.flow(world, ode, h / self._steps, self._steps)
         except StepTooSmall as error:
             raise Diverged(f"{error} (after t = {world.time:.9g} s)") from error
-        equations.scatter(world, h)
+        ode.scatter(world, h)
         world.force_evaluations += made

@@ -13,16 +13,16 @@ from physicslab.systems.schedule import ForceSystem
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["tethered_rows"]
+__all__ = ["sub_integrated_rows"]
 
 
-def tethered_rows(world: World) -> NDArray[np.bool_]:
+def sub_integrated_rows(world: World) -> NDArray[np.bool_]:
     """Return for each row whether a force acts on it that tells bodies apart, or it is an end of one.
 
     Where another force couples any body with any, all are.
     """
     forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
-    rows = np.zeros(len(world.roster), np.bool_)
+    rows = np.zeros(len(world.entity_index), np.bool_)
     for force in forces:
         rates = force.rates(world)
         pairs = force.couples(world)

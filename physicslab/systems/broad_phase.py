@@ -56,7 +56,7 @@ class BroadPhaseSystem(System):
 
     kernels = (
         grid.still_holds, grid.fat_boxes, grid.find_pairs,
-        near_pairs.part, near_pairs.carry_over, near_pairs.sort_loose, slots.list_loose,
+        near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
     )  # fmt: skip
 
     def __init__(self) -> None:
@@ -96,7 +96,7 @@ class BroadPhaseSystem(System):
         inverse_mass = world.bodies.inverse_mass
         bounded = world.physics.bounds is not None
         found, walls = self._count_pairs(shape["kind"], inverse_mass, bounded)
-        world.contacts.part(world, self._couples, found, self._pairs, walls)
+        world.contacts.partition(world, self._couples, found, self._pairs, walls)
 
     def _count_pairs(
         self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from physicslab.components import Material, Shape, Transform, Velocity
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.narrow import contact
-from physicslab.kernels.narrow.pair import NEAR, STILL
+from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
 from physicslab.kernels.wide import refresh
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.schedule import Stage, System, at
@@ -28,7 +28,7 @@ class ContactSystem(System):
     swept, so that none passes through another.
     """
 
-    kernels = (near_pairs.promote, contact.find_contacts)
+    kernels = (near_pairs.activate, contact.find_contacts)
     observes = False  # what it begins anew at a step is its own record
 
     def __init__(self) -> None:
@@ -50,16 +50,16 @@ class ContactSystem(System):
     def find(self, world: World, h: float) -> None:
         """Find or refresh the points of every near pair."""
         contacts, bodies = world.contacts, world.bodies
-        if contacts.blocks.lanes:
-            self._refresh(world, h, self.fall(world, h))
+        if contacts.wide.filled:
+            self._refresh(world, h, self.speculative_margin(world, h))
             contacts.changed()
-        contacts.in_order(len(world.roster))
-        contacts.promote(world, h, self.fall(world, h))
+        contacts.in_order(len(world.entity_index))
+        contacts.activate(world, h, self.speculative_margin(world, h))
         contacts.active = self.find_among(
-            world, contacts.loose, contacts.loose_count, contacts.touching,
+            world, contacts.scalar, contacts.scalar_count, contacts.touching,
             bodies.awake_inverse_mass, bodies.awake_inverse_inertia, self._first, h,
         )  # fmt: skip
-        self.settle(world, h)
+        self.add_constraints(world, h)
 
     def find_among(
         self, world: World, pairs: NDArray[np.int64], count: int, touching: NDArray[np.int64],
@@ -75,32 +75,34 @@ class ContactSystem(System):
             shape["kind"], shape["radius"], shape["width"], shape["height"],
             material["restitution"], material["friction"], inverse_mass, inverse_inertia,
             self._bounds, physics.bounds_restitution, physics.bounds_friction, first, h,
-            world.method.stages.window[0], self.fall(world, h),
+            world.method.stages.window[0], self.speculative_margin(world, h),
         )  # fmt: skip
 
-    def fall(self, world: World, h: float) -> float:
+    def speculative_margin(self, world: World, h: float) -> float:
         """Return how far [m] uniform gravity may bring two bodies together within a time h."""
         physics = world.physics
         return 0.5 * physics.gravity.magnitude * h * h if physics.gravity_mode == "linear" else 0.0
 
-    def settle(self, world: World, h: float) -> None:
+    def add_constraints(self, world: World, h: float) -> None:
         """Once a step, take what has settled into blocks."""
         if self._first and world.method.collisions == "step":
-            world.contacts.settle(world, h)
+            world.contacts.add_constraints(world, h)
             world.contacts.changed()
         self._first = False
 
-    def _refresh(self, world: World, h: float, fall: float) -> None:
+    def _refresh(self, world: World, h: float, speculative_margin: float) -> None:
         """Find where settled contacts touch now; those that are settled no longer join the loose ones."""
         contacts, transform, velocity = world.contacts, world.table(Transform), world.table(Velocity)
         if self._first:
             contacts.refill(world)
-        before = contacts.loose_count
-        for lanes in contacts.blocks.kinds:
-            contacts.loose_count = refresh.refresh(
-                *lanes.layout, contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
+        before = contacts.scalar_count
+        for constraints in contacts.wide.kinds:
+            contacts.scalar_count = refresh.refresh(
+                *constraints.layout, contacts.manifolds, contacts.points, contacts.scalar,
+                contacts.scalar_count,
                 transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
-                self._first, h, STILL, NEAR, fall, contact.KEEP, contact.KEEP_TURN,
+                self._first, h, SWEEP_THRESHOLD, CONTACT_MARGIN, speculative_margin, contact.CACHE_TOLERANCE,
+                contact.CACHE_TURN_TOLERANCE,
             )  # fmt: skip
-        contacts.blocks.lanes -= contacts.loose_count - before
-        contacts.unordered |= contacts.loose_count > before
+        contacts.wide.filled -= contacts.scalar_count - before
+        contacts.unordered |= contacts.scalar_count > before

@@ -14,7 +14,7 @@ from physicslab.ode.system import PackedForce
 from physicslab.systems.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
-    from physicslab.ode.system import Slots
+    from physicslab.ode.system import StateLayout
     from physicslab.world import World
 
 __all__ = ["DragSystem"]
@@ -34,19 +34,19 @@ class DragSystem(ForceSystem):
             world.bodies.force, world.table(Velocity)["linear"], rows, table["linear"], table["quadratic"]
         )
 
-    def packed(self, world: World, slots: Slots) -> PackedForce:
+    def packed(self, world: World, slots: StateLayout) -> PackedForce:
         """Return the drag for compiled integrators."""
         table, rows = world.table(Drag), world.batch(*self.needs).rows
         rows = rows[slots.place[rows] >= 0]  # what rests may not take part, and has no coordinates
-        numbers = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
-        whole = np.concatenate(([len(rows)], slots.place[rows]))
-        return PackedForce(packed_forces.drag, numbers, whole, drag_resistance)
+        parameters = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
+        indices = np.concatenate(([len(rows)], slots.place[rows]))
+        return PackedForce(packed_forces.drag, parameters, indices, drag_resistance)
 
     def rates(self, world: World) -> NDArray[np.float64]:
         """Return for each row the rate at which it slows down at its present speed [1/s]."""
         table, rows = world.table(Drag), world.batch(*self.needs).rows
         speed = np.hypot(*world.table(Velocity)["linear"][rows].T)
-        rates = np.zeros(len(world.roster))
+        rates = np.zeros(len(world.entity_index))
         rates[rows] = table["linear"][rows] + 2.0 * table["quadratic"][rows] * speed
         return rates * world.bodies.inverse_mass
 

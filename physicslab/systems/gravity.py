@@ -14,7 +14,7 @@ from physicslab.ode.system import PackedForce
 from physicslab.systems.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
-    from physicslab.ode.system import Slots
+    from physicslab.ode.system import StateLayout
     from physicslab.world import World
 
 __all__ = ["GravitySystem"]
@@ -76,18 +76,18 @@ class GravitySystem(ForceSystem):
                 physics.G, physics.softening, physics.softening_law == "plummer",
             )  # fmt: skip
 
-    def packed(self, world: World, slots: Slots) -> PackedForce:
+    def packed(self, world: World, slots: StateLayout) -> PackedForce:
         """Return the pull for compiled integrators."""
         physics, mass = world.physics, world.table(Mass)["mass"]
         if physics.gravity_mode == "linear":
             rows = np.flatnonzero((world.bodies.inverse_mass > 0.0) & (slots.place >= 0))
-            whole = np.concatenate(([len(rows)], slots.place[rows]))
-            numbers = np.concatenate(((physics.gravity.x, physics.gravity.y), mass[rows]))
-            return PackedForce(packed_forces.uniform_gravity, numbers, whole)
+            indices = np.concatenate(([len(rows)], slots.place[rows]))
+            parameters = np.concatenate(((physics.gravity.x, physics.gravity.y), mass[rows]))
+            return PackedForce(packed_forces.uniform_gravity, parameters, indices)
         rows = self._attracting
-        whole = np.concatenate(([len(rows), physics.softening_law == "plummer"], slots.place[rows]))
-        numbers = np.concatenate(((physics.G, physics.softening), mass[rows]))
-        return PackedForce(packed_forces.planet_gravity, numbers, whole)
+        indices = np.concatenate(([len(rows), physics.softening_law == "plummer"], slots.place[rows]))
+        parameters = np.concatenate(((physics.G, physics.softening), mass[rows]))
+        return PackedForce(packed_forces.planet_gravity, parameters, indices)
 
     def strongest_rate(self, world: World) -> float:
         """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair as they stand; 0 for uniform gravity."""

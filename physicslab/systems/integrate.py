@@ -18,7 +18,7 @@ class IntegrateSystem(System):
     """Moves and turns every body that has a Velocity, when the integrator's plan says so."""
 
     needs = (Transform, Velocity)
-    kernels = (motion.drift, motion.foresee)
+    kernels = (motion.drift, motion.predict)
 
     @at(Stage.DRIFT)
     def drift(self, world: World, h: float) -> None:
@@ -26,17 +26,17 @@ class IntegrateSystem(System):
         transform, velocity = world.table(Transform), world.table(Velocity)
         motion.drift(
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
-            world.bodies.tethered, h,
+            world.bodies.sub_integrated, h,
         )  # fmt: skip
-        if world.tethers is not None:
-            world.tethers.move(world, h)
+        if world.split_forces is not None:
+            world.split_forces.move(world, h)
 
-    @at(Stage.FORESEE)
-    def foresee(self, world: World, h: float) -> None:
+    @at(Stage.PREDICT)
+    def predict(self, world: World, h: float) -> None:
         """Show contacts the velocity that tethers will bring about in a time h; take it back with -h."""
-        if world.tethers is not None:
+        if world.split_forces is not None:
             bodies, velocity = world.bodies, world.table(Velocity)
-            motion.foresee(
+            motion.predict(
                 velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
-                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, world.tethers.gentle, h,
+                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, world.split_forces.gentle, h,
             )  # fmt: skip

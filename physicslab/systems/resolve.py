@@ -33,7 +33,13 @@ class ResolveSystem(System):
         Overlap that is left alone, as a share of the smaller body's size.
     """
 
-    kernels = (impact.strike, impulse.solve, impulse.relax, impulse.separate, impulse.heaviest_load)
+    kernels = (
+        impact.resolve_impacts,
+        impulse.solve,
+        impulse.relax,
+        impulse.separate,
+        impulse.worst_load_ratio,
+    )
 
     def __init__(
         self, hertz: float = 45.0, damping_ratio: float = 2.0, max_push: float = 1.5, slop: float = 0.0005
@@ -44,7 +50,7 @@ class ResolveSystem(System):
         """Needed where two things could ever meet."""
         return nothing_to_touch(world)
 
-    def finer(self, world: World) -> int:
+    def substep_factor(self, world: World) -> int:
         """Where bodies carry far heavier ones, the contact spring must be stiffer, and substeps shorter.
 
         Its stiffness goes by the lighter body: what carries a hundred times its weight sinks in by as much
@@ -54,23 +60,23 @@ class ResolveSystem(System):
         if not (contacts.count and world.has_forces and bodies.unequal):
             return 1
         contacts.sync()
-        load = impulse.heaviest_load(
+        load = impulse.worst_load_ratio(
             contacts.manifolds, contacts.recorded, bodies.force, bodies.awake_inverse_mass
         )
         parts = 1
-        while parts < impulse.MOST_PARTS and parts * parts * _LIGHT_LOAD < load:
+        while parts < impulse.MAX_SUBSTEP_FACTOR and parts * parts * _LIGHT_LOAD < load:
             parts *= 2
         return parts
 
     @at(Stage.IMPACT)
-    def strike(self, world: World, h: float) -> None:
+    def resolve_impacts(self, world: World, h: float) -> None:
         """Bounce the pairs that meet within the substep."""
         contacts, bodies = world.contacts, world.bodies
         transform, velocity = world.table(Transform), world.table(Velocity)
         start, end = world.method.stages.window
         contacts.left = 0
         while contacts.active:
-            impacts, contacts.left = impact.strike(
+            impacts, contacts.left = impact.resolve_impacts(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.active,
                 transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
                 bodies.force, bodies.awake_inverse_mass, bodies.awake_inverse_inertia, world.has_forces,
@@ -84,14 +90,15 @@ class ResolveSystem(System):
         """After impacts, let settled contacts that may bounce take part in them; return whether any does."""
         contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
         before = contacts.active
-        if contacts.blocks.lanes:
-            for lanes in contacts.blocks.kinds:
-                contacts.loose_count, contacts.active = slots.wake(
-                    *lanes.layout, contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
+        if contacts.wide.filled:
+            for constraints in contacts.wide.kinds:
+                contacts.scalar_count, contacts.active = slots.wake(
+                    *constraints.layout, contacts.manifolds, contacts.points, contacts.scalar,
+                    contacts.scalar_count,
                     contacts.touching, contacts.active, velocity["linear"], velocity["angular"],
                     bodies.force, bodies.awake_inverse_mass, h,
                 )  # fmt: skip
-            contacts.blocks.lanes -= contacts.active - before
+            contacts.wide.filled -= contacts.active - before
             contacts.unordered |= contacts.active > before
         return contacts.active > before
 
@@ -99,28 +106,32 @@ class ResolveSystem(System):
     def solve(self, world: World, h: float) -> None:
         """Find the impulses that keep bodies apart, taking some of the overlap away."""
         contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
-        if contacts.left or contacts.blocks.lanes:
+        if contacts.left or contacts.wide.filled:
             # What an instant left behind is mostly rounding, which is not to be blown up.
-            carried = h / max(contacts.span, h / impulse.MOST_PARTS) if contacts.span > 0.0 else 1.0
-            contacts.span = h
-            finer = world.substeps / world.simulation.substeps
+            warm_start_scale = (
+                h / max(contacts.impulse_dt, h / impulse.MAX_SUBSTEP_FACTOR)
+                if contacts.impulse_dt > 0.0
+                else 1.0
+            )
+            contacts.impulse_dt = h
+            substep_factor = world.substeps / world.simulation.substeps
             impulse.solve(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.active,
-                *contacts.blocks.discs.solved, *contacts.blocks.boxes.solved,
+                *contacts.wide.discs.solved, *contacts.wide.boxes.solved,
                 velocity["linear"], velocity["angular"],
                 bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
-                bodies.force, world.has_forces, h, carried, world.simulation.iterations or 1,
-                self.hertz * finer, self.damping_ratio, self.slop,
+                bodies.force, world.has_forces, h, warm_start_scale, world.simulation.iterations or 1,
+                self.hertz * substep_factor, self.damping_ratio, self.slop,
             )  # fmt: skip
 
     @at(Stage.RELAX)
     def relax(self, world: World, h: float) -> None:
         """Take back the velocity that came from taking overlap away."""
         contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
-        if contacts.left or contacts.blocks.lanes:
+        if contacts.left or contacts.wide.filled:
             impulse.relax(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.active,
-                *contacts.blocks.discs.solved, *contacts.blocks.boxes.solved,
+                *contacts.wide.discs.solved, *contacts.wide.boxes.solved,
                 velocity["linear"], velocity["angular"],
                 bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
                 h, world.simulation.iterations or 1,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from physicslab.kernels import compile_kernels
 
 if TYPE_CHECKING:
-    from physicslab.ode.system import PackedForce, Slots
+    from physicslab.ode.system import PackedForce, StateLayout
     from physicslab.world import World
 
 __all__ = ["ForceSystem", "LeftOut", "Schedule", "Stage", "System", "Timing", "at"]
@@ -31,7 +31,7 @@ class Stage(Enum):
     BROAD_PHASE = "which bodies are near each other"
     CONTACT = "where they touch"
     IMPACT = "approaching bodies bounce"
-    FORESEE = "what forces will do to tethered bodies is shown to the contacts, and taken back"
+    PREDICT = "what forces will do to tethered bodies is shown to the contacts, and taken back"
     SOLVE = "contact impulses keep bodies apart, correcting overlap"
     RELAX = "contact impulses again, so that the correction leaves no velocity behind"
     FINISH = "once a step: what is recorded of it"
@@ -109,7 +109,7 @@ class System:
         """Return which of ``kernels`` the world needs as it is; what it does not need is not waited for."""
         return self.kernels
 
-    def finer(self, world: World) -> int:
+    def substep_factor(self, world: World) -> int:
         """Return how many times as many substeps as asked for the next step needs, at the end of one."""
         return 1
 
@@ -180,7 +180,7 @@ class ForceSystem(System):
         """Return the pairs of rows (n, 2) whose motions the force couples; ``None``: any with any."""
         return None
 
-    def packed(self, world: World, slots: Slots) -> PackedForce | None:
+    def packed(self, world: World, slots: StateLayout) -> PackedForce | None:
         """Return the force as compiled integrators call it, with the world's numbers as they are now.
 
         A row whose ``slots.place`` is -1 takes no part; there is none where :meth:`couples` is ``None``.

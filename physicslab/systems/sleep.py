@@ -66,13 +66,13 @@ class SleepSystem(System):
         return None
 
     @at(Stage.CONTACT)
-    def rouse(self, world: World, h: float) -> None:
+    def wake_touched_islands(self, world: World, h: float) -> None:
         """Wake whom something touches that moves or is awake, and on whom the forces have changed.
 
         That is done before the impacts: nobody is struck as if nothing could move him.
         """
         sleep, contacts, bodies = world.sleep, world.contacts, world.bodies
-        if sleep.unseen:
+        if sleep.unverified:
             self._take_part(world, self._see(world), h)
         while sleep.count:
             velocity, marked = world.table(Velocity), np.zeros(len(sleep.asleep), np.bool_)
@@ -94,15 +94,15 @@ class SleepSystem(System):
         if world.has_forces:
             motion.kick(
                 velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
-                np.where(woken, bodies.inverse_mass, 0.0), bodies.inverse_inertia, bodies.tethered,
+                np.where(woken, bodies.inverse_mass, 0.0), bodies.inverse_inertia, bodies.sub_integrated,
                 world.physics.linear_damping, world.physics.angular_damping, _missed(world) * h,
             )  # fmt: skip
-        loose = contacts.loose[: contacts.loose_count]
-        near = contacts.manifolds[loose]
-        theirs = np.ascontiguousarray(loose[woken[near["a"]] | woken[near["b"]]])
+        scalar = contacts.scalar[: contacts.scalar_count]
+        near = contacts.manifolds[scalar]
+        theirs = np.ascontiguousarray(scalar[woken[near["a"]] | woken[near["b"]]])
         # Of these the masses are others now; no impact of this step can have been theirs.
         self._find(world, theirs, len(theirs), contacts.touching, h, first=True)
-        contacts.active = self._find(world, contacts.loose, len(loose), contacts.touching, h)
+        contacts.active = self._find(world, contacts.scalar, len(scalar), contacts.touching, h)
 
     def _find(
         self, world: World, pairs: NDArray[np.int64], count: int, touching: NDArray[np.int64], h: float,
@@ -114,28 +114,28 @@ class SleepSystem(System):
         )
 
     @at(Stage.FINISH)
-    def settle(self, world: World, h: float) -> None:
+    def add_constraints(self, world: World, h: float) -> None:
         """Count how long bodies have rested; let the islands that have rested long enough fall asleep."""
         sleep, velocity, shape = world.sleep, world.table(Velocity), world.table(Shape)
-        if sleep.meddled:
+        if sleep.has_external_writers:
             sleep.check(world, within=True)
         if islands.count_rest(
             velocity["linear"], velocity["angular"],
             shape["kind"], shape["radius"], shape["width"], shape["height"],
-            world.bodies.inverse_mass, world.bodies.tethered, sleep.asleep, sleep.rest, sleep.slowest,
+            world.bodies.inverse_mass, world.bodies.sub_integrated, sleep.asleep, sleep.rest, sleep.slowest,
             min(h, world.simulation.dt),  # of a step that was divided no more than the end is seen
         ):  # fmt: skip
-            self.lull(world, h)
+            self.put_islands_to_sleep(world, h)
         sleep.keep(world)
 
-    def lull(self, world: World, h: float) -> None:
+    def put_islands_to_sleep(self, world: World, h: float) -> None:
         """Let the islands fall asleep that have rested long enough."""
         sleep, contacts = world.sleep, world.contacts
         contacts.sync()
         ready = (sleep.rest >= islands.READY) & ~sleep.asleep
         held = self._held(world, ready)
         if held.any():
-            sleep.lull(world, held)
+            sleep.fall_asleep(world, held)
             self._see(world)
 
     def _held(self, world: World, ready: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -153,16 +153,16 @@ class SleepSystem(System):
         A file may have it that somebody sleeps in the air.
         """
         sleep, contacts, bodies = world.sleep, world.contacts, world.bodies
-        sleep.unseen = False
-        quiet = sleep.asleep | ~world.table(Velocity).present
+        sleep.unverified = False
+        inactive = sleep.asleep | ~world.table(Velocity).present
         pairs = np.empty(contacts.recorded, np.int64)
-        count = islands.list_resting(contacts.manifolds, contacts.recorded, quiet, pairs)
+        count = islands.list_sleeping(contacts.manifolds, contacts.recorded, inactive, pairs)
         h = world.simulation.dt / world.simulation.substeps
-        contacts.resting_count = cast("ContactSystem", self._contact).find_among(
-            world, pairs, count, contacts.resting, bodies.inverse_mass, bodies.inverse_inertia, True, h
+        contacts.sleeping_count = cast("ContactSystem", self._contact).find_among(
+            world, pairs, count, contacts.sleeping, bodies.inverse_mass, bodies.inverse_inertia, True, h
         )
-        loose = sleep.asleep & ~self._held(world, sleep.asleep)
-        return sleep.wake(world, loose) if loose.any() else loose
+        scalar = sleep.asleep & ~self._held(world, sleep.asleep)
+        return sleep.wake(world, scalar) if scalar.any() else scalar
 
 
 def _missed(world: World) -> float:

@@ -17,7 +17,7 @@ from physicslab.ode.system import PackedForce, spring_ends
 from physicslab.systems.schedule import ForceSystem, Stage, at
 
 if TYPE_CHECKING:
-    from physicslab.ode.system import Slots
+    from physicslab.ode.system import StateLayout
     from physicslab.world import World
 
 __all__ = ["SpringSystem"]
@@ -50,12 +50,12 @@ class SpringSystem(ForceSystem):
         lost_a, lost_b = (a < 0) | ~placed[a], (b < 0) | ~(placed[b] | (b == 0))
         spring, entities = world.table(Spring), world.batch(Spring).entities
         for i in np.flatnonzero((a == b) & (a > 0)).tolist():
-            end = int(world.roster.entities[b[i]])
+            end = int(world.entity_index.entities[b[i]])
             raise InvalidValue(f"{world.label(int(entities[i]))}: Spring", "b", end, OTHER_END)
         for i in np.flatnonzero(lost_a | lost_b).tolist():
             entity, name = int(entities[i]), "a" if lost_a[i] else "b"
             end = int(spring[name][rows[i]]) or entity
-            if end in world.roster.row_of or end > world.roster.newest:
+            if end in world.entity_index.row_of or end > world.entity_index.newest:
                 raise InvalidValue(f"{world.label(entity)}: Spring", name, end, "an entity with a Transform")
             esper.remove_component(entity, Spring)
             left: tuple[object, ...] = esper.components_for_entity(entity)
@@ -74,22 +74,22 @@ class SpringSystem(ForceSystem):
             spring["rest_length"], spring["stiffness"], spring["damping"],
         )  # fmt: skip
 
-    def packed(self, world: World, slots: Slots) -> PackedForce:
+    def packed(self, world: World, slots: StateLayout) -> PackedForce:
         """Return the pull for compiled integrators."""
         spring, angle = world.table(Spring), world.table(Transform)["angle"]
         rows, ends = self._rows, (self._a, self._b)
         places = [part for end in ends for part in (slots.place[end], slots.turn[end])]
-        whole = np.concatenate(([len(rows)], np.stack(places, axis=1).ravel()))
-        numbers = np.empty((len(rows), 7))
+        indices = np.concatenate(([len(rows)], np.stack(places, axis=1).ravel()))
+        parameters = np.empty((len(rows), 7))
         for column, end, anchors in ((0, ends[0], "anchor_a"), (2, ends[1], "anchor_b")):
             steady = np.where(slots.turn[end] < 0, angle[end], 0.0)
             cosine, sine, anchor = np.cos(steady), np.sin(steady), spring[anchors][rows]
-            numbers[:, column] = cosine * anchor[:, 0] - sine * anchor[:, 1]
-            numbers[:, column + 1] = sine * anchor[:, 0] + cosine * anchor[:, 1]
+            parameters[:, column] = cosine * anchor[:, 0] - sine * anchor[:, 1]
+            parameters[:, column + 1] = sine * anchor[:, 0] + cosine * anchor[:, 1]
         for column, name in enumerate(("rest_length", "stiffness", "damping"), 4):
-            numbers[:, column] = spring[name][rows]
+            parameters[:, column] = spring[name][rows]
         resistance = damper_resistance if self.sees_velocity(world) else None
-        return PackedForce(packed_forces.springs, numbers.ravel(), whole, resistance)
+        return PackedForce(packed_forces.springs, parameters.ravel(), indices, resistance)
 
     def rates(self, world: World) -> NDArray[np.float64]:
         """Return for each row a bound on its fastest oscillation or decay [rad/s].

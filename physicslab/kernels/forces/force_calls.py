@@ -41,7 +41,7 @@ _C_FUNCTION = ctypes.CFUNCTYPE(None, _REALS, _REALS, ctypes.c_double, _REALS, _R
 
 
 class ForceKernel:
-    """A force ``f(q, v, span, force, numbers, whole)``: a C function, compiled when its address is asked for.
+    """A force ``f(q, v, span, force, parameters, indices)``: a C function, compiled for its address.
 
     All but the span [s] are pointers, to float64 and (the last) int64.
     """
@@ -112,7 +112,7 @@ def force_kernel(function: Callable[..., None]) -> ForceKernel:
 
 
 def _call_type(
-    context: Any, address: Any, q: Any, v: Any, span: Any, force: Any, numbers: Any, whole: Any
+    context: Any, address: Any, q: Any, v: Any, span: Any, force: Any, parameters: Any, indices: Any
 ) -> tuple[Any, Callable[..., Any]]:
     """Call the C function at an address with the data of three arrays and two addresses."""
 

@@ -6,7 +6,7 @@ from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 from physicslab.kernels.solver.impulse import apply_impulse, follow_drift, relative_velocity
 
-__all__ = ["bounce", "rub", "strike"]
+__all__ = ["bounce", "friction_impulse", "resolve_impacts"]
 
 _SWEEPS = 32
 """How often the impacts of a substep are gone through before what is left is treated as inelastic."""
@@ -113,7 +113,7 @@ def bounce(
 
 
 @inlined
-def rub(manifold: Manifold, point: Point, j: float, sliding: float) -> float:
+def friction_impulse(manifold: Manifold, point: Point, j: float, sliding: float) -> float:
     """Return the impulse that stops the sliding, mu times the normal impulse j at the most [N s]."""
     limit = manifold.friction * j
     along: float = min(max(-point.tangent_mass * sliding, -limit), limit)
@@ -138,13 +138,13 @@ def _hit(
     point.impact_normal += j
     if manifold.friction > 0.0:
         vx, vy = relative_velocity(point, a, b, linear, angular)
-        along = rub(manifold, point, j, vy * nx - vx * ny)
+        along = friction_impulse(manifold, point, j, vy * nx - vx * ny)
         apply_impulse(point, -along * ny, along * nx, a, b, linear, angular, inverse_mass, inverse_inertia)
         point.impact_tangent += along
 
 
 @inlined
-def _strike_pair(
+def _resolve_pair(
     manifold: Manifold,
     one: Point,
     two: Point,
@@ -223,7 +223,7 @@ def _forced(
 
 
 @kernel
-def strike(
+def resolve_impacts(
     manifolds: Manifolds,
     points: Points,
     touching: Rows,
@@ -281,12 +281,12 @@ def strike(
                 continue
             if start >= 0.0:  # in symplectic Euler the forces have acted already
                 pull = 0.0
-            if _strike_pair(
+            if _resolve_pair(
                 manifold, one, two, position, angle, linear, angular, inverse_mass, inverse_inertia,
                 v1, v2, pull, resting_speed, start, end, earliest,
             ):  # fmt: skip
                 bounced += 1
-                manifold.struck += 1
+                manifold.impact_count += 1
             left += 1 - one.ahead
         impacts += bounced
         if bounced == 0:

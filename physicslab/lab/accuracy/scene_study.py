@@ -180,9 +180,9 @@ def _row(
         row.evaluations = world.force_evaluations
         drift.sample(world)
         row.energy = drift.relative
-        finer = load()
-        finer.simulation = _other_step(simulation)
-        row.half_step = _apart(places, _end(finer))
+        substep_factor = load()
+        substep_factor.simulation = _other_step(simulation)
+        row.half_step = _apart(places, _end(substep_factor))
         if best is not None:
             row.tightest = _apart(places, best)
     except (Diverged, ArithmeticError) as error:

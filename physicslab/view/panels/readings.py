@@ -90,9 +90,9 @@ def method_lines(world: World) -> list[Line]:
 
 
 def _division_lines(world: World) -> list[Line]:
-    if world.divided <= 1:
+    if world.step_divisions <= 1:
         return []
-    return [Line(f"the last step was divided into {world.divided}", kind="remark")]
+    return [Line(f"the last step was divided into {world.step_divisions}", kind="remark")]
 
 
 def _collision_lines(world: World) -> list[Line]:
