@@ -13,8 +13,7 @@ from unittest.mock import patch
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels import KERNELS, compile_kernels
-from physicslab.kernels import interpreter
+from physicslab.kernels import KERNELS, compile_kernels, interpreter
 from physicslab.kernels.interpreter import entry_of, interpreted
 from physicslab.kernels.warm import load_all
 

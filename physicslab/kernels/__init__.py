@@ -189,27 +189,24 @@ _ask: Callable[[Sequence[Any]], Collection[Any]] | None = None
 def compile_kernels(kernels: Iterable[Any]) -> float:
     """Compile the given kernels, or load them from the cache; return the seconds it took.
 
-    Where kernels are to be interpreted (:mod:`physicslab.kernels.interpreter`) they are made ready for that.
+    Those that are to be interpreted (:mod:`physicslab.kernels.interpreter`) are made ready for that.
     """
     start = time.perf_counter()
     missing = [jitted for jitted in kernels if not jitted.compiled]
-    if not missing:
-        return 0.0
-    if is_forced():
-        waiting: Collection[Any] = missing
-    else:
-        waiting = _ask(missing) if _ask is not None else ()
-    for jitted in missing:
-        if jitted in waiting:
+    if missing and _ask is not None and not is_forced():
+        for jitted in _ask(missing):
             stand_in(jitted)
-        else:
-            load(jitted)
+            missing.remove(jitted)
+    for jitted in missing:
+        load(jitted)
     return time.perf_counter() - start
 
 
 def load(jitted: Any) -> None:
-    """Load one kernel from the cache, or compile it here and now."""
-    if not jitted.compiled:
+    """Load one kernel from the cache, or compile it here and now, unless all are to be interpreted."""
+    if is_forced():
+        stand_in(jitted)
+    elif not jitted.compiled:
         jitted.compile(jitted.declared_signature)
         jitted.disable_compile()
         jitted.compiled = True  # asking numba takes longer than many a kernel runs

@@ -7,6 +7,7 @@ import sys
 import time
 
 from physicslab.kernels import KERNELS, compile_kernels
+from physicslab.kernels.interpreter import compile_all_the_same
 from physicslab.kernels.warm import Progress, Warmup, load_all
 
 _YIELDING = 15
@@ -37,4 +38,5 @@ def _work() -> int:
 
 
 if __name__ == "__main__":
+    compile_all_the_same()
     sys.exit(_work() if sys.argv[1:] == ["worker"] else _fill())

@@ -29,9 +29,9 @@ from numba.np.numpy_support import as_dtype
 from physicslab import kernels
 from physicslab.kernels.stand_ins import Records, arithmetic, math_functions, stand_in_of
 
-__all__ = ["entry_of", "interpreted", "is_forced", "stand_in", "twin_of"]
+__all__ = ["compile_all_the_same", "entry_of", "interpreted", "is_forced", "stand_in", "twin_of"]
 
-_VECTORS = "physicslab.kernels.wide.lanes"
+_VECTORS = "physicslab.kernels.wide.interpreted"
 """Where the stand-ins of vectors are: they are imported when the first kernel is interpreted."""
 
 _forced = os.environ.get("PHYSICSLAB_INTERPRET", "0") not in ("", "0")
@@ -40,6 +40,12 @@ _forced = os.environ.get("PHYSICSLAB_INTERPRET", "0") not in ("", "0")
 def is_forced() -> bool:
     """Whether kernels are to be interpreted, be they compiled or not."""
     return _forced
+
+
+def compile_all_the_same() -> None:
+    """Let kernels be compiled in this process whatever the environment says: it is there for that."""
+    global _forced
+    _forced = False
 
 
 def stand_in(jitted: Any) -> None:
@@ -53,7 +59,7 @@ def stand_in(jitted: Any) -> None:
     jitted : kernel
         One that is not compiled; of one that is, nothing changes.
     """
-    if is_jitted(jitted):
+    if _is_dispatcher(jitted):
         # What numba's dispatcher calls where no compiled signature fits; it then calls what is returned.
         entry = entry_of(jitted)
         jitted._compile_for_args = lambda *arguments: entry
@@ -88,11 +94,16 @@ def interpreted() -> Iterator[None]:
             _take_back(jitted, overloads)
 
 
+def _is_dispatcher(value: Any) -> bool:
+    """Whether something is what numba makes of a function, and not a force that is called by its address."""
+    return bool(is_jitted(value))
+
+
 def _set_aside(jitted: Any) -> None:
     """Let a kernel have no compiled code."""
     jitted.compiled = False
     jitted.overloads.clear()
-    if is_jitted(jitted):
+    if _is_dispatcher(jitted):
         jitted._reset_overloads()
         jitted._can_compile = True
 
@@ -100,7 +111,7 @@ def _set_aside(jitted: Any) -> None:
 def _take_back(jitted: Any, overloads: dict[Any, Any]) -> None:
     """Let a kernel have its compiled code again."""
     for arguments, code in overloads.items():
-        if is_jitted(jitted):
+        if _is_dispatcher(jitted):
             jitted.add_overload(code)
         else:
             jitted.overloads[arguments] = code
@@ -150,7 +161,7 @@ def _counterpart(value: Any) -> Any:
     """Return what a twin sees in place of something that a kernel knows by name."""
     if value is math:
         return math_functions
-    if is_jitted(value):
+    if _is_dispatcher(value):
         return twin_of(value)
     if isinstance(value, _Intrinsic):
         return stand_in_of(value)
@@ -192,15 +203,17 @@ def _way_in(kind: Any) -> Callable[[Any], Any]:
     if isinstance(kind, types.Array):
         return _way_of_arrays(kind)
     if isinstance(kind, types.BaseTuple):
-        ways = [_way_in(part) for part in kind]
+        ways = [_way_in(part) for part in _parts(kind)]
         return lambda parts: tuple([take(part) for take, part in zip(ways, parts, strict=True)])
     if isinstance(kind, types.Float):
         return _checked(float, np.float64)
-    return (
-        _checked((bool, np.bool_), bool)
-        if isinstance(kind, types.Boolean)
-        else _checked((int, np.integer), int)
-    )
+    if isinstance(kind, types.Boolean):
+        return _checked((bool, np.bool_), bool)
+    return _checked((int, np.integer), int)
+
+
+def _parts(kind: Any) -> tuple[Any, ...]:
+    return tuple(kind)
 
 
 def _checked(allowed: Any, make: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -229,7 +242,7 @@ def _way_of_arrays(kind: Any) -> Callable[[Any], Any]:
 def _way_out(kind: Any) -> Callable[[Any], Any]:
     """Return what makes of a twin's answer what the compiled kernel returns."""
     if isinstance(kind, types.BaseTuple):
-        ways = [_way_out(part) for part in kind]
+        ways = [_way_out(part) for part in _parts(kind)]
         return lambda parts: tuple([give(part) for give, part in zip(ways, parts, strict=True)])
     if isinstance(kind, types.NoneType):
         return lambda _: None

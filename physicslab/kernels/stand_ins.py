@@ -42,20 +42,15 @@ def stand_in_of(intrinsic: Any) -> Callable[..., Any] | None:
 # ---- arithmetic --------------------------------------------------------------------------------------------
 
 
-def _in_float64(function: Callable[..., float], refused: float, overflown: float) -> Callable[..., Any]:
-    """Return a function of the C library's as compiled code calls it: it raises nothing.
-
-    ``refused`` is what comes of numbers that it is not defined for, ``overflown`` of those for which it is
-    too large.
-    """
+def _in_float64(name: str) -> Callable[..., Any]:
+    """Return a function of ``math`` as compiled code calls it: of what it refuses it gives what C does."""
+    exact, odd = getattr(math, name), getattr(np, name, None)
 
     def call(*numbers: float) -> np.float64:
         try:
-            return np.float64(function(*numbers))
-        except ValueError:
-            return np.float64(refused)
-        except OverflowError:
-            return np.float64(overflown)
+            return np.float64(exact(*numbers))
+        except (ValueError, OverflowError):
+            return np.float64(np.nan if odd is None else odd(*numbers))
 
     return call
 
@@ -70,25 +65,22 @@ def _whole(function: Callable[[float], int]) -> Callable[[float], int]:
     return call
 
 
-def _power(base: float, exponent: float) -> np.float64:
-    with np.errstate(all="ignore"):
-        try:
-            return np.float64(math.pow(base, exponent))
-        except (ValueError, OverflowError):  # what it is then depends on both: NumPy knows
-            return np.float64(np.power(np.float64(base), np.float64(exponent)))
+def _stand_in_for_math() -> SimpleNamespace:
+    names: dict[str, Any] = {}
+    for name, value in vars(math).items():
+        if isinstance(value, float):
+            names[name] = np.float64(value)
+        elif name in ("ceil", "floor", "trunc"):
+            names[name] = _whole(value)
+        elif callable(value) and not name.startswith("is"):
+            names[name] = _in_float64(name)
+        else:
+            names[name] = value
+    return SimpleNamespace(**names)
 
 
-math_functions = SimpleNamespace(
-    inf=np.float64(math.inf), pi=np.float64(math.pi),
-    ceil=_whole(math.ceil), floor=_whole(math.floor),
-    isfinite=math.isfinite, isnan=math.isnan,
-    pow=_power,
-    **{
-        name: _in_float64(getattr(math, name), math.nan, math.inf)
-        for name in ("copysign", "cos", "cosh", "exp", "expm1", "sin", "sqrt")
-    },
-)  # fmt: skip
-"""Stands in for the module ``math``: what a kernel uses of it, and nothing else."""
+math_functions = _stand_in_for_math()
+"""Stands in for the module ``math``, by whose functions compiled code gives the same bits."""
 
 arithmetic: dict[str, Any] = {"float": np.float64, "int": _whole(int)}
 """Stand in for functions that Python has built in."""
