@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels import KERNELS, compile_kernels, interpreter
-from physicslab.kernels.interpreter import entry_of, interpreted
+from physicslab.kernels.forces import force_calls
+from physicslab.kernels.interpreter import entry_of, interpreted, twin_of
 from physicslab.kernels.warm import load_all
 
-__all__ = ["compared", "name_of"]
+__all__ = ["compared", "name_of", "same_bits"]
 
 _CLOCK = "cost"
 """The argument that takes what parts of a kernel cost: no run is like another in that."""
@@ -29,10 +30,11 @@ def name_of(jitted: Any) -> str:
 
 
 @contextmanager
-def compared(calls: Counter[str], most: int, same: Callable[[str, Any, Any], None]) -> Iterator[None]:
+def compared(calls: Counter[str], most: int) -> Iterator[None]:
     """Compare both tiers in the first ``most`` calls of each kernel that are made within a ``with`` block.
 
-    The run goes on with what the compiled kernels give; ``calls`` counts what was compared.
+    The run goes on with what the compiled kernels give; ``calls`` counts what was compared. Forces that are
+    called by address are Python in the one and compiled in the other.
     """
     load_all()
     compile_kernels(KERNELS)
@@ -51,15 +53,20 @@ def compared(calls: Counter[str], most: int, same: Callable[[str, Any, Any], Non
             calls[name] += 1
             copies = _Copies().of(arguments)
             returned, answer = code(*arguments), entry(*copies)
-            same(f"{name} returns", returned, answer)
+            same_bits(f"{name} returns", returned, answer)
             for parameter, one, other in zip(names, arguments, copies, strict=True):
                 if parameter != _CLOCK:
-                    same(f"{name}: {parameter}", one, other)
+                    same_bits(f"{name}: {parameter}", one, other)
             return returned
 
         return call
 
-    with patch.object(interpreter, "entry_of", cache(twice)), interpreted():
+    def noted(force: Any) -> Callable[..., Any]:
+        calls[name_of(force)] += 1
+        return twin_of(force)
+
+    called = patch.object(force_calls, "twin_of", noted)
+    with called, patch.object(interpreter, "entry_of", cache(twice)), interpreted():
         yield
 
 
@@ -86,3 +93,22 @@ class _Copies:
         offset = array.ctypes.data - owner.ctypes.data
         flat = copy.reshape(-1).view(np.uint8)
         return np.ndarray(array.shape, array.dtype, flat.data, offset, array.strides)
+
+
+def same_bits(what: str, one: Any, other: Any) -> None:
+    """Assert that two values have the same types and bits; numbers that are none are alike."""
+    assert type(one) is type(other), f"{what}: {type(one)}, {type(other)}"
+    if isinstance(one, tuple):
+        for place, pair in enumerate(zip(one, other, strict=True)):
+            same_bits(f"{what}[{place}]", *pair)
+    elif isinstance(one, np.ndarray) and one.dtype.names:
+        for name in one.dtype.names:
+            same_bits(f"{what}.{name}", one[name], other[name])
+    elif isinstance(one, (np.ndarray, float)):
+        first, second = np.atleast_1d(one), np.atleast_1d(other)
+        if first.dtype == np.float64:
+            first, second = (np.where(np.isnan(part), np.nan, part) for part in (first, second))
+        odd = first != second
+        assert first.tobytes() == second.tobytes(), f"{what}: {first[odd]}, and as Python {second[odd]}"
+    else:
+        assert one == other, f"{what}: {one!r}, {other!r}"

@@ -45,7 +45,7 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     try:
         with Compiling(display) as compiling:
             with loading():
-                sandbox = Sandbox(world, window, autosave=autosave)
+                sandbox = Sandbox(world, window, autosave=autosave, shown=compiling.scenes.follow)
                 sandbox.frame(0.0)
             _loop(sandbox, display, compiling)
     except Left:  # the window was closed while it waited for kernels
@@ -68,6 +68,7 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
     while not window.closing:
         sandbox.frame(elapsed)
         compiling.advance(window.theme)
+        window.pace.max_dt = compiling.scenes.made_up_for(window.config.max_dt)
         display.title = _title(sandbox.world)
         if window.wants_screenshot:
             window.wants_screenshot = False

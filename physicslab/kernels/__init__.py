@@ -193,12 +193,12 @@ def compile_kernels(kernels: Iterable[Any]) -> float:
     """
     start = time.perf_counter()
     missing = [jitted for jitted in kernels if not jitted.compiled]
-    if missing and _ask is not None and not is_forced():
-        for jitted in _ask(missing):
-            stand_in(jitted)
-            missing.remove(jitted)
+    waiting = () if not missing or _ask is None or is_forced() else tuple(_ask(missing))
     for jitted in missing:
-        load(jitted)
+        if jitted in waiting:
+            stand_in(jitted)
+        else:
+            load(jitted)
     return time.perf_counter() - start
 
 

@@ -13,26 +13,33 @@ from __future__ import annotations
 
 import math
 import os
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
-from importlib import import_module
-from types import FunctionType
 from typing import Any
 
 import numpy as np
 from numba import types
-from numba.core.extending import _Intrinsic
 from numba.extending import is_jitted
 from numba.np.numpy_support import as_dtype
+from numpy.typing import NDArray
 
 from physicslab import kernels
-from physicslab.kernels.stand_ins import Records, arithmetic, math_functions, stand_in_of
+from physicslab.kernels.stand_ins import Records
+from physicslab.kernels.twins import Overdue, patience, twin_of
 
-__all__ = ["compile_all_the_same", "entry_of", "interpreted", "is_forced", "stand_in", "twin_of"]
-
-_VECTORS = "physicslab.kernels.wide.interpreted"
-"""Where the stand-ins of vectors are: they are imported when the first kernel is interpreted."""
+__all__ = [
+    "compile_all_the_same",
+    "entry_of",
+    "interpreted",
+    "is_forced",
+    "limit",
+    "prepare",
+    "stand_in",
+    "twin_of",
+    "unlimited",
+]
 
 _forced = os.environ.get("PHYSICSLAB_INTERPRET", "0") not in ("", "0")
 
@@ -40,6 +47,30 @@ _forced = os.environ.get("PHYSICSLAB_INTERPRET", "0") not in ("", "0")
 def is_forced() -> bool:
     """Whether kernels are to be interpreted, be they compiled or not."""
     return _forced
+
+
+def limit(seconds: float, compile_now: Callable[[Any], None]) -> None:
+    """Let no kernel be interpreted for much longer than so many seconds at a time, until :func:`unlimited`.
+
+    One that is gets back what its arguments held, ``compile_now`` is called with it and must load it, and it
+    is called again: so a method that chooses its steps, or a thousand impacts within one, stop no window.
+    """
+    global _limit, _compile_now
+    _limit, _compile_now = seconds, compile_now
+
+
+def unlimited() -> None:
+    """Let every kernel that is interpreted run for as long as it takes."""
+    limit(math.inf, _load)
+
+
+def _load(jitted: Any) -> None:
+    """Load a kernel that has been interpreted for too long, where nothing else is to be done about it."""
+    kernels.load(jitted)
+
+
+_limit: float = math.inf
+_compile_now: Callable[[Any], None] = _load
 
 
 def compile_all_the_same() -> None:
@@ -64,7 +95,7 @@ def stand_in(jitted: Any) -> None:
         entry = entry_of(jitted)
         jitted._compile_for_args = lambda *arguments: entry
     else:
-        jitted.stand_in()
+        jitted.stands_in = True
 
 
 @contextmanager
@@ -90,6 +121,8 @@ def interpreted() -> Iterator[None]:
         yield
     finally:
         _forced = before
+        for jitted in kernels.KERNELS:
+            _stand_back(jitted)
         for jitted, overloads in aside.items():
             _take_back(jitted, overloads)
 
@@ -97,6 +130,14 @@ def interpreted() -> Iterator[None]:
 def _is_dispatcher(value: Any) -> bool:
     """Whether something is what numba makes of a function, and not a force that is called by its address."""
     return bool(is_jitted(value))
+
+
+def _stand_back(jitted: Any) -> None:
+    """Let a kernel be compiled where it is called, as it was before :func:`stand_in`."""
+    if _is_dispatcher(jitted):
+        vars(jitted).pop("_compile_for_args", None)
+    else:
+        jitted.stands_in = False
 
 
 def _set_aside(jitted: Any) -> None:
@@ -119,65 +160,10 @@ def _take_back(jitted: Any, overloads: dict[Any, Any]) -> None:
     jitted.compiled = True
 
 
-# ---- twins -------------------------------------------------------------------------------------------------
-
-
-@cache
-def twin_of(jitted: Any) -> Callable[..., Any]:
-    """Return a kernel, or an inner function, as plain Python that calls nothing compiled.
-
-    It takes what kernels give each other: records as :class:`physicslab.kernels.stand_ins.Records`, numbers
-    as np.float64, eight numbers as an array (8,); warnings of NumPy's are the caller's to silence.
-    """
-    import_module(_VECTORS)
-    function = jitted.py_func
-    code = function.__code__
-    constants = tuple(_of_float64(constant) for constant in code.co_consts)
-    names = _names_of(function.__globals__)
-    return FunctionType(
-        code.replace(co_consts=constants),
-        names,
-        function.__name__,
-        function.__defaults__,
-        function.__closure__,
-    )
-
-
-_modules: dict[int, dict[str, Any]] = {}
-"""What the twins of each module know, by where the module's own names are."""
-
-
-def _names_of(module: dict[str, Any]) -> dict[str, Any]:
-    """Return the names of a module as its functions' twins know them."""
-    names = _modules.get(id(module))
-    if names is None:
-        names = _modules[id(module)] = {**module, **arithmetic}
-        for name, value in module.items():
-            names[name] = _counterpart(value)
-    return names
-
-
-def _counterpart(value: Any) -> Any:
-    """Return what a twin sees in place of something that a kernel knows by name."""
-    if value is math:
-        return math_functions
-    if _is_dispatcher(value):
-        return twin_of(value)
-    if isinstance(value, _Intrinsic):
-        return stand_in_of(value)
-    return _of_float64(value)
-
-
-def _of_float64(value: Any) -> Any:
-    """Return a constant with np.float64 in place of every float: unlike that it divides by zero."""
-    if type(value) is float:
-        return np.float64(value)
-    if type(value) is tuple:
-        return tuple(_of_float64(part) for part in value)
-    return value
-
-
-# ---- from Python into a twin and back ----------------------------------------------------------------------
+def prepare() -> None:
+    """Make the twins of all kernels there are, which the first that is called would else wait for."""
+    for jitted in kernels.KERNELS:
+        twin_of(jitted)
 
 
 @cache
@@ -193,9 +179,36 @@ def entry_of(jitted: Any) -> Callable[..., Any]:
         except (TypeError, ValueError) as error:
             raise TypeError(f"No matching definition of {jitted.__name__}: {error}") from error
         with np.errstate(all="ignore"):
-            return way_out(twin_of(jitted)(*taken))
+            if _limit == math.inf or _forced:
+                return way_out(twin_of(jitted)(*taken))
+            kept = [(array, array.copy()) for array in _arrays(arguments)]
+            try:
+                return way_out(_in_time(twin_of(jitted), taken))
+            except Overdue:
+                for array, copy in kept:
+                    array[...] = copy
+        _compile_now(jitted)
+        return jitted(*arguments)
 
     return enter
+
+
+def _in_time(twin: Callable[..., Any], taken: list[Any]) -> Any:
+    """Call a twin, which raises Overdue if it takes longer than it may."""
+    before, patience.until = patience.until, time.perf_counter() + _limit
+    try:
+        return twin(*taken)
+    finally:
+        patience.until = before
+
+
+def _arrays(arguments: tuple[Any, ...]) -> Iterator[NDArray[Any]]:
+    """Yield the arrays among arguments, and within tuples of them."""
+    for argument in arguments:
+        if isinstance(argument, np.ndarray):
+            yield argument
+        elif isinstance(argument, tuple):
+            yield from _arrays(argument)
 
 
 def _way_in(kind: Any) -> Callable[[Any], Any]:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from functools import cached_property
 from typing import Annotated, Any
 
 import numba
@@ -26,8 +27,8 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from physicslab.kernels import KERNELS, Numbers, cached, inlined
-from physicslab.kernels.interpreter import twin_of
 from physicslab.kernels.stand_ins import Memory, stands_in_for
+from physicslab.kernels.twins import endless, twin_of
 
 __all__ = ["Calls", "ForceKernel", "accelerate", "accelerate_over", "force_kernel"]
 
@@ -43,7 +44,8 @@ _C_FUNCTION = ctypes.CFUNCTYPE(None, _REALS, _REALS, ctypes.c_double, _REALS, _R
 class ForceKernel:
     """A force ``f(q, v, span, force, parameters, indices)``: a C function, compiled for its address.
 
-    All but the span [s] are pointers, to float64 and (the last) int64.
+    All but the span [s] are pointers, to float64 and (the last) int64. While ``stands_in`` is true and
+    nothing is compiled, the C function runs the Python body.
     """
 
     declared_signature = _SIGNATURE
@@ -57,8 +59,7 @@ class ForceKernel:
         )
         self.overloads: dict[Any, Any] = {}
         self.compiled = False
-        self._stand_in: Any = None
-        self._stand_in_address = 0
+        self.stands_in = False
 
     def compile(self, signature: Any) -> None:
         """Compile it, or load it from the cache."""
@@ -75,29 +76,30 @@ class ForceKernel:
         """The signatures that it has been compiled for: the one, or none."""
         return list(self.overloads)
 
-    def stand_in(self) -> None:
-        """Let the address be that of a C function which runs the Python body, until it is compiled."""
-        if self._stand_in is None:
-            # Kept for good: whoever was given its address may call it at any time.
-            self._stand_in = _C_FUNCTION(self._interpret)
-            address = ctypes.cast(self._stand_in, ctypes.c_void_p).value
-            assert address is not None
-            self._stand_in_address = address
-            _KERNELS[address] = self
-
     def _interpret(self, q: Any, v: Any, span: float, force: Any, numbers: Any, whole: Any) -> None:
-        """Run the Python body on what lies behind pointers."""
+        """Run the Python body on what lies behind pointers, or what is compiled of it by now."""
+        if self.overloads:
+            _C_FUNCTION(self.address)(q, v, span, force, numbers, whole)
+            return
         with np.errstate(all="ignore"):
             twin_of(self)(Memory(q), Memory(v), np.float64(span), Memory(force), Memory(numbers), whole)
 
     @property
     def address(self) -> int:
-        """Where the C function lies in memory."""
+        """Where the C function lies in memory, or one that runs the Python body while that stands in."""
+        if not self.overloads and self.stands_in:
+            return self._address_of_python
         if not self.overloads:
-            if self._stand_in is not None:
-                return self._stand_in_address
             self.compile(_SIGNATURE)
         return int(self.overloads[_SIGNATURE.args].address)
+
+    @cached_property
+    def _address_of_python(self) -> int:
+        # Kept for good: who was given its address may call it at any time.
+        self._c_function = _C_FUNCTION(self._interpret)
+        address: int = ctypes.cast(self._c_function, ctypes.c_void_p).value or 0
+        _KERNELS[address] = self
+        return address
 
 
 _KERNELS: dict[int, ForceKernel] = {}
@@ -157,6 +159,7 @@ def accelerate(
     accelerate_over(q, v, 0.0, acceleration, inverse_mass, damping, calls)
 
 
+@endless
 @inlined
 def accelerate_over(
     q: Numbers, v: Numbers, span: float,
