@@ -78,7 +78,8 @@ class _Copies:
 
     def of(self, value: Any) -> Any:
         if isinstance(value, tuple):
-            return tuple(self.of(part) for part in value)
+            copies = [self.of(part) for part in value]
+            return type(value)(*copies) if hasattr(value, "_fields") else tuple(copies)
         return self._of_array(value) if isinstance(value, np.ndarray) else value
 
     def _of_array(self, array: NDArray[Any]) -> NDArray[Any]:

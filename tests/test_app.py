@@ -18,7 +18,7 @@ from physicslab.desktop.app import open_window
 from physicslab.desktop.sandbox import Sandbox
 from physicslab.files.scene import SceneError, load_scene
 from physicslab.prefabs import box, circle
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.display import Display
 from physicslab.view.window import Window

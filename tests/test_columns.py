@@ -15,7 +15,7 @@ from physicslab.components import Mass, Material, Shape, Spring, Trail, Transfor
 from physicslab.ecs.component import COMPONENTS, Component, InvalidValue, Table, Vector, component, field
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
 

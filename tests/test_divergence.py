@@ -13,9 +13,9 @@ from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import box, circle
-from physicslab.state.bodies import Diverged
-from physicslab.systems.schedule import ForceSystem, Stage, at
+from physicslab.state.masses import Diverged
 from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import ForceSystem, Stage, at
 from physicslab.world import World
 
 

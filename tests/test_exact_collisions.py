@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from physicslab import World, load_scene
 from physicslab.components import Held, Mass, Material, Shape, Transform, Velocity
+from physicslab.contacts.report import contact_between
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels import compile_kernels
@@ -237,7 +238,7 @@ def test_momentum_is_kept_energy_never_grows_and_nothing_overlaps(
         )  # fmt: skip
     before, energy = measure_momentum(world), measure_energy(world).total
     world.run(steps=20)
-    assert world.method.collisions == "exact"
+    assert world.plan.collisions == "exact"
     after, most = measure_momentum(world), fast * sum(mass for _, mass, *_ in bodies)
     assert (after.linear - before.linear).magnitude <= 1e-14 * most
     assert after.angular == pytest.approx(before.angular, abs=1e-13 * most * 40 * size)
@@ -480,8 +481,8 @@ def test_a_crowd_between_inelastic_walls_ends() -> None:
 def test_auto_chooses_exact_for_few_bodies_that_bounce(name: str, collisions: str) -> None:
     world = load_scene(name)
     world.synchronise()
-    assert world.method.collisions == collisions
-    assert world.method.collision_reason
+    assert world.plan.collisions == collisions
+    assert world.plan.collision_reason
 
 
 def one_ball(world: World) -> None:
@@ -538,7 +539,7 @@ def test_the_choice_and_its_reason(
     world.physics = dataclasses.replace(world.physics, **physics)
     fill(world)
     world.synchronise()
-    assert (world.method.collisions, world.method.collision_reason) == (found, reason)
+    assert (world.plan.collisions, world.plan.collision_reason) == (found, reason)
     world.run(seconds=0.2)
 
 
@@ -546,10 +547,10 @@ def test_a_box_set_free_to_turn_is_noticed() -> None:
     world = falling()
     crate = box(world, (0, 3), fixed_rotation=True, restitution=0.5, name="crate")
     world.run(seconds=0.1)
-    assert world.method.collisions == "exact"
+    assert world.plan.collisions == "exact"
     world.component(crate, Mass).fixed_rotation = False
     world.run(seconds=0.1)
-    assert world.method.collision_reason == "exact was asked for, and crate is a box that may turn"
+    assert world.plan.collision_reason == "exact was asked for, and crate is a box that may turn"
 
 
 def test_a_method_asked_for_by_name_comes_first() -> None:
@@ -557,8 +558,8 @@ def test_a_method_asked_for_by_name_comes_first() -> None:
     one_ball(world)
     world.simulation = dataclasses.replace(world.simulation, integrator="leapfrog")
     world.synchronise()
-    assert (world.method.integrator.name, world.method.collisions) == ("leapfrog", "step")
-    assert world.method.collision_reason.startswith("leapfrog was asked for")
+    assert (world.plan.integrator.name, world.plan.collisions) == ("leapfrog", "step")
+    assert world.plan.collision_reason.startswith("leapfrog was asked for")
 
 
 def test_impacts_are_told_as_those_of_the_contact_step_are() -> None:
@@ -567,7 +568,7 @@ def test_impacts_are_told_as_those_of_the_contact_step_are() -> None:
     ball = circle(world, (0, 0.3), radius=0.25, velocity=(1, 0), restitution=0.5, friction=0.2)
     while not world.collisions:
         world.step()
-    contact = world.contacts.between(world, floor, ball)
+    contact = contact_between(world, floor, ball)
     assert contact is not None
     (point,) = contact.points
     fall = math.sqrt(2 * G * 0.05)
@@ -576,7 +577,7 @@ def test_impacts_are_told_as_those_of_the_contact_step_are() -> None:
     assert point.impact_tangent == pytest.approx(0.2 * 1.5 * fall, rel=1e-13)
     assert tuple(point.position) == pytest.approx((fall / G, 0.0), abs=1e-14)
     world.step()
-    assert world.contacts.between(world, floor, ball) is None
+    assert contact_between(world, floor, ball) is None
 
 
 def test_the_log_keeps_the_newest() -> None:

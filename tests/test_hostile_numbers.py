@@ -12,7 +12,7 @@ from test_fuzz_scenes import run_or_refuse
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.ecs.component import InvalidValue
 from physicslab.files.scene import SceneError, read_scene
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.systems.spring import SpringSystem
 from physicslab.world import World
 

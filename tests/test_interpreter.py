@@ -35,8 +35,7 @@ from physicslab.kernels.interpreter import interpreted, stand_in, twin_of
 from physicslab.kernels.ode.dop853 import dop853
 from physicslab.kernels.stand_ins import math_functions
 from physicslab.kernels.warm import Warmup
-from physicslab.systems.drag import DragSystem
-from physicslab.systems.schedule import ForceSystem
+from physicslab.systems.system import ForceSystem
 from physicslab.view.canvas.canvas import Look
 from physicslab.view.canvas.display import Display
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
@@ -97,10 +96,6 @@ def heavy_loads() -> None:
     world = scene(FLOOR, body(0.0, 0.5, "box"), heavy, collisions="step")
     for _ in range(3):
         world.step(0.01)
-    with world.active():
-        for system in world.schedule.running:
-            if isinstance(system, DragSystem):
-                system.slow(world, 0.0)
 
 
 def sleepers() -> None:

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.contacts.report import list_contacts
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import compile_kernels
@@ -77,7 +78,7 @@ def test_records_are_gone_through_in_the_order_of_rows_whenever_they_came() -> N
     assert recorded(world) != sorted(recorded(world))
     scalar = [recorded(world)[p] for p in contacts.scalar[: contacts.scalar_count]]
     assert scalar == sorted(recorded(world))
-    reported = [(contact.a, contact.b) for contact in contacts.listed(world)]
+    reported = [(contact.a, contact.b) for contact in list_contacts(world)]
     assert reported == sorted(reported)
 
 

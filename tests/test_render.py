@@ -13,7 +13,7 @@ from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.scenes import SCENES
 from physicslab.systems.frame.render import RenderSystem
-from physicslab.systems.schedule import Stage
+from physicslab.systems.system import Stage
 from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK

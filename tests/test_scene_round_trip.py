@@ -24,7 +24,7 @@ from physicslab.files.scene import read_scene, write_scene
 from physicslab.files.writer import unique_name
 from physicslab.prefabs import box, circle, container, pendulum, pile, stack
 from physicslab.scenes import SCENES
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.systems.standard import standard_systems
 
 numbers = st.floats(-1e3, 1e3)

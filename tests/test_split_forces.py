@@ -37,16 +37,16 @@ def hung(stiffness: float, damping: float = 0.0) -> tuple[World, int]:
 def test_the_method_goes_by_the_stiffness_and_the_reason_says_so(stiffness: float, method: object) -> None:
     world, _ = hung(stiffness)
     world.synchronise()
-    assert world.method.split_forces is not None
-    assert world.method.split_forces is method
-    assert "between contacts what springs or drag act on goes by" in world.method.reason
-    assert ("too fast to be followed" in world.method.reason) == (method is IMPLICIT_MIDPOINT)
+    assert world.plan.split_forces is not None
+    assert world.plan.split_forces is method
+    assert "between contacts what springs or drag act on goes by" in world.plan.reason
+    assert ("too fast to be followed" in world.plan.reason) == (method is IMPLICIT_MIDPOINT)
 
 
 def test_dampers_are_followed_by_an_adaptive_method() -> None:
     world, _ = hung(50.0, damping=1.0)
     world.synchronise()
-    assert world.method.split_forces is DOP853
+    assert world.plan.split_forces is DOP853
 
 
 def test_a_method_asked_for_by_name_is_used() -> None:
@@ -54,7 +54,7 @@ def test_a_method_asked_for_by_name_is_used() -> None:
     circle(world, (0.0, 0.0), radius=0.1)
     world.spawn(Spring(2, None, stiffness=10.0))
     world.synchronise()
-    assert world.method.split_forces is None
+    assert world.plan.split_forces is None
     assert not world.bodies.sub_integrated.any()
 
 
@@ -157,7 +157,7 @@ def test_a_spring_changed_by_hand_is_followed_from_the_next_step() -> None:
     world.run(steps=2)
     world.component(bob, Spring).stiffness = 1e12
     world.step()
-    assert world.method.split_forces is IMPLICIT_MIDPOINT
+    assert world.plan.split_forces is IMPLICIT_MIDPOINT
 
 
 def test_planets_on_springs_beside_contacts_are_all_followed() -> None:

@@ -5,6 +5,7 @@ import pytest
 from desk import bits
 
 from physicslab.components import Mass, Transform, Velocity
+from physicslab.contacts.memory import export_contacts, restore_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import compile_kernels
@@ -163,7 +164,7 @@ def test_lanes_that_a_file_makes_up_stay_loose() -> None:
     """Two contacts in one lane, boxes in a lane of discs, a body twice in a block, a lane far out."""
     for spoiled in ("one lane", "wrong kind", "one block", "far out"):
         world = settled_boxes()
-        rows = [row for row in world.contacts.export() if len(row) > 20]
+        rows = [row for row in export_contacts(world.contacts) if len(row) > 20]
         world.contacts.clear()
         slots: dict[str, list[tuple[float, float]]] = {
             "one lane": [(1, 0) for _ in rows],
@@ -172,7 +173,7 @@ def test_lanes_that_a_file_makes_up_stay_loose() -> None:
             "far out": [(10**15 + 1, 0) for _ in rows],
         }
         changed = [[*row[:-2], *fill_slot] for row, fill_slot in zip(rows, slots[spoiled], strict=True)]
-        world.contacts.restore(world, changed)
+        restore_contacts(world.contacts, changed)
         world.run(steps=30)
         contacts = world.contacts
         restored = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.wide.kinds])

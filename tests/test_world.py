@@ -18,8 +18,8 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
-from physicslab.systems.schedule import Stage, System, at
 from physicslab.systems.spring import SpringSystem
+from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
 
@@ -333,7 +333,7 @@ def test_configuration_is_replaced_at_any_time() -> None:
     assert world.component(ball, Velocity).linear.y == pytest.approx(-0.981)
     world.physics = PhysicsConfig(gravity=Vector2(10, 0))
     world.simulation = SimulationConfig(dt=0.1, substeps=1, integrator="symplectic_euler")
-    assert world.method.integrator.name == "symplectic_euler"
+    assert world.plan.integrator.name == "symplectic_euler"
     world.step(0.1)
     assert world.component(ball, Velocity).linear.x == pytest.approx(1.0)
     assert world.force_evaluations == 1  # the closed form before took none

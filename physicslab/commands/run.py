@@ -28,7 +28,7 @@ from physicslab.files.checks import shown
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import SceneError, load_scene
 from physicslab.scenes import SCENES
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.world import World
 
 __all__ = ["add_arguments", "execute"]
@@ -122,8 +122,8 @@ def _configure(world: World, arguments: Namespace) -> None:
         if error.component == world.simulation.section and error.field in changes:
             raise CommandError(f"--{error.field} {shown(error.value)}: must be {error.allowed}") from error
         raise CommandError(f"{scene}: {error}") from error
-    if world.method.refused and arguments.integrator is not None:
-        raise CommandError(f"--integrator {arguments.integrator}: {world.method.refused}")
+    if world.plan.refused and arguments.integrator is not None:
+        raise CommandError(f"--integrator {arguments.integrator}: {world.plan.refused}")
     if arguments.steps is not None and not math.isfinite(arguments.steps * world.simulation.dt):
         raise CommandError(
             f"--steps {arguments.steps}: must take a finite time at {world.simulation.dt:g} s each"
@@ -147,9 +147,9 @@ def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWr
         while True:
             if trajectory is not None:
                 trajectory.write(world)
-            compiled, began = world.schedule.compile_s, time.perf_counter()
+            compiled, began = world.compile_s, time.perf_counter()
             done = next(stepping, None)
-            record.wall_s += time.perf_counter() - began - (world.schedule.compile_s - compiled)
+            record.wall_s += time.perf_counter() - began - (world.compile_s - compiled)
             if samples % look_every == 0 or done is None:
                 record.advice.note(advise(world))
             samples += 1

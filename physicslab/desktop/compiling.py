@@ -9,7 +9,7 @@ from typing import Any
 
 from physicslab.desktop.small_scenes import LONGEST, SmallScenes
 from physicslab.kernels import KERNELS, ask_before_compiling, interpreter, load
-from physicslab.kernels.solver import contact_steps
+from physicslab.kernels.solver import fused_contact
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.view.canvas.display import Display, wants_to_leave
 from physicslab.view.canvas.theme import DARK, Theme
@@ -60,7 +60,7 @@ class Compiling:
             interpreter.limit(LONGEST, self._catch_up)
             ask_before_compiling(self._ask)
         elif not interpreter.is_forced():
-            load(contact_steps.advance)  # 26 ms, for which no frame has room
+            load(fused_contact.advance)  # 26 ms, for which no frame has room
         return self
 
     def __exit__(

@@ -9,11 +9,11 @@ from pathlib import Path
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.rescue import save_last_good
 from physicslab.files.scene import SceneError
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
-from physicslab.systems.schedule import Stage
+from physicslab.systems.system import Stage
 from physicslab.view.controls.toolbar import Toolbar
 from physicslab.view.window import Window
 from physicslab.world import World

@@ -16,8 +16,8 @@ from physicslab.components import Shape, Spring, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
 from physicslab.diagnostics.warning_records import Advice, WorstAdvice
-from physicslab.ode.system import spring_ends
-from physicslab.systems.schedule import ForceSystem
+from physicslab.state.packed import spring_ends
+from physicslab.systems.system import ForceSystem
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -56,7 +56,7 @@ def advise(world: World) -> tuple[Advice, ...]:
     Nothing is changed; the figures are those of the last step.
     """
     found = [*_refusals(world), *_division(world), *_rates(world), *_distance(world)]
-    if world.method.collisions == "step":
+    if world.plan.collisions == "step":
         near = contact_graph(world)
         found += [*_overlap(world, near), *_loads(world, near), *_speeds(world, near), *_turning(world, near)]
     return tuple(found)
@@ -64,7 +64,7 @@ def advise(world: World) -> tuple[Advice, ...]:
 
 def _refusals(world: World) -> Iterator[Advice]:
     """Yield what was asked for and could not be had."""
-    method = world.method
+    method = world.plan
     if method.refused:
         yield Advice(None, method.refused, None, "", None, 'simulation.integrator = "auto"')
     if world.simulation.collisions == "exact" and method.collisions == "step":
@@ -79,7 +79,7 @@ def _division(world: World) -> Iterator[Advice]:
 
 def _rates(world: World) -> Iterator[Advice]:
     """Yield a force too fast for the steps that are made."""
-    method, dt = world.method, world.simulation.dt
+    method, dt = world.plan, world.simulation.dt
     integrator = method.integrator if method.smooth else method.split_forces or method.stages
     if method.collisions == "exact" or integrator.chooses_steps or math.isinf(integrator.order):
         return

@@ -7,6 +7,8 @@ from typing import Any
 
 import esper
 
+from physicslab.contacts.islands import restore_rests
+from physicslab.contacts.memory import restore_contacts
 from physicslab.ecs.component import Component, InvalidValue
 from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.fields import Field
@@ -107,11 +109,11 @@ def read_scene(document: object, source: str = "scene") -> World:
     if draft.contacts or draft.rests:
         world.synchronise()
         try:
-            world.contacts.restore(world, draft.contacts)
+            restore_contacts(world.contacts, draft.contacts)
         except (ValueError, OverflowError) as error:
             esper.switch_world(before)
             raise SceneError(f"{source}: contacts: {error}") from error
-        world.sleep.restore(world, draft.rests)
+        restore_rests(world, draft.rests)
     return world
 
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import esper
 
 from physicslab.components import Name, Shape
+from physicslab.contacts.islands import export_rests
+from physicslab.contacts.memory import copied
 from physicslab.ecs.component import Component
 from physicslab.ecs.entity_index import EntityIndex
 
@@ -52,8 +54,8 @@ class WorldSnapshot:
         self.texts = {key: getattr(world, key) for key in ("name", "title", "description")}
         self.time, self.physics, self.simulation = world.time, world.physics, world.simulation
         self.shaped = set(world.batch(Shape).entities.tolist())
-        self.contacts: Contacts = world.contacts.copied()
-        self.rests = world.sleep.export(world)
+        self.contacts: Contacts = copied(world.contacts)
+        self.rests = export_rests(world)
         self._rows = dict(world.entity_index.row_of)
         self._tables = _copied(world.entity_index)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Generator, Iterable, Mapping
 from typing import Any
 
+from physicslab.contacts.memory import remembered
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.fields import REQUIRED, Field
@@ -52,7 +53,7 @@ def scene_pieces(frozen: WorldSnapshot) -> Generator[None, None, dict[str, Any]]
         yield
     contacts: list[list[Any]] = []
     shaped = {0, *frozen.shaped}
-    for row in frozen.contacts.remembered():
+    for row in remembered(frozen.contacts):
         if row is not None and shaped.issuperset(row[:2]):  # what is still there to touch
             contacts.append(row)
         yield

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.closed_form import closed_form
 from physicslab.ode.system import OdeSystem
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.state.state import State
 
 __all__ = ["EXACT"]
 
 
-def _flow(world: World, ode: OdeSystem, h: float, steps: int) -> int:
-    position, velocity = closed_form(world).advanced(world, steps * h)
+def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
+    position, velocity = closed_form(state, ode.forces).advanced(state, steps * h)
     n = 2 * len(ode.layout.moving)
     ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
     turning = slice(n, ode.layout.moving_count)

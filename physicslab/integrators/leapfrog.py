@@ -5,7 +5,7 @@ from dataclasses import replace
 from physicslab.integrators.integrator import Integrator
 from physicslab.integrators.splitting import splitting
 from physicslab.kernels.ode.splitting import split
-from physicslab.systems.schedule import Stage
+from physicslab.systems.system import Stage
 
 __all__ = ["LEAPFROG", "LEAPFROG_WITH_SPLIT_FORCES"]
 

@@ -216,8 +216,8 @@ def _way_in(kind: Any) -> Callable[[Any], Any]:
     if isinstance(kind, types.Array):
         return _way_of_arrays(kind)
     if isinstance(kind, types.BaseTuple):
-        ways = [_way_in(part) for part in _parts(kind)]
-        return lambda parts: tuple([take(part) for take, part in zip(ways, parts, strict=True)])
+        ways, make = [_way_in(part) for part in _parts(kind)], _maker(kind)
+        return lambda parts: make([take(part) for take, part in zip(ways, parts, strict=True)])
     if isinstance(kind, types.Float):
         return _checked(float, np.float64)
     if isinstance(kind, types.Boolean):
@@ -227,6 +227,12 @@ def _way_in(kind: Any) -> Callable[[Any], Any]:
 
 def _parts(kind: Any) -> tuple[Any, ...]:
     return tuple(kind)
+
+
+def _maker(kind: Any) -> Callable[[list[Any]], Any]:
+    """Return what makes a tuple of a type, with names where it has them."""
+    named = getattr(kind, "instance_class", None)
+    return tuple if named is None else named._make
 
 
 def _checked(allowed: Any, make: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -255,8 +261,8 @@ def _way_of_arrays(kind: Any) -> Callable[[Any], Any]:
 def _way_out(kind: Any) -> Callable[[Any], Any]:
     """Return what makes of a twin's answer what the compiled kernel returns."""
     if isinstance(kind, types.BaseTuple):
-        ways = [_way_out(part) for part in _parts(kind)]
-        return lambda parts: tuple([give(part) for give, part in zip(ways, parts, strict=True)])
+        ways, make = [_way_out(part) for part in _parts(kind)], _maker(kind)
+        return lambda parts: make([give(part) for give, part in zip(ways, parts, strict=True)])
     if isinstance(kind, types.NoneType):
         return lambda _: None
     return float if isinstance(kind, types.Float) else bool if isinstance(kind, types.Boolean) else int

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from functools import cache
 from importlib import import_module
-from types import FunctionType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -85,10 +85,19 @@ def _names_of(module: dict[str, Any]) -> dict[str, Any]:
     return names
 
 
+class _TwinModule:
+    """A module of kernels as twins know it."""
+
+    def __init__(self, names: dict[str, Any]) -> None:
+        self.__dict__ = names
+
+
 def _counterpart(value: Any) -> Any:
     """Return what a twin sees in place of something that a kernel knows by name."""
     if value is math:
         return math_functions
+    if isinstance(value, ModuleType) and value.__name__.startswith(f"{__package__}."):
+        return _TwinModule(_names_of(vars(value)))
     if is_jitted(value):
         return twin_of(value)
     if isinstance(value, _Intrinsic):

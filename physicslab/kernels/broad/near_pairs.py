@@ -169,7 +169,7 @@ def _make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
         point.approach_speed = point.impact_normal = point.impact_tangent = 0.0
 
 
-@allocating_kernel
+@allocating
 def activate(
     proximity: Couples, activation_distance: Numbers, proximity_count: int, manifolds: Manifolds,
     points: Points, count: int,

@@ -12,10 +12,11 @@ import math
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.events.encounter import gap_of, meeting_of, touch_pair
 from physicslab.kernels.events.flight import advance_to, begin, place, seen_from
-from physicslab.kernels.events.flight_impact import resolve_ballistic_impacts, write_impact
+from physicslab.kernels.events.flight_impact import resolve_ballistic_impacts
 from physicslab.kernels.narrow.contact import effective_masses, mix
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.records import Impacts, Manifold, Manifolds, Point, Points
+from physicslab.kernels.solver.impact_log import write_impact
 from physicslab.kernels.twins import endless
 
 __all__ = [
@@ -143,7 +144,7 @@ def _meet(
     struck_at[p, 0], struck_at[p, 1] = x, y
     if approach <= 0.0:
         return why, 0
-    write_impact(log, number, manifold, one, two, start + (now + low), x, y, approach, normal, tangent)
+    write_impact(log, number, manifold, one, two, one, start + (now + low), x, y, approach, normal, tangent)
     return why, 1
 
 

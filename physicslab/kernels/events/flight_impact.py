@@ -3,10 +3,10 @@
 from physicslab.kernels import Numbers, Vectors, inlined
 from physicslab.kernels.events.flight import push
 from physicslab.kernels.ode.compensated import add_pair, multiply
-from physicslab.kernels.records import Impacts, Manifold, Point
+from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.impact import bounce, friction_impulse
 
-__all__ = ["resolve_ballistic_impacts", "write_impact"]
+__all__ = ["resolve_ballistic_impacts"]
 
 
 @inlined
@@ -79,17 +79,3 @@ def resolve_ballistic_impacts(
         push(paths, a, -inverse_mass[a], left * nx, left * ny)
         push(paths, b, inverse_mass[b], left * nx, left * ny)
     manifold.impact_count += 1
-
-
-@inlined
-def write_impact(
-    log: Impacts, k: int, manifold: Manifold, one: Point, two: Point, time: float, x: float, y: float,
-    speed: float, normal: float, tangent: float,
-) -> None:  # fmt: skip
-    """Write an impact into the log; the points had felt ``normal`` and ``tangent`` before."""
-    record = log[k % len(log)]
-    record.time, record.entity_a, record.entity_b = time, manifold.entity_a, manifold.entity_b
-    record.wall, record.normal_x, record.normal_y = manifold.wall, manifold.normal_x, manifold.normal_y
-    record.x, record.y, record.approach_speed = x + one.arm_bx, y + one.arm_by, speed
-    record.normal_impulse = one.impact_normal + two.impact_normal - normal
-    record.tangent_impulse = one.impact_tangent + two.impact_tangent - tangent

@@ -26,11 +26,11 @@ from numba.core import types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from physicslab.kernels import KERNELS, Numbers, cached, inlined
+from physicslab.kernels import KERNELS, Numbers, cached, inlined, kernel
 from physicslab.kernels.stand_ins import Memory, stands_in_for
 from physicslab.kernels.twins import endless, twin_of
 
-__all__ = ["Calls", "ForceKernel", "accelerate", "accelerate_over", "force_kernel"]
+__all__ = ["Calls", "ForceKernel", "accelerate", "accelerate_over", "add_forces", "force_kernel"]
 
 Calls = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, 3): of each force the address, and those of its numbers and of its whole numbers."""
@@ -149,6 +149,13 @@ def _call_interpreted(
         return
     q_data, v_data, force_data = (ctypes.cast(array.ctypes.data, _REALS) for array in (q, v, force))
     _C_FUNCTION(int(address))(q_data, v_data, span, force_data, *behind)
+
+
+@kernel
+def add_forces(q: Numbers, v: Numbers, force: Numbers, calls: Calls) -> None:
+    """Add forces at an instant to those that are there."""
+    for k in range(len(calls)):
+        _call(calls[k, 0], q, v, 0.0, force, calls[k, 1], calls[k, 2])
 
 
 @inlined

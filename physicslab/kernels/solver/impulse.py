@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
 from physicslab.kernels.records import Manifolds, Point, Points
 from physicslab.kernels.wide.solve import soft_normal_impulse, sweep_wide, warm_start_wide
 
@@ -106,7 +106,7 @@ def _sweep(
         linear[b, 0], linear[b, 1], angular[b] = vbx, vby, wb
 
 
-@kernel
+@inlined
 def solve(
     manifolds: Manifolds,
     points: Points,
@@ -199,7 +199,7 @@ def follow_drift(
             point.separation += h * (vx * manifold.normal_x + vy * manifold.normal_y)
 
 
-@kernel
+@inlined
 def relax(
     manifolds: Manifolds,
     points: Points,
@@ -238,7 +238,7 @@ def relax(
         drift = 0.0
 
 
-@allocating_kernel
+@allocating
 def separate(
     manifolds: Manifolds,
     points: Points,

@@ -122,7 +122,7 @@ def _refresh_boxes(
     return true_lanes(moved | (one < deep) | (two < deep))
 
 
-@kernel
+@inlined
 def refresh(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int,

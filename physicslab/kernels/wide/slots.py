@@ -7,7 +7,7 @@ import numpy as np
 from numba import uint64
 from numpy.typing import NDArray
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.wide.layout import (
     ARM_AX,
@@ -32,7 +32,7 @@ from physicslab.kernels.wide.layout import (
 )  # fmt: skip
 
 __all__ = [
-    "ACTIVE", "BOX_BLOCKS", "COLOURS", "COUNTED", "DISC_BLOCKS", "LEFT", "PROXIMITY", "RECORDED",
+    "ACTIVE", "BOX_BLOCKS", "COLOURS", "COUNTED", "DISC_BLOCKS", "LEFT", "LOGGED", "PROXIMITY", "RECORDED",
     "SCALAR", "SLEEPING", "UNORDERED", "WIDE_COUNT", "Masks", "Slots", "clear_slot", "follow_pairs",
     "give_up", "list_scalar", "release", "store", "store_slot", "wake",
 ]  # fmt: skip
@@ -43,13 +43,14 @@ Masks = Annotated[NDArray[np.uint64], uint64[::1]]
 """A uint64 array (n,), bit by bit."""
 Slots = tuple[Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
 """The blocks of a kind: data, rows of A and B, pairs, colours, the colours of each body, their order."""
-COUNTED = 10
-PROXIMITY, RECORDED, SCALAR, SLEEPING, ACTIVE, LEFT, WIDE_COUNT, DISC_BLOCKS, BOX_BLOCKS, UNORDERED = range(
-    COUNTED
-)
-"""What kernels count that change it: near pairs that lie idle, those that have records, those of these that
-are loose, that rest with sleepers, that touch, that impacts have left to the solver; lanes in use, blocks;
-and whether loose pairs are out of order."""
+COUNTED = 11
+(
+    PROXIMITY, RECORDED, SCALAR, SLEEPING, ACTIVE, LEFT, WIDE_COUNT, DISC_BLOCKS, BOX_BLOCKS, UNORDERED,
+    LOGGED,
+) = range(COUNTED)  # fmt: skip
+"""What kernels count that change it: near pairs without records; those with records; of these the scalar
+ones, those that sleep, those that touch, those that impacts have left to the solver; slots in use; blocks of
+discs and of boxes; whether scalar pairs are out of order; and impacts ever logged."""
 
 
 @inlined
@@ -178,7 +179,7 @@ def _resting_speed(a: int, b: int, linear: Vectors, force: Vectors, inverse_mass
     return sleeping
 
 
-@allocating_kernel
+@allocating
 def wake(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int, touching: Rows, count: int,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from physicslab.diagnostics.warnings import Advice, advise
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.overlay.edge_arrows import draw_edge_arrows
