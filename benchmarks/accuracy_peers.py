@@ -1,7 +1,7 @@
 """Time PhysicsLab beside REBOUND and SciPy at the same final error, interleaved in one run.
 
 ``uv run --group peers python benchmarks/accuracy_peers.py [--repeats N] [--error E]`` gives every method the
-loosest setting of a ladder at which it ends within the error asked for, and then times all of them in turn.
+loosest setting of a ladder at which its final error is within ``E``, and then times all of them in turn.
 It prints the median process time of each, the median of its ratios to PhysicsLab's ``auto`` method with the
 tolerance found (above 1, PhysicsLab is faster), and what a force evaluation of two bodies costs.
 """
@@ -27,7 +27,7 @@ from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
 from physicslab.world import World
 
-ASKED = ("kepler_e0.5", "kepler_e0.9", "figure_eight")
+COMPARED = ("kepler_e0.5", "kepler_e0.9", "figure_eight")
 
 type Run = Callable[[Problem, float], tuple[float, float]]
 """Computes a problem with a step or tolerance; returns process seconds and the error."""
@@ -61,7 +61,7 @@ def ours(integrator: str) -> Run:
 
 
 def state(world: World) -> tuple[list[int], np.ndarray, np.ndarray, np.ndarray]:
-    """Return entities, masses, places and velocities of a world's bodies; what is fixed does not move."""
+    """Return entities, masses, places and velocities of a world's bodies; fixed bodies have velocity 0."""
     entities = world.batch(Transform, Mass).entities.tolist()
     rows = world.batch(Transform, Mass).rows
     return (
@@ -214,7 +214,7 @@ def cost_of_a_force() -> None:
 
 
 def main() -> None:
-    """Compare on every problem that is asked for."""
+    """Compare the methods on every problem."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=9)
     parser.add_argument("--error", type=float, default=1e-8)
@@ -222,7 +222,7 @@ def main() -> None:
     # REBOUND's own, where a ladder begins with steps that are too long for it.
     warnings.filterwarnings("ignore", message="At least 10 predictor corrector loops")
     cost_of_a_force()
-    for name in ASKED:
+    for name in COMPARED:
         compare(PROBLEMS[name], arguments.error, arguments.repeats)
 
 

@@ -4,7 +4,7 @@
 the maximum [ms] of each part. No screen is needed: SDL's dummy driver takes the picture, 1280 x 720 pixels. A
 frame of 60 Hz has 16.7 ms. Each step of a frame is 1/60 s of the world, so "total" is what a frame costs that
 keeps up; "CPU" is the same frame by the clock of the process, which does not run while another program has
-the processor. ``--slowest K`` says what the K slowest frames of each scene were made of, garbage collection
+the processor. ``--slowest K`` lists the parts of the K slowest frames of each scene, garbage collection
 included. As in the program, what was loaded is not searched for garbage.
 """
 
@@ -32,7 +32,7 @@ from physicslab.kernels.warm import load_all
 from physicslab.prefabs import container, gas, pile
 from physicslab.systems.standard import standard_systems
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 FRAME = 1.0 / 60.0

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import statistics
-import time
 from collections.abc import Callable
 
 import numpy as np
@@ -25,6 +24,7 @@ from physicslab.kernels.forces.tree_pull import (
     attract_by_tree,
     depth_by_tree,
 )
+from physicslab.lab.case import cpu_time
 
 type Array = NDArray[np.float64]
 
@@ -51,13 +51,6 @@ def two_clusters(n: int, random: np.random.Generator) -> Array:
     return random.normal(0.0, 0.1, (n, 2)) + np.where(np.arange(n) % 2, 0.0, 1.0)[:, None] * (3.0, 1.0)
 
 
-def seconds(call: Callable[[], None]) -> float:
-    """Return the CPU time of a call [s]: others on the machine then count for less."""
-    start = time.process_time()
-    call()
-    return time.process_time() - start
-
-
 def measure(spread: Callable[[int, np.random.Generator], Array], n: int) -> str:
     """Return one line of the table."""
     random = np.random.default_rng(n)
@@ -71,7 +64,7 @@ def measure(spread: Callable[[int, np.random.Generator], Array], n: int) -> str:
     def sum_by_tree() -> None:
         attract_by_tree(x, y, mass, SOFTENING, True, tree[0], tree[1])
 
-    turns = [(seconds(sum_directly), seconds(sum_by_tree)) for _ in range(REPEATS)]
+    turns = [(cpu_time(sum_directly)[0], cpu_time(sum_by_tree)[0]) for _ in range(REPEATS)]
     by_pairs, by_tree = (statistics.median(column) for column in zip(*turns, strict=True))
     off, mean = np.hypot(*(tree - direct)), np.hypot(*direct).mean()
     stored, estimate = depth_of_pairs(x, y, mass, SOFTENING, True), depth_by_tree(x, y, mass, SOFTENING, True)

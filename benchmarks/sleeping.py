@@ -1,43 +1,42 @@
 """Time what sleeping saves: a step of settled scenes awake, asleep, and asleep with a ball beside them.
 
 ``uv run python benchmarks/sleeping.py [SCENE ...]`` lets scenes of the benchmark settle and prints for each
-the time of a step [ms of CPU, the best of several spells] with everybody awake, with everybody asleep, and
-with everybody asleep but a ball that bounces far away; and that of the ball's step where it is alone.
+the time of a step [ms of CPU, the shortest of several spells] with every body awake, with every body asleep,
+and with a ball that bounces far away from the sleeping ones; and that of the ball's step where it is alone.
 """
 
 from __future__ import annotations
 
 import argparse
-import time
 from dataclasses import replace
 
 import numpy as np
 
 from physicslab.lab.bench.catalogue import SCENES
-from physicslab.lab.stability.worlds import open_space
+from physicslab.lab.case import cpu_time
+from physicslab.lab.worlds import open_space
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
 USUAL = ("pile_1000", "pile_4000", "pyramid_60")
 AWAY = 300.0
 """Where the ball is [m]."""
-LONGEST = 6_000
-"""So many steps, at the most, a scene gets to settle."""
+SETTLING_STEPS = 6_000
+"""Upper limit of the steps in which a scene settles."""
 
 
 def step_ms(world: World, steps: int = 60, spells: int = 9) -> float:
     """Return the CPU time of a step [ms]."""
-    best = np.inf
-    for _ in range(spells):
-        began = time.process_time()
+
+    def spell() -> None:
         for _ in range(steps):
             world.step()
-        best = min(best, time.process_time() - began)
-    return 1e3 * best / steps
+
+    return 1e3 * min(cpu_time(spell)[0] for _ in range(spells)) / steps
 
 
 def add_ball(world: World) -> None:
-    """Spawn a ball that bounces for ever, and what it bounces on."""
+    """Spawn a ball that bounces for ever, and a floor below it."""
     box(world, (AWAY, 19.5), width=4.0, height=1.0, static=True, restitution=1.0)
     circle(world, (AWAY, 23.0), radius=0.1, restitution=1.0, mass=0.03)
 
@@ -48,7 +47,7 @@ def measure(name: str) -> str:
     world.simulation = replace(world.simulation, sleeping=True)
     world.step()
     bodies = int(np.count_nonzero(world.bodies.inverse_mass))
-    while world.sleep.count < bodies and world.steps < LONGEST:
+    while world.sleep.count < bodies and world.steps < SETTLING_STEPS:
         world.step()
     settled, sleepers = world.time, world.sleep.count
     asleep = step_ms(world)
@@ -56,7 +55,7 @@ def measure(name: str) -> str:
     world.run(steps=2)
     beside = step_ms(world)
     if world.sleep.count != sleepers:
-        raise RuntimeError(f"{name}: {sleepers - world.sleep.count} woke beside the ball")
+        raise RuntimeError(f"{name}: {sleepers - world.sleep.count} bodies woke beside the ball")
     world.remove(world.entities()[-1])
     world.simulation = replace(world.simulation, sleeping=False)
     world.run(steps=30)

@@ -3,9 +3,9 @@
 ``uv run --group peers python benchmarks/stability_peers.py [CASE ...] [--long] [--json FILE]`` runs every
 case whose scene they have the parts for (or those named, or those of a group), each four times: by
 PhysicsLab, by pymunk with the scene's own steps, by pymunk with each step divided into four, as PhysicsLab
-divides its own, and by Box2D. Scene, figure and limit are the case's: what the case asks of its world is done
-by the other engine, which is all that differs. A run that ends in what is no number is shown as ``NaN``;
-bullets that are behind their wall at the end are told as ``through``.
+divides its own, and by Box2D. Scene, figure and limit are the case's; only the engine that steps the case's
+world differs. A run whose state is not finite is shown as ``NaN``; bullets that are behind their wall at the
+end are counted as ``through``.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ from physicslab.components import Transform
 from physicslab.lab.peers.box2d_mirror import Box2DMirror
 from physicslab.lab.peers.peer import CannotBuild, Peer, find_contacts
 from physicslab.lab.peers.pymunk_mirror import PymunkMirror
-from physicslab.lab.stability.case import Case, run_case
-from physicslab.lab.stability.catalogue import CASES, select
+from physicslab.lab.stability.case import StabilityCase, run_case
+from physicslab.lab.stability.catalogue import CASES
 
 SUBSTEPS = 4
-NOT_ASKED = {
+NOT_COMPARABLE = {
     "planets": "no such force",
-    "sizes_pairs": "looks at PhysicsLab's broad phase",
-    "steps_1e4_memory": "looks at Python's memory",
-    "steps_1e6_memory": "looks at Python's memory",
+    "sizes_pairs": "measures PhysicsLab's broad phase",
+    "steps_1e4_memory": "measures Python's memory",
+    "steps_1e6_memory": "measures Python's memory",
     "steps_1e6_pace": "times PhysicsLab",
 }
-"""Groups and cases that say nothing of another engine."""
+"""Groups and cases that cannot measure another engine."""
 
 
 @dataclass(frozen=True)
 class Found:
-    """What came of a case in one engine.
+    """The result of a case in one engine.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Found:
 
 @contextmanager
 def stepped_by(peer: type[Peer], substeps: int) -> Iterator[list[Peer]]:
-    """Let another engine advance every world that is stepped meanwhile; yield what stands for them."""
+    """Let another engine advance every world that is stepped meanwhile; yield its mirrors of them."""
     mirrors: WeakKeyDictionary[World, Peer] = WeakKeyDictionary()
     made: list[Peer] = []
 
@@ -74,7 +74,7 @@ def stepped_by(peer: type[Peer], substeps: int) -> Iterator[list[Peer]]:
         if world not in mirrors:
             mirrors[world] = peer(world)
             made.append(mirrors[world])
-            # What PhysicsLab would say of its own method does not hold for another.
+            # The reason for PhysicsLab's own method does not hold for another engine.
             world.plan = replace(world.plan, reason=peer.__name__)
         mirror = mirrors[world]
         for _ in range(steps * substeps):
@@ -114,16 +114,16 @@ def passed(mirror: Peer) -> bool:
     return bool(x[last] > x[first])
 
 
-def ours(case: Case) -> Found:
-    """Return what PhysicsLab makes of a case."""
+def ours(case: StabilityCase) -> Found:
+    """Return the figure of a case in PhysicsLab."""
     outcome = run_case(case)
     return Found(outcome.figure, str(outcome.verdict) if outcome.figure is not None else "stopped")
 
 
-def theirs(peer: type[Peer], substeps: int = 1) -> Callable[[Case], Found]:
-    """Return what measures a case in another engine."""
+def theirs(peer: type[Peer], substeps: int = 1) -> Callable[[StabilityCase], Found]:
+    """Return a function that measures a case in another engine."""
 
-    def measure(case: Case) -> Found:
+    def measure(case: StabilityCase) -> Found:
         try:
             with stepped_by(peer, substeps) as mirrors:
                 outcome = run_case(case)
@@ -138,8 +138,8 @@ def theirs(peer: type[Peer], substeps: int = 1) -> Callable[[Case], Found]:
     return measure
 
 
-def apart(measure: Callable[[Case], Found], case: Case, seconds: float) -> Found:
-    """Measure in a process of its own, which an engine may end on numbers that it cannot work with."""
+def apart(measure: Callable[[StabilityCase], Found], case: StabilityCase, seconds: float) -> Found:
+    """Measure in a process of its own, which an engine may abort on numbers that it cannot handle."""
     context = multiprocessing.get_context("fork")
     here, there = context.Pipe(duplex=False)
     process = context.Process(target=lambda: there.send(measure(case)))
@@ -154,12 +154,12 @@ def apart(measure: Callable[[Case], Found], case: Case, seconds: float) -> Found
         process.join()
 
 
-def chosen(names: list[str], long: bool) -> list[Case]:
+def chosen(names: list[str], long: bool) -> list[StabilityCase]:
     """Return the cases to run; two that differ by how PhysicsLab finds collisions are one."""
-    wanted = [case for name in names for case in select(name)] if names else list(CASES.values())
+    wanted = [case for name in names for case in CASES.select(name)] if names else list(CASES.values())
     return [
         case for case in wanted
-        if case.group not in NOT_ASKED and case.name not in NOT_ASKED
+        if case.group not in NOT_COMPARABLE and case.name not in NOT_COMPARABLE
         and not (case.name.endswith("_step") and case.name.removesuffix("_step") in CASES)
         and (long or names or not case.long)
     ]  # fmt: skip

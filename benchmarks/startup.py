@@ -78,7 +78,7 @@ atexit.register(lambda: json.dump(moments, open(os.environ["STARTUP_FILE"], "w")
 
 
 def start(scene: str, cache: Path, seconds: float) -> dict[str, float]:
-    """Start the program once, let it run, and return what came when [s] and the slowest frame [ms]."""
+    """Start the program once; return the times [s] of its first pictures and its slowest frame [ms]."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "sitecustomize.py").write_text(HOOK)
         reported = Path(folder) / "moments.json"

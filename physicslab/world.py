@@ -12,6 +12,7 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows, wake_all
 from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import Diverged, derive_masses
 from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
@@ -104,14 +105,22 @@ class World(State):
     def _advance(self, h: float, steps: int) -> int:
         """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many."""
         with self._undoing():
-            stepper = self.stepper = self.steppers.ready(self, h)
-            self.compile(stepper.kernels)
             self.schedule.run(Stage.PREPARE, self, h)
-            made = stepper.advance(self, h, steps)
+            try:
+                made = self._best(h).advance(self, h, steps)
+            except NoClosedForm:  # a body was given another velocity, or another spring
+                self._choose()
+                made = self._best(h).advance(self, h, steps)
             self.schedule.run(Stage.FINISH, self, h * steps)
         self.steps += made.steps
         self.step_divisions = made.divisions
         return made.steps
+
+    def _best(self, h: float) -> Stepper:
+        """Return the best stepper for the coming step, with its kernels compiled."""
+        self.stepper = self.steppers.ready(self, h)
+        self.compile(self.stepper.kernels)
+        return self.stepper
 
     @contextmanager
     def _undoing(self) -> Iterator[None]:
@@ -187,7 +196,8 @@ class World(State):
         where it stood before that step.
         """
         try:
-            self.steps += steps - self._advance(h, parts)
+            made = self._advance(h, parts)
+            self.steps += steps - made
             return steps
         except Diverged:
             if steps == 1:

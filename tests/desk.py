@@ -12,7 +12,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.systems.standard import standard_systems
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 FRAME = 1.0 / 60.0

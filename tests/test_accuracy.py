@@ -11,7 +11,7 @@ import pytest
 
 from physicslab.cli import main
 from physicslab.integrators import INTEGRATORS
-from physicslab.lab.accuracy.catalogue import LEFT_OUT, PROBLEMS, names, select
+from physicslab.lab.accuracy.catalogue import LEFT_OUT, PROBLEMS
 from physicslab.lab.accuracy.chaos import crowd
 from physicslab.lab.accuracy.document import document
 from physicslab.lab.accuracy.figures import digits, number, record
@@ -184,7 +184,7 @@ def test_every_digit_on_record_is_that_of_the_closed_form(name: str) -> None:
 
 @pytest.mark.parametrize("e", ["0", "0.5", "0.9", "0.99"])
 def test_orbits_start_at_the_nearest_float_to_the_exact_speed(e: str) -> None:
-    from physicslab.lab.accuracy.states import place, velocity
+    from physicslab.lab.worlds import place, velocity
 
     world = PROBLEMS[f"kepler_e{e}"].build(Setting("auto").simulation(PROBLEMS[f"kepler_e{e}"]))
     with mpmath.workdps(40):
@@ -218,12 +218,12 @@ def test_problems_are_in_order() -> None:
 
 
 def test_a_family_is_chosen_by_the_name_that_its_problems_share() -> None:
-    assert [problem.name for problem in select("slip_to_roll")] == [
+    assert [problem.name for problem in PROBLEMS.select("slip_to_roll")] == [
         "slip_to_roll_disc", "slip_to_roll_disc_way", "slip_to_roll_sphere", "slip_to_roll_hoop",
     ]  # fmt: skip
-    assert [problem.name for problem in select("figure_eight_simo")] == ["figure_eight_simo"]
-    assert not select("nothing")
-    assert {"kepler_e0.5", "stiff_spring", "stiff_spring_z10"} <= set(names())
+    assert [problem.name for problem in PROBLEMS.select("figure_eight_simo")] == ["figure_eight_simo"]
+    assert not PROBLEMS.select("nothing")
+    assert {"kepler_e0.5", "stiff_spring", "stiff_spring_z10"} <= set(PROBLEMS.names)
 
 
 def test_what_is_compared_is_never_a_whole_period_alone() -> None:
@@ -284,7 +284,14 @@ def auto_verdict(name: str) -> Verdict:
     return verdict(found.error, problem.good, problem.excellent, floor=floor, chaotic=problem.chaotic)
 
 
-@pytest.mark.parametrize("name", [name for name in PROBLEMS if name not in SLOW and name not in SHORT])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else [])
+        for name in PROBLEMS
+        if name not in SHORT
+    ],
+)
 def test_auto_is_excellent_or_as_good_as_chaos_allows(name: str) -> None:
     assert auto_verdict(name) in (Verdict.EXCELLENT, Verdict.CHAOS)
 
@@ -364,6 +371,7 @@ def test_the_document_holds_finite_numbers_alone(capsys: pytest.CaptureFixture[s
         assert all(set(row) == wanted for row in curve["rows"])
 
 
+@pytest.mark.plot
 def test_a_table_and_pictures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     found, pictures = tmp_path / "found.json", tmp_path / "new" / "pictures"
     assert main(["accuracy", "damped", "damped_over", "--plot", str(pictures)]) == 2

@@ -21,7 +21,7 @@ from physicslab.prefabs import box, circle
 from physicslab.systems.system import Stage, System, at
 from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.display import Display
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 

@@ -19,15 +19,15 @@ from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,
     FORCE,
     FRICTION_IMPULSE,
+    MIN_LENGTH,
     NORMAL_IMPULSE,
-    SHORTEST,
     VELOCITY,
     dashes,
     draw_arrows,
-    longest,
+    max_length,
 )
+from physicslab.view.overlay.gauge import Gauge
 from physicslab.view.overlay.vectors import NORMAL_LENGTH
-from physicslab.view.panels.gauge import Gauge
 from physicslab.world import World
 
 KINDS = (VELOCITY, FORCE, CONTACT_NORMAL, NORMAL_IMPULSE, FRICTION_IMPULSE)
@@ -98,7 +98,7 @@ def test_forces_are_those_of_the_last_substep() -> None:
     force = world.bodies.force[rows] * (1.0, -1.0) * desk.window.camera.scale
     force /= desk.window.overlays.force.per_metre
     length = np.hypot(force[:, 0], force[:, 1])
-    drawn = (length >= SHORTEST) & (length <= longest(canvas))
+    drawn = (length >= MIN_LENGTH) & (length <= max_length(canvas))
     shafts = lines_in(canvas, DARK.force)[0]
     spans = shafts["end"] - shafts["start"]
     for span in force[drawn]:
@@ -119,9 +119,9 @@ def test_normals_stand_on_contacts_and_point_into_the_body() -> None:
 
 def test_short_arrows_are_left_out_and_long_ones_marked() -> None:
     canvas = RecordingCanvas((1280, 720))
-    limit = longest(canvas)
+    limit = max_length(canvas)
     span = np.array(
-        [(SHORTEST * 0.9, 0.0), (50.0, 0.0), (0.0, 3.0 * limit), (math.nan, 0.0), (math.inf, 0.0)]
+        [(MIN_LENGTH * 0.9, 0.0), (50.0, 0.0), (0.0, 3.0 * limit), (math.nan, 0.0), (math.inf, 0.0)]
     )
     draw_arrows(np.full((5, 2), 300.0), span, VELOCITY, canvas, DARK)
     shafts, heads = lines_in(canvas, DARK.velocity)

@@ -21,8 +21,8 @@ from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import circle
 from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.controls.recovery import Recovery
-from physicslab.view.window import Window
+from physicslab.view.window.recovery import Recovery
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 

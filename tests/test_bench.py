@@ -1,7 +1,6 @@
 """The benchmark: what it measures, prints and writes. How fast anything is, is never asserted."""
 
 import dataclasses
-import importlib.util
 import itertools
 import json
 import math
@@ -11,11 +10,10 @@ from typing import Any
 import pytest
 
 from physicslab import cli
-from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene, select
+from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
 from physicslab.lab.bench.clock import TURN, take_turns
 from physicslab.lab.bench.engine import OurEngine, missing_peers
 from physicslab.lab.bench.growth import exponent, growths
-from physicslab.lab.bench.machine import machine_text
 from physicslab.lab.bench.measure import measure_scene
 from physicslab.lab.bench.memory import measure_memory
 from physicslab.lab.bench.quality import Quality
@@ -23,6 +21,8 @@ from physicslab.lab.bench.result import SceneResult
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.bench.targets import Check
 from physicslab.lab.bench.unused import UNUSED, Unused, measure_unused
+from physicslab.lab.case import Catalogue
+from physicslab.lab.document import machine_text
 from physicslab.lab.peers.pymunk_mirror import PymunkMirror
 from physicslab.state.masses import Diverged
 from physicslab.world import World
@@ -43,7 +43,7 @@ def measured(scene: BenchScene) -> SceneResult:
 def small_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
     scenes = [tiny(pile_scene(count)) for count in (5, 10, 20)]
     scenes += [tiny(gas_scene(10)), tiny(SCENES["circles_10"])]
-    monkeypatch.setattr("physicslab.lab.bench.catalogue.SCENES", {scene.name: scene for scene in scenes})
+    monkeypatch.setattr("physicslab.commands.bench.SCENES", Catalogue(scenes))
 
 
 def test_the_exponent_is_that_of_a_power_law() -> None:
@@ -123,10 +123,10 @@ def test_every_scene_is_built_awake_with_its_number_of_bodies() -> None:
     world = scene.build()
     assert not world.simulation.sleeping
     assert len(world.entities()) == scene.size + 1 == 466
-    assert [scene.name for scene in select("gases")] == [
+    assert [scene.name for scene in SCENES.select("gases")] == [
         "gas_1000", "gas_2000", "gas_4000", "gas_8000", "gas_16000",
     ]  # fmt: skip
-    assert select("nothing") == []
+    assert SCENES.select("nothing") == []
 
 
 @pytest.mark.usefixtures("small_scenes")
@@ -154,14 +154,14 @@ def test_the_document_alone_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -
     assert [scene["name"] for scene in found["scenes"]] == ["pile_5", "pile_10", "pile_20", "circles_10"]
     (engine,) = found["scenes"][0]["engines"]
     assert engine["name"] == "PhysicsLab"
-    assert set(engine["step_ms"]) == {"median", "p90"}
+    assert set(engine["step_ms"]) == {"median", "p90", "p99", "mean"}
     (growth,) = found["growth"]
     assert (growth["group"], growth["sizes"]) == ("piles", [5, 10, 20])
 
 
+@pytest.mark.plot
 @pytest.mark.usefixtures("small_scenes")
 def test_the_plot_is_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("matplotlib")
     assert cli.main(["bench", "piles", "--plot", str(tmp_path)]) == 0
     assert (tmp_path / "bench.png").read_bytes().startswith(b"\x89PNG")
 
@@ -183,7 +183,7 @@ def test_a_run_that_diverges_is_told_in_the_end(
     ("arguments", "line"),
     [
         (["pile_4001"], '"pile_4001": is no scene; did you mean "pile_4000"?'),
-        (["qqqq"], '"qqqq": is no scene; the groups are pyramids, piles, gases, small; '),
+        (["qqqq"], '"qqqq": is no scene; the groups are pyramids, piles, gases, small, moving; '),
         (["pile_1000", "--json", "none/x.json"], "--json none/x.json: cannot be written"),
     ],
 )
@@ -213,10 +213,9 @@ def test_absent_peers_are_named_with_what_installs_them(
     )
 
 
+@pytest.mark.peers
 @pytest.mark.usefixtures("small_scenes")
 def test_peers_are_timed_beside(capsys: pytest.CaptureFixture[str]) -> None:
-    if importlib.util.find_spec("pymunk") is None or importlib.util.find_spec("Box2D") is None:
-        pytest.skip("no peers installed")
     assert cli.main(["bench", "pile_20", "circles_10", "--peers", "--json", "-"]) == 0
     found = json.loads(capsys.readouterr().out)
     for scene in found["scenes"]:
@@ -226,14 +225,13 @@ def test_peers_are_timed_beside(capsys: pytest.CaptureFixture[str]) -> None:
             assert engine["quality"]["deepest overlap"] >= 0.0
 
 
+@pytest.mark.peers
 @pytest.mark.usefixtures("small_scenes")
 def test_large_scenes_are_run_without_peers_unless_they_are_named(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if importlib.util.find_spec("pymunk") is None or importlib.util.find_spec("Box2D") is None:
-        pytest.skip("no peers installed")
-    for module in ("commands.bench", "bench.tables"):
-        monkeypatch.setattr(f"physicslab.{module}.MOST_BESIDE", 10)
+    for module in ("commands.bench", "lab.bench.tables"):
+        monkeypatch.setattr(f"physicslab.{module}.PEER_SIZE_LIMIT", 10)
     assert cli.main(["bench", "piles", "--peers"]) == 0
     out, err = capsys.readouterr()
     assert ["pymunk" in line for line in err.splitlines() if line] == [True, True, False]

@@ -22,29 +22,29 @@ def canvas() -> PygameCanvas:
     return made
 
 
-def write(paper: TextSurface, rect: Rect = RECT, words: str = "Contacts 42") -> None:
-    paper.panel(rect, (20, 24, 32), (90, 96, 110), 0.8)
-    paper.text(words, (rect[0] + 8, rect[1] + 6), INK)
-    paper.text("right", (rect[0] + rect[2] - 8, rect[1] + 30), INK, "right")
+def write(surface: TextSurface, rect: Rect = RECT, words: str = "Contacts 42") -> None:
+    surface.panel(rect, (20, 24, 32), (90, 96, 110), 0.8)
+    surface.text(words, (rect[0] + 8, rect[1] + 6), INK)
+    surface.text("right", (rect[0] + rect[2] - 8, rect[1] + 30), INK, "right")
 
 
 def colours(made: PygameCanvas) -> NDArray[np.int64]:
     return pygame.surfarray.array3d(made.surface).astype(np.int64)
 
 
-def test_a_sheet_looks_like_what_is_drawn_at_once() -> None:
+def test_a_layer_looks_like_what_is_drawn_at_once() -> None:
     at_once, kept = canvas(), canvas()
     write(at_once)
     kept.layer("panel", RECT, 1, write)
     assert np.abs(colours(at_once) - colours(kept)).max() <= 3, "blended in another order, rounding apart"
 
 
-def test_a_sheet_is_drawn_only_when_its_version_or_its_size_changes() -> None:
+def test_a_layer_is_drawn_only_when_its_version_or_its_size_changes() -> None:
     made, drawn = canvas(), []
 
-    def draw(paper: TextSurface) -> None:
-        drawn.append(paper)
-        write(paper)
+    def draw(surface: TextSurface) -> None:
+        drawn.append(surface)
+        write(surface)
 
     for version, rect in (
         (1, RECT),
@@ -57,16 +57,16 @@ def test_a_sheet_is_drawn_only_when_its_version_or_its_size_changes() -> None:
     assert len(drawn) == 3
 
 
-def test_what_a_sheet_showed_before_is_gone() -> None:
+def test_what_a_layer_showed_before_is_gone() -> None:
     made, fresh = canvas(), canvas()
-    made.layer("panel", RECT, 1, lambda paper: write(paper, words="MMMMMMMM"))
+    made.layer("panel", RECT, 1, lambda surface: write(surface, words="MMMMMMMM"))
     made.clear((10, 40, 90))
-    made.layer("panel", RECT, 2, lambda paper: write(paper, words="i"))
-    fresh.layer("panel", RECT, 2, lambda paper: write(paper, words="i"))
+    made.layer("panel", RECT, 2, lambda surface: write(surface, words="i"))
+    fresh.layer("panel", RECT, 2, lambda surface: write(surface, words="i"))
     assert np.array_equal(colours(made), colours(fresh))
 
 
-def test_a_recording_canvas_notes_what_is_on_a_sheet() -> None:
+def test_a_recording_canvas_notes_what_is_on_a_layer() -> None:
     noted = RecordingCanvas((200, 100))
     noted.layer("panel", RECT, 1, write)
     assert noted.words == ["Contacts 42", "right"]

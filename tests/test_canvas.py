@@ -181,10 +181,10 @@ def test_the_same_words_are_rendered_once() -> None:
     canvas = canvas_of()
     for _ in range(3):
         canvas.text("again", (5, 5), TextStyle(14, RED))
-    assert len(canvas._kept) == 1
+    assert len(canvas._surfaces) == 1
     for n in range(2000):
         canvas.text(f"{n}", (5, 5), TextStyle(14, RED))
-    assert len(canvas._kept) <= 512
+    assert len(canvas._surfaces) <= 512
 
 
 def test_a_recording_canvas_takes_the_same_calls() -> None:

@@ -3,7 +3,6 @@
 import copy
 import math
 import pickle
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -12,26 +11,35 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Mass, Material, Shape, Spring, Trail, Transform, Velocity
-from physicslab.ecs.component import COMPONENTS, Component, InvalidValue, Table, Vector, component, field
+from physicslab.ecs.component import (
+    COMPONENTS,
+    Component,
+    InvalidValue,
+    Vector,
+    component,
+    field,
+    local_components,
+)
 from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.table import Table
 from physicslab.ecs.vector import Vector2
 from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
+with local_components():
 
-@component
-class Ion(Component):
-    """An example of a contributor's component."""
+    @component
+    class Ion(Component):
+        """An example of a contributor's component."""
 
-    charge: float = field(default=0.0, unit="C", meaning="electric charge")
-    field_there: Vector = field(default=(0.0, 0.0), unit="V/m", meaning="what it feels")
-    count: int = field(default=0, minimum=0, meaning="pushes so far")
-    sign: str = field(default="fixed", choices=("fixed", "free"), meaning="whether it may change")
+        charge: float = field(default=0.0, unit="C", meaning="electric charge")
+        field_there: Vector = field(default=(0.0, 0.0), unit="V/m", meaning="the field at the ion")
+        count: int = field(default=0, minimum=0, meaning="pushes so far")
+        sign: str = field(default="fixed", choices=("fixed", "free"), meaning="whether it may change")
 
-
-@component
-class Marker(Component):
-    """A component without fields: being there is all that it says."""
+    @component
+    class Marker(Component):
+        """A component without fields: its presence is all that it says."""
 
 
 class IonSystem(System):
@@ -45,12 +53,6 @@ class IonSystem(System):
         push = charge["charge"][rows, None] * charge["field_there"][rows]
         world.table(Velocity)["linear"][rows] += h * push
         charge["count"][rows] += 1
-
-
-@pytest.fixture(autouse=True, scope="module")
-def _registered() -> Iterator[None]:
-    yield
-    del COMPONENTS["Ion"], COMPONENTS["Marker"]
 
 
 # ---- one memory --------------------------------------------------------------------------------------------
@@ -377,10 +379,33 @@ def test_mistakes_in_a_component_are_told_when_it_is_made() -> None:
     assert not {"Bare", "Untyped", "Odd", "Low", "Grown", "Heavier"} & COMPONENTS.keys()
 
 
-def test_a_name_is_not_taken_twice() -> None:
-    theirs = {"__module__": "somewhere.else", "__qualname__": "Mass", "__annotations__": {}}
-    with pytest.raises(
-        TypeError, match=r"there is a component Mass already, in physicslab\.components\.mass"
-    ):
-        component(type("Mass", (), theirs))
+def another(name: str, module: str) -> type[Any]:
+    """Return a class as it is written somewhere else, before it becomes a component."""
+    return type(name, (), {"__module__": module, "__qualname__": name, "__annotations__": {}})
+
+
+def test_a_name_is_not_taken_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("physicslab.ecs.component._local", False)  # as outside of tests
+    line = "component theirs.Mass: physicslab.components.mass.Mass has this name already, and "
+    with pytest.raises(TypeError, match=f"^{line}scene files go by it; choose another$"):
+        component(another("Mass", "theirs"))
     assert COMPONENTS["Mass"] is Mass
+    again = [component(another("Ballast", "notebook")) for _ in range(2)]
+    assert COMPONENTS["Ballast"] is again[1], "a cell that is run again"
+
+
+def test_an_example_may_have_the_name_of_a_built_in_component() -> None:
+    """A component that is added one day turns no example and no foreign test red."""
+    with local_components():
+        mine = component(another("Mass", "a.tutorial"))
+        assert COMPONENTS["Mass"] is mine
+        world = World()
+        entity = world.spawn(Transform(), mine(), Mass(2.0))
+        assert world.component(entity, Mass).mass == 2.0
+        late = component(another("Wing", "physicslab.components.wing"))
+        component(another("Wing", "a.tutorial"))
+    assert COMPONENTS["Mass"] is Mass
+    assert "Wing" not in COMPONENTS and late.__name__ == "Wing"
+    with local_components():
+        late = component(another("Wing", "physicslab.components.wing"))
+    assert COMPONENTS["Wing"] is late, "the package itself was imported meanwhile"

@@ -15,8 +15,8 @@ from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
 from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import DARK, Colour
-from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
 
 

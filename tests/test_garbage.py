@@ -30,8 +30,8 @@ def test_the_search_goes_on_after_an_error() -> None:
     assert gc.isenabled()
 
 
+@pytest.mark.peers
 def test_numba_is_prepared_without_linear_algebra_which_can_be_had_afterwards() -> None:
-    pytest.importorskip("scipy")
     code = (
         "import sys; from physicslab.kernels import prepare; prepare(); "
         "assert 'scipy.linalg' not in sys.modules; import scipy.linalg"

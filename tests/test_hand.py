@@ -9,7 +9,7 @@ from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
-from physicslab.view.controls.hand import Hand
+from physicslab.view.window.hand import Hand
 from physicslab.world import World
 
 

@@ -96,8 +96,13 @@ sys.exit(status)
 @pytest.mark.skipif(sys.platform != "linux", reason="the peak of memory is asked of Linux")
 @pytest.mark.parametrize(
     ("start", "filling", "end"),
-    [(b"", b"[", b""), (b'"', b"x", b'"'), (b"[0", b",0", b"]"), (b"[1", b",2.5", b"]"), (b"9", b"9", b"")],
-    ids=["brackets", "a text", "whole numbers", "fractions", "one number"],
+    [
+        pytest.param(b"", b"[", b"", id="brackets"),
+        pytest.param(b'"', b"x", b'"', id="a text", marks=pytest.mark.slow),
+        pytest.param(b"[0", b",0", b"]", id="whole numbers", marks=pytest.mark.slow),
+        pytest.param(b"[1", b",2.5", b"]", id="fractions", marks=pytest.mark.slow),
+        pytest.param(b"9", b"9", b"", id="one number", marks=pytest.mark.slow),
+    ],
 )
 def test_memory_is_bounded_for_the_largest_file(
     start: bytes, filling: bytes, end: bytes, tmp_path: Path

@@ -13,9 +13,9 @@ from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.view.canvas.canvas import Align, RecordingCanvas, Rect, TextStyle
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.panels.figures import FrameMeter
-from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
 
 SIZES = [(1280, 720), (800, 600), (1920, 1080), (1000, 1300), (720, 540), (2560, 1440)]
@@ -70,7 +70,7 @@ def test_pairs_and_contacts_are_shown_as_they_come() -> None:
     assert row(canvas, "Contacts") == "1"
 
 
-def test_who_sleeps_is_counted_beside_the_bodies() -> None:
+def test_bodies_asleep_are_counted_beside_the_bodies() -> None:
     world = empty_world()
     box(world, (0, -0.5), width=10, height=1, static=True, friction=0.5)
     box(world, (0, 0.25), friction=0.5)
@@ -263,7 +263,7 @@ def test_a_tiny_window_does_no_harm(size: tuple[int, int]) -> None:
     crowded(size)
 
 
-def test_a_resized_window_is_laid_out_anew_at_once() -> None:
+def test_a_resized_window_is_laid_out_again_at_once() -> None:
     canvas = RecordingCanvas((1280, 720))
     desk = Desk(empty_world(), canvas)
     desk.frames()

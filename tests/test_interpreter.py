@@ -28,7 +28,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, read_scene, write_scene
 from physicslab.kernels import KERNELS, ask_before_compiling, compile_kernels, interpreter, motion, raster
 from physicslab.kernels.events.events import run_events
-from physicslab.kernels.forces import gravity
+from physicslab.kernels.forces import drag, gravity, springs
 from physicslab.kernels.forces.pairwise import attract_pairwise
 from physicslab.kernels.forces.tree_pull import LARGEST_ERROR, attract_by_tree
 from physicslab.kernels.interpreter import interpreted, stand_in, twin_of
@@ -142,6 +142,21 @@ def smooth_motion() -> None:
     scene(still, integrator="exact").run(steps=2)
 
 
+def forces_by_hand() -> None:
+    """Call what only other kernels call, or none any more."""
+    random, n = np.random.default_rng(2), 4
+    vectors = [random.normal(size=(n, 2)) for _ in range(5)]
+    numbers = [random.uniform(0.5, 2.0, n) for _ in range(4)]
+    rows, heads, tails = np.arange(n), np.array((1, 2, 3, 0)), np.array((2, 0, 1, 3))
+    drag.drag_forces(vectors[0], vectors[1], rows, numbers[0], numbers[1])
+    gravity.uniform_gravity(vectors[0], numbers[0], numbers[1], 0.5, -9.81)
+    gravity.planet_gravity(vectors[0], vectors[1], numbers[0], rows, 1.0, 0.1, True)
+    springs.spring_forces(
+        vectors[0], numbers[0], vectors[1], numbers[1], vectors[2], numbers[2], rows, heads, tails,
+        vectors[3], vectors[4], numbers[3], numbers[2], numbers[1],
+    )  # fmt: skip
+
+
 def drawn() -> None:
     pixels, two = np.full((24, 40), 0x102030, np.uint32), np.array((0x40A0F0, 0x8090A0), np.uint32)
     centre, turned = np.array(((9.3, 8.1), (30.0, 15.5))), np.array((0.4, 2.0))
@@ -165,7 +180,7 @@ def built_in() -> None:
 def test_every_kernel_gives_the_same_bits_as_python() -> None:
     calls: Counter[str] = Counter()
     with compared(calls, most=25):
-        for drive in (built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, drawn):
+        for drive in (built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, forces_by_hand, drawn):
             drive()
     own = {name_of(jitted) for jitted in KERNELS if jitted.__module__.startswith("physicslab.")}
     assert own - set(calls) == set()

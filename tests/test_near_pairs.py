@@ -11,14 +11,27 @@ from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.contacts.report import list_contacts
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import read_scene, write_scene
-from physicslab.kernels import compile_kernels
+from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, compile_kernels
 from physicslab.kernels.broad import near_pairs
-from physicslab.kernels.records import MANIFOLD, POINT
+from physicslab.kernels.records import MANIFOLD, POINT, Couples, Manifolds, Points
 from physicslab.prefabs import gas
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
+
+
+@allocating_kernel
+def activate(
+    proximity: Couples, activation_distance: Numbers, far: int, manifolds: Manifolds, points: Points,
+    count: int, scalar: Rows, scalar_count: int, entities: Rows, position: Vectors, linear: Vectors,
+    h: float, margin: float,
+) -> tuple[int, int, int]:  # fmt: skip
+    """Call the inner function of that name."""
+    return near_pairs.activate(
+        proximity, activation_distance, far, manifolds, points, count, scalar, scalar_count, entities,
+        position, linear, h, margin,
+    )  # fmt: skip
 
 
 def disc(world: World, x: float, y: float, velocity: tuple[float, float] = (0.0, 0.0)) -> int:
@@ -113,8 +126,8 @@ def test_just_those_within_reach_are_promoted(made: list[tuple[float, float]], h
     room = len(couples)
     manifolds, points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
     scalar, entities = np.zeros(room, np.int64), 10 * np.arange(rows)
-    compile_kernels((near_pairs.activate,))
-    proximity_count, count, scalar_count = near_pairs.activate(
+    compile_kernels((activate,))
+    proximity_count, count, scalar_count = activate(
         proximity,
         activation_distance,
         room,

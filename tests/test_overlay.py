@@ -12,11 +12,11 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.view.canvas.canvas import RecordingCanvas
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.impacts import SHOWN
 from physicslab.view.overlay.impulses import LABELLED
 from physicslab.view.overlay.labels import Label, Labels
-from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
 
 
@@ -181,7 +181,15 @@ def test_clearing_forgets_impacts() -> None:
     assert not len(desk.window.overlays.impacts.kept)
 
 
-@pytest.mark.parametrize("name", ["pyramid", "spring_chain", "solar_system", "bounces"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("pyramid", marks=pytest.mark.slow),
+        pytest.param("spring_chain", marks=pytest.mark.slow),
+        "solar_system",
+        "bounces",
+    ],
+)
 def test_neither_the_window_nor_its_overlays_change_a_bit_of_600_frames(name: str) -> None:
     alone = load_scene(name)
     for _ in range(600):

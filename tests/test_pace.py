@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.desktop.pace import Pace
+from physicslab.view.window.pace import Pace
 
 DT = 1.0 / 60.0
 
@@ -69,8 +69,8 @@ def test_paused_time_is_never_owed() -> None:
 
 def test_single_steps_while_paused() -> None:
     pace = Pace(max_dt=0.1)
-    pace.ask_step()
-    pace.ask_step()
+    pace.queue_step()
+    pace.queue_step()
     assert pace.paused
     assert run(pace, [DT, DT, DT]) == 2
 

@@ -20,7 +20,7 @@ from physicslab.view.canvas.theme import DARK
 from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.springs import coil
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 

@@ -112,7 +112,7 @@ def test_a_folder_that_cannot_be_written_is_told(monkeypatch: pytest.MonkeyPatch
     def refuse(*arguments: object) -> None:
         raise PermissionError("nothing may be written here")
 
-    monkeypatch.setattr("physicslab.view.controls.actions.save_scene", refuse)
+    monkeypatch.setattr("physicslab.view.controls.file_actions.save_scene", refuse)
     desk = Desk(empty_world())
     desk.key("s", CTRL)
     desk.frames()

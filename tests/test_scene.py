@@ -9,7 +9,7 @@ import pytest
 
 from physicslab import SceneError, World, load_scene
 from physicslab.components import Material, Shape, Spring, Velocity
-from physicslab.ecs.component import COMPONENTS, InvalidValue, Vector, component, field
+from physicslab.ecs.component import InvalidValue, Vector, component, field
 from physicslab.ecs.vector import Vector2
 from physicslab.files.checks import JsonObject, shown
 from physicslab.files.scene import read_scene
@@ -79,21 +79,18 @@ def test_a_contributors_component_is_read_and_checked_like_any_other() -> None:
         dipole: Vector = field(default=(0.0, 0.0), unit="C m")
         partner: int | None = field(default=None)
 
-    try:
-        values = {"charge": 0.5, "dipole": [1, 2], "partner": "ball"}
-        world = read_scene(scene({"id": "x", "Charge": values}, {"id": "ball"}))
-        charge = world.component(1, Charge)
-        assert (charge.charge, charge.dipole, charge.partner) == (0.5, Vector2(1.0, 2.0), 2)
-        wrong: list[tuple[dict[str, object], str]] = [
-            ({"charge": 2}, r"Charge\.charge = 2: must be a finite number from -1 to 1 C"),
-            ({"partner": "y"}, r'Charge\.partner = "y": must be the id of an entity in this scene'),
-            ({"mass": 1}, r"Charge\.mass = 1: unknown field; must be one of charge, dipole, partner"),
-        ]
-        for refused, line in wrong:
-            with pytest.raises(SceneError, match=f'^scene: entity "x": {line}'):
-                read_scene(scene({"id": "x", "Charge": refused}))
-    finally:
-        del COMPONENTS["Charge"]
+    values = {"charge": 0.5, "dipole": [1, 2], "partner": "ball"}
+    world = read_scene(scene({"id": "x", "Charge": values}, {"id": "ball"}))
+    charge = world.component(1, Charge)
+    assert (charge.charge, charge.dipole, charge.partner) == (0.5, Vector2(1.0, 2.0), 2)
+    wrong: list[tuple[dict[str, object], str]] = [
+        ({"charge": 2}, r"Charge\.charge = 2: must be a finite number from -1 to 1 C"),
+        ({"partner": "y"}, r'Charge\.partner = "y": must be the id of an entity in this scene'),
+        ({"mass": 1}, r"Charge\.mass = 1: unknown field; must be one of charge, dipole, partner"),
+    ]
+    for refused, line in wrong:
+        with pytest.raises(SceneError, match=f'^scene: entity "x": {line}'):
+            read_scene(scene({"id": "x", "Charge": refused}))
 
 
 def test_files_that_cannot_be_read_are_refused(tmp_path: Path) -> None:

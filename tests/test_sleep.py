@@ -20,7 +20,7 @@ from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
-from physicslab.lab.stability.worlds import floor, open_space
+from physicslab.lab.worlds import floor, open_space
 from physicslab.prefabs import box, circle, container, pile, stack
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import ForceSystem, Stage, System, at
@@ -167,7 +167,7 @@ def test_nobody_sleeps_on_whom_a_spring_or_drag_acts(part: Spring | Drag) -> Non
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ({"sleeping": False}, "sleeping is false"),
+        ({"sleeping": False}, "sleeping is switched off"),
         ({"physics": PhysicsConfig(gravity_mode="planet")}, "planets attract each other"),
     ],
 )

@@ -1,5 +1,7 @@
 """Sparks: struck by impacts, drawn by the window, gone soon."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from desk import FRAME, Desk, empty_world
@@ -8,6 +10,7 @@ from physicslab.components import Velocity
 from physicslab.prefabs import box, circle, stack
 from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.theme import DARK
+from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.picture.sparks import Sparks
 from physicslab.world import World
 
@@ -21,54 +24,81 @@ def meeting(speed: float, mass: float = 1.0) -> World:
     return world
 
 
-def impact_count(world: World, steps: int = 60) -> Sparks:
-    """Step until there are sparks, or for so many steps."""
-    sparks = Sparks()
-    for _ in range(steps):
-        world.step(FRAME)
-        sparks.advance(world, FRAME, 100.0)
-        if len(sparks):
+class Watched:
+    """A world and the sparks of its impacts, at 100 px per metre."""
+
+    def __init__(self, world: World) -> None:
+        self.world, self.sparks, self._impacts = world, Sparks(), ImpactReader()
+        self._impacts.follow(world)
+
+    def frames(self, count: int = 1, steps: int = 1) -> None:
+        """Let frames go by, of so many steps each."""
+        for _ in range(count):
+            for _ in range(steps):
+                self.world.step(FRAME)
+            self.sparks.advance(self._impacts.new(self.world), self.world.time, 100.0)
+
+
+def first_sparks(world: World, frames: int = 60) -> Sparks:
+    """Step until there are sparks, or for so many frames."""
+    watched = Watched(world)
+    for _ in range(frames):
+        watched.frames()
+        if len(watched.sparks):
             break
-    return sparks
+    return watched.sparks
 
 
 def test_an_impact_strikes_sparks_where_it_was() -> None:
-    sparks = impact_count(meeting(4.0))
+    sparks = first_sparks(meeting(4.0))
     assert 3 <= len(sparks) <= 18
     assert np.allclose(sparks.place, (0, 0), atol=0.05)
 
 
 def test_a_harder_impact_makes_more_and_faster_sparks() -> None:
-    soft, hard = impact_count(meeting(2.0, mass=0.2)), impact_count(meeting(8.0, mass=3.0))
+    soft, hard = first_sparks(meeting(2.0, mass=0.2)), first_sparks(meeting(8.0, mass=3.0))
     assert len(hard) > 2 * len(soft) > 0
     assert np.hypot(*hard.velocity.T).max() > np.hypot(*soft.velocity.T).max()
 
 
 def test_contacts_at_rest_and_faint_ones_make_none() -> None:
-    assert not len(impact_count(meeting(0.2), steps=120))
+    assert not len(first_sparks(meeting(0.2), frames=120))
     world = empty_world()
     box(world, (0, -0.5), width=20, height=1, static=True)
     stack(world, 3)
     world.run(seconds=1.0)
     assert world.contacts.count
-    assert not len(impact_count(world, steps=60))
+    assert not len(first_sparks(world))
 
 
 def test_they_fly_apart_and_go_out() -> None:
-    world = meeting(6.0)
-    sparks = impact_count(world)
-    begun = len(sparks)
-    world.step(FRAME)
-    sparks.advance(world, FRAME, 100.0)
-    assert len(sparks) == begun and np.hypot(*sparks.place.T).max() > 0.02
-    for _ in range(24):
-        world.step(FRAME)
-        sparks.advance(world, FRAME, 100.0)
-    assert not len(sparks)
+    watched = Watched(meeting(6.0))
+    while not len(watched.sparks):
+        watched.frames()
+        assert watched.world.steps < 60
+    begun = len(watched.sparks)
+    watched.frames()
+    assert len(watched.sparks) == begun and np.hypot(*watched.sparks.place.T).max() > 0.02
+    watched.frames(24)
+    assert not len(watched.sparks)
+
+
+@pytest.mark.parametrize("collisions", ["exact", "step"])
+def test_sparks_do_not_depend_on_how_many_steps_a_frame_has(collisions: str) -> None:
+    flights = []
+    for steps in (1, 2, 4):
+        world = meeting(5.0)
+        world.simulation = replace(world.simulation, collisions=collisions)
+        watched = Watched(world)
+        watched.frames(12 // steps, steps)
+        flights.append(watched.sparks)
+    assert len(flights[0])
+    for other in flights[1:]:
+        assert np.allclose(flights[0].place, other.place) and np.allclose(flights[0].age, other.age)
 
 
 def test_the_same_run_makes_the_same_sparks() -> None:
-    one, other = impact_count(meeting(5.0)), impact_count(meeting(5.0))
+    one, other = first_sparks(meeting(5.0)), first_sparks(meeting(5.0))
     assert np.array_equal(one.velocity, other.velocity) and np.array_equal(one.life, other.life)
     assert len(np.unique(one.velocity)) == one.velocity.size
 
@@ -79,7 +109,7 @@ def test_there_are_never_too_many() -> None:
         for side in (-1, 1):
             ball = circle(world, (0.28 * side, 0.6 * n), radius=0.25, mass=5.0, restitution=1.0)
             world.component(ball, Velocity).linear = (-4 * side, 0)
-    assert len(impact_count(world)) == 400
+    assert len(first_sparks(world)) == 400
 
 
 def test_they_stand_still_with_the_world_and_r_puts_them_out() -> None:

@@ -5,8 +5,8 @@ from desk import FRAME, Desk, empty_world
 from test_hud import frame, recorded
 
 from physicslab.components import Transform
-from physicslab.desktop.pace import Pace
 from physicslab.prefabs import circle
+from physicslab.view.window.pace import Pace
 
 
 def test_brackets_halve_and_double_the_speed_within_limits() -> None:

@@ -13,7 +13,7 @@ from physicslab.ecs.config import PhysicsConfig
 from physicslab.integrators.blanes_moan import BLANES_MOAN
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
-from physicslab.lab.stability.worlds import floor, open_space, place
+from physicslab.lab.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 

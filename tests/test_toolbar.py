@@ -14,8 +14,8 @@ from physicslab.scenes import SCENES
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.controls import CONTROLS, Control
-from physicslab.view.controls.tools import HAND, PAN, SPAWN_TOOLS
-from physicslab.view.window import Window
+from physicslab.view.controls.tools import HAND, PAN, SPAWN_TOOLS, Tool
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 SIZES = [(640, 480), (800, 600), (1280, 720), (1920, 1080)]
@@ -143,7 +143,7 @@ def test_speeds_and_zoom_need_no_keys_and_no_wheel(desk: Desk) -> None:
 def test_the_pan_tool_moves_the_view_and_spawns_nothing(desk: Desk) -> None:
     circle(desk.world, (0, 0))
     press(desk, "Middle")
-    assert desk.window.tool is PAN
+    assert desk.window.tool == PAN.name
     centre = desk.window.camera.centre
     desk.press(0, 0)
     desk.move(1, 0)
@@ -155,11 +155,11 @@ def test_the_pan_tool_moves_the_view_and_spawns_nothing(desk: Desk) -> None:
 
 
 @pytest.mark.parametrize("tool", SPAWN_TOOLS, ids=lambda tool: tool.name)
-def test_everything_in_the_chooser_can_be_spawned_with_a_click(desk: Desk, tool: object) -> None:
+def test_everything_in_the_chooser_can_be_spawned_with_a_click(desk: Desk, tool: Tool) -> None:
     press(desk, "N")
     (title,) = [spawn.title for spawn in SPAWN_TOOLS if spawn is tool]
     choose(desk, title)
-    assert desk.window.tool is tool and not desk.window.menu
+    assert desk.window.tool == tool.name and not desk.window.menu
     assert desk.world.entities() == []
     at(desk, 1, -0.5)
     made = desk.world.entities()
@@ -208,7 +208,7 @@ def test_escape_leaves_the_menu_then_the_tool_then_the_window(desk: Desk) -> Non
         desk.key("escape")
         desk.frames()
         assert not desk.window.menu
-        assert (desk.window.tool is HAND) == (expected != "menu")
+        assert (desk.window.tool == HAND.name) == (expected != "menu")
         assert desk.window.closing == (expected == "window")
 
 

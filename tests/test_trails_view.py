@@ -14,7 +14,7 @@ from physicslab.systems.system import Stage
 from physicslab.systems.trail import TrailSystem
 from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.theme import DARK, mixed
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 

@@ -176,7 +176,7 @@ def test_kernels_are_loaded_in_frames_that_have_time_left(
     asleep = [Waiting(name) for name in "abc"]
     monkeypatch.setattr(compiling, "KERNELS", asleep)
     with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
-        display.show()
+        monkeypatch.setattr(Display, "left", property(lambda self: 0.012))
         waiting.advance(DARK)
         assert [kernel.compiled for kernel in asleep] == [True, False, False]
         monkeypatch.setattr(Display, "left", property(lambda self: 0.001))
@@ -190,7 +190,7 @@ def test_kernels_are_loaded_in_frames_that_have_time_left(
 def test_the_window_knows_every_kernel_from_the_start() -> None:
     """What is in no imported module could not be loaded while there is time for it."""
     code = """
-from physicslab import app
+from physicslab.desktop import app
 app._import("physicslab.desktop.session_window")
 from physicslab.kernels import KERNELS
 before = len(KERNELS)

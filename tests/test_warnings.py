@@ -1,4 +1,4 @@
-"""Advice: said where something is not to be trusted, and nowhere else."""
+"""Warnings: given where a world cannot be trusted, and nowhere else."""
 
 import itertools
 import json
@@ -11,7 +11,7 @@ from test_hud import frame, recorded
 
 from physicslab.cli import main
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.diagnostics.warnings import Advice, WorstAdvice, advise
+from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings, find_warnings
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import box, circle, stack
@@ -36,16 +36,16 @@ def hang(world: World, stiffness: float) -> None:
     world.spawn(Spring(a=bob, anchor_b=(0, 0), rest_length=1.0, stiffness=stiffness), name="rope")
 
 
-def only(world: World, words: str) -> Advice:
-    (found,) = [advice for advice in advise(world) if words in advice.what]
+def only(world: World, words: str) -> ModelWarning:
+    (found,) = [advice for advice in find_warnings(world) if words in advice.what]
     return found
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_built_in_scenes_need_no_advice(name: str) -> None:
-    world, worst = load_scene(name), WorstAdvice()
+    world, worst = load_scene(name), WorstWarnings()
     for _ in world.stepping(seconds=3.0, stride=6):
-        worst.note(advise(world))
+        worst.add(find_warnings(world))
     assert [str(advice) for advice in worst.all] == []
 
 
@@ -61,7 +61,7 @@ def test_the_setting_that_is_named_helps(method: str) -> None:
     assert name == "simulation.substeps"
     world.simulation = SimulationConfig(integrator=method, substeps=int(value))
     world.synchronise()
-    assert advise(world) == ()
+    assert find_warnings(world) == ()
     world.simulation = SimulationConfig(integrator=method, substeps=int(value) - 1)
     world.synchronise()
     assert only(world, "coarsely").setting == found.setting
@@ -81,7 +81,7 @@ def test_what_is_too_fast_to_be_followed_is_said(method: str) -> None:
     assert name == "simulation.dt"
     world.simulation = SimulationConfig(integrator=method, dt=dt)
     world.synchronise()
-    assert not [advice for advice in advise(world) if "too fast" in advice.what]
+    assert not [advice for advice in find_warnings(world) if "too fast" in advice.what]
 
 
 def test_what_chooses_its_steps_or_is_exact_needs_no_advice() -> None:
@@ -90,7 +90,7 @@ def test_what_chooses_its_steps_or_is_exact_needs_no_advice() -> None:
         bob = world.spawn(Transform((0, -1.5)), Velocity(), Mass(1.0))
         world.spawn(Spring(a=bob, anchor_b=(0, 0), rest_length=0.0, stiffness=1e6))
         world.synchronise()
-        assert advise(world) == ()
+        assert find_warnings(world) == ()
 
 
 def test_what_was_asked_for_and_refused_is_said() -> None:
@@ -98,7 +98,7 @@ def test_what_was_asked_for_and_refused_is_said() -> None:
     floor(world)
     box(world, (0, 0.25), angular_velocity=1.0)
     world.synchronise()
-    settings = {advice.setting for advice in advise(world)}
+    settings = {advice.setting for advice in find_warnings(world)}
     assert settings == {'simulation.integrator = "auto"', 'simulation.collisions = "auto"'}
 
 
@@ -110,7 +110,7 @@ def test_a_divided_step_is_said() -> None:
     found = only(world, "divided")
     assert (found.value, found.limit, world.step_divisions) == (3.0, 1.0, 3)
     world.step()
-    assert advise(world) == ()
+    assert find_warnings(world) == ()
 
 
 @pytest.mark.parametrize(("ratio", "said"), [(2000.0, False), (4000.0, True), (1e6, True)])
@@ -120,7 +120,7 @@ def test_a_load_that_contacts_do_not_hold_is_said(ratio: float, said: bool) -> N
     box(world, (0, 0.5), width=1, height=1, mass=1.0, name="light")
     box(world, (0, 1.5), width=1, height=1, mass=ratio)
     world.run(steps=3)
-    found = [advice for advice in advise(world) if "heavier" in advice.what]
+    found = [advice for advice in find_warnings(world) if "heavier" in advice.what]
     assert [advice.entity for advice in found] == (["light"] if said else [])
     assert all(advice.value == pytest.approx(ratio) for advice in found)
 
@@ -132,7 +132,7 @@ def test_a_heavy_body_beside_or_below_a_light_one_is_no_load() -> None:
     box(world, (0, 1.5), width=1, height=1, mass=1.0)
     box(world, (1.0, 0.5), width=1, height=1, mass=1.0)
     world.run(steps=5)
-    assert advise(world) == ()
+    assert find_warnings(world) == ()
 
 
 def test_overlap_is_said_until_it_is_gone() -> None:
@@ -150,14 +150,14 @@ def test_speed_matters_in_a_crowd_and_not_alone() -> None:
     box(world, (5, 0), width=1, height=9, static=True, restitution=1.0)
     circle(world, (0, 0), radius=0.1, velocity=(1e4, 0.0), restitution=1.0, name="bullet")
     world.step()
-    assert advise(world) == ()
+    assert find_warnings(world) == ()
     for x, y in itertools.product((-3.0, -2.0, -1.0, 1.0, 2.0), (-0.1, 0.1)):
         circle(world, (x, y), radius=0.1, restitution=1.0)
     world.component(world.entity("bullet"), Transform).position = (-4.0, 0.0)
     world.component(world.entity("bullet"), Velocity).linear = (1e4, 0.0)
     world.step()
-    worst = WorstAdvice()
-    worst.note(advise(world))
+    worst = WorstWarnings()
+    worst.add(find_warnings(world))
     (found,) = [advice for advice in worst.all if "sizes of a body" in advice.what]
     assert found.excess > 10.0 and found.setting.startswith("simulation.substeps = ")
 
@@ -167,7 +167,7 @@ def test_a_box_that_spins_fast_is_said_near_others_alone() -> None:
     floor(world)
     box(world, (0, 50.0), angular_velocity=500.0)
     world.step()
-    assert advise(world) == ()
+    assert find_warnings(world) == ()
     box(world, (0, 0.3), angular_velocity=500.0, friction=0.0, name="top")
     world.step()
     found = only(world, "corners")
@@ -180,13 +180,15 @@ def test_what_is_too_far_out_is_said(where: float, said: bool) -> None:
     world = open_world()
     circle(world, (where, 0.0), radius=0.5)
     world.synchronise()
-    assert bool(advise(world)) is said
+    assert bool(find_warnings(world)) is said
 
 
 def test_the_worst_of_each_kind_is_kept() -> None:
-    worst = WorstAdvice()
+    worst = WorstWarnings()
     for value in (2.0, 5.0, 3.0):
-        worst.note([Advice("a", "one", value, "m", 1.0, ""), Advice(None, "two", None, "", None, "x")])
+        worst.add(
+            [ModelWarning("a", "one", value, "m", 1.0, ""), ModelWarning(None, "two", None, "", None, "x")]
+        )
     assert [(advice.what, advice.value) for advice in worst.all] == [("one", 5.0), ("two", None)]
 
 
@@ -195,7 +197,7 @@ def test_a_look_changes_nothing() -> None:
     for _ in range(30):
         for world in worlds:
             world.step()
-        advise(worlds[0])
+        find_warnings(worlds[0])
     one, two = (world.table(Transform)["position"].tobytes() for world in worlds)
     assert one == two
 
@@ -250,7 +252,7 @@ def test_the_advice_lies_over_no_panel(size: tuple[int, int]) -> None:
 
 def test_at_most_three_are_said_and_the_rest_counted() -> None:
     canvas = RecordingCanvas((800, 600))
-    many = [Advice(f"body {n}", f"kind {n}", float(n), "", 1.0, "") for n in range(2, 8)]
+    many = [ModelWarning(f"body {n}", f"kind {n}", float(n), "", 1.0, "") for n in range(2, 8)]
     rect = draw_advice(many, 400, 50, 300, 12, canvas, THEMES[0])
     words = [text["words"] for text in canvas.called("text")]
     assert sum("body" in word for word in words) == 3 and "body 7" in words[1] and words[-1] == "and 3 more"
@@ -258,4 +260,4 @@ def test_at_most_three_are_said_and_the_rest_counted() -> None:
     style = TextStyle(11, THEMES[0].warning, bold=True)
     assert all(canvas.text_size(word, style)[0] <= 300 for word in words)
     assert draw_advice([], 400, 50, 300, 12, canvas, THEMES[0]) is None
-    assert math.isinf(Advice(None, "x", None, "", None, "").excess)
+    assert math.isinf(ModelWarning(None, "x", None, "", None, "").excess)

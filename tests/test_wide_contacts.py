@@ -5,13 +5,16 @@ import pytest
 from desk import bits
 
 from physicslab.components import Mass, Transform, Velocity
+from physicslab.contacts.arguments import motion_of, near_in
 from physicslab.contacts.memory import export_contacts, restore_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import compile_kernels
-from physicslab.kernels.solver import impulse
+from physicslab.kernels.solver import stages
+from physicslab.kernels.solver.arguments import Acting, Inverse, Softness
+from physicslab.kernels.wide import slots
 from physicslab.kernels.wide.layout import MASS_A, MASS_B, WIDE
-from physicslab.lab.stability.worlds import floor, open_space, place
+from physicslab.lab.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle, container, pile, pyramid
 from physicslab.world import World
 
@@ -78,23 +81,25 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         for p in kind.pair[k * WIDE : (k + 1) * WIDE]
         if p >= 0
     ]
-    compile_kernels((impulse.solve, impulse.relax))
+    compile_kernels((stages.press,))
     h = 1.0 / 240.0
     ends = []
     for in_blocks in (True, False):
         linear, angular = velocity["linear"].copy(), velocity["angular"].copy()
         linear[bodies.inverse_mass > 0.0] -= (0.0, 9.81 * h)
-        points, touching = contacts.points.copy(), np.array(order, np.int64)
-        constraints = [
-            (kind.data.copy(), kind.count if in_blocks else 0, kind.order, kind.a, kind.b)
-            for kind in blocks.kinds
-        ]
-        common = (
-            contacts.manifolds, points, touching, 0 if in_blocks else len(order), *constraints[0],
-            *constraints[1],
-            linear, angular, bodies.inverse_mass, bodies.inverse_inertia,
+        counts = contacts.counts.copy()
+        counts[slots.ACTIVE] = counts[slots.LEFT] = 0 if in_blocks else len(order)
+        if not in_blocks:
+            counts[slots.WIDE_COUNT] = counts[slots.DISC_BLOCKS] = counts[slots.BOX_BLOCKS] = 0
+        discs, boxes = ((kind.data.copy(), *kind.slots[1:]) for kind in blocks.kinds)
+        near = near_in(world)._replace(
+            counts=counts, points=contacts.points.copy(), touching=np.array(order, np.int64),
+            discs=discs, boxes=boxes,
         )  # fmt: skip
-        impulse.solve(*common, bodies.force, True, h, 1.0, 1, 45.0, 2.0, 0.0005)
+        motion = motion_of(world)._replace(linear=linear, angular=angular)
+        inverse = Inverse(bodies.inverse_mass, bodies.inverse_inertia)
+        softness = Softness(45.0, 2.0, 0.0005, 1.5)
+        stages.press(near, motion, inverse, Acting(bodies.force, bodies.torque, True), softness, h, h, 1)
         ends.append((linear, angular))
     assert ends[0][0] == pytest.approx(ends[1][0], rel=1e-9, abs=1e-12)
     assert ends[0][1] == pytest.approx(ends[1][1], rel=1e-9, abs=1e-11)

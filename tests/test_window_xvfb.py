@@ -43,8 +43,10 @@ class Screen:
     def picture(self) -> NDArray[np.int64]:
         """Return what the screen shows, (width, height, 3)."""
         self.shots += 1
-        path = self.folder / f"shot{self.shots}.png"
-        subprocess.run(["import", "-window", "root", str(path)], env=self.environment, check=True)
+        path = self.folder / f"shot{self.shots}.ppm"
+        subprocess.run(
+            ["import", "-window", "root", "-depth", "8", str(path)], env=self.environment, check=True
+        )
         return pygame.surfarray.array3d(pygame.image.load(path)).astype(np.int64)
 
     def until(self, seen: Seen, what: str) -> NDArray[np.int64]:
@@ -110,8 +112,10 @@ def test_a_user_spawns_drags_throws_and_quits(screen: Screen) -> None:
         screen.until(differs(middle, empty, 10_000), "a circle where the click was")
 
         screen.do("mousedown", 1)
+        words: list[object] = []
         for x in range(640, 400, -8):
-            screen.do("mousemove", x, 300)
+            words += ["mousemove", x, 300, "sleep", 0.02]
+        screen.do(*words)
         screen.until(differs(left, empty, 10_000), "the circle dragged to the left")
         gone = screen.until(lambda picture: not differs(middle, empty, 2_000)(picture), "the middle empty")
         assert differs(left, empty, 10_000)(gone)
@@ -123,7 +127,7 @@ def test_a_user_spawns_drags_throws_and_quits(screen: Screen) -> None:
         screen.do("click", 3)
         screen.until(differs((slice(370, 430), slice(470, 530)), empty, 5_000), "a box")
         screen.do("mousedown", 1)
-        words: list[object] = []
+        words = []
         for x in range(400, 900, 12):
             words += ["mousemove", x, 500, "sleep", 0.01]
         screen.do(*words, "mouseup", 1)
@@ -178,6 +182,7 @@ def test_a_resized_window_shows_more_of_the_world(screen: Screen) -> None:
         program.communicate()
 
 
+@pytest.mark.slow
 def test_what_a_crash_has_left_is_offered_and_restored(screen: Screen) -> None:
     sessions = screen.folder / "state" / "physicslab" / "sessions"
     program = screen.launch("stack")

@@ -21,7 +21,7 @@ from physicslab.desktop.rescue import save_last_good
 from physicslab.diagnostics.energy import Drift
 from physicslab.diagnostics.run_report import RunRecord, find_not_finite, run_report, run_summary
 from physicslab.diagnostics.trajectory import TrajectoryWriter
-from physicslab.diagnostics.warnings import advise
+from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import INTEGRATORS
 from physicslab.files.checks import shown
@@ -37,7 +37,7 @@ _DEFAULT_S = 10.0
 _SAMPLES = 500
 """How often a run without contacts is measured: what lies between is one compiled loop."""
 _LOOKS = 100
-"""How often a run is looked at for advice: a look at thousands of contacts takes a third of a step."""
+"""How often warnings are looked for in a run: with thousands of contacts that takes a third of a step."""
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -151,7 +151,7 @@ def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWr
             done = next(stepping, None)
             record.wall_s += time.perf_counter() - began - (world.compile_s - compiled)
             if samples % look_every == 0 or done is None:
-                record.advice.note(advise(world))
+                record.warnings.add(find_warnings(world))
             samples += 1
             if done is None:
                 return record

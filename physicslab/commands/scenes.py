@@ -1,4 +1,4 @@
-"""List the built-in scenes: name, number of bodies and what there is to see."""
+"""List the built-in scenes: name, number of bodies and description."""
 
 from __future__ import annotations
 
@@ -36,6 +36,6 @@ def execute(arguments: Namespace) -> int:
 
 
 def _bodies(scene: Scene) -> int:
-    # Asked of esper, because the world would compile the scene's kernels before it answered.
+    # Counted by esper, because a batch of the world would first compile the scene's kernels.
     with scene.build().active():
         return len(esper.get_component(Transform))

@@ -1,83 +1,49 @@
-"""Run what is stiff, extreme or hostile, and say what falls short."""
+"""Run stiff, extreme and hostile cases: which pass, which fall short."""
 
 from __future__ import annotations
 
-import sys
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from physicslab.commands.command_error import FAILED, CommandError
-from physicslab.commands.output import Output
-from physicslab.commands.progress import Progress
-from physicslab.files.checks import shown, suggestion
-from physicslab.files.json_text import json_text
-from physicslab.lab.stability.case import Case, Outcome, Verdict, run_case
-from physicslab.lab.stability.catalogue import CASES, groups, names, select
+from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
+from physicslab.lab.stability.case import Outcome, StabilityCase, Verdict, run_case
+from physicslab.lab.stability.catalogue import CASES
 from physicslab.lab.stability.document import document
-from physicslab.lab.stability.tables import head_text, row_text, summary_text
+from physicslab.lab.stability.tables import columns, head_text, row_text, summary_text
 
 __all__ = ["add_arguments", "execute"]
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
-    parser.add_argument("cases", metavar="CASE", nargs="*", help="a case, or a group of them; all if none")
-    parser.add_argument("--json", metavar="FILE", help="write every figure and verdict (- for stdout)")
-    parser.epilog = f"groups: {', '.join(groups())}; cases: {', '.join(CASES)}"
+    add_lab_arguments(parser, "case", "a case, or a group of them; all if none")
+    parser.epilog = f"groups: {', '.join(CASES.families)}; --list names the {len(CASES)} cases"
 
 
 def execute(arguments: Namespace) -> int:
-    """Run what was named, print a line of each, and write what was asked for."""
-    cases = _chosen(arguments.cases)
-    output = None if arguments.json is None else Output("--json", arguments.json)
-    quiet = output is not None and output.to_stdout
+    """Run what was named, print a line of each, and write the outputs that were chosen."""
+    if arguments.list:
+        return list_cases(CASES)
+    cases = chosen_cases(arguments.names or CASES, CASES, _unknown)
+    run, aligned = LabRun("stability", arguments), columns(cases)
     outcomes: list[Outcome] = []
-    _show(head_text(cases), quiet)
-    for outcome in _outcomes(cases):
+    run.show(head_text(aligned))
+    for outcome in run.results([(1.0, _job(case)) for case in cases]):
         outcomes.append(outcome)
-        _show(row_text(outcome, cases), quiet)
-    _show(summary_text(outcomes), quiet)
-    if output is not None:
-        output.write(json_text(document(outcomes)).encode("utf-8"))
+        run.show(row_text(outcome, aligned))
+    run.show(summary_text(outcomes))
+    run.write(document(outcomes))
     short = [outcome.case.name for outcome in outcomes if outcome.verdict is Verdict.SHORT]
     if short:
         raise CommandError(f"{len(short)} of {len(outcomes)} cases fall short: {', '.join(short)}", FAILED)
     return 0
 
 
-def _chosen(wanted: Sequence[str]) -> list[Case]:
-    """Return the cases of these names, each once; all of them where none is named.
-
-    Raises
-    ------
-    CommandError
-        If there is none of a name.
-    """
-    if not wanted:
-        return list(CASES.values())
-    chosen: dict[str, Case] = {}
-    for name in wanted:
-        found = select(name)
-        if not found:
-            there_is = f"there are the groups {', '.join(groups())}, and the cases that --help names"
-            raise CommandError(f"{shown(name)}: is no case{suggestion(name, names())}; {there_is}")
-        chosen |= {case.name: case for case in found}
-    return list(chosen.values())
+def _unknown(name: str) -> StabilityCase | None:
+    known = f"there are the groups {', '.join(CASES.families)}, and the cases that --list names"
+    raise unknown_name(name, "case", CASES.names, known)
 
 
-def _outcomes(cases: Sequence[Case]) -> Iterator[Outcome]:
-    """Yield what comes of each case, and keep the terminal told how far all are."""
-    progress = Progress("stability", sys.stderr)
-    try:
-        for i, case in enumerate(cases):
-            progress.show(i / len(cases))
-            outcome = run_case(case)
-            progress.clear()
-            yield outcome
-    finally:
-        progress.clear()
-
-
-def _show(text: str, quiet: bool) -> None:
-    if not quiet:
-        print(text, flush=True)
+def _job(case: StabilityCase) -> Iterator[float | Outcome]:
+    yield run_case(case)

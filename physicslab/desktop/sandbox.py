@@ -15,7 +15,7 @@ from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
 from physicslab.view.controls.toolbar import Toolbar
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = ["Sandbox"]
@@ -113,7 +113,6 @@ class Sandbox:
         try:
             while made < due and (made == 0 or self._clock() < deadline):
                 world.step(dt * pace.shortening)
-                self.window.sparks.advance(world, dt * pace.shortening, self.window.camera.scale)
                 made += 1
         except Diverged as error:
             pace.halt()

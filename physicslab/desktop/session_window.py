@@ -12,8 +12,8 @@ from physicslab.desktop.sessions import Session, session_folder
 from physicslab.ecs.config import WindowConfig
 from physicslab.files.scene import load_scene
 from physicslab.view.canvas.display import Display
-from physicslab.view.controls.recovery import Recovery
-from physicslab.view.window import Window
+from physicslab.view.window.recovery import Recovery
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = ["run_window"]

@@ -1,1 +1,1 @@
-"""Figures and warnings about a world."""
+"""Figures of a world, and warnings about it."""

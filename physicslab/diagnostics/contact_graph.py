@@ -1,22 +1,19 @@
-"""The near pairs of a world as columns: who is near whom, how deep, how fast and under what load."""
+"""The near pairs of a world as columns: bodies, overlaps and normals, and mass ratios under load."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Velocity
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.world import World
 
 __all__ = ["ContactGraph", "contact_graph"]
 
-_ABOVE = 0.5
-"""Cosine between gravity and the normal from which on one body lies on the other."""
+_COSINE_ABOVE = 0.5
+"""Between gravity and the normal: from here on one body lies on the other, and not beside it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,20 +54,20 @@ class ContactGraph:
         row = a if np.hypot(*linear[a]) > np.hypot(*linear[b]) else b
         return world.label(int(world.entity_index.entities[row]))
 
-    def crowded(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return which pairs have a body that is in several of the ``chosen`` pairs."""
+    def sharing_a_body(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return which of the ``chosen`` pairs have a body in common with another of them (pairs,)."""
         if not chosen.any():
             return chosen
         rows = int(max(self.a.max(), self.b.max())) + 1
         count = np.bincount(self.a[chosen], minlength=rows) + np.bincount(self.b[chosen], minlength=rows)
-        count[0] = 0  # the bounds are near to many, and are no crowd
+        count[0] = 0  # the bounds, which are near many bodies
         return chosen & ((count[self.a] > 1) | (count[self.b] > 1))
 
-    def loads(self, world: World) -> NDArray[np.float64]:
+    def mass_ratios(self, world: World) -> NDArray[np.float64]:
         """Return the mass ratio of each touching pair in which the heavier body lies on the lighter; else 0.
 
-        The lighter one must touch something else too, which holds it. Without uniform gravity nothing lies on
-        anything, and what is squeezed counts.
+        Only pairs count whose lighter body touches a third, which supports it. Without uniform gravity no
+        direction is down, and every pair with such a lighter body counts.
         """
         a, b = self.a[self.touching], self.b[self.touching]
         inverse = world.bodies.inverse_mass
@@ -86,7 +83,7 @@ class ContactGraph:
         if world.physics.gravity_mode == "linear" and world.physics.gravity:
             down = np.array(tuple(world.physics.gravity.normalized))
             towards_light = np.where(light == b, 1.0, -1.0) * (self.normal @ down)
-            ratio[towards_light < _ABOVE] = 0.0
+            ratio[towards_light < _COSINE_ABOVE] = 0.0
         return ratio
 
 

@@ -1,4 +1,4 @@
-"""Energies, momenta and penetration: pure functions over a world, the one source of these figures."""
+"""Energies and momenta: pure functions over a world, the one source of these figures."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels import energy
-from physicslab.systems.system import ForceSystem
 from physicslab.world import World
 
 __all__ = ["Drift", "Energy", "Momentum", "measure_energy", "measure_momentum", "summation"]
@@ -17,7 +16,7 @@ __all__ = ["Drift", "Energy", "Momentum", "measure_energy", "measure_momentum", 
 
 @dataclass(frozen=True, slots=True)
 class Energy:
-    """The energy of a world [J]; what is static, kinematic or held does not count.
+    """The energy of a world [J]; bodies that are static, kinematic or held do not count.
 
     Attributes
     ----------
@@ -60,16 +59,16 @@ def _motion(world: World) -> tuple[float, float, float, float, float]:
     )  # fmt: skip
 
 
-@np.errstate(all="ignore")  # an energy may be infinite, and says so itself
+@np.errstate(all="ignore")  # an energy may be infinite, and is returned as such
 def measure_energy(world: World) -> Energy:
     """Return the energy of the world as it is now."""
     translation, rotation, *_ = _motion(world)
     potential: dict[str, float] = {}
     with world.active():
-        for system in world.schedule.running:
-            if isinstance(system, ForceSystem) and system.potential is not None:
-                stored = system.potential_energy(world)
-                potential[system.potential] = potential.get(system.potential, 0.0) + stored
+        for force in world.schedule.forces:
+            if force.potential is not None:
+                stored = force.potential_energy(world)
+                potential[force.potential] = potential.get(force.potential, 0.0) + stored
     return Energy(translation, rotation, potential)
 
 
@@ -98,7 +97,7 @@ class Drift:
     def sample(self, world: World) -> None:
         """Measure the energy as it is now."""
         self.latest = measure_energy(world)
-        # numpy's maximum, unlike max, lets NaN through.
+        # numpy's maximum, unlike max, keeps NaN.
         self.largest = float(np.maximum(self.largest, abs(self.latest.total - self.initial.total)))
         self._scale = max(self._scale, self.latest.kinetic)
 
@@ -110,6 +109,5 @@ class Drift:
 
 
 def summation(world: World) -> str:
-    """Return how the running forces are summed, where one has something to say of it."""
-    forces = (system for system in world.schedule.running if isinstance(system, ForceSystem))
-    return "; ".join(said for force in forces if (said := force.summation(world)))
+    """Return how the running forces are summed, where one does not add pair by pair; else nothing."""
+    return "; ".join(words for force in world.schedule.forces if (words := force.summation(world)))

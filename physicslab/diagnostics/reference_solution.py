@@ -1,4 +1,4 @@
-"""Worlds whose motion is known exactly, and how far a simulated one is from it."""
+"""Worlds whose motion has an exact solution, and how far a simulated world is from it."""
 
 from __future__ import annotations
 
@@ -13,22 +13,21 @@ from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.ode.kepler import propagate_kepler
 from physicslab.stepping.plan import why_not_smooth
-from physicslab.systems.system import ForceSystem
 from physicslab.world import World
 
-__all__ = ["KnownMotion", "known_motion"]
+__all__ = ["ReferenceSolution", "reference_solution"]
 
 
 @dataclass(frozen=True, slots=True)
-class KnownMotion:
-    """Where the bodies of a world will be.
+class ReferenceSolution:
+    """The exact motion of the bodies of a world.
 
     Attributes
     ----------
     what : str
-        By which solution, in words.
+        What the solution is, in words.
     since : float
-        The world's time [s] at which it was as the solution begins.
+        The world's time [s] at which the solution begins.
     rows : int64 array (n,)
         The rows that move.
     positions_after : callable
@@ -41,16 +40,16 @@ class KnownMotion:
     positions_after: Callable[[float], NDArray[np.float64]]
 
     def error(self, world: World) -> float:
-        """Return how far the body that is furthest off is from where it should be [m]."""
+        """Return the largest distance of a body from where it should be [m]."""
         apart = world.table(Transform)["position"][self.rows] - self.positions_after(world.time - self.since)
         return float(np.hypot(apart[:, 0], apart[:, 1]).max(initial=0.0))
 
 
-def known_motion(world: World) -> KnownMotion | None:
-    """Return what is known of a world's motion from now on, or ``None``.
+def reference_solution(world: World) -> ReferenceSolution | None:
+    """Return the exact solution of a world's motion from now on, or ``None`` where there is none.
 
-    Known are uniform gravity, linear drag and springs to fixed points (see
-    :func:`~physicslab.ode.closed_form.closed_form`), and two bodies that attract each other.
+    There is one for uniform gravity, linear drag and springs to fixed points (see
+    :func:`~physicslab.ode.closed_form.closed_form`), and for two bodies that attract each other.
     """
     world.synchronise()
     if why_not_smooth(world, world.schedule) is not None or not len(world.batch(Transform, Velocity)):
@@ -64,16 +63,18 @@ def known_motion(world: World) -> KnownMotion | None:
     world.compile((propagate,))
 
     def positions_after(t: float) -> NDArray[np.float64]:
-        moved, pushed = x.copy(), v.copy()
-        propagate(moved, pushed, form.direction, form.rate2, form.drag, form.centre, form.acceleration, t)
-        return moved
+        positions, velocities = x.copy(), v.copy()
+        propagate(
+            positions, velocities, form.direction, form.rate2, form.drag, form.centre, form.acceleration, t
+        )
+        return positions
 
-    return KnownMotion(form.what, world.time, form.rows, positions_after)
+    return ReferenceSolution(form.what, world.time, form.rows, positions_after)
 
 
-def _two_bodies(world: World) -> KnownMotion | None:
+def _two_bodies(world: World) -> ReferenceSolution | None:
     """Return Kepler's solution where two bodies attract each other and nothing else acts."""
-    physics, forces = world.physics, [s.name for s in world.schedule.running if isinstance(s, ForceSystem)]
+    physics, forces = world.physics, [force.name for force in world.schedule.forces]
     rows = world.batch(Transform, Mass).rows
     moving = np.flatnonzero(world.table(Transform).present & world.table(Velocity).present)
     alone = forces == ["GravitySystem"] and physics.gravity_mode == "planet" and physics.softening == 0.0
@@ -98,11 +99,11 @@ def _two_bodies(world: World) -> KnownMotion | None:
         positions: NDArray[np.float64] = both[np.searchsorted(rows, moving)]
         return positions
 
-    return KnownMotion("two bodies on Kepler orbits", world.time, moving, positions_after)
+    return ReferenceSolution("two bodies on Kepler orbits", world.time, moving, positions_after)
 
 
 def _shares(mass: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return each body's share of the mass of both; all of it for one that nothing moves."""
+    """Return each body's share of the mass of both; a body that is fixed counts for all of it."""
     if np.isinf(mass).any():
         return np.isinf(mass).astype(np.float64)
     shares: NDArray[np.float64] = mass / mass.sum()

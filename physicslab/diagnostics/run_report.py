@@ -1,7 +1,8 @@
-"""What a run came to: the document of ``run --json`` and the summary that people read."""
+"""Results of a run: the document of ``run --json`` and the summary for the terminal."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -9,7 +10,7 @@ from typing import Any
 
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import Drift, Energy, measure_momentum, summation
-from physicslab.diagnostics.warnings import Advice, WorstAdvice
+from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
 from physicslab.files.writer import unique_name
 from physicslab.world import World
 
@@ -18,14 +19,14 @@ __all__ = ["RunRecord", "body_names", "find_not_finite", "run_report", "run_summ
 
 @dataclass(slots=True)
 class RunRecord:
-    """What is gathered while a world runs.
+    """Measurements taken while a world runs.
 
     Attributes
     ----------
     scene : str
         What the scene is called.
     drift : Drift
-        How far the energy has gone from where it began.
+        The largest departure of the energy from that at the start.
     steps : int
         Steps done.
     wall_s : float
@@ -33,9 +34,9 @@ class RunRecord:
     max_penetration : float
         The deepest overlap after any step [m].
     divided : int
-        Into how many parts a step was divided, at the most.
-    advice : WorstAdvice
-        What was not to be trusted on the way.
+        The largest number of parts that a step was divided into.
+    warnings : WorstWarnings
+        The worst warning of each kind.
     """
 
     scene: str
@@ -44,7 +45,7 @@ class RunRecord:
     wall_s: float = 0.0
     max_penetration: float = 0.0
     divided: int = 1
-    advice: WorstAdvice = field(default_factory=WorstAdvice)
+    warnings: WorstWarnings = field(default_factory=WorstWarnings)
 
 
 def body_names(world: World) -> dict[int, str]:
@@ -89,10 +90,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "collisions": int(world.collisions),
         "max_penetration": record.max_penetration,
         "divided": record.divided,
-        "advice": [
-            {name: getattr(advice, name) for name in ("entity", "what", "value", "unit", "limit", "setting")}
-            for advice in record.advice.all
-        ],
+        "advice": [dataclasses.asdict(warning) for warning in record.warnings.all],
         "entities": _bodies(world),
     }
 
@@ -140,7 +138,7 @@ def find_not_finite(report: object, place: str = "") -> str | None:
 
 
 def run_summary(report: Mapping[str, Any], title: str) -> str:
-    """Return what people want to know of a run, on a few lines."""
+    """Return a summary of a run, on a few lines."""
     energy, momentum = report["energy"], report["momentum"]
     wall = report["wall_s"]
     systems = ", ".join(f"{system['name']} {system['ms']:.1f} ms" for system in report["systems"])
@@ -166,6 +164,6 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         lines.append(f"  summed      {report['summation']}")
     if report["interpreted"]:
         lines.append(f"  slower      {', '.join(report['interpreted'])}: computed by Python, call by call")
-    lines += [f"  advice      {words}" for words in (Advice(**found) for found in report["advice"])]
+    lines += [f"  advice      {words}" for words in (ModelWarning(**found) for found in report["advice"])]
     lines += [f"  left out    {left['name']}: {left['reason']}" for left in report["left_out"]]
     return "\n".join(lines)

@@ -16,7 +16,7 @@ HEADER = ("time [s]", "entity", "x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy
 
 
 class TrajectoryWriter:
-    """Writes the state of a world's bodies to a stream as CSV, a row each, whenever it is asked to.
+    """Writes the state of a world's bodies to a stream as CSV, a row for each body and call.
 
     Numbers keep every bit; names are those of ``run --json``.
 

@@ -1,4 +1,4 @@
-"""One thing that is not to be trusted, and the worst of each kind over a run."""
+"""A warning about a world, and the worst warning of each kind over a run."""
 
 from __future__ import annotations
 
@@ -6,25 +6,25 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-__all__ = ["Advice", "WorstAdvice"]
+__all__ = ["ModelWarning", "WorstWarnings"]
 
 
 @dataclass(frozen=True, slots=True)
-class Advice:
-    """One thing that is not to be trusted.
+class ModelWarning:
+    """One thing in which a simulated world cannot be trusted. ``run --json`` has them as ``advice``.
 
     Attributes
     ----------
     entity : str, optional
-        Whose motion, by its id; ``None`` where it concerns all of the world.
+        The body or spring, by its id; ``None`` where it concerns all of the world.
     what : str
-        What is wrong, in words that hang on no number.
+        What is wrong, in words that hold for any value: they name the kind of warning.
     value, limit : float, optional
-        How much of it there is, and how much would be well.
+        The figure, and the largest that can be trusted.
     unit : str
         Of both; empty for a plain number.
     setting : str
-        What to set, and to which value; empty where no setting helps.
+        A setting that helps, with its value; empty where none does.
     """
 
     entity: str | None
@@ -36,7 +36,7 @@ class Advice:
 
     @property
     def excess(self) -> float:
-        """How far beyond the limit it is, as a factor."""
+        """The value in units of the limit; infinite where there are none."""
         return math.inf if self.value is None or not self.limit else self.value / self.limit
 
     def __str__(self) -> str:
@@ -47,20 +47,20 @@ class Advice:
         return f"{words}; {self.setting} would help" if self.setting else words
 
 
-class WorstAdvice:
-    """The worst of every kind of advice over a run."""
+class WorstWarnings:
+    """The worst warning of each kind over a run."""
 
     def __init__(self) -> None:
-        self._worst: dict[str, Advice] = {}
+        self._worst: dict[str, ModelWarning] = {}
 
-    def note(self, advices: Iterable[Advice]) -> None:
-        """Take note of what was found at one moment."""
-        for advice in advices:
-            known = self._worst.get(advice.what)
-            if known is None or advice.excess > known.excess:
-                self._worst[advice.what] = advice
+    def add(self, found: Iterable[ModelWarning]) -> None:
+        """Add the warnings of one moment; of each kind the worst is kept."""
+        for warning in found:
+            known = self._worst.get(warning.what)
+            if known is None or warning.excess > known.excess:
+                self._worst[warning.what] = warning
 
     @property
-    def all(self) -> tuple[Advice, ...]:
-        """One of each kind, in the order in which they were first met."""
+    def all(self) -> tuple[ModelWarning, ...]:
+        """One of each kind, in the order in which they first came."""
         return tuple(self._worst.values())

@@ -1,119 +1,121 @@
-"""What of a world is not to be trusted as it is stepped, and which setting would help.
+"""Warnings: where a world cannot be trusted as it is stepped, and which setting would help.
 
-The limits are measured, and each says how. Nothing here runs within a step: a look costs some 50 us for a few
-bodies and below a millisecond for thousands, and is taken ten times a second or once a measurement.
+The limits below are measured, as each describes; documentation takes its figures from here. Nothing here
+runs within a step: finding warnings costs some 50 us for a few bodies and below a millisecond for thousands,
+and is done ten times a second or once a measurement.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from physicslab.components import Shape, Spring, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
-from physicslab.diagnostics.warning_records import Advice, WorstAdvice
+from physicslab.diagnostics.forces import fastest_force
+from physicslab.diagnostics.warning_records import ModelWarning, WorstWarnings
 from physicslab.state.packed import spring_ends
-from physicslab.systems.system import ForceSystem
+from physicslab.world import World
 
-if TYPE_CHECKING:
-    from physicslab.world import World
+__all__ = [
+    "DISTANCE_LIMIT", "EXPLICIT_RATE_LIMIT", "IMPLICIT_RATE_LIMIT", "MASS_RATIO_LIMIT", "OVERLAP_LIMIT",
+    "SPEED_LIMIT", "SPIN_LIMIT", "ModelWarning", "WorstWarnings", "find_warnings",
+]  # fmt: skip
 
-__all__ = ["Advice", "WorstAdvice", "advise"]
-
-_RESOLVED = 0.3
+EXPLICIT_RATE_LIMIT = 0.3
 """omega h of a fixed step, as a share of the method's limit: with leapfrog the energy of such an oscillation
 swings by a tenth."""
-_FOLLOWED = 1.0
+IMPLICIT_RATE_LIMIT = 1.0
 """omega h of the implicit rule, which is stable beyond: the phase is 8 % off there."""
-_AUTO_FOLLOWS = 500.0
+_AUTO_RATE_LIMIT = 500.0
 """omega dt up to which ``auto`` divides a step until it follows an oscillation."""
-_MOST_SUBSTEPS = 10_000
-_DEEP = 0.2
+_SUBSTEPS_LIMIT = 10_000
+"""Of a scene's configuration."""
+OVERLAP_LIMIT = 0.2
 """Overlap as a share of the smaller body. A stack of ten equal boxes stays below 0.005, 300 kg on 1 kg below
-0.08, a pile of 900 bodies that lands has 0.16 for a moment; what is pressed through another passes 0.3."""
-_FAST = 1.0
-"""Relative speed times the substep, in sizes of the smaller body, among several neighbours. One impact is
-right at any speed, for the motion is swept; but a body meets one neighbour a substep: of 20 discs of e = 1
-in walls none is lost in 300 steps at 1, three at 2, twelve at 5."""
-_TURNING = 0.25
+0.08, a pile of 900 bodies that lands has 0.16 for a moment; one that goes through another passes 0.3."""
+SPEED_LIMIT = 1.0
+"""Relative speed times the substep, in sizes of the smaller body, among several neighbours. A single impact
+is right at any speed, because the motion is swept; but a body collides with one neighbour a substep: of 20
+discs of e = 1 in walls none is lost in 300 steps at 1, three at 2, twelve at 5."""
+SPIN_LIMIT = 0.25
 """Angle that a box turns by in a substep [rad] near others. Places are swept, corners are not: a spinning box
 dropped on a floor lands 8 % off at 0.25, 25 % off at 0.5, anywhere at 1; energy never grows, up to 5."""
-_HEAVY = 3000.0
-"""Mass ratio of a body that lies on a lighter one. On top of ten boxes of 1 m a body a thousand times as
-heavy sinks by 2 cm in 10 s, three thousand times by 4 cm, ten thousand times by 38 cm: substeps, which are
-made shorter for such loads, have reached their least length."""
-_FAR = 1e9
+MASS_RATIO_LIMIT = 3000.0
+"""Mass of a body over that of a lighter one that it lies on. On top of ten boxes of 1 m a body a thousand
+times as heavy sinks by 2 cm in 10 s, three thousand times by 4 cm, ten thousand times by 38 cm: substeps,
+which are made shorter for such loads, are then as short as they may be."""
+DISTANCE_LIMIT = 1e9
 """Coordinate in sizes of a body: float64 keeps places there to 1e-7 of the body, and a tower to 1e-3."""
 
 
-def advise(world: World) -> tuple[Advice, ...]:
-    """Return what is not to be trusted of a world as it is now: the worst of each kind.
+def find_warnings(world: World) -> tuple[ModelWarning, ...]:
+    """Return the warnings about a world in its present state, the worst of each kind.
 
     Nothing is changed; the figures are those of the last step.
     """
     found = [*_refusals(world), *_division(world), *_rates(world), *_distance(world)]
     if world.plan.collisions == "step":
-        near = contact_graph(world)
-        found += [*_overlap(world, near), *_loads(world, near), *_speeds(world, near), *_turning(world, near)]
+        graph = contact_graph(world)
+        found += [
+            *_overlap(world, graph), *_mass_ratios(world, graph), *_speeds(world, graph),
+            *_spins(world, graph),
+        ]  # fmt: skip
     return tuple(found)
 
 
-def _refusals(world: World) -> Iterator[Advice]:
-    """Yield what was asked for and could not be had."""
+def _refusals(world: World) -> Iterator[ModelWarning]:
+    """Yield settings that the engine could not follow."""
     method = world.plan
     if method.refused:
-        yield Advice(None, method.refused, None, "", None, 'simulation.integrator = "auto"')
+        yield ModelWarning(None, method.refused, None, "", None, 'simulation.integrator = "auto"')
     if world.simulation.collisions == "exact" and method.collisions == "step":
-        yield Advice(None, method.collision_reason, None, "", None, 'simulation.collisions = "auto"')
+        yield ModelWarning(None, method.collision_reason, None, "", None, 'simulation.collisions = "auto"')
 
 
-def _division(world: World) -> Iterator[Advice]:
+def _division(world: World) -> Iterator[ModelWarning]:
     if world.step_divisions > 1:
-        what = "steps were asked for that are longer than the scene's, and are divided into so many"
-        yield Advice(None, what, float(world.step_divisions), "", 1.0, "a shorter step")
+        what = "steps are longer than the scene's, and are divided into so many"
+        yield ModelWarning(None, what, float(world.step_divisions), "", 1.0, "a shorter step")
 
 
-def _rates(world: World) -> Iterator[Advice]:
-    """Yield a force too fast for the steps that are made."""
+def _rates(world: World) -> Iterator[ModelWarning]:
+    """Yield the fastest force, if it is too fast for the steps that are made."""
     method, dt = world.plan, world.simulation.dt
     integrator = method.integrator if method.smooth else method.split_forces or method.stages
     if method.collisions == "exact" or integrator.chooses_steps or math.isinf(integrator.order):
         return
-    rates = [
-        (system.strongest_rate(world), system)
-        for system in world.schedule.running
-        if isinstance(system, ForceSystem)
-    ]
-    rate, system = max(rates, key=lambda pair: pair[0], default=(0.0, None))
+    rate, system = fastest_force(world)
     if system is None or not math.isfinite(rate):
         return
     parts = method.substeps * (2 * method.split_steps if method.split_forces else 1)
     value, bounded = rate * dt / parts, math.isinf(integrator.stability_limit)
-    limit = _FOLLOWED if bounded else _RESOLVED * integrator.stability_limit
+    limit = IMPLICIT_RATE_LIMIT if bounded else EXPLICIT_RATE_LIMIT * integrator.stability_limit
     if value <= limit:
         return
     entity = _stiffest(world) if Spring in system.needs else None
     source = "" if entity else f"{system.name.removesuffix('System')}: "
     if bounded:
-        what = "is too fast to be followed (omega h): what it does between steps is not shown"
+        what = "is too fast to be followed (omega h): its motion between steps is not shown"
     elif value > integrator.stability_limit:
         what = "is too stiff for the step (omega h): it flies apart"
     else:
         what = "is resolved coarsely (omega h): its energy swings"
-    yield Advice(entity, source + what, value, "", limit, _shorter(world, rate, limit, followed=bounded))
+    yield ModelWarning(
+        entity, source + what, value, "", limit, _shorter(world, rate, limit, followed=bounded)
+    )
 
 
 def _shorter(world: World, rate: float, limit: float, *, followed: bool) -> str:
     """Return the setting with which a rate [rad/s] is followed by the present method, or by ``auto``."""
     simulation = world.simulation
     if followed and simulation.integrator == "auto":
-        return f"simulation.dt = {_below(_AUTO_FOLLOWS / rate):.2g}"
+        return f"simulation.dt = {_below(_AUTO_RATE_LIMIT / rate):.2g}"
     needed = math.ceil(rate * simulation.dt / limit)
-    if needed <= _MOST_SUBSTEPS:
+    if needed <= _SUBSTEPS_LIMIT:
         return f"simulation.substeps = {needed}"
     return f"simulation.dt = {_below(limit * simulation.substeps / rate):.2g}"
 
@@ -125,7 +127,7 @@ def _below(value: float) -> float:
 
 
 def _stiffest(world: World) -> str | None:
-    """Return the name of the spring with the fastest oscillation or decay of its own."""
+    """Return the name of the spring with the fastest oscillation or decay."""
     rows, a, b = spring_ends(world)
     if not len(rows):
         return None
@@ -135,8 +137,8 @@ def _stiffest(world: World) -> str | None:
     return world.label(int(world.entity_index.entities[rows[np.argmax(rates)]]))
 
 
-def _distance(world: World) -> Iterator[Advice]:
-    """Yield the body that is furthest out for its size."""
+def _distance(world: World) -> Iterator[ModelWarning]:
+    """Yield the body that is furthest from the origin in its own sizes, if that is too far."""
     batch = world.batch(Transform, Shape)
     if not len(batch):
         return
@@ -145,63 +147,64 @@ def _distance(world: World) -> Iterator[Advice]:
     box = shape["kind"][rows] == BOX
     size = np.where(box, np.minimum(shape["width"][rows], shape["height"][rows]), 2.0 * shape["radius"][rows])
     worst = int(np.argmax(reach / size))
-    limit = _FAR * float(size[worst])
+    limit = DISTANCE_LIMIT * float(size[worst])
     if reach[worst] >= limit:
         what = "is so far from the origin that its contacts cannot be resolved"
         name = world.label(int(batch.entities[worst]))
-        yield Advice(name, what, float(reach[worst]), "m", limit, "a place nearer to the origin")
+        yield ModelWarning(name, what, float(reach[worst]), "m", limit, "a place nearer to the origin")
 
 
-def _overlap(world: World, near: ContactGraph) -> Iterator[Advice]:
-    if not len(near.touching):
+def _overlap(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
+    """Yield the body that overlaps another by the largest share of its size."""
+    if not len(graph.touching):
         return
-    share = near.depth / near.size[near.touching]
+    share = graph.depth / graph.size[graph.touching]
     worst = int(np.argmax(share))
-    if share[worst] > _DEEP:
-        name = near.lighter(world, int(near.touching[worst]))
-        size = float(near.size[near.touching[worst]])
-        what = "is pressed into another body further than contacts hold"
-        yield Advice(name, what, float(near.depth[worst]), "m", _DEEP * size, "")
+    if share[worst] > OVERLAP_LIMIT:
+        name = graph.lighter(world, int(graph.touching[worst]))
+        size = float(graph.size[graph.touching[worst]])
+        what = "is pressed into another body deeper than contacts can hold"
+        yield ModelWarning(name, what, float(graph.depth[worst]), "m", OVERLAP_LIMIT * size, "")
 
 
-def _loads(world: World, near: ContactGraph) -> Iterator[Advice]:
-    """Yield the heaviest body that lies on a lighter one, which something holds from below."""
-    ratio = near.loads(world)
-    if len(ratio) and ratio.max() > _HEAVY:
-        name = near.lighter(world, int(near.touching[np.argmax(ratio)]))
-        what = "carries a body so much heavier that contacts do not hold it (mass ratio)"
-        yield Advice(name, what, float(ratio.max()), "", _HEAVY, "")
+def _mass_ratios(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
+    """Yield the lighter body of the largest mass ratio among bodies that lie on supported ones."""
+    ratio = graph.mass_ratios(world)
+    if len(ratio) and ratio.max() > MASS_RATIO_LIMIT:
+        name = graph.lighter(world, int(graph.touching[np.argmax(ratio)]))
+        what = "carries a body so much heavier that contacts cannot hold it (mass ratio)"
+        yield ModelWarning(name, what, float(ratio.max()), "", MASS_RATIO_LIMIT, "")
 
 
-def _speeds(world: World, near: ContactGraph) -> Iterator[Advice]:
+def _speeds(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     """Yield the fastest body that has several neighbours."""
     h = world.simulation.dt / world.simulation.substeps
     linear = world.table(Velocity)["linear"]
-    apart = linear[near.b] - linear[near.a]
-    sizes = np.hypot(apart[:, 0], apart[:, 1]) * h / near.size
-    sizes[~near.crowded(sizes > _FAST)] = 0.0
-    if len(sizes) and sizes.max() > _FAST:
+    apart = linear[graph.b] - linear[graph.a]
+    sizes = np.hypot(apart[:, 0], apart[:, 1]) * h / graph.size
+    sizes[~graph.sharing_a_body(sizes > SPEED_LIMIT)] = 0.0
+    if len(sizes) and sizes.max() > SPEED_LIMIT:
         worst = int(np.argmax(sizes))
-        setting = _more_substeps(world, float(sizes[worst]) / _FAST)
-        what = "passes so many sizes of a body in a substep, and impacts after the first may be missed"
-        yield Advice(near.faster(world, worst), what, float(sizes[worst]), "", _FAST, setting)
+        setting = _more_substeps(world, float(sizes[worst]) / SPEED_LIMIT)
+        what = "passes so many sizes of a body in a substep that impacts after the first may be missed"
+        yield ModelWarning(graph.faster(world, worst), what, float(sizes[worst]), "", SPEED_LIMIT, setting)
 
 
-def _turning(world: World, near: ContactGraph) -> Iterator[Advice]:
+def _spins(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     """Yield the box that spins fastest near others."""
     h = world.simulation.dt / world.simulation.substeps
     kind = world.table(Shape)["kind"]
     involved = np.zeros(len(kind), np.bool_)
-    involved[near.a] = involved[near.b] = True
+    involved[graph.a] = involved[graph.b] = True
     rows = np.flatnonzero(involved & (kind == BOX))
     angles = np.abs(world.table(Velocity)["angular"][rows]) * h
-    if len(angles) and angles.max() > _TURNING:
-        setting = _more_substeps(world, float(angles.max()) / _TURNING)
-        what = "turns so far in a substep that its corners strike by chance"
+    if len(angles) and angles.max() > SPIN_LIMIT:
+        setting = _more_substeps(world, float(angles.max()) / SPIN_LIMIT)
+        what = "turns so far in a substep that chance decides where its corners strike"
         name = world.label(int(world.entity_index.entities[rows[np.argmax(angles)]]))
-        yield Advice(name, what, float(angles.max()), "rad", _TURNING, setting)
+        yield ModelWarning(name, what, float(angles.max()), "rad", SPIN_LIMIT, setting)
 
 
 def _more_substeps(world: World, factor: float) -> str:
     needed = math.ceil(world.simulation.substeps * factor)
-    return f"simulation.substeps = {needed}" if needed <= _MOST_SUBSTEPS else "a smaller simulation.dt"
+    return f"simulation.substeps = {needed}" if needed <= _SUBSTEPS_LIMIT else "a smaller simulation.dt"

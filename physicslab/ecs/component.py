@@ -7,52 +7,24 @@ and nothing to copy. A component that no world has adopted yet owns a row of its
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any, ClassVar, cast, dataclass_transform, get_origin, get_type_hints
 
-import numpy as np
-from numpy.typing import NDArray
-
+from physicslab.ecs.accessors import ABSENT, Derived, Maker, Vector, accessor, maker
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue, Kind, field
-from physicslab.ecs.vector import Vector2
 
 __all__ = [
-    "COMPONENTS", "Batch", "Component", "Derived", "Field", "InvalidValue", "Table", "Vector",
-    "component", "field",
+    "COMPONENTS", "Component", "Derived", "Field", "InvalidValue", "Vector", "component", "field",
+    "local_components",
 ]  # fmt: skip
 
 COMPONENTS: dict[str, type[Component]] = {}
-"""Every component class made by :func:`component`, by name, in the order of definition."""
-
-
-type _Maker = Callable[[object], list[list[Any]]]
-_ABSENT: Any = object()
-"""What stands for a value that was not given."""
-
-
-class Vector:
-    """The type of a vector field: reads as :class:`Vector2`, takes any pair of numbers."""
-
-    def __get__(self, handle: object, owner: type | None = None) -> Vector2:
-        """Return the vector stored in the handle's row."""
-        raise NotImplementedError  # the decorator puts a property in this place
-
-    def __set__(self, handle: object, value: Vector2 | Sequence[float] | NDArray[Any]) -> None:
-        """Store a pair of numbers in the handle's row."""
-        raise NotImplementedError
-
-
-class Derived:
-    """The type of a number that the world works out where it is ``None``: reads as ``float``, takes both."""
-
-    def __get__(self, handle: object, owner: type | None = None) -> float:
-        """Return the number in the handle's row; 0 while it is not given and no world has worked it out."""
-        raise NotImplementedError  # the decorator puts a property in this place
-
-    def __set__(self, handle: object, value: float | None) -> None:
-        """Give the number by hand, or hand it back to the world with ``None``."""
-        raise NotImplementedError
+"""What files may hold: every class made by :func:`component`, by name, in the order of definition."""
+_local = False
+"""Whether a component may have the name of another: within a block of :func:`local_components`."""
+_BUILT_IN = "physicslab.components."
 
 
 class Component:
@@ -64,7 +36,7 @@ class Component:
 
     __slots__ = ("_row", "_views")
     FIELDS: ClassVar[tuple[Field, ...]] = ()
-    _makers: ClassVar[tuple[tuple[str, _Maker], ...]] = ()
+    _makers: ClassVar[tuple[tuple[str, Maker], ...]] = ()
     _views: list[Any]
     _row: int
 
@@ -84,7 +56,7 @@ class Component:
                 views += make(given[name])
                 left -= 1
             else:
-                views += make(_ABSENT)
+                views += make(ABSENT)
         if left:
             unknown = next(name for name in given if all(name != f.name for f in cls.FIELDS))
             names = ", ".join(f.name for f in cls.FIELDS)
@@ -154,12 +126,21 @@ def component[T](cls: type[T]) -> type[T]:
 
     A row whose entity lacks the component is all zeros. Reading gives plain Python values; writing checks the
     value and raises :class:`InvalidValue` with the component, the field, the value and what is allowed.
+    Scene files know a component by the name of its class, so no two classes have the same one; a class that
+    is defined again, as by a notebook's cell, replaces itself. Examples and tests use
+    :func:`local_components`.
+
+    Raises
+    ------
+    TypeError
+        If a field is not described, no column holds its type, or another class has the name.
 
     Examples
     --------
-    >>> @component
-    ... class Charge(Component):
-    ...     charge: float = field(default=0.0, unit="C", meaning="electric charge")
+    >>> with local_components():
+    ...     @component
+    ...     class Charge(Component):
+    ...         charge: float = field(default=0.0, unit="C", meaning="electric charge")
     >>> charge = Charge(2)
     >>> charge.charge
     2.0
@@ -167,13 +148,15 @@ def component[T](cls: type[T]) -> type[T]:
     Traceback (most recent call last):
     ...
     physicslab.ecs.fields.InvalidValue: Charge.charge = nan: must be a finite number C
-    >>> _ = COMPONENTS.pop("Charge")
     """
-    known = COMPONENTS.get(cls.__name__)
-    if known is not None and (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
-        raise TypeError(f"there is a component {cls.__name__} already, in {known.__module__}")
     if cls.__bases__ not in ((Component,), (object,)):
         raise TypeError(f"{cls.__name__}: a component has no base class but Component")
+    known = COMPONENTS.get(cls.__name__)
+    if known is not None and not _local and _origin(known) != _origin(cls):
+        raise TypeError(
+            f"component {_origin(cls)}: {_origin(known)} has this name already, and scene files go by it; "
+            "choose another"
+        )
     namespace: dict[str, Any] = {
         name: value
         for name, value in vars(cls).items()
@@ -182,13 +165,49 @@ def component[T](cls: type[T]) -> type[T]:
     specs = _described(cls)
     column = 0
     for spec in specs:
-        namespace[spec.name] = _property(spec, column, validated="validate" in namespace)
+        namespace[spec.name] = accessor(spec, column, validated="validate" in namespace)
         column += 2 if spec.derived else 1
     namespace |= {"__slots__": (), "FIELDS": specs, "__qualname__": cls.__qualname__}
-    namespace["_makers"] = tuple((spec.name, _maker(spec)) for spec in specs)
+    namespace["_makers"] = tuple((spec.name, maker(spec)) for spec in specs)
     made: Any = type(cls.__name__, (Component,), namespace)
     COMPONENTS[cls.__name__] = made
     return cast(type[T], made)
+
+
+@contextmanager
+def local_components() -> Iterator[None]:
+    """Let components be defined for the length of a ``with`` block, under any name.
+
+    For examples and tests: such a class may have the name of a component that exists, or that will exist one
+    day. After the block files know the components that they knew before. The classes go on working in worlds.
+
+    Examples
+    --------
+    >>> before = dict(COMPONENTS)
+    >>> with local_components():
+    ...     @component
+    ...     class Mass(Component):
+    ...         value: float = field(default=1.0, unit="kg")
+    ...     COMPONENTS["Mass"] is Mass
+    True
+    >>> COMPONENTS == before
+    True
+    """
+    global _local
+    before, outer = dict(COMPONENTS), _local
+    _local = True
+    try:
+        yield
+    finally:
+        # What the package itself defined meanwhile, because it was imported in the block, stays.
+        stay = {n: kind for n, kind in COMPONENTS.items() if kind.__module__.startswith(_BUILT_IN)}
+        COMPONENTS.clear()
+        COMPONENTS.update(stay | before)
+        _local = outer
+
+
+def _origin(cls: type) -> str:
+    return f"{cls.__module__}.{cls.__qualname__}"
 
 
 def _described(cls: type) -> tuple[Field, ...]:
@@ -221,211 +240,3 @@ def _kind_of(hint: Any, described: Field) -> Kind:
         allowed = "float, int, bool, Vector, Derived, int | None, or str with choices"
         raise TypeError(f"no column holds {hint!r}; use {allowed}")
     return kinds[hint]
-
-
-def _maker(spec: Field) -> _Maker:
-    """Make what turns a value of a field into what a detached component holds of it: a list a column."""
-    check, low, high, default = spec.check, spec.lowest, spec.highest, spec.default
-
-    def settled(value: object) -> object:
-        if value is not _ABSENT:
-            return value
-        if default is REQUIRED:
-            raise TypeError(f"{spec.owner} needs {spec.name}: {spec.allowed}")
-        return default
-
-    def number(value: object) -> list[list[Any]]:
-        if type(value) is float and low <= value <= high:
-            return [[value]]
-        return [[check(settled(value))]]
-
-    def vector(value: object) -> list[list[Any]]:
-        return [list(check(settled(value)))]
-
-    def derived(value: object) -> list[list[Any]]:
-        value = settled(value)
-        return [[0.0], [False]] if value is None else [[check(value)], [True]]
-
-    def other(value: object) -> list[list[Any]]:
-        return [[check(settled(value))]]
-
-    makers: dict[Kind, _Maker] = {"number": number, "vector": vector}
-    return derived if spec.derived else makers.get(spec.kind, other)
-
-
-def _property(spec: Field, column: int, *, validated: bool) -> property:
-    """Make the property that reads and writes one field of a handle's row."""
-    check, low, high = spec.check, spec.lowest, spec.highest
-    reads: dict[Kind, Callable[[Any], Any]] = {
-        "number": lambda self: self._views[column][self._row],
-        "whole": lambda self: self._views[column][self._row],
-        "flag": lambda self: self._views[column][self._row],
-        "entity": lambda self: self._views[column][self._row] or None,
-        "choice": lambda self: spec.choices[self._views[column][self._row] - 1],
-    }
-
-    def read_vector(self: Component) -> Vector2:
-        view, i = self._views[column], 2 * self._row
-        return Vector2(view[i], view[i + 1])
-
-    def write(self: Component, value: object) -> None:
-        self._views[column][self._row] = check(value)
-
-    def write_number(self: Component, value: object) -> None:
-        in_range = type(value) is float and low <= value <= high
-        self._views[column][self._row] = value if in_range else check(value)
-
-    def write_vector(self: Component, value: object) -> None:
-        view, i = self._views[column], 2 * self._row
-        view[i], view[i + 1] = check(value)
-
-    def write_derived(self: Component, value: object) -> None:
-        if value is not None:
-            self._views[column][self._row] = check(value)
-        self._views[column + 1][self._row] = value is not None
-
-    writes: dict[Kind, Callable[[Any, object], None]] = {"number": write_number, "vector": write_vector}
-    write_field = write_derived if spec.derived else writes.get(spec.kind, write)
-
-    def write_validated(self: Component, value: object) -> None:
-        type(self)(**{**self.given(), spec.name: value})  # raises where the values do not go together
-        write_field(self, value)
-
-    def refuse(self: Component, value: object) -> None:
-        raise AttributeError(f"{spec.owner}.{spec.name} is settled when the component is made; add a new one")
-
-    unit = "" if spec.unit == "1" else f" [{spec.unit}]"
-    return property(
-        reads.get(spec.kind, read_vector),
-        refuse if spec.fixed else write_validated if validated else write_field,
-        doc=f"{spec.meaning}{unit}",
-    )
-
-
-_DTYPES: Mapping[Kind, type] = {
-    "number": np.float64,
-    "whole": np.int64,
-    "vector": np.float64,
-    "flag": np.bool_,
-    "entity": np.int64,
-    "choice": np.int64,
-}
-
-
-class Table:
-    """The columns of one component in one world, one row an entity.
-
-    All tables of a world number their rows alike, so that a kernel indexes every column with the same number.
-    Row 0 is the world itself, fixed at the origin. A row whose entity lacks the component holds zeros, which
-    every kernel reads as "nothing here": no mass, no speed, no shape.
-
-    ``table["position"]`` is the column of a field, in use rows only; a derived field has a second column
-    ``"<field>_given"``. The arrays are views that stay valid until the next structural change.
-    """
-
-    def __init__(self, component: type[Any], capacity: int) -> None:
-        self.component: type[Component] = component
-        self.handles: dict[int, Component] = {}
-        self.present: NDArray[np.bool_] = np.zeros(0, np.bool_)
-        self._names: list[str] = []
-        self._storage: list[NDArray[Any]] = []
-        self._views: list[Any] = []
-        self._columns: dict[str, NDArray[Any]] = {}
-        for spec in self.component.FIELDS:
-            self._names.append(spec.name)
-            shape = (0, 2) if spec.kind == "vector" else (0,)
-            self._storage.append(np.zeros(shape, _DTYPES[spec.kind]))
-            if spec.derived:
-                self._names.append(f"{spec.name}_given")
-                self._storage.append(np.zeros(0, np.bool_))
-        self._present = self.present
-        self.resize(0, capacity)
-
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        return self._columns[name]
-
-    @property
-    def columns(self) -> list[NDArray[Any]]:
-        """Every column, in the order in which components hold them."""
-        return list(self._columns.values())
-
-    def resize(self, rows: int, capacity: int) -> None:
-        """Use the first ``rows`` rows, with room for ``capacity``."""
-        if capacity > len(self._present):
-            self._present = _grown(self._present, capacity)
-            self._storage = [_grown(column, capacity) for column in self._storage]
-            # Handles share this list, so replacing its items moves every one of them to the new memory.
-            self._views[:] = [memoryview(column.reshape(-1)) for column in self._storage]
-        self.present = self._present[:rows]
-        self._columns = {name: column[:rows] for name, column in zip(self._names, self._storage, strict=True)}
-
-    def adopt(self, entity: int, handle: Component, row: int) -> None:
-        """Move a detached component's values into ``row``; from here on the handle is a view of it."""
-        if handle._row:
-            raise ValueError(
-                f"entity {entity}: this {type(handle).__name__} object already belongs to an entity; "
-                f"make one for each"
-            )
-        for view, own in zip(self._views, handle._views, strict=True):
-            if len(own) == 2:
-                view[2 * row], view[2 * row + 1] = own
-            else:
-                view[row] = own[0]
-        handle._views, handle._row = self._views, row
-        self._present[row] = True
-        self.handles[entity] = handle
-
-    def release(self, entity: int) -> None:
-        """Detach the entity's handle, which keeps its last values, and blank its row."""
-        handle = self.handles.pop(entity)
-        row = handle._row
-        handle._views = [
-            [view[2 * row], view[2 * row + 1]] if column.ndim == 2 else [view[row]]
-            for view, column in zip(self._views, self._storage, strict=True)
-        ]
-        handle._row = 0
-        self._present[row] = False
-        for column in self._storage:
-            column[row] = 0
-
-    def compact(self, kept: NDArray[np.int64], row_of: Mapping[int, int]) -> None:
-        """Move rows ``kept`` to the front, in order; ``row_of`` gives each entity its new row."""
-        for column in (self._present, *self._storage):
-            column[: len(kept)] = column[kept]
-            column[len(kept) :] = 0
-        for entity, handle in self.handles.items():
-            handle._row = row_of[entity]
-
-
-def _grown(column: NDArray[Any], capacity: int) -> NDArray[Any]:
-    larger = np.zeros((capacity, *column.shape[1:]), column.dtype)
-    larger[: len(column)] = column
-    return larger
-
-
-@dataclass(frozen=True, slots=True)
-class Batch:
-    """The rows of all entities that have certain components, in the order of their entity ids.
-
-    Attributes
-    ----------
-    rows : int64 array (k,)
-        Row numbers, good for every table of the world.
-    entities : int64 array (k,)
-        The entity in each of those rows.
-    """
-
-    rows: NDArray[np.int64]
-    entities: NDArray[np.int64]
-
-    def __len__(self) -> int:
-        return len(self.rows)
-
-    @classmethod
-    def of(cls, tables: Iterable[Table], entities: NDArray[np.int64]) -> Batch:
-        """Select the rows that are present in every one of ``tables``."""
-        selected = entities > 0
-        for table in tables:
-            selected = selected & table.present
-        rows = np.flatnonzero(selected).astype(np.int64)
-        return cls(rows, entities[rows])

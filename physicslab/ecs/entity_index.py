@@ -9,7 +9,9 @@ import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.ecs.component import Batch, Component, Table
+from physicslab.ecs.batch import Batch
+from physicslab.ecs.component import Component
+from physicslab.ecs.table import Table
 
 __all__ = ["EntityIndex"]
 

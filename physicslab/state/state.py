@@ -12,9 +12,11 @@ import esper
 
 from physicslab.components import Name
 from physicslab.components.name import why_no_id
-from physicslab.ecs.component import Batch, InvalidValue, Table
+from physicslab.ecs.batch import Batch
+from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.entity_index import EntityIndex
+from physicslab.ecs.table import Table
 from physicslab.kernels import compile_kernels
 from physicslab.state.bodies import Bodies
 from physicslab.state.checkpoint import Checkpoint

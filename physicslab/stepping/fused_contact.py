@@ -171,7 +171,9 @@ class FusedContact:
         return (
             motion_of(state), Motion(*state.checkpoint.columns), sizes_of(state), materials_of(state),
             inverse_in(state), bodies.sub_integrated, acting_in(state),
-            fused.Gravity(state.table(Mass)["mass"], bodies.inverse_mass, *self._gravity, margin),
+            fused.Gravity(
+                state.table(Mass)["mass"], bodies.inverse_mass, self._gravity.x, self._gravity.y, margin
+            ),
             fused.Sleepers(
                 self._sleep is not None, sleep.count, sleep.asleep, sleep.rest, sleep.slowest,
                 np.zeros_like(sleep.asleep), contacts.inactive, contacts.sleeping,

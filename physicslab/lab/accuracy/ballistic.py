@@ -7,14 +7,13 @@ import math
 from physicslab.components import Drag, Mass, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.figures import digits, number
-from physicslab.lab.accuracy.problem import Ladder, Problem, empty_world
-from physicslab.lab.accuracy.states import place, state_error, velocity
+from physicslab.lab.accuracy.problem import Ladder, Problem
+from physicslab.lab.accuracy.states import state_error
+from physicslab.lab.worlds import GRAVITY, empty_world, place, velocity
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
 __all__ = ["BALLISTIC"]
-
-_G = 9.81
 
 
 def _free_fall(simulation: SimulationConfig) -> World:
@@ -42,7 +41,7 @@ def _projectile_error(world: World, i: int) -> float:
     reach, apex = number("projectile", "R"), number("projectile", "H")
     where, how = place(world, "ball"), velocity(world, "ball")
     passed = (0.5, 1.5)[i]
-    return max(abs(where.x - passed * reach), abs(where.y - 0.25 - apex), abs(how.y / _G))
+    return max(abs(where.x - passed * reach), abs(where.y - 0.25 - apex), abs(how.y / GRAVITY))
 
 
 def _drag_linear(simulation: SimulationConfig) -> World:
@@ -58,9 +57,9 @@ def _drag_linear_error(world: World, i: int) -> float:
 
 def _drag_linear_energy(t: float) -> float:
     mass, rate = 2.0, 0.25  # c / m [1/s]
-    gone, sink = -math.expm1(-rate * t) / rate, _G / rate
+    gone, sink = -math.expm1(-rate * t) / rate, GRAVITY / rate
     vx, vy = 10.0 * math.exp(-rate * t), (15.0 + sink) * math.exp(-rate * t) - sink
-    return mass * (0.5 * (vx * vx + vy * vy) + _G * ((15.0 + sink) * gone - sink * t))
+    return mass * (0.5 * (vx * vx + vy * vy) + GRAVITY * ((15.0 + sink) * gone - sink * t))
 
 
 def _drag_quadratic(simulation: SimulationConfig) -> World:
@@ -76,10 +75,10 @@ def _drag_quadratic_error(world: World, i: int) -> float:
 
 def _drag_quadratic_energy(t: float) -> float:
     # v = v_t tanh(g t / v_t); the distance is its integral.
-    terminal = math.sqrt(_G / 0.1)
-    speed = terminal * math.tanh(_G * t / terminal)
-    fallen = terminal**2 / _G * math.log(math.cosh(_G * t / terminal))
-    return 0.5 * speed * speed - _G * fallen
+    terminal = math.sqrt(GRAVITY / 0.1)
+    speed = terminal * math.tanh(GRAVITY * t / terminal)
+    fallen = terminal**2 / GRAVITY * math.log(math.cosh(GRAVITY * t / terminal))
+    return 0.5 * speed * speed - GRAVITY * fallen
 
 
 _FLIGHT = number("projectile", "T")

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.accuracy.figures import number, record
-from physicslab.lab.accuracy.problem import Ladder, Problem, empty_world
+from physicslab.lab.accuracy.problem import Ladder, Problem
 from physicslab.lab.accuracy.states import distance
+from physicslab.lab.worlds import PLANETS, empty_world
 from physicslab.world import World
 
 __all__ = ["CHAOS", "crowd"]
@@ -22,7 +24,7 @@ _LIMITS = {5: (1e-4, 1e-11), 10: (1e-4, 1e-10), 15: (1e-4, 1e-10), 20: (1e-4, 6e
 
 
 def _pythagorean(simulation: SimulationConfig) -> World:
-    world = empty_world(simulation, planets=True)
+    world = empty_world(simulation, PLANETS)
     for i, (mass, where) in enumerate(((3, (1, 3)), (4, (-2, -1)), (5, (1, -1))), 1):
         world.spawn(Transform(where), Velocity(), Mass(mass), name=str(i))
     return world
@@ -61,9 +63,9 @@ CROWD, CROWD_SOFTENING, CROWD_TIME = 100, 0.05, 2.3
 def crowd() -> list[tuple[tuple[float, float], tuple[float, float]]]:
     """Return place [m] and velocity [m/s] of each of 100 bodies of 10 g, with no random numbers in it.
 
-    Radii are those of a Plummer disc by quantiles, directions go on by the golden angle, and every third body
-    goes round the other way, at two thirds of the speed of a circle. All are multiples of 2^-20, so that
-    every arithmetic begins at the same numbers.
+    Radii are those of a Plummer disc by quantiles, directions advance by the golden angle, and every third
+    body circles the other way; the speed is two thirds of that of a circular orbit. All are multiples of
+    2^-20, so that arithmetic of any precision begins at the same numbers.
     """
     golden = math.pi * (3.0 - math.sqrt(5.0))
     bodies = []
@@ -79,7 +81,7 @@ def crowd() -> list[tuple[tuple[float, float], tuple[float, float]]]:
 
 
 def _crowd(simulation: SimulationConfig) -> World:
-    world = empty_world(simulation, planets=True, softening=CROWD_SOFTENING)
+    world = empty_world(simulation, replace(PLANETS, softening=CROWD_SOFTENING))
     for i, (where, how) in enumerate(crowd()):
         world.spawn(Transform(where), Velocity(how), Mass(1.0 / CROWD), name=str(i))
     return world
@@ -106,7 +108,7 @@ CHAOS = (
         excellent=1e-6,
         ladder=Ladder(128, 5),
         keeps=_ALL,
-        note="our own, in place of plummer100, whose start the figures do not tell",
+        note="our own, in place of plummer100, whose figures do not contain its start",
     ),
 )
 """Their problems."""

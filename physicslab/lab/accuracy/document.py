@@ -1,32 +1,29 @@
-"""What the accuracy lab found, as a document: numbers are finite or ``null``, units are SI."""
+"""What the accuracy lab found, as a document."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from physicslab.lab.accuracy.catalogue import LEFT_OUT
 from physicslab.lab.accuracy.figures import record
 from physicslab.lab.accuracy.problem import Problem
+from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
+from physicslab.lab.document import finite, lab_document
 
-__all__ = ["document", "finite"]
+__all__ = ["document"]
 
 
-def document(studies: Sequence[Study], scenes: Sequence[dict[str, Any]] = ()) -> dict[str, Any]:
+def document(studies: Sequence[Study], scenes: Sequence[SceneStudy] = ()) -> dict[str, Any]:
     """Return everything that was measured."""
-    return {
-        "format": "physicslab-accuracy/1",
-        "problems": [_study(study) for study in studies],
-        "scenes": list(scenes),
-        "left_out": [{"name": left.name, "reason": left.reason} for left in LEFT_OUT],
-    }
-
-
-def finite(number: float | None) -> float | None:
-    """Return a number, or ``None`` where it is not finite: JSON has no such numbers."""
-    return number if number is not None and math.isfinite(number) else None
+    return lab_document(
+        "accuracy",
+        problems=[_study(study) for study in studies],
+        scenes=[_scene(study) for study in scenes],
+        left_out=[asdict(left) for left in LEFT_OUT],
+    )
 
 
 def _study(study: Study) -> dict[str, Any]:
@@ -93,3 +90,17 @@ def _row(problem: Problem, row: Row) -> dict[str, Any]:
         "verdict": str(row.verdict),
         "failure": found.failure,
     }
+
+
+def _scene(study: SceneStudy) -> dict[str, Any]:
+    return {
+        "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.tightest,
+        "rows": [_scene_row(row) for row in study.rows],
+    }  # fmt: skip
+
+
+def _scene_row(row: SceneRow) -> dict[str, Any]:
+    found = asdict(row)
+    found["cpu_ms"] = 1e3 * found.pop("cpu_s") if not row.failure else None
+    found["error"] = row.tightest or row.half_step  # the tightest is compared with itself at half the step
+    return {key: finite(value) if isinstance(value, float) else value for key, value in found.items()}

@@ -8,14 +8,14 @@ from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.contacts.report import list_contacts
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.figures import number
-from physicslab.lab.accuracy.problem import Ladder, Problem, empty_world
-from physicslab.lab.accuracy.states import place, velocity
+from physicslab.lab.accuracy.problem import Ladder, Problem
+from physicslab.lab.worlds import GRAVITY, empty_world, place, velocity
 from physicslab.prefabs import box
 from physicslab.world import World
 
 __all__ = ["FRICTION"]
 
-_G, _MU, _SPEED = 9.81, 0.3, 5.0
+_MU, _SPEED = 0.3, 5.0
 _NONE: frozenset[str] = frozenset()
 
 
@@ -34,14 +34,14 @@ def _slide(simulation: SimulationConfig) -> World:
 
 
 def _slide_error(world: World, i: int) -> float:
-    slowing = _MU * _G
+    slowing = _MU * GRAVITY
     distance, speed = ((_SPEED - 0.5 * slowing, _SPEED - slowing), (number("friction_slide", "d"), 0.0))[i]
     return max(abs(place(world, "block").x - distance), abs(velocity(world, "block").x - speed))
 
 
 def _slide_energy(t: float) -> float:
-    speed = max(0.0, _SPEED - _MU * _G * t)
-    return 0.5 * speed * speed + _G * 0.25
+    speed = max(0.0, _SPEED - _MU * GRAVITY * t)
+    return 0.5 * speed * speed + GRAVITY * 0.25
 
 
 def _roll(kind: str, share: float, *, way: bool = False) -> Problem:
@@ -67,8 +67,8 @@ def _roll(kind: str, share: float, *, way: bool = False) -> Problem:
 
     def energy(t: float) -> float:
         slipping = min(t, start)
-        speed, rim = _SPEED - _MU * _G * slipping, _MU * _G * slipping / share
-        return 0.5 * (speed * speed + share * rim * rim) + _G * 0.5
+        speed, rim = _SPEED - _MU * GRAVITY * slipping, _MU * GRAVITY * slipping / share
+        return 0.5 * (speed * speed + share * rim * rim) + GRAVITY * 0.5
 
     return Problem(
         name=f"slip_to_roll_{kind}" + ("_way" if way else ""),

@@ -7,14 +7,13 @@ from itertools import pairwise
 
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.figures import number
-from physicslab.lab.accuracy.problem import Ladder, Problem, empty_world
-from physicslab.lab.accuracy.states import place, velocity
+from physicslab.lab.accuracy.problem import Ladder, Problem
+from physicslab.lab.worlds import GRAVITY, empty_world, place, velocity
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
 __all__ = ["IMPACTS"]
 
-_G = 9.81
 _ALL = frozenset({"energy", "momentum"})
 _NEEDS_EXACT = "a problem for located impacts: within steps, impacts crowd"
 
@@ -49,7 +48,7 @@ def _galperin(n: int, rungs: int) -> Problem:
         group="collision",
         source="galperin",
         compared=f"velocities and the large disc's place 1 s after the last of {_count(key)} collisions",
-        measure="largest error [m/s], [m]; excellent and good ask for the exact number of collisions as well",
+        measure="largest error [m/s], [m]; excellent and good need the exact number of collisions as well",
         build=build,
         times=(end,),
         error=error,
@@ -116,7 +115,7 @@ def _ball(simulation: SimulationConfig, restitution: float) -> World:
 
 def _at_apex(world: World, height: float) -> float:
     """Return how far a ball is from the top of its path: in height [m] and in time [s]."""
-    return max(abs(place(world, "ball").y - 0.5 - height), abs(velocity(world, "ball").y / _G))
+    return max(abs(place(world, "ball").y - 0.5 - height), abs(velocity(world, "ball").y / GRAVITY))
 
 
 def _bounce_error(world: World, i: int) -> float:

@@ -1,24 +1,23 @@
-"""What a method does on a problem: error, cost, and what it should have kept."""
+"""What a method does on a problem: error, cost, and how well it conserves what is conserved."""
 
 from __future__ import annotations
 
-import math
 import statistics
-import time
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
 from physicslab.lab.accuracy.watch import Watched, watch
-from physicslab.state.masses import Diverged
+from physicslab.lab.case import attempt, cpu_time
 from physicslab.world import World
 
 __all__ = ["Measurement", "finish", "measure"]
 
-_SHORT_S = 0.05
-"""A run that takes less is made three times, and the median counts."""
+_REPEATED_BELOW_S = 0.05
+"""A run that takes less is made three times more, and their median counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +27,7 @@ class Measurement:
     Attributes
     ----------
     setting : Setting
-        What was asked for.
+        The method that was chosen, and how finely it is used.
     integrator, reason : str
         The method that ran, and why.
     dt : float, optional
@@ -58,10 +57,10 @@ class Measurement:
 
 
 def measure(problem: Problem, setting: Setting) -> Measurement:
-    """Compute a problem at a setting, more than once if that is short, and once more to look at it."""
+    """Compute a problem at a setting, repeatedly if that is short, and once more to watch it."""
     world = problem.build(setting.simulation(problem))
     cpu_s, error, failure = _timed(problem, setting, world)
-    if not failure and cpu_s < _SHORT_S:
+    if not failure and cpu_s < _REPEATED_BELOW_S:
         again = (problem.build(setting.simulation(problem)) for _ in range(3))
         cpu_s = statistics.median(_timed(problem, setting, other)[0] for other in again)
     method = world.plan
@@ -82,27 +81,20 @@ def finish(problem: Problem, world: World) -> float:
     largest = 0.0
     for i, t in enumerate(problem.times):
         world.run(seconds=t - world.time)
-        largest = float(np.maximum(largest, problem.error(world, i)))  # numpy's lets NaN through
+        largest = float(np.maximum(largest, problem.error(world, i)))  # numpy's maximum keeps NaN
     return largest
 
 
 def _timed(problem: Problem, setting: Setting, world: World) -> tuple[float, float | None, str]:
     """Return the process time [s], the error, and what went wrong."""
     world.synchronise()
-    compiled, start = world.compile_s, time.process_time()
-    error: float | None = None
-    failure = ""
-    try:
-        with np.errstate(all="ignore"):  # what overflows has diverged, and is reported so
-            if problem.search is not None:
-                error = problem.search(lambda: setting.simulation(problem))
-            else:
-                error = finish(problem, world)
-    except (Diverged, ArithmeticError) as problem_met:
-        failure = str(problem_met)
-    cpu_s = time.process_time() - start
+    compiled = world.compile_s
+    search = problem.search
+    if search is None:
+        run = partial(finish, problem, world)
+    else:
+        run = partial(search, lambda: setting.simulation(problem))
+    cpu_s, (error, failure) = cpu_time(partial(attempt, run))
     if world.compile_s > compiled:  # kernels were loaded: what that took is no part of the method
         cpu_s = max(0.0, cpu_s - (world.compile_s - compiled))
-    if error is not None and not math.isfinite(error):
-        error, failure = None, "the state is no longer finite"
     return cpu_s, error, failure

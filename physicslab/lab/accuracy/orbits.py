@@ -8,8 +8,9 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.accuracy.figures import number
-from physicslab.lab.accuracy.problem import Ladder, Problem, empty_world
-from physicslab.lab.accuracy.states import distance, place
+from physicslab.lab.accuracy.problem import Ladder, Problem
+from physicslab.lab.accuracy.states import distance
+from physicslab.lab.worlds import PLANETS, empty_world, place
 from physicslab.world import World
 
 __all__ = ["ORBITS"]
@@ -23,7 +24,7 @@ def _kepler(e: str, nearest: float, speed: str, work: int) -> Problem:
     name = f"kepler_e{e}"
 
     def build(simulation: SimulationConfig) -> World:
-        world = empty_world(simulation, planets=True)
+        world = empty_world(simulation, PLANETS)
         world.spawn(Transform(), Mass(1), name="star")
         world.spawn(Transform((nearest, 0)), Velocity((0, float(speed))), Mass(1), name="planet")
         return world
@@ -62,7 +63,7 @@ _EIGHT_PERIOD = number("figure_eight", "T")
 def _figure_eight(simulation: SimulationConfig) -> World:
     p1, p2 = number("figure_eight", "p1"), number("figure_eight", "p2")
     return _spawn(
-        empty_world(simulation, planets=True), _EIGHT_PLACES, [(p1, p2), (p1, p2), (-2.0 * p1, -2.0 * p2)]
+        empty_world(simulation, PLANETS), _EIGHT_PLACES, [(p1, p2), (p1, p2), (-2.0 * p1, -2.0 * p2)]
     )
 
 
@@ -78,7 +79,7 @@ _CHASE = (1, 2, 0)
 def _simo(simulation: SimulationConfig) -> World:
     x, y, vx, vy = 0.97000436, -0.24308753, -0.93240737, -0.86473146
     return _spawn(
-        empty_world(simulation, planets=True), [(x, y), (-x, -y), (0.0, 0.0)],
+        empty_world(simulation, PLANETS), [(x, y), (-x, -y), (0.0, 0.0)],
         [(-0.5 * vx, -0.5 * vy), (-0.5 * vx, -0.5 * vy), (vx, vy)],
     )  # fmt: skip
 
@@ -102,7 +103,7 @@ def _lagrange(simulation: SimulationConfig) -> World:
     half = math.sqrt(3.0) / 2.0
     radius = 1.0 / math.sqrt(3.0)
     places = [(radius, 0.0), (-0.5 * radius, 0.5), (-0.5 * radius, -0.5)]
-    return _spawn(empty_world(simulation, planets=True), places, [(0.0, 1.0), (-half, -0.5), (half, -0.5)])
+    return _spawn(empty_world(simulation, PLANETS), places, [(0.0, 1.0), (-half, -0.5), (half, -0.5)])
 
 
 def _lagrange_error(world: World, t: float) -> float:

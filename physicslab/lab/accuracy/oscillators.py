@@ -7,8 +7,9 @@ import math
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.figures import number
-from physicslab.lab.accuracy.problem import Ladder, Problem, empty_world
+from physicslab.lab.accuracy.problem import Ladder, Problem
 from physicslab.lab.accuracy.states import state_error
+from physicslab.lab.worlds import empty_world
 from physicslab.world import World
 
 __all__ = ["OSCILLATORS"]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from physicslab.lab.accuracy.measure import Measurement
 from physicslab.lab.accuracy.study import Curve, Study
+from physicslab.lab.plot import COLOURS, new_figure, png, prepare_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 __all__ = ["work_precision"]
 
-# Okabe and Ito's colours, which stay apart for the colour-blind: https://jfly.uni-koeln.de/color/
 _STYLES: dict[str, tuple[str, str, Any]] = {
-    "symplectic_euler": ("#999999", "v", ":"),
-    "leapfrog": ("#0072B2", "o", "-"),
-    "rk4": ("#E69F00", "s", "--"),
-    "blanes_moan": ("#009E73", "D", "-"),
-    "dop853": ("#D55E00", "^", "-."),
-    "exact": ("#000000", "*", ""),
-    "implicit_midpoint": ("#CC79A7", "X", (0, (1, 1))),
+    "symplectic_euler": (COLOURS["grey"], "v", ":"),
+    "leapfrog": (COLOURS["blue"], "o", "-"),
+    "rk4": (COLOURS["orange"], "s", "--"),
+    "blanes_moan": (COLOURS["green"], "D", "-"),
+    "dop853": (COLOURS["vermilion"], "^", "-."),
+    "exact": (COLOURS["black"], "*", ""),
+    "implicit_midpoint": (COLOURS["purple"], "X", (0, (1, 1))),
 }
-_LEAST = 1e-17
+_ERROR_FLOOR = 1e-17
 """Where an error of zero is drawn."""
+_ROUNDING_COLOUR = "#f3ead9"
 
 
 def work_precision(*studies: Study) -> bytes:
@@ -37,11 +37,7 @@ def work_precision(*studies: Study) -> bytes:
     ImportError
         If matplotlib is not installed.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(11.0, 0.9 + 4.4 * len(studies)), layout="constrained", dpi=110)
-    FigureCanvasAgg(figure)
+    figure = new_figure(11.0, 0.9 + 4.4 * len(studies))
     panels = figure.subplots(len(studies), 2, squeeze=False, sharey="row")
     for study, (by_time, by_work) in zip(studies, panels, strict=True):
         _panel(by_time, study, "CPU time [ms]", lambda found: 1e3 * found.cpu_s)
@@ -50,25 +46,18 @@ def work_precision(*studies: Study) -> bytes:
         by_time.set_title(study.problem.name, loc="left", fontweight="bold")
         by_work.set_title(f"after {study.problem.seconds:.4g} s", loc="right", fontsize=10)
     _legend(figure, studies)
-    image = io.BytesIO()
-    figure.savefig(image, format="png")
-    return image.getvalue()
+    return png(figure)
 
 
 def _panel(axes: Axes, study: Study, label: str, work: Callable[[Measurement], float]) -> None:
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
-    axes.set_axisbelow(True)
+    prepare_axes(axes, logarithmic=True)
     axes.set_xlabel(label)
-    for spine in ("top", "right"):
-        axes.spines[spine].set_visible(False)
     for curve in study.curves:
         _line(axes, curve, work)
     auto = study.auto.measurement
     if auto.error is not None and work(auto) > 0.0:
         axes.plot(
-            [work(auto)], [max(auto.error, _LEAST)], marker="o", markersize=15, markerfacecolor="none",
+            [work(auto)], [max(auto.error, _ERROR_FLOOR)], marker="o", markersize=15, markerfacecolor="none",
             markeredgecolor="#222222", linestyle="",
         )  # fmt: skip
     for level, name in ((study.problem.excellent, "excellent"), (study.problem.good, "good")):
@@ -78,14 +67,14 @@ def _panel(axes: Axes, study: Study, label: str, work: Callable[[Measurement], f
             textcoords="offset points", fontsize=8, color="#444444", ha="right", va="bottom",
         )  # fmt: skip
     if study.floor:
-        axes.axhspan(_LEAST, study.floor, color="#f3ead9", zorder=0, linewidth=0)
+        axes.axhspan(_ERROR_FLOOR, study.floor, color=_ROUNDING_COLOUR, zorder=0, linewidth=0)
     axes.set_ylim(*_range(study))
 
 
 def _range(study: Study) -> tuple[float, float]:
-    """Return what the axis of errors spans: every error up to ten times the scale of the problem."""
+    """Return what the axis of errors spans: every error below 100, and both limits."""
     rows = [row.measurement for curve in study.curves for row in curve.rows] + [study.auto.measurement]
-    errors = [max(found.error, _LEAST) for found in rows if found.error is not None]
+    errors = [max(found.error, _ERROR_FLOOR) for found in rows if found.error is not None]
     low = min([*errors, study.problem.excellent])
     high = max([error for error in errors if error < 1e2] + [study.problem.good])
     return 0.3 * low, 5.0 * high
@@ -93,12 +82,12 @@ def _range(study: Study) -> tuple[float, float]:
 
 def _line(axes: Axes, curve: Curve, work: Callable[[Measurement], float]) -> None:
     points = [
-        (work(row.measurement), max(row.measurement.error, _LEAST))
+        (work(row.measurement), max(row.measurement.error, _ERROR_FLOOR))
         for row in curve.rows
         if row.measurement.error is not None and work(row.measurement) > 0.0
     ]
     if points:
-        colour, marker, line = _STYLES.get(curve.integrator.name, ("#56B4E9", "P", "-"))
+        colour, marker, line = _STYLES.get(curve.integrator.name, (COLOURS["sky"], "P", "-"))
         axes.plot(
             *zip(*points, strict=True), color=colour, marker=marker, linestyle=line, linewidth=1.4,
             markersize=9 if marker == "*" else 5,
@@ -122,5 +111,5 @@ def _legend(figure: Figure, studies: tuple[Study, ...]) -> None:
                linestyle="", label="auto")
     )  # fmt: skip
     if any(study.floor for study in studies):
-        handles.append(Patch(color="#f3ead9", label="one rounding at the start"))
+        handles.append(Patch(color=_ROUNDING_COLOUR, label="one rounding at the start"))
     figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=9)

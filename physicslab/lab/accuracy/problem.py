@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import override
 
-from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.ecs.vector import Vector2
-from physicslab.systems.standard import standard_systems
+from physicslab.ecs.config import SimulationConfig
+from physicslab.lab.case import Case
 from physicslab.world import World
 
-__all__ = ["Ladder", "LeftOut", "Problem", "empty_world"]
+__all__ = ["Ladder", "LeftOut", "Problem"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,20 +42,18 @@ class Ladder:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Problem:
+class Problem(Case):
     """A world whose motion is known.
 
     Attributes
     ----------
-    name, title, group : str
-        For the command line, for people, and which kind of problem it is.
     source : str
-        The name under which ``problems.json`` holds the figures. Several problems may share one: the cases of
-        a family, which the command line knows by this name.
+        The name under which ``problems.json`` holds the figures. Problems that share one are a family, which
+        the command line knows by this name.
     compared, measure : str
         What is compared and when; how the error is measured, with its unit.
     build : callable
-        Makes the world, stepped as it is told.
+        Takes a configuration of steps and returns the world.
     times : tuple of floats
         When the world is compared [s], in order.
     error : callable
@@ -76,17 +74,14 @@ class Problem:
         How many impacts there are.
     chaotic : bool
         Whether the motion makes each rounding grow exponentially.
-    not_asked : mapping of str to str
+    not_used : mapping of str to str
         Methods that are left out although the engine would take them, and why.
     search : callable, optional
-        Returns the error where one world does not show it: a threshold that is looked for with many.
+        Returns the error where no single world shows it: a threshold that is found with many worlds.
     note : str
-        What else people should know.
+        Remarks for the reader.
     """
 
-    name: str
-    title: str
-    group: str
     source: str
     compared: str
     measure: str
@@ -102,9 +97,14 @@ class Problem:
     keeps: frozenset[str] = frozenset({"energy"})
     collisions: int | None = None
     chaotic: bool = False
-    not_asked: Mapping[str, str] = field(default_factory=dict)
+    not_used: Mapping[str, str] = field(default_factory=dict)
     search: Callable[[Callable[[], SimulationConfig]], float] | None = None
     note: str = ""
+
+    @property
+    @override
+    def family(self) -> str:
+        return self.source
 
     @property
     def seconds(self) -> float:
@@ -114,35 +114,7 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A reference problem that the engine cannot be asked, and why."""
+    """A reference problem that the engine cannot compute, and why."""
 
     name: str
     reason: str
-
-
-def empty_world(
-    simulation: SimulationConfig,
-    gravity: float | None = 9.81,
-    *,
-    planets: bool = False,
-    softening: float = 0.0,
-) -> World:
-    """Return a world with every physics system and nothing in it.
-
-    Parameters
-    ----------
-    gravity : float, optional
-        Downwards [m/s^2]; none where ``None`` or ``planets``.
-    planets : bool
-        Whether bodies attract each other with G = 1.
-    softening : float
-        Of that attraction, by Plummer's law [m].
-    """
-    mode = "planet" if planets else "none" if gravity is None else "linear"
-    physics = PhysicsConfig(
-        gravity_mode=mode,
-        gravity=Vector2(0.0, -(gravity or 0.0)),
-        softening=softening,
-        softening_law="plummer",
-    )  # fmt: skip
-    return World(*standard_systems(), physics=physics, simulation=simulation)

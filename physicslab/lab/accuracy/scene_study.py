@@ -1,12 +1,11 @@
-"""A scene without a known answer: how far its results hang on the method and on the step."""
+"""A scene without a known answer: how far its results depend on the method and on the step."""
 
 from __future__ import annotations
 
 import dataclasses
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,20 +14,21 @@ from physicslab.components import Trail, Transform, Velocity
 from physicslab.diagnostics.energy import Drift
 from physicslab.ecs.config import SimulationConfig
 from physicslab.integrators import INTEGRATORS
-from physicslab.lab.accuracy.document import finite
-from physicslab.state.masses import Diverged
+from physicslab.lab.case import Job, attempt, cpu_time
 from physicslab.world import World
 
-__all__ = ["ESTIMATE", "SceneRow", "SceneStudy", "scene_document", "scene_text", "study_scene"]
+__all__ = ["ESTIMATE", "SceneRow", "SceneStudy", "study_scene"]
 
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"
 _SECONDS = 5.0
 _TIGHTEST = 1e-17
-_FINER = (0.5, 1.0, 2.0, 4.0)
+_SUBSTEP_FACTORS = (0.5, 1.0, 2.0, 4.0)
 """The rungs of a ladder of steps: so many times the scene's own substeps."""
+_SUBSTEPS_LIMIT = 10_000
+"""Of a scene's configuration."""
 _REPEATS = 4
-_LONG = 2.0
-"""A run that takes longer [s] is not made again to be timed."""
+_REPEATED_BELOW_S = 2.0
+"""A run that takes longer is not repeated to be timed."""
 _TOLERANCES = (1e-6, 1e-9, 1e-12, 1e-15)
 """The rungs of a ladder of tolerances."""
 
@@ -42,7 +42,7 @@ class SceneRow:
     integrator, reason : str
         The method that ran, and why.
     asked : str
-        The method that was asked for.
+        The method that was chosen.
     step : str
         Its step, or its tolerance; empty for one that has neither.
     evaluations : int
@@ -53,7 +53,7 @@ class SceneRow:
         The largest distance [m] of any body from where it is with steps of half the length; with twice the
         length for a method that chooses its steps, which overstates the error.
     tightest : float, optional
-        The same from where the tightest method has it; ``None`` for that itself, and where there is none.
+        The same from where the tightest method has it; ``None`` where there is no such method.
     energy : float, optional
         The relative drift of the energy at the end.
     failure : str
@@ -74,7 +74,7 @@ class SceneRow:
 
 @dataclass(slots=True)
 class SceneStudy:
-    """What was found of a scene; ``tightest`` says against what methods were compared."""
+    """What was found of a scene; ``tightest`` names the method that the others were compared with."""
 
     name: str
     seconds: float
@@ -82,7 +82,7 @@ class SceneStudy:
     rows: list[SceneRow] = field(default_factory=list)
 
 
-def study_scene(name: str, load: Callable[[], World]) -> Iterator[float | SceneStudy]:
+def study_scene(name: str, load: Callable[[], World]) -> Job[SceneStudy]:
     """Run a scene with every method; yield the share of the work that is done, then the result.
 
     Parameters
@@ -91,7 +91,7 @@ def study_scene(name: str, load: Callable[[], World]) -> Iterator[float | SceneS
         Returns the scene's world, a new one each time.
     """
     load = _without_trails(load)
-    plain = dataclasses.replace(load().simulation, sleeping=False)  # errors are to be those of methods
+    plain = dataclasses.replace(load().simulation, sleeping=False)  # so that errors are those of methods
     auto = dataclasses.replace(plain, integrator="auto")
     methods = [method for method in INTEGRATORS if _takes(load, plain, method)]
     wanted = [auto, *(rung for method in methods for rung in _ladder(plain, method))]
@@ -125,15 +125,24 @@ def _ladder(plain: SimulationConfig, method: str) -> Iterator[SimulationConfig]:
         for tolerance in _TOLERANCES:
             yield dataclasses.replace(own, tolerance=tolerance)
     else:
-        for factor in _FINER:
-            yield dataclasses.replace(own, substeps=min(10_000, max(1, round(factor * plain.substeps))))
+        for factor in _SUBSTEP_FACTORS:
+            yield dataclasses.replace(own, substeps=_limited(factor * plain.substeps))
+
+
+def _limited(substeps: float) -> int:
+    return min(_SUBSTEPS_LIMIT, max(1, round(substeps)))
 
 
 def _takes(load: Callable[[], World], plain: SimulationConfig, method: str) -> bool:
+    return not _prepared(load, dataclasses.replace(plain, integrator=method)).plan.refused
+
+
+def _prepared(load: Callable[[], World], simulation: SimulationConfig) -> World:
+    """Return the scene's world, ready to be stepped by a configuration."""
     world = load()
-    world.simulation = dataclasses.replace(plain, integrator=method)
+    world.simulation = simulation
     world.synchronise()
-    return not world.plan.refused
+    return world
 
 
 def _tightest(load: Callable[[], World], plain: SimulationConfig) -> tuple[NDArray[np.float64] | None, str]:
@@ -141,53 +150,46 @@ def _tightest(load: Callable[[], World], plain: SimulationConfig) -> tuple[NDArr
     for method, changes, words in (
         ("exact", {}, "the closed form"),
         ("dop853", {"tolerance": _TIGHTEST}, f"dop853 with a tolerance of {_TIGHTEST:g}"),
-        ("leapfrog", {"substeps": min(10_000, 4 * plain.substeps)}, "leapfrog with a quarter of the step"),
+        ("leapfrog", {"substeps": _limited(4 * plain.substeps)}, "leapfrog with a quarter of the step"),
     ):
         if _takes(load, plain, method):
-            world = load()
-            world.simulation = dataclasses.replace(plain, integrator=method, **changes)
-            try:
-                return _end(world), words
-            except (Diverged, ArithmeticError):
-                continue
+            simulation = dataclasses.replace(plain, integrator=method, **changes)
+            places, failure = attempt(partial(_end, _prepared(load, simulation)))
+            if not failure:
+                return places, words
     return None, "nothing: every method fails"
 
 
 def _row(
     load: Callable[[], World], simulation: SimulationConfig, best: NDArray[np.float64] | None
 ) -> SceneRow:
-    world = load()
-    world.simulation = simulation
-    world.synchronise()
-    method = world.plan
+    method = _prepared(load, simulation).plan
     parts = 1 if method.integrator.chooses_steps else method.substeps
     step = f"{simulation.dt / parts:.3g} s"
     if method.integrator.chooses_steps:
         step = "" if method.integrator.name == "exact" else f"tol {simulation.tolerance:g}"
     row = SceneRow(method.integrator.name, method.reason, simulation.integrator, step)
-    drift = Drift(world)
-    try:
-        for _ in range(_REPEATS):  # the shortest: the first also compiles, and other programs run as well
-            world = load()
-            world.simulation = simulation
-            world.synchronise()
-            start = time.process_time()
-            places = _end(world)
-            taken = time.process_time() - start
-            row.cpu_s = min(row.cpu_s or taken, taken)
-            if taken > _LONG:
-                break
-        row.evaluations = world.force_evaluations
-        drift.sample(world)
-        row.energy = drift.relative
-        substep_factor = load()
-        substep_factor.simulation = _other_step(simulation)
-        row.half_step = _apart(places, _end(substep_factor))
-        if best is not None:
-            row.tightest = _apart(places, best)
-    except (Diverged, ArithmeticError) as error:
-        row.failure = str(error)
+    _, row.failure = attempt(partial(_fill, row, load, simulation, best))
     return row
+
+
+def _fill(
+    row: SceneRow, load: Callable[[], World], simulation: SimulationConfig, best: NDArray[np.float64] | None
+) -> None:
+    """Run a scene by a configuration, and write its cost and its errors into a row."""
+    for _ in range(_REPEATS):  # the shortest: the first also compiles, and other programs run as well
+        world = _prepared(load, simulation)
+        drift = Drift(world)
+        taken, places = cpu_time(partial(_end, world))
+        row.cpu_s = min(row.cpu_s or taken, taken)
+        if taken > _REPEATED_BELOW_S:
+            break
+    row.evaluations = world.force_evaluations
+    drift.sample(world)
+    row.energy = drift.relative
+    row.half_step = _apart(places, _end(_prepared(load, _other_step(simulation))))
+    if best is not None:
+        row.tightest = _apart(places, best)
 
 
 def _other_step(simulation: SimulationConfig) -> SimulationConfig:
@@ -200,13 +202,10 @@ def _other_step(simulation: SimulationConfig) -> SimulationConfig:
 
 
 def _end(world: World) -> NDArray[np.float64]:
-    """Run a world, and return where what moves is then (n, 2) [m]."""
-    world.synchronise()
-    with np.errstate(all="ignore"):
-        world.run(seconds=_SECONDS)
-    places: NDArray[np.float64] = world.table(Transform)["position"][
-        world.batch(Transform, Velocity).rows
-    ].copy()
+    """Run a world, and return where its moving bodies are then (n, 2) [m]."""
+    world.run(seconds=_SECONDS)
+    rows = world.batch(Transform, Velocity).rows
+    places: NDArray[np.float64] = world.table(Transform)["position"][rows].copy()
     return places
 
 
@@ -214,41 +213,3 @@ def _apart(places: NDArray[np.float64], others: NDArray[np.float64]) -> float | 
     if places.shape != others.shape:
         return None
     return float(np.hypot(*(places - others).T).max(initial=0.0))
-
-
-def scene_document(study: SceneStudy) -> dict[str, Any]:
-    """Return what was found of a scene as a document."""
-    rows = []
-    for row in study.rows:
-        found = dataclasses.asdict(row)
-        found["cpu_ms"] = 1e3 * found.pop("cpu_s") if not row.failure else None
-        found["error"] = (
-            row.tightest or row.half_step
-        )  # the tightest is compared with itself at half the step
-        rows.append(
-            {key: finite(value) if isinstance(value, float) else value for key, value in found.items()}
-        )
-    return {
-        "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.tightest,
-        "rows": rows,
-    }  # fmt: skip
-
-
-def scene_text(study: SceneStudy) -> str:
-    """Return what was found of a scene as a table."""
-    lines = [
-        f"{study.name}: {ESTIMATE}",
-        f"  how far bodies are [m] after {study.seconds:g} s from where they are with half the step "
-        f"(dop853: twice the step), and with {study.tightest}",
-        f"  {'method':<18} {'ran':<18} {'step':>9} {'forces':>9} {'CPU ms':>9} {'half step':>10} "
-        f"{'tightest':>10} {'energy':>9}",
-    ]
-    for row in study.rows:
-        half, tight, energy = (
-            "-" if number is None else f"{number:.1e}" for number in (row.half_step, row.tightest, row.energy)
-        )
-        lines.append(
-            f"  {row.asked:<18} {row.integrator:<18} {row.step:>9} {row.evaluations:>9} "
-            f"{1e3 * row.cpu_s:>9.3g} {half:>10} {tight:>10} {energy:>9}  {row.failure}".rstrip()
-        )
-    return "\n".join([*lines, f"  auto: {study.rows[0].reason}", ""])

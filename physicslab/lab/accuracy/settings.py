@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from physicslab.diagnostics.forces import fastest_force
 from physicslab.ecs.config import SimulationConfig
 from physicslab.integrators import Integrator
 from physicslab.lab.accuracy.problem import Problem
-from physicslab.systems.system import ForceSystem
 
 __all__ = ["Setting", "ladder", "refusal", "sees_velocity"]
 
 _TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15, 1e-16, 1e-17)
 _SUBSTEPS = 4
-"""Parts of a step where bodies touch: those of every scene that says nothing else."""
-_MOST_WORK = 1e7
+"""Parts of a step where bodies touch: the default of scenes."""
+_EVALUATIONS_LIMIT = 1e7
 """Force evaluations that one rung may take."""
-_STIFF_REACH = 6.0
+_STIFF_LIMIT = 6.0
 """Rate times step [rad] beyond which an explicit adaptive method is no longer stable."""
 
 
@@ -30,7 +30,7 @@ class Setting:
     integrator : str
         Its name, or ``"auto"``.
     steps : int, optional
-        Into how many the time is divided; ``None`` for a method that needs no telling.
+        Into how many the time is divided; ``None`` for a method that chooses its steps.
     tolerance : float, optional
         Of an adaptive method.
     collisions : str
@@ -43,7 +43,7 @@ class Setting:
     collisions: str = "auto"
 
     def simulation(self, problem: Problem) -> SimulationConfig:
-        """Return the configuration of the problem's world; nobody sleeps: errors are the method's."""
+        """Return the configuration of the problem's world, in which nothing sleeps."""
         if self.integrator == "auto":
             return SimulationConfig(dt=problem.dt, sleeping=False)
         tolerance = self.tolerance or SimulationConfig().tolerance
@@ -57,17 +57,16 @@ class Setting:
 
 def refusal(problem: Problem, method: Integrator) -> str:
     """Return why a method is not used on a problem; empty if it is."""
-    if method.name in problem.not_asked:
-        return problem.not_asked[method.name]
+    if method.name in problem.not_used:
+        return problem.not_used[method.name]
     world = problem.build(SimulationConfig(dt=problem.dt, integrator=method.name))
     world.synchronise()
     if world.plan.refused:
         return world.plan.refused
     if method.chooses_steps and method.evaluations:
-        rate = max((system.strongest_rate(world) for system in world.schedule.running
-                    if isinstance(system, ForceSystem)), default=0.0)  # fmt: skip
-        work = problem.seconds * rate * method.evaluations / _STIFF_REACH
-        if work > _MOST_WORK:
+        rate, _ = fastest_force(world)
+        work = problem.seconds * rate * method.evaluations / _STIFF_LIMIT
+        if work > _EVALUATIONS_LIMIT:
             return f"an explicit method would take about {work:.0e} force evaluations to stay bounded"
     return ""
 
@@ -87,8 +86,7 @@ def ladder(problem: Problem, method: Integrator) -> Iterator[Setting]:
 
 
 def sees_velocity(problem: Problem) -> bool:
-    """Whether forces in a problem hang on velocities."""
+    """Whether forces in a problem depend on velocities."""
     world = problem.build(SimulationConfig(dt=problem.dt))
     world.synchronise()
-    forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
-    return any(force.sees_velocity(world) for force in forces)
+    return any(force.sees_velocity(world) for force in world.schedule.forces)

@@ -9,14 +9,13 @@ from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.accuracy.figures import number
-from physicslab.lab.accuracy.problem import Ladder, Problem, empty_world
-from physicslab.lab.accuracy.states import place, velocity
+from physicslab.lab.accuracy.problem import Ladder, Problem
+from physicslab.lab.worlds import empty_world, place, velocity
 from physicslab.prefabs import box
 from physicslab.world import World
 
 __all__ = ["SLOPES"]
 
-_G = 9.81
 _THETA = math.pi / 6.0
 _NONE: frozenset[str] = frozenset()
 

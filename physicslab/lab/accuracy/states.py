@@ -1,32 +1,19 @@
-"""Where the bodies of a world are, beside where they should be."""
+"""How far the bodies of a world are from where they should be."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 
-from physicslab.components import Transform, Velocity
 from physicslab.ecs.vector import Vector2
+from physicslab.lab.worlds import place, velocity
 from physicslab.world import World
 
-__all__ = ["distance", "place", "state_error", "velocity"]
-
-
-def place(world: World, name: str) -> Vector2:
-    """Return where a body is [m]."""
-    return world.component(world.entity(name), Transform).position
-
-
-def velocity(world: World, name: str) -> Vector2:
-    """Return how a body moves [m/s]."""
-    return world.component(world.entity(name), Velocity).linear
+__all__ = ["distance", "state_error"]
 
 
 def distance(world: World, expected: Mapping[str, Sequence[float]]) -> float:
-    """Return how far the body that is farthest off is from where it should be [m]."""
-    return max(
-        math.hypot(*(place(world, name) - Vector2(*where))) for name, where in expected.items()
-    )  # fmt: skip
+    """Return the largest distance of a body from where it should be [m], of those that are named."""
+    return max((place(world, name) - Vector2(*where)).magnitude for name, where in expected.items())
 
 
 def state_error(

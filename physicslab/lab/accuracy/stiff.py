@@ -8,14 +8,14 @@ from fractions import Fraction
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.figures import number, record
-from physicslab.lab.accuracy.problem import Ladder, Problem, empty_world
-from physicslab.lab.accuracy.states import place, state_error, velocity
+from physicslab.lab.accuracy.problem import Ladder, Problem
+from physicslab.lab.accuracy.states import state_error
+from physicslab.lab.worlds import GRAVITY, empty_world, place, velocity
 from physicslab.world import World
 
 __all__ = ["STIFF"]
 
 _STEP = 0.01
-_G = 9.81
 _RESTS = "its steps shrink without end as the weight comes to rest: they are measured by the present speed"
 
 
@@ -83,7 +83,7 @@ def _sag(z: str) -> Problem:
         ladder=Ladder(100, 8, by_step=True),
         dt=_STEP,
         keeps=frozenset(),
-        not_asked={"dop853": _RESTS} if float(z) > 1.0 else {},
+        not_used={"dop853": _RESTS} if float(z) > 1.0 else {},
     )
 
 
@@ -100,9 +100,9 @@ def _damper(z: str) -> Problem:
         return abs(velocity(world, "bob").y - expected)
 
     def energy(t: float) -> float:
-        sink = _G / rate
+        sink = GRAVITY / rate
         v = (1.0 + sink) * math.exp(-rate * t) - sink
-        return 0.5 * v * v + _G * ((1.0 + sink) * -math.expm1(-rate * t) / rate - sink * t)
+        return 0.5 * v * v + GRAVITY * ((1.0 + sink) * -math.expm1(-rate * t) / rate - sink * t)
 
     return Problem(
         name=f"stiff_damper_z{z}",

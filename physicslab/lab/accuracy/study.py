@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -14,17 +14,17 @@ from physicslab.lab.accuracy.measure import Measurement, finish, measure
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting, ladder, refusal, sees_velocity
 from physicslab.lab.accuracy.verdict import Verdict, measured_order, verdict
-from physicslab.state.masses import Diverged
+from physicslab.lab.case import Job, attempt
 
 __all__ = ["Curve", "Row", "Study", "rounding_floor", "study"]
 
-_LONG_S = 0.3
-"""A ladder ends with the rung that takes longer."""
+_LADDER_ENDS_S = 0.3
+"""The first rung that takes longer is the last."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One measurement and what it is worth."""
+    """One measurement and its verdict."""
 
     measurement: Measurement
     verdict: Verdict
@@ -41,7 +41,7 @@ class Curve:
     rows : list of Row
         From coarse to fine.
     order : float, optional
-        With which power of the work its error falls, where that shows.
+        The power of the work with which its error falls, where that can be measured.
     refused : str
         Why the engine does not use it here; it then has no rows.
     holds : bool
@@ -71,7 +71,7 @@ class Study:
     problem : Problem
         Which.
     auto : Row
-        What ``auto`` does with it, stepped as a scene is that says nothing else.
+        What ``auto`` does with it, in steps of the default length.
     curves : list of Curve
         One for each method.
     floor : float, optional
@@ -90,10 +90,10 @@ class Study:
         return min((error for error in errors if error is not None), default=None)
 
 
-def study(problem: Problem, *, sparse: bool = False) -> Iterator[float | Study]:
+def study(problem: Problem, *, sparse: bool = False) -> Job[Study]:
     """Compute a problem with every method; yield the share of the work that is done, then the result.
 
-    Where ``sparse``, every second rung of a ladder is left out, the finest not among them.
+    Where ``sparse``, every second rung of a ladder is left out, and never the finest.
     """
     plan = []
     for method in INTEGRATORS.values():
@@ -112,10 +112,10 @@ def study(problem: Problem, *, sparse: bool = False) -> Iterator[float | Study]:
             curve.rows.append(_row(problem, setting, floor))
             done += 1
             yield done / whole
-            if curve.rows[-1].measurement.cpu_s > _LONG_S:
+            if curve.rows[-1].measurement.cpu_s > _LADDER_ENDS_S:
                 break
         measured = [row.measurement for row in curve.rows]
-        # Where steps are chosen, what counts is how many there were.
+        # A method that chooses its steps is compared by the work that they took.
         efforts = [m.evaluations if curve.integrator.chooses_steps else m.steps for m in measured]
         if curve.rows and curve.integrator.evaluations and problem.search is None:
             even = not curve.integrator.chooses_steps
@@ -145,8 +145,8 @@ def rounding_floor(problem: Problem) -> float | None:
         world.synchronise()
         for column in (world.table(Transform)["position"], world.table(Velocity)["linear"]):
             column[:] = np.where((column == 0.0) | (way == 0.0), column, np.nextafter(column, way))
-        try:
-            errors.append(finish(problem, world))
-        except (Diverged, ArithmeticError):
+        error, _ = attempt(partial(finish, problem, world))
+        if error is None:
             return None
+        errors.append(error)
     return max(abs(error - errors[0]) for error in errors)

@@ -1,4 +1,4 @@
-"""What the accuracy lab found, as text."""
+"""What the accuracy lab found, as tables for the terminal."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from collections.abc import Sequence
 
 from physicslab.lab.accuracy.catalogue import LEFT_OUT
 from physicslab.lab.accuracy.problem import Problem
+from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
 from physicslab.lab.accuracy.verdict import Verdict
+from physicslab.lab.table import cell, table
 
-__all__ = ["left_out_text", "study_text", "summary_text"]
+__all__ = ["left_out_text", "scene_text", "study_text", "summary_text"]
 
 _HEAD = ("method", "order", "measured", "dt or tol", "steps", "forces", "CPU ms", "ms / s", "error", "energy",
          "momentum", "ang. mom.", "omega dt", "overlap", "hits", "verdict")  # fmt: skip
@@ -26,13 +28,13 @@ def study_text(study: Study, *, whole: bool) -> str:
         f"  error: {problem.measure}; {limits}{floor}",
     ]
     if problem.exact_energy is not None:
-        lines.append("  energy: against the exact one at that time, as some is lost on the way")
+        lines.append("  energy: compared with the exact energy at that time, since some is dissipated")
     if problem.note:
         lines.append(f"  note: {problem.note}")
     rows = [_HEAD, _cells(problem, study.auto, "auto", "", "")]
     for curve in study.curves:
         rows += _curve_cells(problem, curve, whole)
-    return "\n".join([*lines, *_aligned(rows), f"  auto: {study.auto.measurement.integrator}, "
+    return "\n".join([*lines, _reported(rows), f"  auto: {study.auto.measurement.integrator}, "
                       f"{study.auto.measurement.reason}", *_refusals(study), ""])  # fmt: skip
 
 
@@ -51,16 +53,16 @@ def _curve_cells(problem: Problem, curve: Curve, whole: bool) -> list[tuple[str,
     if not curve.rows:
         return []
     order = f"{curve.integrator.order:g}" + ("" if curve.holds else "*")
-    measured = _short(curve.order, ".2f")
+    measured = cell(curve.order, ".2f")
     if not whole:
-        return [_cells(problem, _telling(curve.rows), curve.integrator.name, order, measured)]
+        return [_cells(problem, _best_row(curve.rows), curve.integrator.name, order, measured)]
     return [
         _cells(problem, row, *((curve.integrator.name, order, measured) if i == 0 else ("", "", "")))
         for i, row in enumerate(curve.rows)
     ]
 
 
-def _telling(rows: Sequence[Row]) -> Row:
+def _best_row(rows: Sequence[Row]) -> Row:
     """Return the cheapest excellent row, or else the one of the smallest error."""
     excellent = [row for row in rows if row.verdict is Verdict.EXCELLENT]
     if excellent:
@@ -72,28 +74,42 @@ def _cells(problem: Problem, row: Row, name: str, order: str, measured: str) -> 
     found, seen = row.measurement, row.measurement.watched
     fineness = found.setting.tolerance if found.dt is None else found.dt
     return (
-        name, order, measured, _short(fineness, ".3g"), str(found.steps), str(found.evaluations),
-        f"{1e3 * found.cpu_s:.3g}", f"{1e3 * found.cpu_s / problem.seconds:.2g}", _short(found.error, ".1e"),
-        _short(seen.energy, ".1e"), _short(seen.momentum, ".1e"), _short(seen.angular_momentum, ".1e"),
-        _short(seen.rate_dt, ".2g"), _short(seen.penetration, ".1e"),
+        name, order, measured, cell(fineness, ".3g"), str(found.steps), str(found.evaluations),
+        f"{1e3 * found.cpu_s:.3g}", f"{1e3 * found.cpu_s / problem.seconds:.2g}", cell(found.error, ".1e"),
+        cell(seen.energy, ".1e"), cell(seen.momentum, ".1e"), cell(seen.angular_momentum, ".1e"),
+        cell(seen.rate_dt, ".2g"), cell(seen.penetration, ".1e"),
         "" if seen.collisions is None else f"{seen.collisions:+d}", str(row.verdict),
     )  # fmt: skip
 
 
-def _short(number: float | None, form: str) -> str:
-    return "-" if number is None else format(number, form)
+def _reported(rows: Sequence[tuple[str, ...]]) -> str:
+    """Return rows as a table, without columns that hold nothing."""
+    kept = [i for i in range(len(_HEAD)) if any(row[i] not in ("", "-") for row in rows[1:])]
+    return table([[row[i] for i in kept] for row in rows], words=(0, len(kept) - 1), indent="  ")
 
 
-def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    """Return rows as lines; columns that say nothing are left out, numbers stand to the right."""
-    reported = [i for i in range(len(rows[0])) if any(row[i] not in ("", "-") for row in rows[1:])]
-    widths = {i: max(len(row[i]) for row in rows) for i in reported}
-    sides = {i: "<" if i in (0, len(rows[0]) - 1) else ">" for i in reported}
-    return ["  " + "  ".join(f"{row[i]:{sides[i]}{widths[i]}}" for i in reported).rstrip() for row in rows]
+def scene_text(study: SceneStudy) -> str:
+    """Return what was found of a scene as a table."""
+    head = ("method", "ran", "step", "forces", "CPU ms", "half step", "tightest", "energy", "")
+    return "\n".join([
+        f"{study.name}: {ESTIMATE}",
+        f"  how far bodies are [m] after {study.seconds:g} s from where they are with half the step "
+        f"(dop853: twice the step), and with {study.tightest}",
+        table([head, *map(_scene_cells, study.rows)], words=(0, 1, 8), indent="  "),
+        f"  auto: {study.rows[0].reason}",
+        "",
+    ])  # fmt: skip
+
+
+def _scene_cells(row: SceneRow) -> tuple[str, ...]:
+    return (
+        row.asked, row.integrator, row.step, str(row.evaluations), f"{1e3 * row.cpu_s:.3g}",
+        cell(row.half_step, ".1e"), cell(row.tightest, ".1e"), cell(row.energy, ".1e"), row.failure,
+    )  # fmt: skip
 
 
 def summary_text(studies: Sequence[Study]) -> str:
-    """Return on how many problems ``auto``, and any method at all, is excellent; and where not."""
+    """Return the number of problems on which ``auto``, and any method, is excellent; and the others."""
     short = [study for study in studies if study.auto.verdict is not Verdict.EXCELLENT]
     none = [study for study in studies if _best_verdict(study) is not Verdict.EXCELLENT]
     lines = [
@@ -105,7 +121,7 @@ def summary_text(studies: Sequence[Study]) -> str:
         any_method = "no method is" if study in none else f"the best error of any method is {study.best:.1e}"
         error = study.auto.measurement.error
         lines.append(
-            f"  {name}: auto has {_short(error, '.1e')} ({study.auto.verdict}), excellent would "
+            f"  {name}: auto has {cell(error, '.1e')} ({study.auto.verdict}), excellent would "
             f"be {limit:.1e}; {any_method}"
         )
     if any(not curve.holds for study in studies for curve in study.curves if curve.rows):
@@ -123,4 +139,4 @@ def _best_verdict(study: Study) -> Verdict:
 
 def left_out_text() -> str:
     """Return which reference problems are not there, and why."""
-    return "\n".join(["not asked:", *(f"  {left.name}: {left.reason}" for left in LEFT_OUT)])
+    return "\n".join(["not computed:", *(f"  {left.name}: {left.reason}" for left in LEFT_OUT)])

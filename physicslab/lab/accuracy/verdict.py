@@ -1,4 +1,4 @@
-"""What an error is worth."""
+"""Verdicts on errors, and the order with which errors fall."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["Verdict", "measured_order", "verdict"]
 
 
 class Verdict(StrEnum):
-    """What is said of an error."""
+    """How good an error is."""
 
     EXCELLENT = "excellent"
     GOOD = "good"
@@ -22,21 +22,21 @@ class Verdict(StrEnum):
     FAILED = "failed"
 
 
-_NEAR = 30.0
-"""Up to so many times what one rounding at the start does, an error is put down to rounding."""
+_ROUNDING_FACTOR = 30.0
+"""An error of up to so many times the effect of one rounding at the start is put down to rounding."""
 
 
 def verdict(
     error: float | None, good: float, excellent: float, *, floor: float | None = None, chaotic: bool = False
 ) -> Verdict:
-    """Return what to call an error.
+    """Return the verdict on an error.
 
     Parameters
     ----------
     error : float, optional
         ``None`` where the run failed.
     good, excellent : float
-        The largest error of each kind.
+        The largest error with that verdict.
     floor : float, optional
         How far apart two runs end whose starts differ by one rounding.
     chaotic : bool
@@ -53,7 +53,7 @@ def verdict(
         return Verdict.FAILED
     if error <= excellent:
         return Verdict.EXCELLENT
-    if floor is not None and error <= _NEAR * floor:
+    if floor is not None and error <= _ROUNDING_FACTOR * floor:
         return Verdict.CHAOS if chaotic else Verdict.ROUNDING
     return Verdict.GOOD if error <= good else Verdict.SHORT
 
@@ -61,7 +61,7 @@ def verdict(
 def measured_order(
     efforts: Sequence[float], errors: Sequence[float | None], *, even: bool = True
 ) -> float | None:
-    """Return with which power of the effort errors fall, where they do so.
+    """Return the power of the effort with which errors fall; ``None`` where they do not.
 
     Errors count from a tenth down to where rounding begins to show: a hundred times the smallest error below
     1e-6 that the next finer rung does not halve.
@@ -71,8 +71,8 @@ def measured_order(
     efforts : sequence of floats
         Steps, or force evaluations, from coarse to fine.
     even : bool
-        Whether efforts grow evenly: the slope between the two finest rungs then tells most. Where they do
-        not, as with steps that are chosen, a straight line is laid through all rungs.
+        Whether efforts grow evenly: the order is then the slope between the two finest rungs. Otherwise, as
+        with adaptive methods, a straight line is fitted to all rungs.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What is kept, and what is not, on the way: looked at in a run of its own, at random times."""
+"""How well energy and momenta are conserved: measured at random times of a run that is not timed."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.forces import fastest_force
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
-from physicslab.systems.system import ForceSystem
 from physicslab.world import World
 
 __all__ = ["Watched", "watch"]
@@ -22,7 +22,7 @@ _SEED = 20260101
 
 @dataclass(slots=True)
 class Watched:
-    """The largest departures seen; ``None`` where there is nothing to be kept.
+    """The largest departures; ``None`` for what the problem does not conserve.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Watched:
     penetration : float, optional
         The deepest overlap after any step [m].
     collisions : int, optional
-        How many impacts there were more (or, negative, fewer) than there are.
+        How many impacts were counted beyond the right number; negative where some are missing.
     """
 
     energy: float | None = None
@@ -48,12 +48,12 @@ class Watched:
 
 
 def watch(problem: Problem, setting: Setting) -> Watched:
-    """Run a problem once more, and look at it at random times."""
+    """Run a problem once more, and measure it at random times."""
     world = problem.build(setting.simulation(problem))
     world.synchronise()
-    seen, watched = _Kept(world), Watched()
+    seen, watched = _Conserved(world), Watched()
     energy, momentum, spin = 0.0, 0.0, 0.0
-    rate = _rate(world)
+    rate, _ = fastest_force(world)
     deepest = 0.0
     with np.errstate(all="ignore"):
         for sampled in _moments(world, problem):
@@ -64,7 +64,7 @@ def watch(problem: Problem, setting: Setting) -> Watched:
                 energy, momentum, spin = (
                     float(np.maximum(*pair)) for pair in zip((energy, momentum, spin), off, strict=True)
                 )
-                rate = max(rate, _rate(world))
+                rate = max(rate, fastest_force(world)[0])
     if problem.exact_energy is not None or "energy" in problem.keeps:
         watched.energy = seen.share(energy)
     watched.momentum = momentum if "momentum" in problem.keeps else None
@@ -101,8 +101,8 @@ def _moments(world: World, problem: Problem) -> Iterator[bool]:
         yield True
 
 
-class _Kept:
-    """What a world had at the start."""
+class _Conserved:
+    """Energy and momenta of a world at the start, and departures from them."""
 
     def __init__(self, world: World) -> None:
         self._energy, self._momentum = measure_energy(world), measure_momentum(world)
@@ -132,16 +132,3 @@ class _Kept:
 
 def _share(part: float, whole: float) -> float:
     return part / whole if whole > 0.0 else part
-
-
-def _rate(world: World) -> float:
-    """Return the fastest rate of any force as things stand [rad/s]."""
-    with world.active():
-        return max(
-            (
-                system.strongest_rate(world)
-                for system in world.schedule.running
-                if isinstance(system, ForceSystem)
-            ),
-            default=0.0,
-        )

@@ -1,1 +1,1 @@
-"""Speed: scenes, how long their steps take here and in other engines, and what comes of them."""
+"""Speed: scenes, and how long their steps take here and in other engines, with figures of quality."""

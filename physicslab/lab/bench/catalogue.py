@@ -9,42 +9,46 @@ from pathlib import Path
 
 from physicslab.components import Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
+from physicslab.lab.bench.moving import MOVING
 from physicslab.lab.bench.quality import energy_change, overlap, sideways, sink
 from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.case import Catalogue
+from physicslab.lab.worlds import open_space
 from physicslab.prefabs import box, container, gas, pile, pyramid
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import System
 from physicslab.world import World
 
-__all__ = ["MOST_BESIDE", "SCENES", "SIZES", "circles", "discs", "groups", "names", "opened", "select"]
+__all__ = [
+    "PEER_SIZE_LIMIT", "SCENES", "SIZES", "by_default", "discs", "gas_scene", "opened", "pile_scene",
+    "ten_discs",
+]  # fmt: skip
 
 SIZES = (1_000, 2_000, 4_000, 8_000, 16_000)
 """Bodies of the piles and gases."""
-MOST_BESIDE = 4_000
+PEER_SIZE_LIMIT = 4_000
 """Bodies of the largest scene that other engines run unless it is named: piles of more take them minutes."""
-_FEWER_STEPS = {8_000: 150, 16_000: 100}
+_STEPS_OF_LARGE = {8_000: 150, 16_000: 100}
 _AWAKE = SimulationConfig(sleeping=False)
 _OVERLAP = 0.02
-"""A tenth of a disc [m]: what lies deeper in each other is another pile to the eye."""
+"""Deepest overlap that counts as right [m]: a tenth of a disc."""
 _ENERGY = 1e-3
-"""By which a gas may gain or lose."""
+"""Largest change of a gas's energy that counts as right, as a share of it."""
 _PITCH = 0.25
 """From one disc of a pile to the next at the start [m]: that of the prefab."""
 
 
 def _boxes(base: int) -> World:
     """Return a pyramid of boxes of 1 m on a floor."""
-    laws = PhysicsConfig(gravity=Vector2(0.0, -10.0))
-    world = World(*standard_systems(), physics=laws, simulation=_AWAKE)
+    world = open_space(gravity=10.0)
     box(world, (0.0, -0.5), width=200.0, height=1.0, static=True, friction=0.6)
     pyramid(world, base)
     return world
 
 
 def discs(count: int, systems: tuple[System, ...] | None = None) -> World:
-    """Return discs of 0.2 m in a container, three times as wide as high whatever their number.
+    """Return discs of 0.2 m in a container, three times as wide as high for any number.
 
     ``systems`` are every physics system there is, where none are given.
     """
@@ -57,17 +61,17 @@ def discs(count: int, systems: tuple[System, ...] | None = None) -> World:
 
 
 def _gas(count: int) -> World:
-    """Return elastic discs that fill 17 % of a box, whatever their number."""
+    """Return elastic discs that fill 17 % of a box, for any number."""
     scale = math.sqrt(count / 2_000)
     bounds = (-12.0 * scale, -7.5 * scale, 12.0 * scale, 7.5 * scale)
     laws = PhysicsConfig(gravity_mode="none", bounds=bounds, bounds_restitution=1.0, bounds_friction=0.0)
-    world = World(*standard_systems(), physics=laws, simulation=_AWAKE)
+    world = open_space(physics=laws)
     gas(world, count, bounds)
     return world
 
 
-def circles(systems: tuple[System, ...] | None = None) -> World:
-    """Return ten discs in a small container, which come to lie on each other."""
+def ten_discs(systems: tuple[System, ...] | None = None) -> World:
+    """Return ten discs in a small container, which come to rest on each other."""
     world = World(*(systems or standard_systems()), simulation=_AWAKE)
     container(world, width=1.3, height=2.0)
     pile(world, 10, columns=5)
@@ -86,7 +90,7 @@ def pile_scene(count: int) -> BenchScene:
     """Return the pile of so many discs."""
     return BenchScene(
         name=f"pile_{count}", title=f"pile of {count:,} discs", group="piles", size=count,
-        build=partial(discs, count), steps=_FEWER_STEPS.get(count, 300), quality=(overlap(_OVERLAP),),
+        build=partial(discs, count), steps=_STEPS_OF_LARGE.get(count, 300), quality=(overlap(_OVERLAP),),
     )  # fmt: skip
 
 
@@ -94,51 +98,40 @@ def gas_scene(count: int) -> BenchScene:
     """Return the gas of so many discs."""
     return BenchScene(
         name=f"gas_{count}", title=f"gas of {count:,} elastic discs", group="gases", size=count,
-        build=partial(_gas, count), steps=_FEWER_STEPS.get(count, 300), quality=(energy_change(_ENERGY),),
+        build=partial(_gas, count), steps=_STEPS_OF_LARGE.get(count, 300), quality=(energy_change(_ENERGY),),
     )  # fmt: skip
 
 
-_CIRCLES = BenchScene(
+_TEN_DISCS = BenchScene(
     name="circles_10", title="ten discs at rest, many steps in one call", group="small", size=10,
-    build=circles, steps=6_000, quality=(overlap(_OVERLAP),), compiled_runs=True,
+    build=ten_discs, steps=6_000, quality=(overlap(_OVERLAP),), compiled_runs=True,
+)  # fmt: skip
+_TEN_DISCS_STEPPED = replace(
+    _TEN_DISCS, name="circles_10_stepped", title="the same ten discs, step by step", steps=3_000,
+    compiled_runs=False, by_default=False,
 )  # fmt: skip
 
-SCENES: dict[str, BenchScene] = {
-    scene.name: scene
-    for scene in (
+SCENES = Catalogue(
+    (
         _pyramid_scene(30, drift=0.05, sunk=0.10),
         _pyramid_scene(60, drift=0.13, sunk=0.29),  # Box2D v3's figures, in C
         *map(pile_scene, SIZES),
         *map(gas_scene, SIZES),
-        _CIRCLES,
+        _TEN_DISCS,
+        _TEN_DISCS_STEPPED,
+        *MOVING,
     )
-}
-"""Every scene by name."""
+)
+"""Every scene by name; families are groups."""
 
 
-def groups() -> list[str]:
-    """Return the names of the groups, in order."""
-    return list(dict.fromkeys(scene.group for scene in SCENES.values()))
-
-
-def names() -> list[str]:
-    """Return what can be asked for: groups, and scenes."""
-    return [*groups(), *SCENES]
-
-
-def select(name: str) -> list[BenchScene]:
-    """Return the scene of a name, or those of a group; nothing if there is none.
-
-    >>> [scene.name for scene in select("pyramids")]
-    ['pyramid_30', 'pyramid_60']
-    """
-    if name in SCENES:
-        return [SCENES[name]]
-    return [scene for scene in SCENES.values() if scene.group == name]
+def by_default() -> list[BenchScene]:
+    """Return the scenes that are run where none is named."""
+    return [scene for scene in SCENES.values() if scene.by_default]
 
 
 def opened(name: str) -> BenchScene:
-    """Return a built-in scene or a scene file, to be timed from its first step on, awake.
+    """Return a built-in scene or a scene file, to be timed from its first step on, without sleeping.
 
     Raises
     ------

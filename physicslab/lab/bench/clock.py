@@ -1,7 +1,7 @@
 """Times of engines that take turns, so that noise and heat are the same for all.
 
-What is told is CPU time, of all threads of the process: on an idle machine that is the time on the wall, and
-on one that does other work it leaves the waiting out. No engine gains by a second thread.
+Times are CPU times, of all threads of the process: on an idle machine that is the time on the wall, and on
+one that does other work it leaves the waiting out. No engine gains by a second thread.
 """
 
 from __future__ import annotations
@@ -21,16 +21,19 @@ __all__ = ["TURN", "Spread", "Times", "take_turns"]
 
 
 class Spread:
-    """How much CPU time something took, again and again.
+    """How the CPU times of one thing, measured many times, are distributed.
 
     Attributes
     ----------
-    median_ms, p90_ms : float
-        The middle one, and the one that nine of ten do not exceed [ms].
+    median_ms, p90_ms, p99_ms, mean_ms : float
+        The middle one, those that 90 and 99 of 100 do not exceed, and the mean [ms]. Work that is done every
+        few steps, as new lists of pairs, shows in the mean and not in the median.
     """
 
     def __init__(self, milliseconds: NDArray[np.float64]) -> None:
-        self.median_ms, self.p90_ms = (float(found) for found in np.percentile(milliseconds, (50, 90)))
+        found = np.percentile(milliseconds, (50, 90, 99))
+        self.median_ms, self.p90_ms, self.p99_ms = map(float, found)
+        self.mean_ms = float(np.mean(milliseconds))
 
 
 class Times:
@@ -41,7 +44,7 @@ class Times:
     step, read : list of float
         The step, and reading the state back after it [ms].
     wall_ms : float
-        What all turns took on the wall [ms], by which the schedule's own figures are told.
+        What all turns took on the wall [ms]: what the schedule's own figures are shares of.
     """
 
     def __init__(self) -> None:
@@ -57,7 +60,7 @@ class Times:
 
 @contextmanager
 def _no_collection() -> Iterator[None]:
-    """Keep Python's garbage collector from striking one engine and not the other."""
+    """Keep Python's garbage collector from slowing one engine and not the other."""
     gc.collect()
     gc.disable()
     try:
@@ -70,7 +73,7 @@ TURN = 10
 """Single steps that an engine takes before the next has its turn. With one each, all would be timed while
 they fetch from memory what the others have driven out of the caches; a program runs one engine."""
 _PORTION = 12
-"""Turns between two looks at how far all is: a whole number of times through the orders of three."""
+"""Turns between two reports of progress: a whole number of times through the orders of three."""
 
 
 def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterator[list[Times]]:
@@ -79,7 +82,7 @@ def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterat
     Parameters
     ----------
     engines : sequence of Engine
-        Who takes part.
+        Those that take part.
     rounds : int
         How many steps, or blocks of steps, each takes.
     block : int
@@ -99,7 +102,7 @@ def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterat
 
 
 def _advance(engine: Engine, spent: Times, block: int) -> None:
-    """Let an engine take a step, or a block of steps, and note what it took."""
+    """Advance an engine by a step, or by a block of steps, and add what it took to the times."""
     entered, began = time.perf_counter_ns(), time.process_time_ns()
     if block:
         engine.run(block)

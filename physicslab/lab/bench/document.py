@@ -1,4 +1,4 @@
-"""What the benchmark found, as a document: numbers are finite or ``null``, times in ms, else SI units."""
+"""What the benchmark found, as a document: times in ms, else SI units."""
 
 from __future__ import annotations
 
@@ -6,34 +6,36 @@ from dataclasses import asdict
 from typing import Any
 
 from physicslab.lab.bench.clock import Spread
-from physicslab.lab.bench.machine import machine
 from physicslab.lab.bench.report import BenchReport
 from physicslab.lab.bench.result import EngineResult, SceneResult
+from physicslab.lab.bench.unused import Unused
+from physicslab.lab.document import lab_document
 
 __all__ = ["document"]
 
 
 def document(report: BenchReport) -> dict[str, Any]:
-    """Return every figure, what is asked of it, and the machine it was taken on."""
+    """Return every figure, its target, and the machine it was taken on."""
+    return lab_document(
+        "bench",
+        peers=report.peers,
+        scenes=[_scene(result) for result in report.scenes],
+        growth=[asdict(growth) for growth in report.growths],
+        unused=[_unused(spent) for spent in report.unused],
+        bytes_per_body=None if report.memory is None else asdict(report.memory),
+        targets=[{**asdict(check), "met": check.met} for check in report.checks],
+    )
+
+
+def _unused(spent: Unused) -> dict[str, Any]:
     return {
-        "format": "physicslab-bench/1",
-        "machine": machine(peers=report.peers),
-        "scenes": [_scene(result) for result in report.scenes],
-        "growth": [asdict(growth) for growth in report.growths],
-        "unused": [
-            {
-                "scene": spent.case.name,
-                "steps": spent.case.steps,
-                "needed_ms": _spread(spent.bare),
-                "all_ms": _spread(spent.whole),
-                "ratio": spent.ratio,
-                "left_out": list(spent.left_out),
-                "same_bits": spent.same_bits,
-            }
-            for spent in report.unused
-        ],
-        "bytes_per_body": None if report.memory is None else asdict(report.memory),
-        "targets": [{**asdict(check), "met": check.met} for check in report.checks],
+        "scene": spent.case.name,
+        "steps": spent.case.steps,
+        "needed_ms": _spread(spent.bare),
+        "all_ms": _spread(spent.whole),
+        "ratio": spent.ratio,
+        "left_out": list(spent.left_out),
+        "same_bits": spent.same_bits,
     }
 
 
@@ -70,4 +72,8 @@ def _engine(found: EngineResult) -> dict[str, Any]:
 
 
 def _spread(spread: Spread | None) -> dict[str, float] | None:
-    return None if spread is None else {"median": spread.median_ms, "p90": spread.p90_ms}
+    if spread is None:
+        return None
+    return {
+        "median": spread.median_ms, "p90": spread.p90_ms, "p99": spread.p99_ms, "mean": spread.mean_ms,
+    }  # fmt: skip

@@ -1,23 +1,26 @@
-"""The engines that are timed, seen alike: step, run, read the state back."""
+"""The engines that are timed, behind one interface: step, run, read the state back."""
 
 from __future__ import annotations
 
 import importlib.util
 from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import replace
 from typing import override
 
 from physicslab.components import Transform
+from physicslab.ecs.vector import Vector2
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.peers.box2d_mirror import Box2DMirror
 from physicslab.lab.peers.peer import Peer
 from physicslab.lab.peers.pymunk_mirror import PymunkMirror
 from physicslab.world import World
 
-__all__ = ["OURS", "PEERS", "Engine", "OtherEngine", "OurEngine", "missing_peers"]
+__all__ = ["OURS", "PEERS", "Engine", "OtherEngine", "OurEngine", "TurningGravity", "missing_peers"]
 
 OURS = "PhysicsLab"
 PEERS: tuple[type[Peer], ...] = (PymunkMirror, Box2DMirror)
-"""Who PhysicsLab is compared with."""
+"""The engines that PhysicsLab is compared with."""
 
 
 def missing_peers() -> list[str]:
@@ -26,7 +29,7 @@ def missing_peers() -> list[str]:
 
 
 class Engine(ABC):
-    """An engine with a world of its own in it.
+    """An engine that holds a scene of its own.
 
     Attributes
     ----------
@@ -34,6 +37,8 @@ class Engine(ABC):
         The engine's name.
     world : World
         What is simulated, as it was when :meth:`look` was called last.
+    dt : float
+        The length of a step [s].
     """
 
     title: str
@@ -41,6 +46,10 @@ class Engine(ABC):
     def __init__(self, world: World) -> None:
         self.world = world
         self.dt = world.simulation.dt
+
+    @abstractmethod
+    def set_gravity(self, gravity: Vector2) -> None:
+        """Replace uniform gravity [m/s^2]."""
 
     @abstractmethod
     def step(self) -> None:
@@ -71,6 +80,10 @@ class OurEngine(Engine):
     title = OURS
 
     @override
+    def set_gravity(self, gravity: Vector2) -> None:
+        self.world.physics = replace(self.world.physics, gravity=gravity)
+
+    @override
     def step(self) -> None:
         self.world.step()
 
@@ -89,20 +102,24 @@ class OtherEngine(Engine):
     Parameters
     ----------
     scene : BenchScene
-        What is built in it.
+        The scene that is built in it.
     peer : type of Peer
         Which engine.
 
     Raises
     ------
     CannotBuild
-        If the engine has not what the scene holds.
+        If the engine has nothing of the kind that the scene holds.
     """
 
     def __init__(self, scene: BenchScene, peer: type[Peer]) -> None:
         super().__init__(scene.build())
         self.title = peer.title
         self._peer = peer(self.world)
+
+    @override
+    def set_gravity(self, gravity: Vector2) -> None:
+        self._peer.set_gravity(gravity)
 
     @override
     def step(self) -> None:
@@ -120,3 +137,42 @@ class OtherEngine(Engine):
     def look(self) -> World:
         self._peer.bring_back()
         return self.world
+
+
+class TurningGravity(Engine):
+    """An engine whose gravity is set before every step, as part of what is timed.
+
+    Parameters
+    ----------
+    engine : Engine
+        What steps.
+    gravity_at : callable
+        Returns gravity [m/s^2] at a time [s] since the start.
+    """
+
+    def __init__(self, engine: Engine, gravity_at: Callable[[float], Vector2]) -> None:
+        super().__init__(engine.world)
+        self.title, self._engine, self._gravity_at, self._steps = engine.title, engine, gravity_at, 0
+
+    @override
+    def set_gravity(self, gravity: Vector2) -> None:
+        self._engine.set_gravity(gravity)
+
+    @override
+    def step(self) -> None:
+        self._engine.set_gravity(self._gravity_at(self._steps * self.dt))
+        self._engine.step()
+        self._steps += 1
+
+    @override
+    def run(self, steps: int) -> None:
+        for _ in range(steps):
+            self.step()
+
+    @override
+    def read(self) -> object:
+        return self._engine.read()
+
+    @override
+    def look(self) -> World:
+        return self._engine.look()

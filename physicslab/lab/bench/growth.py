@@ -11,8 +11,8 @@ from physicslab.lab.bench.result import SceneResult
 
 __all__ = ["Growth", "exponent", "growths"]
 
-_LEAST = 3
-"""Sizes that an exponent is drawn from."""
+_SIZES_NEEDED = 3
+"""Without so many, no exponent is fitted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ def exponent(sizes: Sequence[float], costs: Sequence[float]) -> float:
 
 
 def growths(results: Sequence[SceneResult]) -> list[Growth]:
-    """Return the growth of every engine in each group of which it did three sizes and more."""
+    """Return the growth of every engine in each group of which it ran three sizes or more."""
     costs: dict[tuple[str, str], dict[int, float]] = {}
     for result in results:
         for engine, found in result.engines.items():
@@ -60,5 +60,5 @@ def growths(results: Sequence[SceneResult]) -> list[Growth]:
             group, engine, tuple(sizes), tuple(sizes.values()), exponent(list(sizes), list(sizes.values()))
         )
         for (group, engine), sizes in costs.items()
-        if len(sizes) >= _LEAST
+        if len(sizes) >= _SIZES_NEEDED
     ]

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from physicslab.lab.bench.clock import Spread, Times, take_turns
-from physicslab.lab.bench.engine import Engine, OtherEngine, OurEngine
+from physicslab.lab.bench.engine import Engine, OtherEngine, OurEngine, TurningGravity
 from physicslab.lab.bench.quality import Start
 from physicslab.lab.bench.result import EngineResult, SceneResult
 from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.case import Job
 from physicslab.lab.peers.peer import CannotBuild, Peer
 from physicslab.state.masses import Diverged
 from physicslab.world import World
@@ -19,17 +20,19 @@ from physicslab.world import World
 __all__ = ["measure_scene"]
 
 _BEGIN_S = 2.0
-"""For how long [s] a pile falls."""
+"""How long [s] the beginning is: a pile falls in it."""
 _BLOCK = 200
 """Steps of one call where many are taken at once."""
 
 
-def measure_scene(scene: BenchScene, peers: Sequence[type[Peer]] = ()) -> Iterator[float | SceneResult]:
+def measure_scene(scene: BenchScene, peers: Sequence[type[Peer]] = ()) -> Job[SceneResult]:
     """Time a scene; yield the share that is done now and then, and at last the result."""
     ours = OurEngine(scene.build())
     result = SceneResult(scene, scene.steps)
     result.engines[ours.title] = EngineResult(ours.title)
     engines = [ours, *_others(scene, peers, result)]
+    if scene.gravity_at is not None:
+        engines = [TurningGravity(engine, scene.gravity_at) for engine in engines]
     starts = [Start.of(engine.world) for engine in engines]
     dt = ours.world.simulation.dt
     settling = round(scene.seconds / dt)
@@ -55,7 +58,7 @@ def measure_scene(scene: BenchScene, peers: Sequence[type[Peer]] = ()) -> Iterat
 
 
 def _others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult) -> list[Engine]:
-    """Build the scene in the peers; note which of them cannot hold it."""
+    """Build the scene in the peers; write a failure into the results of those that cannot hold it."""
     others: list[Engine] = []
     for peer in peers:
         result.engines[peer.title] = EngineResult(peer.title)
@@ -67,7 +70,7 @@ def _others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult)
 
 
 def _judge(found: EngineResult, engine: Engine, scene: BenchScene, start: Start) -> None:
-    """Note how well an engine has simulated the scene so far."""
+    """Write into an engine's result how well it has simulated the scene so far."""
     try:
         world = engine.look()
     except Diverged:
@@ -84,7 +87,7 @@ def _spent(world: World) -> dict[str, int]:
 
 
 def _shares(before: dict[str, int], after: dict[str, int], ours: Times) -> dict[str, float]:
-    """Return what systems take of a median step [ms]: noise that made some steps long takes no part."""
+    """Return what systems take of a median step [ms]: noise that made some steps long does not count."""
     median = float(np.median(ours.step))
     return {
         name: (spent - before.get(name, 0)) / 1e6 / ours.wall_ms * median for name, spent in after.items()
@@ -92,7 +95,7 @@ def _shares(before: dict[str, int], after: dict[str, int], ours: Times) -> dict[
 
 
 def _summarise(result: SceneResult, engines: Sequence[Engine], times: Sequence[Times]) -> None:
-    """Note medians, and ratios step by step."""
+    """Write medians into the result, and ratios step by step."""
     ours = times[0]
     for engine, spent in zip(engines, times, strict=True):
         found = result.engines[engine.title]

@@ -13,7 +13,7 @@ __all__ = ["Memory", "measure_memory"]
 
 _SIZES = (1_000, 4_000)
 _STEPS = 120
-"""So long that discs lie on each other: contacts take memory too."""
+"""Long enough for discs to lie on each other: contacts take memory too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Memory:
     columns : float
         The numbers of its components [bytes].
     spawned : float
-        All of it when it has been spawned: numbers, handles, and what esper knows of it [bytes].
+        All of it when it has been spawned: numbers, handles, and esper's records [bytes].
     with_contacts : float
         The same in a pile: near pairs, contacts and what the solver works with [bytes].
     """
@@ -37,7 +37,7 @@ class Memory:
 
 def measure_memory(sizes: tuple[int, int] = _SIZES, steps: int = _STEPS) -> Memory:
     """Return what a body takes: the difference of two piles, so that what every world has does not count."""
-    _held(min(sizes[0], 100), 2)  # what is made once is made now
+    _held(min(sizes[0], 100), 2)  # what is allocated only once is allocated now
     (few, small), (many, large) = ((size, _held(size, steps)) for size in sizes)
     return Memory(*((high - low) / (many - few) for low, high in zip(small, large, strict=True)))
 

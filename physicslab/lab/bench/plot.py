@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from physicslab.lab.bench.engine import OURS
 from physicslab.lab.bench.report import BenchReport
 from physicslab.lab.bench.result import EngineResult
+from physicslab.lab.plot import COLOURS, new_figure, png, prepare_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 __all__ = ["bench_picture"]
 
-# Okabe and Ito's colours, which stay apart for the colour-blind: https://jfly.uni-koeln.de/color/
-_COLOURS = {OURS: "#0072B2", "pymunk": "#D55E00", "Box2D": "#009E73"}
+_COLOURS = {OURS: COLOURS["blue"], "pymunk": COLOURS["vermilion"], "Box2D": COLOURS["green"]}
 _STYLES = {"piles": ("o", "-"), "gases": ("s", "--")}
-_FRAME = 1e3 / 60.0
-"""Of 60 Hz [ms]."""
+_FRAME_MS = 1e3 / 60.0
+"""A frame of 60 Hz."""
 
 
 def bench_picture(report: BenchReport) -> bytes:
@@ -30,25 +29,15 @@ def bench_picture(report: BenchReport) -> bytes:
     ImportError
         If matplotlib is not installed.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     bars = _bars(report)
-    figure = Figure(figsize=(13.0, max(5.0, 1.5 + 0.24 * len(bars))), layout="constrained", dpi=110)
-    FigureCanvasAgg(figure)
+    figure = new_figure(13.0, max(5.0, 1.5 + 0.24 * len(bars)))
     if bars:
         left, right = figure.subplots(1, 2)
         _ratios(right, bars)
     else:  # alone there is nothing to compare with
         left = figure.subplots()
     _growth(left, report)
-    for axes in figure.axes:
-        axes.set_axisbelow(True)
-        for spine in ("top", "right"):
-            axes.spines[spine].set_visible(False)
-    image = io.BytesIO()
-    figure.savefig(image, format="png")
-    return image.getvalue()
+    return png(figure)
 
 
 def _growth(axes: Axes, report: BenchReport) -> None:
@@ -56,20 +45,18 @@ def _growth(axes: Axes, report: BenchReport) -> None:
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
     plain = FuncFormatter(lambda value, _: f"{value:,.6g}")
+    prepare_axes(axes, logarithmic=True)
     axes.set_title("cost of a step, settled, ms of CPU time (median)", loc="left", fontsize=10)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
     axes.set_xlabel("bodies")
-    axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
     for growth in report.growths:
         marker, line = _STYLES[growth.group]
         label = f"{growth.engine}, {growth.group}: N^{growth.exponent:.2f}"
         axes.plot(growth.sizes, growth.ms, marker=marker, linestyle=line, label=label,
                   color=_COLOURS[growth.engine], linewidth=1.4, markersize=5)  # fmt: skip
     if report.growths:
-        axes.axhline(_FRAME, color="#888888", linewidth=0.8, linestyle=":")
+        axes.axhline(_FRAME_MS, color="#888888", linewidth=0.8, linestyle=":")
         axes.annotate(
-            "a frame of 60 Hz", (0.01, _FRAME), xycoords=("axes fraction", "data"), xytext=(0, 3),
+            "a frame of 60 Hz", (0.01, _FRAME_MS), xycoords=("axes fraction", "data"), xytext=(0, 3),
             textcoords="offset points", fontsize=7, color="#666666",
         )  # fmt: skip
         axes.set_xticks(sorted({size for growth in report.growths for size in growth.sizes}))
@@ -82,7 +69,7 @@ def _growth(axes: Axes, report: BenchReport) -> None:
 
 
 def _bars(report: BenchReport) -> list[tuple[str, list[EngineResult]]]:
-    """Return each scene that others ran, with what came of it in them; the last first, for y points up."""
+    """Return each scene that others ran, with their results; the last first, because y points up."""
     found = [
         (
             result.scene.name,
@@ -96,7 +83,7 @@ def _bars(report: BenchReport) -> list[tuple[str, list[EngineResult]]]:
 def _ratios(axes: Axes, bars: Sequence[tuple[str, Sequence[EngineResult]]]) -> None:
     """Draw a bar of each scene and peer, and the part that reading the state back adds."""
     axes.set_title("how many times as long as PhysicsLab others take", loc="left", fontsize=10)
-    axes.grid(True, axis="x", color="#dddddd", linewidth=0.6)
+    prepare_axes(axes, grid="x")
     axes.axvline(1.0, color="#222222", linewidth=0.8)
     axes.set_yticks(range(len(bars)), [name for name, _ in bars], fontsize=8)
     named: set[str] = set()

@@ -1,4 +1,4 @@
-"""What is looked at beside the times: an engine that is fast and wrong does not count."""
+"""Figures of quality, measured beside the times: an engine that is fast and wrong does not count."""
 
 from __future__ import annotations
 
@@ -81,20 +81,20 @@ def _energy(world: World, start: Start) -> float:
 
 
 def sideways(limit: float) -> Quality:
-    """Return how far a body is off to the side [m], at the most."""
+    """Return the largest displacement of a body sideways [m], as a quality."""
     return Quality("sideways drift", "m", limit, _sideways)
 
 
 def sink(limit: float) -> Quality:
-    """Return how far a body is below where it was put [m], at the most."""
+    """Return the largest displacement of a body downwards [m], as a quality."""
     return Quality("sink", "m", limit, _sink)
 
 
 def overlap(limit: float) -> Quality:
-    """Return how deep two bodies are in each other [m], at the most."""
+    """Return the deepest overlap of two bodies [m], as a quality."""
     return Quality("deepest overlap", "m", limit, _overlap)
 
 
 def energy_change(limit: float) -> Quality:
-    """Return by which share of that at the start the energy is another."""
+    """Return the change of the energy since the start, as a share of it, as a quality."""
     return Quality("energy change", "", limit, _energy)

@@ -26,7 +26,7 @@ class BenchReport:
     unused : list of Unused
         What a step costs more for what it does not use.
     memory : Memory, optional
-        What a body takes, where it was asked.
+        What a body takes, where that was measured.
     """
 
     peers: bool
@@ -41,5 +41,5 @@ class BenchReport:
 
     @property
     def checks(self) -> list[Check]:
-        """What is asked of these figures."""
+        """These figures beside their targets."""
         return checks(self.scenes, self.growths, self.unused)

@@ -1,4 +1,4 @@
-"""What came of a scene."""
+"""The results of a scene."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ __all__ = ["EngineResult", "SceneResult"]
 
 @dataclass(slots=True)
 class EngineResult:
-    """What came of a scene in one engine.
+    """The results of a scene in one engine.
 
     Attributes
     ----------
     title : str
         The engine's name.
     step : Spread, optional
-        A step of what is timed; ``None`` where nothing was.
+        A step of those that are timed; ``None`` where none was.
     with_read : Spread, optional
         The same, with the state read back; ``None`` for runs in one call.
     begin : Spread, optional
@@ -28,7 +28,7 @@ class EngineResult:
     ratio, ratio_with_read : float, optional
         Median of how many times longer than PhysicsLab it took for the same step; 1 for PhysicsLab.
     quality : dict of str to float or None
-        What was looked at after the first seconds; ``None`` where it is not finite.
+        What was measured before the timing; ``None`` where it is not finite.
     failure : str
         Why it was not timed.
     """
@@ -45,7 +45,7 @@ class EngineResult:
 
 @dataclass(slots=True)
 class SceneResult:
-    """What came of a scene.
+    """The results of a scene.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class SceneResult:
 
     @property
     def ours(self) -> EngineResult:
-        """What came of it in PhysicsLab."""
+        """The results in PhysicsLab."""
         return self.engines[OURS]
 
     @property
@@ -78,5 +78,5 @@ class SceneResult:
         found = self.ours.quality
         figures = [(found.get(quality.name), quality.limit) for quality in self.scene.quality]
         return not self.ours.failure and all(
-            figure is not None and figure <= most for figure, most in figures
+            figure is not None and figure <= limit for figure, limit in figures
         )

@@ -1,56 +1,39 @@
-"""What the benchmark found, as tables for people."""
+"""What the benchmark found, as tables for the terminal."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from physicslab.lab.bench.catalogue import MOST_BESIDE
+from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT
 from physicslab.lab.bench.clock import Spread
 from physicslab.lab.bench.engine import OURS
-from physicslab.lab.bench.machine import machine_text
 from physicslab.lab.bench.report import BenchReport
 from physicslab.lab.bench.result import EngineResult, SceneResult
+from physicslab.lab.document import machine_text
+from physicslab.lab.table import cell, table
 
 __all__ = ["report_text", "scene_text"]
 
-type Rows = Sequence[Sequence[str]]
-
-
-def _table(rows: Rows, words: int = 1) -> str:
-    """Return rows aligned in columns: the first, with words, to the left, the others to the right."""
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    lines = (
-        "  ".join(f"{text:<{width}}" if i < words else f"{text:>{width}}" for i, (text, width) in pairs)
-        for row in rows
-        for pairs in [list(enumerate(zip(row, widths, strict=True)))]
-    )
-    return "\n".join(line.rstrip() for line in lines)
-
 
 def _ms(spread: Spread | None, *, high: bool = False) -> str:
-    if spread is None:
-        return "-"
-    return f"{spread.p90_ms if high else spread.median_ms:#.3g}"
-
-
-def _number(figure: float | None, digits: int = 2) -> str:
-    return "-" if figure is None else f"{figure:.{digits}f}"
+    milliseconds = None if spread is None else spread.p90_ms if high else spread.median_ms
+    return cell(milliseconds, "#.3g")
 
 
 def scene_text(result: SceneResult) -> str:
-    """Return a line that says that a scene is done."""
+    """Return a line on a scene that has been timed."""
     parts = [f"{found.title} {found.failure or _ms(found.step) + ' ms'}" for found in result.engines.values()]
     return f"{result.scene.name}: " + ", ".join(parts)
 
 
 def report_text(report: BenchReport) -> str:
-    """Return every table there is something for, the machine first."""
+    """Return every table that is not empty, the machine first."""
     blocks = [("", machine_text(peers=report.peers))]
     if report.scenes:
         blocks += [
             ("ms of CPU time a step: median and p90 of the settled scene, median of the first 2 s",
              _times(report)),
-            ("quality after 10 s", _quality(report)),
+            ("quality after the seconds before the timing", _quality(report)),
             ("ms a step by system, as shares of the median", _systems(report)),
         ]  # fmt: skip
     if report.growths:
@@ -67,7 +50,7 @@ def report_text(report: BenchReport) -> str:
              f"{memory.with_contacts:.0f} with the contacts of a pile")
         )  # fmt: skip
     if report.checks:
-        blocks.append(("what must be reached", _targets(report)))
+        blocks.append(("targets", _targets(report)))
     return "\n\n".join(f"{title}\n{text}" if title else text for title, text in blocks)
 
 
@@ -76,7 +59,7 @@ def _times(report: BenchReport) -> str:
     head = ["scene", "bodies", "contacts", OURS, "p90", "first 2 s"]
     for name in peers:
         head += [name, "ratio", "read back", "ratio"]
-    return _table([head, *(_scene_row(result, peers) for result in report.scenes)])
+    return table([head, *(_scene_row(result, peers) for result in report.scenes)])
 
 
 def _scene_row(result: SceneResult, peers: Sequence[str]) -> list[str]:
@@ -86,7 +69,8 @@ def _scene_row(result: SceneResult, peers: Sequence[str]) -> list[str]:
     for name in peers:
         found = result.engines.get(name, EngineResult(name))
         row += [
-            _ms(found.step), _number(found.ratio), _ms(found.with_read), _number(found.ratio_with_read),
+            _ms(found.step), cell(found.ratio, ".2f"),
+            _ms(found.with_read), cell(found.ratio_with_read, ".2f"),
         ]  # fmt: skip
     return row
 
@@ -103,14 +87,13 @@ def _quality(report: BenchReport) -> str:
             figures = [_figure(result.engines.get(name), quality.name) for name in engines]
             limit = f"{quality.limit:g} {quality.unit}".rstrip()
             rows.append([result.scene.name, quality.name, *figures, limit])
-    return _table(rows, 2) if len(rows) > 1 else "nothing is looked at in scenes that were opened"
+    return table(rows, words=(0, 1)) if len(rows) > 1 else "none is measured in scenes that were opened"
 
 
 def _figure(found: EngineResult | None, name: str) -> str:
     if found is None or found.failure:
         return "-" if found is None else found.failure
-    figure = found.quality.get(name)
-    return "-" if figure is None else f"{figure:.2g}"
+    return cell(found.quality.get(name), ".2g")
 
 
 def _systems(report: BenchReport) -> str:
@@ -121,14 +104,14 @@ def _systems(report: BenchReport) -> str:
             continue
         rest = result.ours.step.median_ms - sum(result.systems.values())
         spent = [result.systems.get(name) for name in names]
-        rows.append([result.scene.name, *(_number(ms, 4) for ms in spent), _number(max(0.0, rest), 4)])
-    return _table(rows)
+        rows.append([result.scene.name, *(cell(ms, ".4f") for ms in spent), cell(max(0.0, rest), ".4f")])
+    return table(rows)
 
 
 def _growth_title(report: BenchReport) -> str:
     title = "growth of a step's cost: ms for so many bodies, and the p of N^p"
-    alone = any(result.scene.size > MOST_BESIDE and len(result.engines) == 1 for result in report.scenes)
-    remark = f"; beyond {MOST_BESIDE:,}, which take others minutes, PhysicsLab alone"
+    alone = any(result.scene.size > PEER_SIZE_LIMIT and len(result.engines) == 1 for result in report.scenes)
+    remark = f"; beyond {PEER_SIZE_LIMIT:,}, which take others minutes, PhysicsLab alone"
     return title + remark if report.peers and alone else title
 
 
@@ -138,30 +121,30 @@ def _growth(report: BenchReport) -> str:
     for growth in report.growths:
         costs = dict(zip(growth.sizes, growth.ms, strict=True))
         every = [f"{costs[size]:#.3g}" if size in costs else "-" for size in sizes]
-        rows.append([growth.group, growth.engine, *every, _number(growth.exponent, 3)])
-    return _table(rows, 2)
+        rows.append([growth.group, growth.engine, *every, cell(growth.exponent, ".3f")])
+    return table(rows, words=(0, 1))
 
 
 def _unused(report: BenchReport) -> str:
     rows = [["scene", "needed, ms", "all, ms", "ratio", "not run", "same bits"]]
     rows += [
         [
-            spent.case.name, _ms(spent.bare), _ms(spent.whole), _number(spent.ratio, 3),
+            spent.case.name, _ms(spent.bare), _ms(spent.whole), cell(spent.ratio, ".3f"),
             ", ".join(name.removesuffix("System") for name in spent.left_out),
             "yes" if spent.same_bits else "no",
         ]
         for spent in report.unused
     ]  # fmt: skip
-    return _table(rows)
+    return table(rows)
 
 
 def _targets(report: BenchReport) -> str:
     rows = [["scene", "figure", "found", "must be", "verdict"]]
     rows += [
         [
-            check.name, check.what, _number(check.figure),
+            check.name, check.what, cell(check.figure, ".2f"),
             f"{'>=' if check.at_least else '<='} {check.limit:g}", check.verdict,
         ]
         for check in report.checks
     ]  # fmt: skip
-    return _table(rows, 2)
+    return table(rows, words=(0, 1))

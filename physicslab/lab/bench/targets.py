@@ -1,4 +1,4 @@
-"""What the engine must reach, in numbers, and whether it does."""
+"""The targets of the engine, in numbers, and whether they are met."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from physicslab.lab.peers.pymunk_mirror import PymunkMirror
 __all__ = ["Check", "checks"]
 
 FASTER = {"pyramid_30": 4.0, "pyramid_60": 4.0, "pile_1000": 4.0, "pile_4000": 4.0, "gas_2000": 2.0}
-"""How many times longer pymunk's step must take, at the least."""
+"""Lower limit of how many times as long pymunk's step takes."""
 FASTER_WITH_READ = 6.0
 """The same of each of these scenes, with positions read back."""
 COMPILED_RUN = 2.0
-"""How many times longer a step of the ten discs may take than pymunk's, in a run of many."""
+"""Upper limit of a step of the ten discs, in a run of many, in steps of pymunk's."""
 EXPONENT = 1.1
-"""How the cost of piles and gases may grow from the smallest to the largest."""
+"""Upper limit of the p of N^p by which the cost of piles and gases grows."""
 UNUSED = 1.02
-"""How many times longer a step may take for what it does not use: none, as far as a clock can tell."""
+"""Upper limit of how many times as long a step takes with systems that it does not use: 1, but for noise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Check:
     name, what : str
         Of which scene or group, and which figure.
     figure, limit : float
-        What was found, and what must be reached.
+        What was found, and the target.
     at_least : bool
         Whether more is better.
     right : bool
@@ -61,7 +61,7 @@ class Check:
 
 
 def checks(results: Sequence[SceneResult], grown: Sequence[Growth], unused: Sequence[Unused]) -> list[Check]:
-    """Return every figure of these that something is asked of."""
+    """Return every figure of these that has a target."""
     found = [check for result in results for check in _of_scene(result)]
     for growth in grown:
         if growth.engine == "PhysicsLab" and {SIZES[0], SIZES[-1]} <= set(growth.sizes):

@@ -1,17 +1,18 @@
-"""What a step costs more for what the scene does not use."""
+"""What a step costs more for systems that the scene does not use."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from physicslab.components import Transform
-from physicslab.lab.bench.catalogue import circles, discs
+from physicslab.lab.bench.catalogue import discs, ten_discs
 from physicslab.lab.bench.clock import Spread, take_turns
 from physicslab.lab.bench.engine import OurEngine
+from physicslab.lab.case import Job
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.gravity import GravitySystem
@@ -48,7 +49,7 @@ class UnusedCase:
 
 @dataclass(frozen=True, slots=True)
 class Unused:
-    """What came of it.
+    """The results of a case.
 
     Attributes
     ----------
@@ -73,18 +74,18 @@ class Unused:
 
 
 UNUSED = (
-    UnusedCase("circles_10", circles, 3_000),
+    UnusedCase("circles_10", ten_discs, 3_000),
     UnusedCase("pile_1000", partial(discs, 1_000), 600),
 )
-"""A small scene, of which dispatch is the most, and a large one."""
+"""A small scene, most of whose step is dispatch, and a large one."""
 
 
 def _needed() -> tuple[System, ...]:
-    """Return what discs under gravity need, and nothing else."""
+    """Return the systems that discs under gravity need, and no others."""
     return GravitySystem(), IntegrateSystem(), BroadPhaseSystem(), ContactSystem(), ResolveSystem()
 
 
-def measure_unused(case: UnusedCase) -> Iterator[float | Unused]:
+def measure_unused(case: UnusedCase) -> Job[Unused]:
     """Time a case; yield the share that is done now and then, and at last the result."""
     bare, whole = (OurEngine(case.build(systems)) for systems in (_needed(), standard_systems()))
     settling = round(_SECONDS / bare.dt)

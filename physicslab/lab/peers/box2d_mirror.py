@@ -1,4 +1,4 @@
-"""Build a world's scene in Box2D (2.3, by its Python binding)."""
+"""A world's scene in Box2D (2.3, by its Python binding)."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from collections.abc import Sequence
 from typing import Any, override
 
 from physicslab.components import Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.ecs.vector import Vector2
 from physicslab.lab.peers.peer import CannotBuild, Peer
 
 __all__ = ["Box2DMirror"]
 
 VELOCITY_ITERATIONS, POSITION_ITERATIONS = 8, 3
 FAST = 20.0
-"""What starts faster [m/s] is one of Box2D's bullets, whose collisions with moving bodies are looked for."""
+"""A body that starts faster [m/s] is one of Box2D's bullets, which do not pass through moving bodies."""
 
 
 def _smaller_restitution(engine: Any) -> Any:
@@ -58,6 +59,10 @@ class Box2DMirror(Peer):
         return len(found if physics.bounds is None else {*found, physics.bounds_restitution})
 
     @override
+    def set_gravity(self, gravity: Vector2) -> None:
+        self.space.gravity = gravity.x, gravity.y
+
+    @override
     def add_body(self, entity: int) -> None:
         world = self.world
         pose = world.component(entity, Transform)
@@ -75,7 +80,7 @@ class Box2DMirror(Peer):
             self._bodies[entity] = self.space.CreateKinematicBody(**place, **motion)
             return
         turns = world.has(entity, Shape) and not world.component(entity, Mass).fixed_rotation
-        # Bodies are asked as well: the binding's world lets them sleep after a while, whatever it was told.
+        # Set for each body as well: the binding's world lets them sleep after a while in spite of doSleep.
         self._bodies[entity] = self.space.CreateDynamicBody(
             **place, **motion, fixedRotation=not turns, allowSleep=False
         )
@@ -103,7 +108,7 @@ class Box2DMirror(Peer):
 
     @override
     def add_spring(self, entity: int, spring: Spring) -> None:
-        """Add a spring as a soft joint: Box2D is told its frequency and its share of critical damping."""
+        """Add a spring as a soft joint, which Box2D takes by frequency and share of critical damping."""
         if spring.stiffness == 0.0:
             raise CannotBuild("no damper alone")
         ends = [spring.a or entity, spring.b]

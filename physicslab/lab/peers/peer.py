@@ -1,4 +1,4 @@
-"""Another engine that has a world's scene, and what is brought back of it into the world's tables."""
+"""Another engine that holds a world's scene; its state can be copied back into the world's tables."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Peer(ABC):
     title, module : str
         The engine's name, and that of its package.
     world : World
-        Where the bodies came from, and go with :meth:`bring_back`.
+        Where the bodies came from, and where :meth:`bring_back` writes their state.
 
     Raises
     ------
@@ -46,7 +46,7 @@ class Peer(ABC):
 
     def __init__(self, world: World) -> None:
         with warnings.catch_warnings():
-            # Box2D's binding has types without modules, which Python 3.12 tells of; as an error it crashes.
+            # Box2D's binding has types without modules, of which Python 3.12 warns; as an error it crashes.
             warnings.simplefilter("ignore", DeprecationWarning)
             self.engine: Any = importlib.import_module(self.module)  # here: most users have no peers
         world.synchronise()
@@ -67,6 +67,10 @@ class Peer(ABC):
     @abstractmethod
     def make_space(self) -> None:
         """Begin with the bounds of the world and nothing else."""
+
+    @abstractmethod
+    def set_gravity(self, gravity: Vector2) -> None:
+        """Replace uniform gravity [m/s^2]."""
 
     @abstractmethod
     def add_body(self, entity: int) -> None:
@@ -114,7 +118,7 @@ class Peer(ABC):
 
 
 def find_contacts(world: World) -> None:
-    """See to it that the world's contacts are those of where its bodies are now."""
+    """Find the contacts of a world again, from where its bodies are now."""
     world.synchronise()
     with world.active():
         world.contacts.stale = True

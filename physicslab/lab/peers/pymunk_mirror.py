@@ -1,4 +1,4 @@
-"""Build a world's scene in self.engine."""
+"""A world's scene in pymunk."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any, override
 import numpy as np
 
 from physicslab.components import Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.ecs.vector import Vector2
 from physicslab.lab.peers.peer import Peer
 
 __all__ = ["PymunkMirror"]
@@ -30,7 +31,7 @@ class PymunkMirror(Peer):
         self.space = self.engine.Space()
         self.space.iterations = ITERATIONS
         self.space.collision_slop = SLOP
-        self.space.gravity = self.gravity.x, self.gravity.y
+        self.set_gravity(self.gravity)
         self._bodies: dict[int, Any] = {}
         materials = self.world.batch(Material).rows
         self._one_restitution = len(np.unique(self.world.table(Material)["restitution"][materials])) < 2
@@ -54,6 +55,10 @@ class PymunkMirror(Peer):
             )
             wall.elasticity, wall.friction = physics.bounds_restitution, physics.bounds_friction
             self.space.add(wall)
+
+    @override
+    def set_gravity(self, gravity: Vector2) -> None:
+        self.space.gravity = gravity.x, gravity.y
 
     @override
     def add_body(self, entity: int) -> None:
@@ -109,7 +114,7 @@ class PymunkMirror(Peer):
 
     @override
     def run(self, dt: float, steps: int) -> None:
-        step = self.space.step  # as its user would call it, without this class between
+        step = self.space.step  # as a program would call it, without this class in between
         for _ in range(steps):
             step(dt)
 

@@ -10,8 +10,8 @@ import numpy as np
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import Drift
 from physicslab.ecs.config import PhysicsConfig
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import open_space, spawn_point
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import open_space, spawn_point
 from physicslab.prefabs import binary
 from physicslab.state.masses import Diverged
 from physicslab.world import World
@@ -23,14 +23,14 @@ def _planets(softening: float = 0.0) -> World:
     return open_space(physics=PhysicsConfig(gravity_mode="planet", softening=softening))
 
 
-def _unclear(softening: float, apart: float) -> float:
-    """Return how many bodies are nowhere, where nothing has said so; two start so far apart, at rest [m]."""
+def _unreported(softening: float, apart: float) -> float:
+    """Return how many bodies have no finite state without a report; two start so far apart, at rest [m]."""
     world = _planets(softening)
     for x in (0.0, apart):
         spawn_point(world, (x, 0.0))
     try:
         world.run(seconds=10.0)
-    except Diverged as error:  # a clear end is right: it names the time, and what may be the reason
+    except Diverged as error:  # a clear end is right: it names the time, and a likely reason
         return float("t =" not in str(error))
     transform, velocity = world.table(Transform), world.table(Velocity)
     finite = np.isfinite(transform["position"]).all(axis=1) & np.isfinite(velocity["linear"]).all(axis=1)
@@ -64,10 +64,11 @@ def _pythagorean() -> float:
 
 ATTRACTION = [
     *(
-        Case(
-            name=name, title=title, group="planets", right="a clear end that says when, or right: never NaN",
-            figure="bodies that are nowhere, and no word of it", limit=0.0,
-            measure=partial(_unclear, softening, apart),
+        StabilityCase(
+            name=name, title=title, group="planets",
+            right="a clear end that names the time, or the right motion: never NaN",
+            figure="bodies without a finite place, unreported", limit=0.0,
+            measure=partial(_unreported, softening, apart),
         )
         for name, title, softening, apart in (
             ("planets_coincident", "two bodies on one spot, softening 0", 0.0, 0.0),
@@ -75,12 +76,12 @@ ATTRACTION = [
             ("planets_head_on", "two bodies that fall into each other, softening 0", 0.0, 1.0),
         )
     ),
-    Case(
+    StabilityCase(
         name="planets_close", title="two bodies that pass at 1e-6 of their largest distance", group="planets",
         right="the adaptive method keeps the energy", figure="largest change of energy", limit=1e-6,
         measure=_close_encounter,
     ),
-    Case(
+    StabilityCase(
         name="planets_pythagorean", title="the Pythagorean problem, t = 70", group="planets",
         right="the adaptive method keeps the energy", figure="largest change of energy", limit=1e-6,
         measure=_pythagorean,

@@ -8,8 +8,8 @@ from functools import partial
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import energy_growth, floor, largest, open_space
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import energy_growth, floor, largest, open_space
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
@@ -27,7 +27,7 @@ def _static(world: World, thickness: float) -> int:
 
 
 def _towards(world: World, thickness: float) -> int:
-    """Spawn a wall that comes on at 20 m/s, whatever it meets."""
+    """Spawn a wall that comes on at 20 m/s and is not slowed by impacts."""
     shape, material = Shape.box(thickness, 1e4), Material(1.0, 0.5)
     return world.spawn(Transform((0.0, 0.0)), Velocity((-20.0, 0.0)), shape, material)
 
@@ -94,10 +94,10 @@ _TARGETS: dict[str, tuple[str, Callable[[World, float], int], float]] = {
 }
 
 
-def _against(name: str, collisions: str) -> Case:
+def _against(name: str, collisions: str) -> StabilityCase:
     what, target, thickness = _TARGETS[name]
     how = "exact collisions where auto takes them" if collisions == "auto" else "collisions within steps"
-    return Case(
+    return StabilityCase(
         name=f"bullet_{name}" if collisions == "auto" else f"bullet_{name}_step",
         title=f"disc of 0.1 m at 50, 500, 1e5 and 1e6 m/s against {what}, {how}", group="bullets",
         right="stopped or reflected: it never passes, and no energy is made",
@@ -120,7 +120,7 @@ def _spinning(restitution: float) -> float:
 BULLETS = [
     *(_against(name, collisions) for collisions in ("auto", "step") for name in _TARGETS),
     *(
-        Case(
+        StabilityCase(
             name=f"spinning_box_e{restitution:g}", group="spinning",
             title=f"box of 1 m spinning at 1e5 rad/s, dropped on a floor, e = {restitution:g}",
             right="finite, and energy never grows", figure="growth of energy, of that at the start",

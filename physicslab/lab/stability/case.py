@@ -1,35 +1,30 @@
-"""What a case of the stability lab is, and what came of one."""
+"""Cases of the stability lab, and their outcomes."""
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
-import numpy as np
+from physicslab.lab.case import Case, attempt
 
-from physicslab.state.masses import Diverged
-
-__all__ = ["Case", "Outcome", "Verdict", "run_case"]
+__all__ = ["Outcome", "StabilityCase", "Verdict", "run_case"]
 
 
 class Verdict(StrEnum):
-    """What is said of a case."""
+    """Whether a figure is within its limit."""
 
     PASSED = "passed"
     SHORT = "falls short"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Case:
-    """Something that engines come to grief on, and how far this one may be off.
+class StabilityCase(Case):
+    """A scene on which engines are known to fail, and how large a figure passes.
 
     Attributes
     ----------
-    name, title, group : str
-        For the command line, for people, and which row of the table it belongs to.
     right : str
         What the right behaviour is.
     figure, unit : str
@@ -37,14 +32,11 @@ class Case:
     limit : float
         The largest figure that passes.
     measure : callable
-        Runs the engine and returns the figure.
+        Builds a world, runs it and returns the figure.
     long : bool
-        Whether it takes so long that the tests leave it to the command.
+        Whether it takes so long that only the command runs it, and no test.
     """
 
-    name: str
-    title: str
-    group: str
     right: str
     figure: str
     limit: float
@@ -55,21 +47,21 @@ class Case:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came of a case.
+    """The result of a case.
 
     Attributes
     ----------
-    case : Case
+    case : StabilityCase
         Which.
     figure : float, optional
-        What was measured; ``None`` where the run stopped before its end, or came to no finite number.
+        What was measured; ``None`` where the run stopped before its end, or the number is not finite.
     failure : str
         Why there is no figure.
     wall_s : float
         How long it took [s].
     """
 
-    case: Case
+    case: StabilityCase
     figure: float | None
     failure: str
     wall_s: float
@@ -81,16 +73,8 @@ class Outcome:
         return Verdict.PASSED if passed else Verdict.SHORT
 
 
-def run_case(case: Case) -> Outcome:
-    """Run a case, and return what came of it, be it that it diverged."""
+def run_case(case: StabilityCase) -> Outcome:
+    """Run a case and return its outcome; that of a run that diverged is no exception."""
     start = time.perf_counter()
-    figure, failure = None, ""
-    with np.errstate(all="ignore"):  # what overflows is no longer finite, and told as that
-        try:
-            found = case.measure()
-        except Diverged as error:
-            failure = str(error)
-        else:
-            figure = found if math.isfinite(found) else None
-            failure = "" if math.isfinite(found) else "the figure is not finite"
+    figure, failure = attempt(case.measure)
     return Outcome(case, figure, failure, time.perf_counter() - start)

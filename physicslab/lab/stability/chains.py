@@ -6,8 +6,8 @@ from functools import partial
 
 from physicslab.components import Mass, Spring, Transform
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import energy_growth, largest, open_space, spawn_point
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import GRAVITY, energy_growth, largest, open_space, spawn_point
 from physicslab.prefabs import chain
 from physicslab.world import World
 
@@ -17,7 +17,6 @@ _LINKS = 50
 _STIFF = 1e6
 _SIDE = 20
 _STEPS = 600
-_G = 9.81
 
 
 def _chain(touches: bool) -> tuple[World, list[int]]:
@@ -37,7 +36,7 @@ def _chain(touches: bool) -> tuple[World, list[int]]:
 
 
 def _reach(touches: bool) -> float:
-    """Return the farthest that any mass gets from where the chain hangs, in lengths of the chain."""
+    """Return the largest distance of a mass from the hook, in lengths of the chain."""
     world, balls = _chain(touches)
     rows = [world.component(ball, Transform) for ball in balls]
     return largest(world, _STEPS, lambda: max(row.position.magnitude for row in rows) / 10.0)
@@ -45,7 +44,7 @@ def _reach(touches: bool) -> float:
 
 def _chain_growth(touches: bool) -> float:
     world, _ = _chain(touches)
-    return energy_growth(world, _STEPS, scale=100.0 * _G * 10.0)
+    return energy_growth(world, _STEPS, scale=100.0 * GRAVITY * 10.0)
 
 
 def _net_growth(steps: int) -> float:
@@ -62,21 +61,21 @@ def _net_growth(steps: int) -> float:
                     world.spawn(Spring(*ends, (0.0, 0.0), (0.0, 0.0), pitch, _STIFF, 0.0))
     for i in (0, _SIDE - 1):
         world.add(made[0][i], Spring(None, None, (0.0, 0.0), Vector2(i * pitch, pitch), pitch, _STIFF, 0.0))
-    weight = 0.1 * _SIDE * _SIDE * _G
+    weight = 0.1 * _SIDE * _SIDE * GRAVITY
     return energy_growth(world, steps, scale=weight * _SIDE * pitch)
 
 
-def _cases(touches: bool) -> list[Case]:
+def _cases(touches: bool) -> list[StabilityCase]:
     scene = "of discs that touch others" if touches else "of points"
     prefix = "chain_touching" if touches else "chain"
     title = f"chain {scene}: 50 springs of 1e6 N/m, 0.1 kg each, 100 kg at the end"
     return [
-        Case(
+        StabilityCase(
             name=f"{prefix}_bounded", title=title, group="chains",
             right="it swings and stays together: nothing is farther from the hook than the chain is long",
             figure="farthest from the hook, of its length", limit=1.05, measure=partial(_reach, touches),
         ),
-        Case(
+        StabilityCase(
             name=f"{prefix}_energy", title=title, group="chains", right="energy never grows",
             figure="growth, of what the fall can give", limit=1e-6, measure=partial(_chain_growth, touches),
         ),
@@ -86,7 +85,7 @@ def _cases(touches: bool) -> list[Case]:
 CHAINS = [
     *_cases(touches=False),
     *_cases(touches=True),
-    Case(
+    StabilityCase(
         name="net_energy", title="net of 20 x 20 masses on springs of 1e6 N/m, 2 s", group="chains",
         right="bounded: energy never grows", figure="growth, of what the fall can give", limit=1e-6,
         measure=partial(_net_growth, 120),

@@ -7,8 +7,8 @@ from functools import cache, partial
 import numpy as np
 
 from physicslab.components import Transform, Velocity
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import largest, open_space
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import largest, open_space
 from physicslab.prefabs import circle
 from physicslab.world import World
 
@@ -56,15 +56,15 @@ def _difference(count: int, steps: int) -> float:
     return float(np.abs(ends[0] - ends[1]).max())
 
 
-def _cases(count: int, steps: int) -> list[Case]:
+def _cases(count: int, steps: int) -> list[StabilityCase]:
     title = f"{count:,} discs of 0.1 m on one spot"
     return [
-        Case(
+        StabilityCase(
             name=f"crowd_{count}_speed", title=title, group="crowds",
             right="they come apart slowly: coming apart makes no energy to speak of", figure="fastest disc",
             unit="m/s", limit=2.0, measure=partial(_speed, count, steps), long=count > 1_000,
         ),
-        Case(
+        StabilityCase(
             name=f"crowd_{count}_apart", title=f"{title}, after {steps} steps", group="crowds",
             right="they are apart, to a tenth of their size", figure="deepest overlap, of a radius",
             limit=0.2, measure=partial(_overlap, count, steps), long=count > 1_000,
@@ -73,13 +73,13 @@ def _cases(count: int, steps: int) -> list[Case]:
 
 
 CROWDS = [
-    Case(
+    StabilityCase(
         name="coincident_centres", title="two discs on one spot", group="crowds",
         right="they come apart, to a tenth of their size", figure="overlap after 2 s, of a radius", limit=0.2,
         measure=partial(_overlap, 2, 120),
     ),
     *_cases(1_000, 300),
-    Case(
+    StabilityCase(
         name="crowd_1000_same", title="1,000 discs on one spot, twice", group="crowds",
         right="they go the same ways: no normal is left to chance", figure="difference of two runs", unit="m",
         limit=0.0, measure=partial(_difference, 1_000, 6),

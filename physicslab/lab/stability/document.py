@@ -1,10 +1,11 @@
-"""What the stability lab found, as a document: numbers are finite or ``null``, units are SI."""
+"""What the stability lab found, as a document."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
+from physicslab.lab.document import lab_document
 from physicslab.lab.stability.case import Outcome, Verdict
 
 __all__ = ["document"]
@@ -13,12 +14,8 @@ __all__ = ["document"]
 def document(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """Return every figure, its limit and the verdict."""
     short = [outcome.case.name for outcome in outcomes if outcome.verdict is Verdict.SHORT]
-    return {
-        "format": "physicslab-stability/1",
-        "passed": len(outcomes) - len(short),
-        "falls_short": short,
-        "cases": [_case(outcome) for outcome in outcomes],
-    }
+    cases = [_case(outcome) for outcome in outcomes]
+    return lab_document("stability", passed=len(outcomes) - len(short), falls_short=short, cases=cases)
 
 
 def _case(outcome: Outcome) -> dict[str, Any]:

@@ -6,8 +6,8 @@ import math
 from functools import partial
 
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import floor, open_space, place
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle, stack
 
 __all__ = ["FAR"]
@@ -44,7 +44,7 @@ def _slide_error(where: float) -> float:
 
 
 FAR = [
-    Case(
+    StabilityCase(
         name=f"far_{name}_{kind}", title=f"{what}, {where:g} m from the origin", group="far",
         right="contacts behave as at the origin, but for ten thousand roundings of the coordinates",
         figure="distance from where it is at the origin", unit="m", limit=_ROUNDINGS * math.ulp(where),

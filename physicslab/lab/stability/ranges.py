@@ -11,8 +11,8 @@ from functools import cache, partial
 import numpy as np
 
 from physicslab.components import Transform, Velocity
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import floor, largest, open_space, place
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import floor, largest, open_space, place
 from physicslab.prefabs import box, circle, container, pendulum, pile
 from physicslab.world import World
 
@@ -142,23 +142,23 @@ def _slowness(steps: int) -> float:
 
 
 RANGES = [
-    Case(
+    StabilityCase(
         name="masses_1e-9_1e9", title="bodies from 1e-9 to 1e9 kg on a floor and on each other, 10 s",
         group="ranges", right="finite, and nothing is lost", figure="bodies below the floor, or nowhere",
         limit=0.0, measure=_masses,
     ),
-    Case(
+    StabilityCase(
         name="sizes_1mm_1km", title="discs from 1 mm to 1 km on a floor, 5 s", group="ranges",
         right="finite, and nothing is lost", figure="bodies below the floor, or nowhere", limit=0.0,
         measure=_sizes,
     ),
-    Case(
+    StabilityCase(
         name="sizes_pairs", title="1,000 and 4,000 grains of 1 mm among bodies up to 1 km", group="ranges",
         right="the broad phase is not quadratic", figure="growth of pairs a grain", limit=1.5,
         measure=_pair_growth,
     ),
     *(
-        Case(
+        StabilityCase(
             name=f"steps_{name}_{kind}", title=f"a mixed scene, {steps:,} steps", group="endurance",
             right=right, figure=figure, unit=unit, limit=limit, measure=partial(measure, steps),
             long=steps > 100_000,
@@ -169,7 +169,7 @@ RANGES = [
             ("drift", "what rests stays where it is", "how far it is moved", "m", 1e-6, _drift),
         )
     ),
-    Case(
+    StabilityCase(
         name="steps_1e6_pace", title="a mixed scene, 1,000,000 steps", group="endurance",
         right="it becomes no slower", figure="time of the last tenth, of the second", limit=1.2,
         measure=partial(_slowness, 1_000_000), long=True,

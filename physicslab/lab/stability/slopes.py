@@ -6,15 +6,14 @@ import math
 from functools import partial
 
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import largest, open_space, place
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import GRAVITY, largest, open_space, place
 from physicslab.prefabs import box
 from physicslab.world import World
 
 __all__ = ["SLOPES"]
 
 _ANGLE = math.radians(20.0)
-_G = 9.81
 
 
 def _block(share: float) -> tuple[World, int]:
@@ -39,13 +38,13 @@ def _acceleration_error(share: float, seconds: float) -> float:
     start = place(world, block)
     world.run(seconds=seconds)
     slid = (place(world, block) - start).dot(-Vector2.from_angle(_ANGLE))
-    right = _G * math.sin(_ANGLE) * (1.0 - share)
+    right = GRAVITY * math.sin(_ANGLE) * (1.0 - share)
     return abs(2.0 * slid / seconds**2 / right - 1.0)
 
 
 SLOPES = [
     *(
-        Case(
+        StabilityCase(
             name=f"slope_holds_{share:g}", group="slopes",
             title=f"block on a slope of 20 degrees, friction {share:g} times the threshold, 60 s",
             right="it holds: it creeps less than 1 mm", figure="creep", unit="m", limit=0.001,
@@ -54,7 +53,7 @@ SLOPES = [
         for share in (1.01, 1.1)
     ),
     *(
-        Case(
+        StabilityCase(
             name=f"slope_slides_{share:g}", group="slopes",
             title=f"block on a slope of 20 degrees, friction {share:g} times the threshold, 10 s",
             right="it slides with g (sin - mu cos), within 1 %", figure="error of the acceleration",

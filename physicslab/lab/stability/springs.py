@@ -7,8 +7,8 @@ from functools import partial
 
 from physicslab.components import Drag, Spring, Velocity
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import energy_change, floor, largest, open_space, place, spawn_point
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import GRAVITY, energy_change, floor, largest, open_space, place, spawn_point
 from physicslab.prefabs import circle
 from physicslab.world import World
 
@@ -19,7 +19,6 @@ _STEPS = 1_000
 _STRETCH = 0.01
 _ASIDE = 0.01
 """Sideways [m/s]: what that adds to the stretch is less than the limit sees."""
-_G = 9.81
 _STIFFNESS = {
     **{f"{rate:g}": (rate / _DT) ** 2 for rate in (0.1, 1.0, 1.9, 10.0, 100.0)},
     "k_1e12": 1e12,
@@ -48,13 +47,13 @@ def _excursion(stiffness: float, touches: bool) -> float:
 
 
 def _rest_error(stiffness: float, touches: bool) -> float:
-    world, bob = _hung(stiffness, _G / stiffness, gravity=_G, touches=touches)
-    rest = Vector2(0.0, -1.0 - _G / stiffness)
+    world, bob = _hung(stiffness, GRAVITY / stiffness, gravity=GRAVITY, touches=touches)
+    rest = Vector2(0.0, -1.0 - GRAVITY / stiffness)
     return largest(world, _STEPS, lambda: (place(world, bob) - rest).magnitude)
 
 
 def _energy(stiffness: float, touches: bool) -> float:
-    """Return what energy changed by; nothing where the engine says that it does not follow the motion."""
+    """Return the change of energy; 0 where the engine reports that it does not follow the motion."""
     world, _ = _hung(stiffness, _STRETCH, gravity=None, touches=touches)
     changed = energy_change(world, _STEPS)
     return 0.0 if "too fast to be followed" in world.plan.reason else changed
@@ -77,7 +76,7 @@ def _past_limit(damping: float, kind: str, touches: bool) -> float:
         world.add(bob, brake)
     else:
         bob = spawn_point(world, (0.0, -1.0), (0.0, -1.0), brake)
-    falls = -math.sqrt(_G / damping) if kind == "drag_quadratic" else -_G / damping
+    falls = -math.sqrt(GRAVITY / damping) if kind == "drag_quadratic" else -GRAVITY / damping
 
     def past() -> float:
         return world.component(bob, Velocity).linear.y - falls
@@ -113,38 +112,38 @@ def _along_the_rod(touches: bool, stiffness: float) -> float:
     return largest(world, _STEPS, rate)
 
 
-def _of_spring(name: str, stiffness: float, *, touches: bool) -> list[Case]:
+def _of_spring(name: str, stiffness: float, *, touches: bool) -> list[StabilityCase]:
     scene = "in a scene with contacts" if touches else "alone"
     prefix = "spring_touching" if touches else "spring"
     group = "springs"
     what = f"k = 1e12 N/m on 1 kg, {scene}" if name == "k_1e12" else f"omega dt = {name}, {scene}"
     return [
-        Case(
+        StabilityCase(
             name=f"{prefix}_{name}_bounded", title=f"spring of {what}", group=group,
             right="an undamped oscillation goes no further than it began, for 1,000 steps",
             figure="largest excursion, of the first", limit=1.001,
             measure=partial(_excursion, stiffness, touches),
         ),
-        Case(
+        StabilityCase(
             name=f"{prefix}_{name}_rest", title=f"spring of {what}, with a weight", group=group,
             right="what hangs at rest stays at the right place",
             figure="largest distance from it", unit="m", limit=1e-9,
             measure=partial(_rest_error, stiffness, touches),
         ),
-        Case(
+        StabilityCase(
             name=f"{prefix}_{name}_energy", title=f"spring of {what}", group=group,
-            right="energy is kept where the oscillation can be resolved; where not, the engine says so",
+            right="energy is kept where the oscillation can be resolved; where not, the engine reports it",
             figure="largest change of energy that is not announced", limit=1e-6,
             measure=partial(_energy, stiffness, touches),
         ),
     ]  # fmt: skip
 
 
-def _damper(damping: float, kind: str, *, touches: bool) -> Case:
+def _damper(damping: float, kind: str, *, touches: bool) -> StabilityCase:
     unit = {"damper": "N s/m", "drag": "kg/s", "drag_quadratic": "kg/m"}[kind]
     scene = ", in a scene with contacts" if touches else ""
     prefix = f"{kind}_touching" if touches else kind
-    return Case(
+    return StabilityCase(
         name=f"{prefix}_{damping:.0e}".replace("+", "").replace("e0", "e"),
         title=f"{kind.replace('_', ', ')} of {damping:g} {unit} on a falling body of 1 kg{scene}",
         group="dampers",
@@ -154,18 +153,18 @@ def _damper(damping: float, kind: str, *, touches: bool) -> Case:
     )  # fmt: skip
 
 
-def _swings(stiffness: float, *, touches: bool) -> list[Case]:
+def _swings(stiffness: float, *, touches: bool) -> list[StabilityCase]:
     scene = "in a scene with contacts" if touches else "alone"
     prefix = f"swing{'_touching' if touches else ''}_damped_{stiffness:.0e}".replace("+", "")
     title = f"bob swinging on a spring of {stiffness:g} N/m with a damper of 1e9 N s/m, {scene}"
     return [
-        Case(
+        StabilityCase(
             name=f"{prefix}_energy", title=title, group="dampers",
             right="a damper takes nothing from what only swings across it, and never gives",
             figure="largest change of energy", limit=1e-4,
             measure=partial(_swing_change, touches, stiffness),
         ),
-        Case(
+        StabilityCase(
             name=f"{prefix}_along", title=title, group="dampers",
             right="the velocity stays across the rod: nothing rings along it",
             figure="largest velocity along the rod", unit="m/s", limit=1e-3,

@@ -7,8 +7,8 @@ from functools import partial
 
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import floor, open_space, place
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import floor, open_space, place
 from physicslab.prefabs import box, pyramid, stack
 from physicslab.world import World
 
@@ -46,8 +46,8 @@ def _sideways(fill: Callable[[World], list[int]], seconds: float) -> float:
     return max(abs(moved.x) for moved in _settled(fill, seconds))
 
 
-def _stands(name: str, title: str, fill: Callable[[World], list[int]]) -> Case:
-    return Case(
+def _stands(name: str, title: str, fill: Callable[[World], list[int]]) -> StabilityCase:
+    return StabilityCase(
         name=name, title=title, group="stacks", right="it stands: no box is off by half its width after 10 s",
         figure="farthest from its place", unit="m", limit=0.5, measure=partial(_off, fill, _SECONDS),
     )  # fmt: skip
@@ -57,14 +57,14 @@ _HEAVY_TOP = partial(_tower, boxes=10, top=100.0)
 
 STACKS = [
     _stands("stack_100kg_stands", "ten boxes of 1 kg, 100 kg on top", _HEAVY_TOP),
-    Case(
+    StabilityCase(
         name="stack_100kg_sink", title="ten boxes of 1 kg, 100 kg on top", group="stacks",
         right="no box sinks by more than 5 cm in 10 s", figure="deepest sink", unit="m", limit=0.05,
         measure=partial(_sink, _HEAVY_TOP, _SECONDS),
     ),
     _stands("stack_20_stands", "twenty boxes", partial(_tower, boxes=19, top=1.0)),
     _stands("stack_1e4kg_stands", "1e4 kg on 1 kg", partial(_tower, boxes=1, top=1e4)),
-    Case(
+    StabilityCase(
         name="pyramid_60_drift", title="pyramid of 1,830 boxes, 60 s", group="stacks",
         right="no box drifts sideways by more than 0.13 m", figure="farthest drift", unit="m", limit=0.13,
         measure=partial(_sideways, partial(pyramid, base=60), 60.0), long=True,

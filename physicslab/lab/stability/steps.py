@@ -7,14 +7,13 @@ from functools import partial
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.stability.case import Case
-from physicslab.lab.stability.worlds import floor, open_space, place, spawn_point
+from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.worlds import GRAVITY, floor, open_space, place, spawn_point
 from physicslab.prefabs import box, circle, stack
 from physicslab.world import World
 
 __all__ = ["STEPS"]
 
-_G = 9.81
 _LONG = 10.0
 _TINY = 1e-9
 _TINY_STEPS = 20_000
@@ -68,7 +67,7 @@ def _fall_error() -> float:
     for _ in range(_TINY_STEPS):
         world.step()
     t = _TINY * _TINY_STEPS
-    right = t + 0.5 * _G * t * t
+    right = t + 0.5 * GRAVITY * t * t
     return abs((1.0 - place(world, ball).y) / right - 1.0)
 
 
@@ -84,18 +83,18 @@ def _drift_at_rest() -> float:
 
 
 STEPS = [
-    Case(
+    StabilityCase(
         name="step_10s_stack", title="tower of ten boxes, one step of 10 s", group="long_steps",
         right="it stands as it would in steps of the scene's length", figure="farthest from its place",
         unit="m", limit=0.05, measure=_moved_in_one_step,
     ),
-    Case(
+    StabilityCase(
         name="step_10s_fall", title="box that falls on a floor, one step of 10 s", group="long_steps",
         right="it lies on the floor", figure="distance from there", unit="m", limit=0.01,
         measure=_fallen_through,
     ),
     *(
-        Case(
+        StabilityCase(
             name=f"step_10s_spring{'_touching' if touches else ''}", group="long_steps",
             title=f"spring of 10 rad/s, ten steps of 10 s{', in a scene with contacts' if touches else ''}",
             right="energy is kept as well as in the scene's own steps", figure="largest change of energy",
@@ -103,11 +102,11 @@ STEPS = [
         )
         for touches in (False, True)
     ),
-    Case(
+    StabilityCase(
         name="step_1ns_fall", title="falling ball, 20,000 steps of 1e-9 s", group="tiny_steps",
         right="it falls as far as it should", figure="error, of the fall", limit=1e-9, measure=_fall_error,
     ),
-    Case(
+    StabilityCase(
         name="step_1ns_stack", title="three boxes at rest, 20,000 steps of 1e-9 s", group="tiny_steps",
         right="they do not drift", figure="farthest from its place", unit="m", limit=1e-9,
         measure=_drift_at_rest,

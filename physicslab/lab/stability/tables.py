@@ -1,31 +1,32 @@
-"""What the stability lab found, as lines for people."""
+"""What the stability lab found, as lines for the terminal."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
-from physicslab.lab.stability.case import Case, Outcome, Verdict
+from physicslab.lab.stability.case import Outcome, StabilityCase, Verdict
+from physicslab.lab.table import Columns, cell
 
-__all__ = ["head_text", "row_text", "summary_text"]
-
-
-def head_text(cases: Sequence[Case]) -> str:
-    """Return the line above the rows of these cases."""
-    return _line(cases, "case", "figure", "limit", "verdict", "what is measured")
+__all__ = ["columns", "head_text", "row_text", "summary_text"]
 
 
-def row_text(outcome: Outcome, cases: Sequence[Case]) -> str:
-    """Return a case's line, aligned with those of all ``cases``."""
+def columns(cases: Collection[StabilityCase]) -> Columns:
+    """Return the columns in which the rows of these cases are aligned, before any has been run."""
+    width = max((len(case.name) for case in cases), default=4)
+    return Columns((width, 9, 10, 11, 0), words=(0, 3, 4))
+
+
+def head_text(aligned: Columns) -> str:
+    """Return the line above the rows."""
+    return aligned.line(("case", "figure", "limit", "verdict", "what is measured"))
+
+
+def row_text(outcome: Outcome, aligned: Columns) -> str:
+    """Return a case's line."""
     case = outcome.case
-    figure = "-" if outcome.figure is None else f"{outcome.figure:.3g}"
     limit = f"{case.limit:.4g} {case.unit}".rstrip()
     what = f"{case.title}: {outcome.failure or case.figure}"
-    return _line(cases, case.name, figure, limit, str(outcome.verdict), what)
-
-
-def _line(cases: Sequence[Case], name: str, figure: str, limit: str, verdict: str, what: str) -> str:
-    width = max((len(case.name) for case in cases), default=4)
-    return f"{name:<{width}}  {figure:>9}  {limit:>10}  {verdict:<11}  {what}"
+    return aligned.line((case.name, cell(outcome.figure, ".3g"), limit, outcome.verdict, what))
 
 
 def summary_text(outcomes: Sequence[Outcome]) -> str:

@@ -11,16 +11,16 @@ from physicslab.systems.system import Stage, System, at
 from physicslab.view.controls import actions
 from physicslab.view.controls.controls import KEYS, RELEASES
 from physicslab.view.controls.spawning import spawn_box
+from physicslab.view.controls.tools import TOOLS, Tool
 
 if TYPE_CHECKING:
     from physicslab.view.controls.toolbar import Toolbar
-    from physicslab.view.controls.tools import Tool
-    from physicslab.view.window import Window
+    from physicslab.view.window.window import Window
     from physicslab.world import World
 
 __all__ = ["InputSystem"]
 
-_OF_THE_MOUSE = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL)
+_MOUSE_EVENTS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL)
 """What is offered to the toolbar first."""
 
 _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
@@ -28,10 +28,10 @@ _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
 
 
 class InputSystem(System):
-    """Turns what SDL reports into actions, and leads the body that is held.
+    """Turns SDL's events into actions, and moves the body that is held.
 
-    It reacts to reports alone and never asks for the state of keys and buttons, so that posted events are as
-    good as real ones.
+    It follows events alone and never reads the state of keys and buttons, so that posted events are as good
+    as real ones.
 
     Parameters
     ----------
@@ -61,14 +61,14 @@ class InputSystem(System):
 
     @at(Stage.INPUT)
     def handle(self, world: World, elapsed: float) -> None:
-        """Do everything that was asked for since the last frame."""
+        """Do what the events since the last frame call for."""
         window = self._window
         window.now += elapsed
         for event in pygame.event.get():
             handler = self._handlers.get(event.type)
             if handler is None:
                 continue
-            if event.type in _OF_THE_MOUSE and self._toolbar.take(world, event):
+            if event.type in _MOUSE_EVENTS and self._toolbar.take(world, event):
                 window.pointer = getattr(event, "pos", window.pointer)
             else:
                 handler(world, event)
@@ -98,7 +98,7 @@ class InputSystem(System):
             self._window.help = self._window.error_study.shown = False
             return
         if event.button == pygame.BUTTON_LEFT:
-            self._tool = self._window.tool
+            self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)
         elif event.button == pygame.BUTTON_RIGHT:
             spawn_box(world, self._window)
@@ -132,7 +132,7 @@ class InputSystem(System):
         actions.zoom(self._window, notches)
 
     def _leave(self, world: World, event: pygame.Event) -> None:
-        """Hold nothing while the user is elsewhere."""
+        """Let go of everything while another window has the focus."""
         self._window.hand.drop(world)
         self._window.spring_tool.cancel()
         self._panning, self._tool = 0, None

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from physicslab.systems.system import Stage, System, at
+from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.panels.panels import text_size
 from physicslab.view.picture.painting import draw_world
 
 if TYPE_CHECKING:
-    from physicslab.view.window import Window
+    from physicslab.state.state import State
+    from physicslab.view.window.window import Window
     from physicslab.world import World
 
 __all__ = ["RenderSystem"]
@@ -28,19 +30,21 @@ class RenderSystem(System):
 
     def __init__(self, window: Window) -> None:
         self._window = window
+        self._impacts = ImpactReader()
 
-    @at(Stage.IMPACT)
-    def note_impacts(self, world: World, h: float) -> None:
-        """Remember what has just struck, for it is over long before the picture is drawn."""
-        overlays = self._window.overlays
-        if overlays.impulses:
-            overlays.impacts.note(world)
+    def attach(self, state: State) -> None:
+        """Begin with the next impact of a world that was not shown before."""
+        self._impacts.follow(state)
 
     @at(Stage.RENDER)
     def draw(self, world: World, elapsed: float) -> None:
         """Draw the world, and the overlays that are on."""
         window = self._window
         camera, theme, canvas, overlays = window.camera, window.theme, window.canvas, window.overlays
+        impacts = self._impacts.new(world)
+        window.sparks.advance(impacts, world.time, camera.scale)
+        if overlays.impulses:
+            overlays.impacts.note(world, impacts, overlays.reach)
         draw_world(world, camera, theme, canvas, grid=window.grid)
         window.sparks.draw(camera, theme, canvas)
         if overlays.arrows:

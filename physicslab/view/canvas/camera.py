@@ -1,4 +1,4 @@
-"""Where the eye is: the one place where metres become pixels."""
+"""The camera: the one place where metres become pixels."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["Camera", "Extent"]
 type Extent = tuple[float, float, float, float]
 """A part of the world: ``(xmin, ymin, xmax, ymax)`` [m]."""
 
-_SMALLEST, _LARGEST = 1e-15, 1e9
+_MIN_SCALE, _MAX_SCALE = 1e-15, 1e9
 """Scales [px/m] beyond which floating point shows in the picture."""
 
 
@@ -80,13 +80,13 @@ class Camera:
         self.size = size
 
     def pan(self, dx: float, dy: float) -> None:
-        """Move the picture by so many pixels, right and down."""
+        """Move the picture by a number of pixels, right and down."""
         self.centre = Vector2(self.centre.x - dx / self.scale, self.centre.y + dy / self.scale)
 
     def zoom(self, factor: float, at: tuple[float, float]) -> None:
         """Enlarge the picture, leaving the point under the pixel ``at`` where it is."""
         before = self.to_world(at)
-        self.scale = min(max(self.scale * factor, _SMALLEST), _LARGEST)
+        self.scale = min(max(self.scale * factor, _MIN_SCALE), _MAX_SCALE)
         after = self.to_world(at)
         self.centre = self.centre + before - after
 
@@ -96,7 +96,7 @@ class Camera:
         ``room`` is the part of the screen that it is put in the middle of [px], all of it by default.
         """
         left, top, width, height = room or (0, 0, *self.size)
-        self.scale = min(max(scale, _SMALLEST), _LARGEST)
+        self.scale = min(max(scale, _MIN_SCALE), _MAX_SCALE)
         self.centre = Vector2(
             0.5 * (extent[0] + extent[2]) + (0.5 * (self.size[0] - width) - left) / self.scale,
             0.5 * (extent[1] + extent[3]) - (0.5 * (self.size[1] - height) - top) / self.scale,
@@ -111,6 +111,6 @@ class Camera:
         _, _, across, up = room or (0, 0, *self.size)
         width, height = extent[2] - extent[0], extent[3] - extent[1]
         return min(
-            across * share / width if width > 0.0 else _LARGEST,
-            up * share / height if height > 0.0 else _LARGEST,
+            across * share / width if width > 0.0 else _MAX_SCALE,
+            up * share / height if height > 0.0 else _MAX_SCALE,
         )

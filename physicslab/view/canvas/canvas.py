@@ -1,4 +1,4 @@
-"""What can be drawn, whoever draws it; and a canvas that only takes note, for tests."""
+"""What can be drawn, on whatever surface; and a canvas that only records, for tests."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class Canvas(TextSurface, Protocol):
 
 @dataclass(slots=True)
 class RecordingCanvas:
-    """A canvas that draws nothing and keeps a list of what it was asked for.
+    """A canvas that draws nothing and keeps a list of the calls.
 
     Attributes
     ----------

@@ -13,6 +13,7 @@ from pathlib import Path
 import pygame
 
 from physicslab.ecs.config import WindowConfig
+from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
 
@@ -52,7 +53,7 @@ class Display:
             pygame.quit()
             raise OSError(f"no window can be opened: {error}") from error
         try:
-            pygame.display.set_caption(title)
+            pygame.display.set_caption(drawable(title))
             _limit(config.least_size)
             surface.fill(theme.background)
             pygame.display.flip()  # at once, so that no black rectangle greets the user
@@ -67,6 +68,7 @@ class Display:
 
     @title.setter
     def title(self, title: str) -> None:
+        title = drawable(title)
         if title != self.title:
             pygame.display.set_caption(title)
 
@@ -102,9 +104,9 @@ class Display:
 
 
 def wants_to_leave() -> bool:
-    """Whether Escape was pressed or the window closed, where nothing else is asked of the user.
+    """Whether Escape was pressed or the window closed, while there is nothing else for the user to do.
 
-    All else that the user did is kept, in its order, for who asks next: a key that is pressed while a kernel
+    All other events are kept, in their order, for the next reader: a key that is pressed while a kernel
     is waited for acts when it is there, and nothing seems held that is not.
     """
     events = pygame.event.get()  # of some types alone they would not come in their order
@@ -119,7 +121,7 @@ def wants_to_leave() -> bool:
 
 
 def _limit(size: tuple[int, int]) -> None:
-    """Let the window be made no smaller than this [px], where SDL can be asked for it.
+    """Let the window be made no smaller than this [px], where SDL allows it.
 
     pygame-ce has no other way to a window made by ``set_mode``, and warns that this one will go.
     """
@@ -129,7 +131,7 @@ def _limit(size: tuple[int, int]) -> None:
 
 
 def _icon(theme: Theme) -> pygame.Surface:
-    """Return the program's icon: a ball that strikes a box. Nothing needs to be compiled for it."""
+    """Return the program's icon: a ball that hits a box. Nothing needs to be compiled for it."""
     large = pygame.Surface((256, 256), pygame.SRCALPHA, 32)
     pygame.draw.rect(large, theme.background, large.get_rect(), border_radius=56)
     ball, box, *_ = theme.bodies

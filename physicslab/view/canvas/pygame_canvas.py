@@ -2,39 +2,23 @@
 
 from __future__ import annotations
 
-import importlib.util
-from collections import OrderedDict
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.cached_layer import CachedLayer
+from physicslab.view.canvas.cached_layer import CachedLayer, left_of
 from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle, TextSurface
 from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_strokes
-from physicslab.view.canvas.rounded import rounded
+from physicslab.view.canvas.surface_cache import SurfaceCache
 from physicslab.view.canvas.theme import Colour
 
 __all__ = ["PygameCanvas"]
 
-_KEPT_SURFACES = 512
-_KEPT_SIZES = 4096
 _RIM = 1.6
 """Width of the rims [px]."""
-
-
-def _load_font(size: int, bold: bool) -> pygame.font.Font:
-    """Return a font by its nominal size [px]: Noto Sans, which comes with pygame_gui, or pygame's own."""
-    package = importlib.util.find_spec("pygame_gui")
-    if package is not None and package.submodule_search_locations:
-        name = "NotoSans-Bold.ttf" if bold else "NotoSans-Regular.ttf"
-        path = Path(package.submodule_search_locations[0]) / "data" / name
-        if path.is_file():
-            return pygame.font.Font(path, size)
-    return pygame.font.Font(None, round(1.4 * size))
 
 
 class PygameCanvas:
@@ -55,11 +39,9 @@ class PygameCanvas:
         self.surface = surface
         red, green, blue, _ = surface.get_shifts()
         self._shifts = np.array((red, green, blue), np.uint32)
-        self._kept: OrderedDict[tuple[object, ...], pygame.Surface] = OrderedDict()
-        self._fonts: dict[tuple[int, bool], pygame.font.Font] = {}
+        self._surfaces = SurfaceCache()
+        self._layers: dict[str, CachedLayer] = {}
         self._colours: dict[Colour, int] = {}
-        self._sheets: dict[str, CachedLayer] = {}
-        self._sizes: dict[tuple[str, TextStyle], tuple[int, int]] = {}
 
     @property
     def size(self) -> tuple[int, int]:
@@ -125,68 +107,32 @@ class PygameCanvas:
         paint = self._packed(colour)
         paint_strokes(self._pixels(), _plain(start), _plain(end), _plain(width), paint)
 
-    def _keep(self, key: tuple[object, ...], make: Callable[[], pygame.Surface]) -> pygame.Surface:
-        surface = self._kept.get(key)
-        if surface is None:
-            surface = self._kept[key] = make()
-            if len(self._kept) > _KEPT_SURFACES:
-                self._kept.popitem(last=False)
-        else:
-            self._kept.move_to_end(key)
-        return surface
-
     def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
         """Draw a rectangle with rounded corners and a thin outline."""
         left, top, width, height = rect
         if width > 0 and height > 0:
-            made = self.kept_panel((width, height), colour, outline, opacity)
+            made = self._surfaces.panel((width, height), colour, outline, opacity)
             self.surface.blit(made, (left, top), special_flags=pygame.BLEND_PREMULTIPLIED)
-
-    def kept_panel(
-        self, size: tuple[int, int], colour: Colour, outline: Colour, opacity: float
-    ) -> pygame.Surface:
-        """Return the picture of a panel, its colours multiplied by its opacity."""
-        key = ("panel", *size, colour, outline, opacity)
-        return self._keep(key, lambda: rounded(size, colour, outline, opacity))
 
     def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
         """Write one line; ``at`` is its top left, top middle or top right."""
-        line = self.kept_text(words, style)
-        shift = {"left": 0, "centre": line.get_width() // 2, "right": line.get_width()}[align]
-        self.surface.blit(line, (at[0] - shift, at[1]))
-
-    def kept_text(self, words: str, style: TextStyle) -> pygame.Surface:
-        """Return the picture of one line."""
-        font = self._font(style)
-        return self._keep(("text", words, style), lambda: font.render(words, True, style.colour))
+        line = self._surfaces.text(words, style)
+        self.surface.blit(line, (left_of(line, at[0], align), at[1]))
 
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return the width and height of one line [px]."""
-        key = words, style
-        size = self._sizes.get(key)
-        if size is None:
-            if len(self._sizes) >= _KEPT_SIZES:
-                self._sizes.clear()
-            size = self._sizes[key] = self._font(style).size(words)
-        return size
+        return self._surfaces.text_size(words, style)
 
     def layer(self, name: str, rect: Rect, version: object, draw: Callable[[TextSurface], None]) -> None:
         """Draw words and panels that lie within ``rect`` [px] and stay for as long as ``version`` does."""
-        kept = self._sheets.get(name)
+        kept = self._layers.get(name)
         if kept is None:
-            kept = self._sheets[name] = CachedLayer(self)
-        kept.put(rect, version, draw)
+            kept = self._layers[name] = CachedLayer(self._surfaces)
+        kept.put_on(self.surface, rect, version, draw)
 
     def paint(self, painter: Painter) -> None:
         """Let something else draw on the picture."""
         painter(self.surface)
-
-    def _font(self, style: TextStyle) -> pygame.font.Font:
-        key = (style.size, style.bold)
-        if key not in self._fonts:
-            pygame.font.init()  # where there is no window, nobody did
-            self._fonts[key] = _load_font(*key)
-        return self._fonts[key]
 
 
 def _painter(name: str) -> Any | None:

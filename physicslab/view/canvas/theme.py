@@ -33,23 +33,23 @@ class Theme:
     background, grid, axis : Colour
         Empty space, a line each metre or so, and the lines through the origin.
     bodies : tuple of Colour
-        The rims of moving bodies, in turn; told apart by the colour-blind too (after Okabe & Ito, 2008).
+        The rims of moving bodies, in turn; also for the colour-blind (after Okabe & Ito, 2008).
     fill_share : float
         How much of the rim's colour is in a body's fill, the rest being background.
     static, kinematic, held : Colour
-        The rims of what never moves, of what moves whatever pushes it, and of what is in the hand.
+        The rims of static bodies, of kinematic ones, and of the one in the hand.
     spring, pin, bounds : Colour
-        Springs, the fixed points they hang from, the walls of the world.
+        Springs, the fixed points that hold them, the walls of the world.
     spark : Colour
-        What flies where bodies strike each other.
+        Sparks at impacts.
     panel, panel_opacity, outline : Colour, float, Colour
         What text stands on.
     text, faint, accent, heading : Colour
-        Figures; what is said beside them; a number worth seeing; titles.
+        Figures; the words beside them; a number that matters; titles.
     velocity, force, contact_normal : Colour
-        Arrows of what moves, what is pulled, and where bodies touch.
+        Arrows of velocities, of forces, and of the normals of contacts.
     normal_impulse, friction_impulse, friction_cone : Colour
-        What contacts did, and how much friction there could be.
+        Arrows of the impulses at contacts, and the cone of the friction that is possible.
     key, key_rim : Colour
         The caps of the keys in the controls hint.
     paused, slow, planet, warning, error, notice : Colour

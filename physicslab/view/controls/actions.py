@@ -1,22 +1,20 @@
-"""What the user can do, one function each, whichever key or button asks for it."""
+"""What the user can do, one function each, whichever key or button calls it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 from physicslab.ecs.config import PhysicsConfig
-from physicslab.ecs.fields import InvalidValue
-from physicslab.files.scene import SceneError, load_scene, save_scene
 from physicslab.view.canvas.theme import THEMES
-from physicslab.view.controls.scene_files import new_scene_path, newest_scene
 from physicslab.view.controls.tools import HAND, Tool
-from physicslab.view.window import Window
+from physicslab.view.panels.laws import has_gravity
+from physicslab.view.window.edits import announce_edit
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "ask_screenshot", "choose_tool", "clear", "close", "enlarge", "faster", "fit", "go_home", "leave",
-    "next_theme", "open_scene", "reduce", "reopen", "save", "slower", "step", "study_error",
+    "choose_tool", "clear", "close", "enlarge", "faster", "fit", "go_home", "leave",
+    "next_theme", "reduce", "slower", "step",
     "toggle_arrows", "toggle_figures", "toggle_gravity", "toggle_grid", "toggle_help", "toggle_impulses",
     "toggle_menu", "toggle_pause", "toggle_planets", "toggle_slow_motion", "toggle_trails",
     "zoom", "zoom_in", "zoom_out",
@@ -24,13 +22,14 @@ __all__ = [
 
 _ZOOM_STEP = 3.0
 """How many notches of the wheel a key or a button zooms by."""
+_NO_GRAVITY = "This world was made without GravitySystem: no law of gravity acts in it"
 
 
 def choose_tool(window: Window, tool: Tool) -> None:
     """Let the left mouse button do something else."""
     window.spring_tool.cancel()
-    window.tool = tool
-    window.notify(tool.tells, 5.0)
+    window.tool = tool.name
+    window.notify(tool.usage, 5.0)
 
 
 def toggle_menu(window: Window, name: str) -> None:
@@ -62,46 +61,7 @@ def faster(world: World, window: Window) -> None:
 
 def step(world: World, window: Window) -> None:
     """Pause, and make one step."""
-    window.pace.ask_step()
-
-
-def save(world: World, window: Window) -> None:
-    """Save the world to a new scene file where the program was started."""
-    try:
-        path = new_scene_path(Path.cwd(), world.name)
-        save_scene(world, path)
-    except (SceneError, OSError) as error:
-        window.notify(f"The scene could not be saved: {error}", 6.0, failed=True)
-    else:
-        window.scene_file = path
-        window.notify(f"Saved {path}")
-
-
-def reopen(world: World, window: Window) -> None:
-    """Open the scene file last saved or opened, or else the newest; where that fails, all stays as it is."""
-    try:
-        path = window.scene_file or newest_scene(Path.cwd())
-    except OSError as error:
-        window.notify(f"Not opened: {error}", 8.0, failed=True)
-        return
-    if path is None:
-        window.notify(f"There is no scene file in {Path.cwd()}: Ctrl+S saves one", failed=True)
-    else:
-        open_scene(window, path)
-
-
-def open_scene(window: Window, source: str | Path) -> None:
-    """Open a built-in scene by name, or a file; where that fails, all stays as it is."""
-    try:
-        opened = load_scene(source)
-        opened.synchronise()
-    except (SceneError, InvalidValue, OSError) as error:
-        window.notify(f"Not opened: {error}", 8.0, failed=True)
-        return
-    window.next_world = opened
-    if isinstance(source, Path):
-        window.scene_file = source
-    window.notify(f"Opened {source if isinstance(source, Path) else opened.title}")
+    window.pace.queue_step()
 
 
 def clear(world: World, window: Window) -> None:
@@ -109,6 +69,7 @@ def clear(world: World, window: Window) -> None:
     window.hand.drop(world)
     window.spring_tool.cancel()
     world.clear()
+    announce_edit(world)
     window.overlays.forget()
     window.sparks.clear()
     window.error = ""
@@ -116,20 +77,28 @@ def clear(world: World, window: Window) -> None:
 
 def toggle_gravity(world: World, window: Window) -> None:
     """Turn the uniform pull on or off; where the scene has none to turn on, it is that of the Earth."""
+    if not has_gravity(world):
+        window.notify(_NO_GRAVITY, failed=True)
+        return
     if world.physics.gravity_mode == "linear" and world.physics.gravity:
         world.physics = replace(world.physics, gravity_mode="none")
     else:
         gravity = world.physics.gravity or PhysicsConfig().gravity
         world.physics = replace(world.physics, gravity_mode="linear", gravity=gravity)
+    announce_edit(world)
 
 
 def toggle_planets(world: World, window: Window) -> None:
     """Let bodies attract each other, or go back to the gravity there was before."""
+    if not has_gravity(world):
+        window.notify(_NO_GRAVITY, failed=True)
+        return
     if world.physics.gravity_mode == "planet":
         world.physics = replace(world.physics, gravity_mode=window.gravity_before)
     else:
         window.gravity_before = world.physics.gravity_mode
         world.physics = replace(world.physics, gravity_mode="planet")
+    announce_edit(world)
 
 
 def toggle_arrows(world: World, window: Window) -> None:
@@ -193,11 +162,6 @@ def go_home(world: World, window: Window) -> None:
     window.go_home(world)
 
 
-def ask_screenshot(world: World, window: Window) -> None:
-    """Ask for a picture of the window as soon as this frame is drawn."""
-    window.wants_screenshot = True
-
-
 def toggle_grid(world: World, window: Window) -> None:
     """Show the grid, or hide it."""
     window.grid = not window.grid
@@ -208,20 +172,6 @@ def toggle_help(world: World, window: Window) -> None:
     window.help = not window.help
 
 
-def study_error(world: World, window: Window) -> None:
-    """Measure error against run time of the scene as it is now; show it when that is done."""
-    if window.error_study.running:
-        window.error_study.stop()
-        window.notify("Measuring error against run time: stopped")
-        return
-    try:
-        window.error_study.start(world)
-    except (OSError, SceneError) as error:
-        window.notify(f"Error against run time could not be measured: {error}", failed=True)
-    else:
-        window.notify("Measuring error against run time of this scene; F5 stops it", 600.0)
-
-
 def leave(world: World, window: Window) -> None:
     """Leave the help, the plot, the menu or the tool if there is one, else the window."""
     if window.help:
@@ -230,7 +180,7 @@ def leave(world: World, window: Window) -> None:
         window.error_study.shown = False
     elif window.menu:
         window.menu = ""
-    elif window.tool is not HAND:
+    elif window.tool != HAND.name:
         choose_tool(window, HAND)
     else:
         close(world, window)

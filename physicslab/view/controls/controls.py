@@ -1,4 +1,4 @@
-"""The controls in one table: what input obeys, and what the hint, the help and the toolbar show."""
+"""The controls in one table: what keys do, and what the hint, the help and the toolbar show."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from physicslab.components import Trail
-from physicslab.view.controls import actions
+from physicslab.view.controls import actions, file_actions
 from physicslab.view.controls.actions import toggle_menu
 from physicslab.view.controls.spawning import spawn_pendulum
 from physicslab.view.controls.tools import (
@@ -20,7 +20,8 @@ from physicslab.view.controls.tools import (
     end_spring,
     remove,
 )
-from physicslab.view.window import Window
+from physicslab.view.panels.laws import has_gravity
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = ["CONTROLS", "KEYS", "RELEASES", "Control"]
@@ -52,13 +53,13 @@ class Control:
     minor : bool
         Whether it is left to the help panel, so that the hint stays short.
     group, icon, tip : str
-        On the toolbar: what it stands together with, its picture, and what is said of it.
+        On the toolbar: what it stands together with, its picture, and the words of its tip.
     tool : Tool, optional
         What its button makes of the left mouse button; where there is one, the button does nothing else.
     click : callable, optional
         What its button does, where that is not what the key does.
     state : callable, optional
-        Tells whether what it turns on is on.
+        Returns whether what it turns on is on.
     menu : str
         The menu that it opens.
     """
@@ -81,7 +82,7 @@ class Control:
     def on(self, world: World, window: Window) -> bool:
         """Whether its button is marked."""
         if self.tool is not None:
-            return window.tool is self.tool
+            return window.tool == self.tool.name
         if self.menu:
             return window.menu == self.menu
         return self.state is not None and self.state(world, window)
@@ -89,11 +90,15 @@ class Control:
     def pressed(self, world: World, window: Window) -> None:
         """Do what its button does."""
         if self.tool is not None:
-            actions.choose_tool(window, HAND if window.tool is self.tool else self.tool)
+            actions.choose_tool(window, HAND if window.tool == self.tool.name else self.tool)
             return
         deed = self.click or self.action
         if deed is not None:
             deed(world, window)
+
+
+def _gravity_is(world: World, mode: str) -> bool:
+    return has_gravity(world) and world.physics.gravity_mode == mode
 
 
 CONTROLS: tuple[Control, ...] = (
@@ -120,10 +125,10 @@ CONTROLS: tuple[Control, ...] = (
     Control("]", "twice the speed", "]", actions.faster, minor=True, group="time", icon="faster",
             tip="Twice the speed"),
     Control("G", "gravity", "g", actions.toggle_gravity, group="laws", icon="gravity",
-            state=lambda world, _: world.physics.gravity_mode == "linear" and bool(world.physics.gravity),
+            state=lambda world, _: _gravity_is(world, "linear") and bool(world.physics.gravity),
             tip="Uniform gravity on or off"),
     Control("O", "planets", "o", actions.toggle_planets, group="laws", icon="planets",
-            state=lambda world, _: world.physics.gravity_mode == "planet",
+            state=lambda world, _: _gravity_is(world, "planet"),
             tip="Planet mode: all bodies attract each other"),
     Control("V", "arrows", "v", actions.toggle_arrows, group="show", icon="arrows",
             state=lambda _, window: window.overlays.arrows, tip="Velocities, forces, contact normals"),
@@ -146,15 +151,15 @@ CONTROLS: tuple[Control, ...] = (
             tip="The view at the start"),
     Control("L", "scenes", "l", lambda _, window: toggle_menu(window, "scenes"), minor=True,
             group="file", icon="scenes", menu="scenes", tip="Choose a scene"),
-    Control("Ctrl+S", "save the scene", "ctrl+s", actions.save, minor=True, group="file", icon="save",
+    Control("Ctrl+S", "save the scene", "ctrl+s", file_actions.save, minor=True, group="file", icon="save",
             tip="Save the scene to a new file"),
-    Control("Ctrl+O", "open the last scene saved", "ctrl+o", actions.reopen, minor=True, group="file",
+    Control("Ctrl+O", "open the last scene saved", "ctrl+o", file_actions.reopen, minor=True, group="file",
             icon="open", tip="Open the scene last saved"),
-    Control("F5", "error against run time", "f5", actions.study_error, minor=True, group="file",
+    Control("F5", "error against run time", "f5", file_actions.study_error, minor=True, group="file",
             icon="plot", state=lambda _, window: window.error_study.running,
             tip="Error against run time of this scene"),
-    Control("F12", "screenshot", "f12", actions.ask_screenshot, minor=True, group="file", icon="screenshot",
-            tip="Save a picture of the window"),
+    Control("F12", "screenshot", "f12", file_actions.request_screenshot, minor=True, group="file",
+            icon="screenshot", tip="Save a picture of the window"),
     Control("F2", "other colours", "f2", actions.next_theme, minor=True, group="window", icon="theme",
             tip="Colours: dark, high contrast, projector"),
     Control("F1", "all keys", "f1", actions.toggle_help, group="window", icon="keys",

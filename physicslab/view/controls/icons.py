@@ -7,9 +7,9 @@ import math
 
 import pygame
 
-from physicslab.view.canvas.theme import Colour
+from physicslab.view.canvas.theme import Colour, Theme
 
-__all__ = ["ICONS", "draw_icon"]
+__all__ = ["ICONS", "IconCache", "draw_icon"]
 
 _GRID = 24.0
 """Icons are written down on a square of this side, y pointing down."""
@@ -79,8 +79,30 @@ ICONS = {
 ``half`` (of a disc, the right one) by centre and radius."""
 
 
+class IconCache:
+    """The icons of a theme, each drawn once for every size of its button.
+
+    Parameters
+    ----------
+    theme : Theme
+        The colours.
+    """
+
+    def __init__(self, theme: Theme) -> None:
+        self._theme = theme
+        self._drawn: dict[tuple[str, int], tuple[pygame.Surface, pygame.Surface]] = {}
+
+    def pictures(self, name: str, size: tuple[int, int]) -> tuple[pygame.Surface, pygame.Surface]:
+        """Return an icon for a button of a size [px], as it is usually and where the button is on."""
+        side = min(size)
+        if (name, side) not in self._drawn:
+            usual = draw_icon(name, side, self._theme.text)
+            self._drawn[name, side] = usual, draw_icon(name, side, self._theme.accent, marked=True)
+        return self._drawn[name, side]
+
+
 def draw_icon(name: str, side: int, colour: Colour, *, marked: bool = False) -> pygame.Surface:
-    """Return an icon for a button of a given side [px]; ``marked`` adds a bar below that says it is on."""
+    """Return an icon for a button of a given side [px]; ``marked`` adds a bar below."""
     large = pygame.Surface((_SMOOTHING * side,) * 2, pygame.SRCALPHA, 32)
     scale = _SMOOTHING * side * _SHARE / _GRID
     shift = 0.5 * _SMOOTHING * side * (1.0 - _SHARE)

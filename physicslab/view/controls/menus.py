@@ -7,23 +7,23 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from physicslab.scenes import SCENES
-from physicslab.view.controls import actions
+from physicslab.view.controls import actions, file_actions
 from physicslab.view.controls.scene_files import scene_files
 from physicslab.view.controls.tools import SPAWN_TOOLS, Tool
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["MENUS", "StepPlan"]
+__all__ = ["MENUS", "Choice"]
 
 
 @dataclass(frozen=True, slots=True)
-class StepPlan:
-    """A line of a menu.
+class Choice:
+    """Something to choose: a line of a menu, or a button of a bar.
 
     Attributes
     ----------
     title : str
-        What it says.
+        Its words.
     choose : callable, optional
         What choosing it does; nothing where it is a heading.
     on : bool
@@ -35,17 +35,18 @@ class StepPlan:
     on: bool = False
 
 
-def _things(world: World, window: Window) -> list[StepPlan]:
-    def choice(tool: Tool) -> StepPlan:
-        return StepPlan(tool.title, lambda _, window: actions.choose_tool(window, tool), window.tool is tool)
+def _things(world: World, window: Window) -> list[Choice]:
+    def choice(tool: Tool) -> Choice:
+        chosen = window.tool == tool.name
+        return Choice(tool.title, lambda _, window: actions.choose_tool(window, tool), chosen)
 
-    return [StepPlan("Spawn with a click"), *map(choice, SPAWN_TOOLS)]
+    return [Choice("Spawn with a click"), *map(choice, SPAWN_TOOLS)]
 
 
-def _scenes(world: World, window: Window) -> list[StepPlan]:
-    def choice(title: str, source: str | Path) -> StepPlan:
+def _scenes(world: World, window: Window) -> list[Choice]:
+    def choice(title: str, source: str | Path) -> Choice:
         shown = (world.title or world.name) == title
-        return StepPlan(title, lambda _, window: actions.open_scene(window, source), shown)
+        return Choice(title, lambda _, window: file_actions.open_scene(window, source), shown)
 
     try:
         files = scene_files(Path.cwd())
@@ -53,9 +54,9 @@ def _scenes(world: World, window: Window) -> list[StepPlan]:
         window.notify(f"Files could not be listed: {error}", failed=True)
         files = []
     built_in = [choice(scene.title, name) for name, scene in SCENES.items()]
-    saved = [StepPlan("Files in the working directory"), *(choice(path.name, path) for path in files)]
-    return [StepPlan("Built-in scenes"), *built_in, *(saved if files else [])]
+    saved = [Choice("Files in the working directory"), *(choice(path.name, path) for path in files)]
+    return [Choice("Built-in scenes"), *built_in, *(saved if files else [])]
 
 
-MENUS: dict[str, Callable[[World, Window], list[StepPlan]]] = {"spawn": _things, "scenes": _scenes}
+MENUS: dict[str, Callable[[World, Window], list[Choice]]] = {"spawn": _things, "scenes": _scenes}
 """What each menu offers, by the name that a control opens it by."""

@@ -16,7 +16,7 @@ __all__ = ["body_at"]
 type Rows = NDArray[np.int64]
 type Numbers = NDArray[np.float64]
 
-_REACH = 7.0
+_MAX_DISTANCE = 7.0
 """How near to the middle of a body a click need only be [px]: so that what appears small can be caught."""
 
 
@@ -36,7 +36,7 @@ def body_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | N
             return int(entities[kind[hit[-1]]])
     everything = np.concatenate((rows.boxes, rows.discs, rows.points))
     distance = _distance(world, everything, place)
-    if len(distance) and np.fmin.reduce(distance) <= _REACH / camera.scale:
+    if len(distance) and np.fmin.reduce(distance) <= _MAX_DISTANCE / camera.scale:
         return int(entities[everything[int(np.nanargmin(distance))]])
     return None
 

@@ -6,14 +6,15 @@ import math
 from collections.abc import Callable, Sequence
 
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
+from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.controls.menus import StepPlan
+from physicslab.view.controls.menus import Choice
 from physicslab.view.controls.widgets import Button, Widgets
 
 __all__ = ["Popup"]
 
-_LONGEST = 46
-"""A title is cut at so many letters."""
+_MAX_TITLE = 46
+"""Letters of a title that are shown."""
 
 
 class Popup:
@@ -27,18 +28,18 @@ class Popup:
         What is called with the choice that is clicked.
     """
 
-    def __init__(self, widgets: Widgets, choose: Callable[[StepPlan], None]) -> None:
+    def __init__(self, widgets: Widgets, choose: Callable[[Choice], None]) -> None:
         self._widgets = widgets
         self._choose = choose
         self._plate = widgets.plate(menu=True)
         self._rows: list[Button] = []
-        self._shown: list[StepPlan] = []
+        self._shown: list[Choice] = []
         self._page = 0
         self._pages = 1
 
     @property
     def titles(self) -> dict[str, Rect]:
-        """What each line that is shown says, and where it is [px]."""
+        """Where each line that is shown is [px], by its words."""
         return {
             row.text: (row.rect.left, row.rect.top, row.rect.width, row.rect.height)
             for row in self._rows
@@ -53,11 +54,11 @@ class Popup:
             row.reveal(False)
 
     def turn(self, pages: int) -> None:
-        """Go on by so many pages, and from the last to the first."""
+        """Go on by a number of pages, and from the last to the first."""
         self._page = (self._page + pages) % self._pages
 
     def open(
-        self, choices: Sequence[StepPlan], anchor: Rect, room: Rect, size: int, canvas: Canvas, theme: Theme
+        self, choices: Sequence[Choice], anchor: Rect, room: Rect, size: int, canvas: Canvas, theme: Theme
     ) -> None:
         """Show choices at a button, within a part of the window.
 
@@ -93,16 +94,16 @@ class Popup:
             row.allow(shown[n].choose is not None or shown[n] is self._turning)
             row.mark(shown[n].on)
 
-    def _paged(self, choices: list[StepPlan], room: int) -> list[StepPlan]:
-        """Return what is shown of the choices where there is room for so many lines."""
-        self._turning: StepPlan | None = None
+    def _paged(self, choices: list[Choice], room: int) -> list[Choice]:
+        """Return what is shown of the choices where there is room for ``room`` lines."""
+        self._turning: Choice | None = None
         self._pages = 1
         if len(choices) <= room:
             return choices
         each = max(room - 1, 1)
         self._pages = math.ceil(len(choices) / each)
         self._page %= self._pages
-        self._turning = StepPlan(f"More ({self._page + 1} of {self._pages})")
+        self._turning = Choice(f"More ({self._page + 1} of {self._pages})")
         return [*choices[self._page * each : (self._page + 1) * each], self._turning]
 
     def _row(self, number: int) -> Button:
@@ -117,4 +118,4 @@ class Popup:
 
 
 def _cut(title: str) -> str:
-    return title if len(title) <= _LONGEST else title[: _LONGEST - 1] + "…"
+    return shortened(title, _MAX_TITLE)

@@ -24,14 +24,14 @@ def new_scene_path(directory: Path, name: str) -> Path:
 
 
 def scene_files(directory: Path) -> list[Path]:
-    """Return every file that says it is a scene, the one that was written last first.
+    """Return every file that is marked as a scene, the one that was written last first.
 
-    One that cannot be read is among them: who opens it is told why.
+    One that cannot be read is among them: opening it shows why.
     """
 
     def offered(path: Path) -> bool:
         try:
-            return _says_scene(path)
+            return _is_marked(path)
         except OSError:
             return True
 
@@ -41,7 +41,7 @@ def scene_files(directory: Path) -> list[Path]:
 def newest_scene(directory: Path) -> Path | None:
     """Return the scene file that was written last, or ``None`` if there is none.
 
-    Where no file says that it is a scene, the newest JSON file is meant: what is wrong with it can be told.
+    Where no file is marked as a scene, it is the newest JSON file: opening it shows what is wrong.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def newest_scene(directory: Path) -> Path | None:
         If a file cannot be read.
     """
     files = _by_age(directory)
-    scenes = [path for path in files if _says_scene(path)]
+    scenes = [path for path in files if _is_marked(path)]
     candidates = scenes or files
     return candidates[-1] if candidates else None
 
@@ -58,6 +58,6 @@ def _by_age(directory: Path) -> list[Path]:
     return sorted(filter(Path.is_file, directory.glob("*.json")), key=lambda path: path.stat().st_mtime_ns)
 
 
-def _says_scene(path: Path) -> bool:
+def _is_marked(path: Path) -> bool:
     with path.open("rb") as file:
         return _MARK in file.read(4096)

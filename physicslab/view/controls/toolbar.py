@@ -9,23 +9,23 @@ import pygame
 
 from physicslab.view.canvas.canvas import Rect, TextStyle
 from physicslab.view.controls.controls import CONTROLS, Control
-from physicslab.view.controls.menus import MENUS, StepPlan
+from physicslab.view.controls.menus import MENUS, Choice
 from physicslab.view.controls.popup import Popup
+from physicslab.view.controls.recovery_bar import RecoveryBar
 from physicslab.view.controls.widgets import Button, Widgets
 from physicslab.view.panels.panels import text_size
-from physicslab.view.panels.recovery_bar import RecoveryBar
 
 if TYPE_CHECKING:
-    from physicslab.view.window import Window
+    from physicslab.view.window.window import Window
     from physicslab.world import World
 
 __all__ = ["Toolbar"]
 
-_STILL = 0.2
+_RESIZE_DELAY = 0.2
 """Time [s] that the window keeps its size before its text follows."""
 _PERIOD = 0.1
-"""Time [s] between two looks at what is on."""
-_PATIENCE = 0.35
+"""Time [s] after which the marks of the buttons are brought up to date."""
+_TIP_DELAY = 0.35
 """How long [s] the cursor rests on a button before its tip is shown."""
 _MORE = Control("", "", group="window", icon="more", menu="more", tip="More")
 """The button for what there is no room for."""
@@ -48,13 +48,13 @@ class Toolbar:
         self._text_size = text_size(window.canvas)
         self._sized = (window.canvas.size, window.now)
         self._widgets = Widgets(window.canvas.size, window.theme, self._text_size)
-        self._asked: list[Control | StepPlan] = []
+        self._clicked: list[Control | Choice] = []
         self._plate = self._widgets.plate()
         self._buttons: dict[Control, Button] = {
             control: self._button(control) for control in (*CONTROLS, _MORE) if control.icon
         }
-        self._popup = Popup(self._widgets, self._asked_for)
-        self._bar = RecoveryBar(self._widgets, window, self._asked_for)
+        self._popup = Popup(self._widgets, self._choose)
+        self._bar = RecoveryBar(self._widgets, window, self._choose)
         self._laid_out: tuple[object, ...] = ()
         self._hidden: list[Control] = []
         self._look_at = 0.0
@@ -64,10 +64,10 @@ class Toolbar:
         self.lay_out()
 
     def _button(self, control: Control) -> Button:
-        return self._widgets.button(lambda: self._asked.append(control), icon=control.icon)
+        return self._widgets.button(lambda: self._clicked.append(control), icon=control.icon)
 
-    def _asked_for(self, choice: StepPlan) -> None:
-        self._asked.append(choice)
+    def _choose(self, choice: Choice) -> None:
+        self._clicked.append(choice)
 
     @property
     def height(self) -> int:
@@ -76,15 +76,15 @@ class Toolbar:
 
     @property
     def offers(self) -> dict[str, Rect]:
-        """Where the buttons of the recovery bar are, by what they say [px]."""
+        """Where the buttons of the recovery bar are, by their words [px]."""
         return self._bar.places
 
     def _settle(self) -> None:
-        """Let text grow or shrink with the window once its border is let go: that draws everything anew."""
+        """Let text grow or shrink with the window once its border is let go: that redraws everything."""
         window = self._window
         if window.canvas.size != self._sized[0]:
             self._sized = (window.canvas.size, window.now)
-        if window.now - self._sized[1] >= _STILL or window.now == 0.0:
+        if window.now - self._sized[1] >= _RESIZE_DELAY or window.now == 0.0:
             self._text_size = text_size(window.canvas)
 
     @property
@@ -98,7 +98,7 @@ class Toolbar:
 
     @property
     def lines(self) -> dict[str, Rect]:
-        """Where each line of the open menu is, by what it says [px]."""
+        """Where each line of the open menu is, by its words [px]."""
         return self._popup.titles
 
     @property
@@ -163,26 +163,26 @@ class Toolbar:
             window.menu = ""  # a click beside a menu closes it, and does nothing else
             self._follow_menu(world)
             return True
-        self._obey(world)
+        self._do_clicked(world)
         if taken:
             self._look_at = 0.0
         return taken
 
-    def _obey(self, world: World) -> None:
+    def _do_clicked(self, world: World) -> None:
         """Do what was clicked."""
-        window, asked, self._asked = self._window, self._asked, []
-        for wish in asked:
-            if isinstance(wish, StepPlan):
+        window, clicked, self._clicked = self._window, self._clicked, []
+        for item in clicked:
+            if isinstance(item, Choice):
                 window.menu = ""
-                if wish.choose is not None:
-                    wish.choose(world, window)
-            elif wish.menu:
-                window.menu = "" if window.menu == wish.menu else wish.menu
+                if item.choose is not None:
+                    item.choose(world, window)
+            elif item.menu:
+                window.menu = "" if window.menu == item.menu else item.menu
             else:
                 window.menu = ""
-                wish.pressed(world, window)
+                item.pressed(world, window)
             self._look_at = 0.0
-        if asked:
+        if clicked:
             self._follow_menu(world)
 
     def follow(self, world: World, elapsed: float) -> None:
@@ -225,7 +225,7 @@ class Toolbar:
 
     def _draw_tip(self) -> None:
         window, (button, since) = self._window, self._resting
-        if button is None or not button.visible or window.now - since < _PATIENCE:
+        if button is None or not button.visible or window.now - since < _TIP_DELAY:
             return
         control = next((c for c, b in self._buttons.items() if b is button), None)
         if control is None or window.menu:
@@ -243,5 +243,5 @@ class Toolbar:
         canvas.text(control.label, (left + 3 * pad + room[0], top + pad // 2 + drop), cap)
 
 
-def _choice(control: Control, world: World, window: Window) -> StepPlan:
-    return StepPlan(f"{control.tip}  ({control.label})", control.pressed, control.on(world, window))
+def _choice(control: Control, world: World, window: Window) -> Choice:
+    return Choice(f"{control.tip}  ({control.label})", control.pressed, control.on(world, window))

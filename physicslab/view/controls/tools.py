@@ -1,19 +1,19 @@
-"""What the left mouse button does in the world: one tool at a time."""
+"""What the left mouse button does in the world: one tool at a time, named in the window."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawn
+from physicslab.view.window.edits import announce_edit
+from physicslab.view.window.window import Window
+from physicslab.world import World
 
-if TYPE_CHECKING:
-    from physicslab.view.window import Window
-    from physicslab.world import World
-
-__all__ = ["HAND", "PAN", "REMOVE", "SPAWN_TOOLS", "SPRING", "Tool", "begin_spring", "end_spring", "remove"]
+__all__ = [
+    "HAND", "PAN", "REMOVE", "SPAWN_TOOLS", "SPRING", "TOOLS", "Tool", "begin_spring", "end_spring", "remove",
+]  # fmt: skip
 
 type Deed = Callable[[World, Window], None]
 
@@ -26,7 +26,7 @@ class Tool:
     ----------
     name, title : str
         Its icon, and what it is called.
-    tells : str
+    usage : str
         How it is used.
     press, release : callable
         What happens.
@@ -36,7 +36,7 @@ class Tool:
 
     name: str
     title: str
-    tells: str
+    usage: str
     press: Deed
     release: Deed
     pans: bool = False
@@ -60,6 +60,7 @@ def remove(world: World, window: Window) -> None:
     if window.hand.entity == entity:
         window.hand.drop(world)
     world.remove(entity)
+    announce_edit(world)
 
 
 def begin_spring(world: World, window: Window) -> None:
@@ -67,7 +68,7 @@ def begin_spring(world: World, window: Window) -> None:
     entity = body_at(world, window.camera, window.pointer)
     if entity is not None:
         window.spring_tool.begin(world, entity, window.place)
-    elif window.tool is SPRING:
+    elif window.tool == SPRING.name:
         window.notify("A spring begins on a body: press on one, and drag to where it shall end")
     else:
         window.notify(
@@ -81,6 +82,8 @@ def end_spring(world: World, window: Window) -> None:
     refused = window.spring_tool.end(world, target, window.place)
     if refused:
         window.notify(refused)
+    else:
+        announce_edit(world)
 
 
 def spawning(spawn: Spawn) -> Tool:
@@ -93,14 +96,16 @@ def spawning(spawn: Spawn) -> Tool:
         elif not window.hand.take(world, entity, window.place, window.now):
             window.notify(f"{world.label(entity)} is static: it stays where it is")
 
-    tells = f"{spawn.title}: click {spawn.place}. Bodies can still be dragged."
-    return Tool(spawn.name, spawn.title, tells, press, let_go)
+    usage = f"{spawn.title}: click {spawn.place}. Bodies can still be dragged."
+    return Tool(spawn.name, spawn.title, usage, press, let_go)
 
 
 HAND = spawning(CIRCLE)
-"""The tool at the start."""
+"""The tool at the start: that of a new window."""
 SPAWN_TOOLS = (HAND, *(spawning(spawn) for spawn in SPAWNS[1:]))
 """A tool for each thing there is to spawn."""
 SPRING = Tool("spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring)
 REMOVE = Tool("remove", "Remove", "Remove: click a body; its springs go with it.", remove, _nothing)
 PAN = Tool("pan", "Move the view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True)
+TOOLS = {tool.name: tool for tool in (*SPAWN_TOOLS, SPRING, REMOVE, PAN)}
+"""Every tool, by the name that ``Window.tool`` holds."""

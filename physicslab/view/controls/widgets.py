@@ -1,4 +1,4 @@
-"""Buttons that are clicked: the one module that knows pygame_gui."""
+"""Buttons that are clicked: the one module that imports pygame_gui."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ import pygame_gui
 from pygame_gui.core import ObjectID
 
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.canvas.theme import Colour, Theme
-from physicslab.view.controls.icons import draw_icon
+from physicslab.view.canvas.drawable_text import drawable
+from physicslab.view.canvas.theme import Theme
+from physicslab.view.controls.icons import IconCache
+from physicslab.view.controls.widget_style import style_of
 
 __all__ = ["Button", "Plate", "Widgets"]
 
@@ -23,7 +25,7 @@ _BAR, _MENU = 1, 10
 
 
 class _Manager(pygame_gui.UIManager):
-    """A manager that goes by the reports of the mouse and not by its state: posted events are as good."""
+    """A manager that follows the events of the mouse and not its state: posted events are as good."""
 
     def _update_mouse_position(self) -> None:
         return
@@ -32,7 +34,7 @@ class _Manager(pygame_gui.UIManager):
 class Button(pygame_gui.elements.UIButton):
     """A button with an icon or a line of text, which may be marked as on.
 
-    It is made once; from then on it is put elsewhere, labelled anew, shown and hidden.
+    It is made once; from then on it is put elsewhere, labelled again, shown and hidden.
     """
 
     widgets: Widgets
@@ -54,7 +56,7 @@ class Button(pygame_gui.elements.UIButton):
         """Draw the icon, in place of an image that a theme names."""
         if not self.icon:
             return False
-        plain, marked = self.widgets.icons(self.icon, self.rect.size)
+        plain, marked = self.widgets.icons.pictures(self.icon, self.rect.size)
         self.normal_images = self.hovered_images = self.disabled_images = [plain]
         self.selected_images = [marked]
         for state in ("normal", "hovered", "disabled", "selected"):
@@ -72,29 +74,30 @@ class Button(pygame_gui.elements.UIButton):
         if tuple(self.rect) != rect:
             grown = tuple(self.rect.size) != rect[2:]
             self.set_relative_position(rect[:2])
-            self.widgets.stir()
-            if grown:  # what is only moved looks as before, and drawing it anew takes a millisecond
+            self.widgets.unsettle()
+            if grown:  # what is only moved looks as before, and drawing it again takes a millisecond
                 self.set_dimensions(rect[2:])
                 self.remake()
         self.reveal(True)
 
     def remake(self) -> None:
-        """Draw it anew at once; by itself it would wait until its size is the same for a while."""
+        """Draw it again at once; by itself it would wait until its size is the same for a while."""
         self._set_any_images_from_theme()
         self.rebuild()
         self._set_inactive()
-        self.widgets.stir()
+        self.widgets.unsettle()
 
     def reveal(self, shown: bool) -> None:
         """Show it, or hide it."""
         if bool(self.visible) != shown:
-            self.widgets.stir()
+            self.widgets.unsettle()
             self.show() if shown else self.hide()
 
     def say(self, words: str) -> None:
         """Write other words on it."""
+        words = drawable(words)
         if words != self.text:
-            self.widgets.stir()
+            self.widgets.unsettle()
             self.set_text(words)
 
     def draw_on(self, icon: str) -> None:
@@ -106,13 +109,13 @@ class Button(pygame_gui.elements.UIButton):
     def mark(self, on: bool) -> None:
         """Mark it as on, or not; with an icon that is a bar below, not a colour alone."""
         if on != self.is_selected:
-            self.widgets.stir()
+            self.widgets.unsettle()
             self.select() if on else self.unselect()
 
     def allow(self, usable: bool) -> None:
         """Let it be pressed, or only be read, as a heading."""
         if usable != self.is_enabled:
-            self.widgets.stir()
+            self.widgets.unsettle()
             self.enable() if usable else self.disable()
 
 
@@ -129,12 +132,12 @@ class Plate(pygame_gui.elements.UIPanel):
             self.rebuild()
         if not self.visible:
             self.show()
-        self.widgets.stir()
+        self.widgets.unsettle()
 
     def vanish(self) -> None:
         """Hide it."""
         if self.visible:
-            self.widgets.stir()
+            self.widgets.unsettle()
             self.hide()
 
 
@@ -154,8 +157,8 @@ class Widgets:
     def __init__(self, size: tuple[int, int], theme: Theme, text_size: int) -> None:
         pygame.font.init()
         self._look = (theme, text_size)
-        self._icons: dict[tuple[str, tuple[int, int]], tuple[pygame.Surface, pygame.Surface]] = {}
-        self._manager = _Manager(size, _style(theme, text_size), enable_live_theme_updates=False)
+        self.icons = IconCache(theme)
+        self._manager = _Manager(size, style_of(theme, text_size), enable_live_theme_updates=False)
         self._styles: dict[int, Any] = {}  # by the height of the text
         self._plates: list[Plate] = []
         self._buttons: list[Button] = []
@@ -186,17 +189,7 @@ class Widgets:
         self._plates.append(plate)
         return plate
 
-    def icons(self, name: str, size: tuple[int, int]) -> tuple[pygame.Surface, pygame.Surface]:
-        """Return an icon as it is usually and as it is where its button is on."""
-        if (name, size) not in self._icons:
-            theme = self._look[0]
-            side = min(size)
-            self._icons[name, size] = (
-                draw_icon(name, side, theme.text), draw_icon(name, side, theme.accent, marked=True),
-            )  # fmt: skip
-        return self._icons[name, size]
-
-    def stir(self) -> None:
+    def unsettle(self) -> None:
         """Note that something changed."""
         self._unsettled = _SETTLING
 
@@ -204,7 +197,7 @@ class Widgets:
         """Follow the size of the window [px]."""
         if size != self._manager.window_resolution:
             self._manager.set_window_resolution(size)
-            self.stir()
+            self.unsettle()
 
     def restyle(self, theme: Theme, text_size: int) -> None:
         """Take on other colours, and another height of text [px]."""
@@ -213,18 +206,18 @@ class Widgets:
         recoloured = theme != self._look[0]
         self._look = (theme, text_size)
         if recoloured:
-            self._icons.clear()
+            self.icons = IconCache(theme)
             self._styles.clear()
         if text_size not in self._styles:
-            self._styles[text_size] = self._manager.create_new_theme(_style(theme, text_size))
+            self._styles[text_size] = self._manager.create_new_theme(style_of(theme, text_size))
         style = self._styles[text_size]
         if recoloured:
             self._manager.set_ui_theme(style, update_all_sprites=True)
             for button in self._buttons:
                 button.remake()
             return
-        # Where the text alone grows, only what has words changes, and most of that is hidden: to ask every
-        # widget to look for changes takes as long as a frame.
+        # Where the text alone grows, only what has words changes, and most of that is hidden: to let
+        # every widget look for changes takes as long as a frame.
         self._manager.ui_theme = style
         for widget in (*self._plates, *self._buttons):
             widget.ui_theme = style
@@ -254,7 +247,7 @@ class Widgets:
             if event.button not in self._held:
                 return False
             self._held.discard(event.button)
-        self.stir()
+        self.unsettle()
         self._manager.process_events(event)
         return True
 
@@ -265,7 +258,7 @@ class Widgets:
             here, there = self.covers(place), self.covers(self._manager.mouse_position)
             self._manager.mouse_position = place
             if here or there:
-                self.stir()
+                self.unsettle()
         if self._unsettled:
             self._unsettled -= 1
             self._manager.update(elapsed)
@@ -273,37 +266,3 @@ class Widgets:
     def draw(self, surface: pygame.Surface) -> None:
         """Draw them all."""
         self._manager.draw_ui(surface)
-
-
-def _style(theme: Theme, text_size: int) -> dict[str, Any]:
-    """Return a theme as pygame_gui writes it."""
-
-    def button(ground: Colour, words: Colour) -> dict[str, str]:
-        paints = {
-            "normal": (ground, words), "hovered": (theme.key, theme.heading),
-            "active": (theme.key_rim, theme.heading), "selected": (theme.key, theme.accent),
-            "disabled": (ground, theme.faint),
-        }  # fmt: skip
-        return {
-            f"{state}_{part}": _written(colour)
-            for state, (under, over) in paints.items()
-            for part, colour in (
-                ("bg", under), ("text", over), ("border", over if state == "selected" else under)
-            )
-        }  # fmt: skip
-
-    font = {"name": "noto_sans", "size": str(text_size), "style": "regular"}
-    shape = {"shape": "rounded_rectangle", "shape_corner_radius": "5", "shadow_width": "0"}
-    panel = {"dark_bg": _written(theme.panel), "normal_border": _written(theme.outline)}
-    left = {"text_horiz_alignment": "left", "text_horiz_alignment_padding": str(text_size // 2)}
-    flat, framed = {**shape, "border_width": "1"}, {**shape, "shape_corner_radius": "8", "border_width": "1"}
-    return {
-        "@tool": {"colours": button(theme.panel, theme.text), "font": font, "misc": flat},
-        "@row": {"colours": button(theme.panel, theme.text), "font": font, "misc": {**flat, **left}},
-        "@bar": {"colours": panel, "misc": {"shadow_width": "0", "border_width": "0"}},
-        "@menu": {"colours": {**panel, "normal_border": _written(theme.key_rim)}, "misc": framed},
-    }
-
-
-def _written(colour: Colour) -> str:
-    return "rgb({}, {}, {})".format(*colour)

@@ -1,4 +1,4 @@
-"""Arrows: each kind has its own colour, head and shaft, so that no two are told apart by colour alone."""
+"""Arrows: each kind has its own colour, head and shaft, so that no two differ by colour alone."""
 
 from __future__ import annotations
 
@@ -12,16 +12,25 @@ from physicslab.view.canvas.canvas import Canvas, Numbers, Points
 from physicslab.view.canvas.theme import Colour, Theme
 
 __all__ = [
-    "CONTACT_NORMAL", "FORCE", "FRICTION_IMPULSE", "NORMAL_IMPULSE", "SHORTEST", "VELOCITY",
-    "ArrowKind", "Head", "dashes", "draw_arrows", "longest",
+    "CONTACT_NORMAL",
+    "FORCE",
+    "FRICTION_IMPULSE",
+    "MIN_LENGTH",
+    "NORMAL_IMPULSE",
+    "VELOCITY",
+    "ArrowKind",
+    "Head",
+    "dashes",
+    "draw_arrows",
+    "max_length",
 ]  # fmt: skip
 
-SHORTEST = 3.0
+MIN_LENGTH = 3.0
 """Arrows shorter than this are left out [px]."""
-_LONGEST = 0.3
+_MAX_LENGTH = 0.3
 """Arrows are cut at this share of the smaller side of the picture."""
 _HEAD = 10.0
-"""Length of a head [px]; half of a short arrow at the most."""
+"""Length of a head [px]; at most half of the arrow."""
 _DASH, _GAP = 5.0, 4.0
 """The strokes of a broken shaft, and the spaces between them [px]."""
 _CROWD = 256
@@ -89,9 +98,9 @@ NORMAL_IMPULSE = ArrowKind("Normal impulse", "normal_impulse", Head.DIAMOND)
 FRICTION_IMPULSE = ArrowKind("Friction impulse", "friction_impulse", Head.OPEN, dashed=True)
 
 
-def longest(canvas: Canvas) -> float:
+def max_length(canvas: Canvas) -> float:
     """Return the length at which arrows are cut [px]."""
-    return _LONGEST * min(canvas.size)
+    return _MAX_LENGTH * min(canvas.size)
 
 
 def draw_arrows(
@@ -107,13 +116,13 @@ def draw_arrows(
     """Draw arrows of one kind from ``start``, each ``span`` long.
 
     Shafts are one call of :meth:`Canvas.lines`, heads a second one; arrows that are cut have two strokes
-    across the middle. What is shorter than ``SHORTEST``, not finite, or out of the picture is left out.
+    across the middle. What is shorter than ``MIN_LENGTH``, not finite, or out of the picture is left out.
     Each arrow may have an opacity of its own.
     """
-    limit = longest(canvas)
+    limit = max_length(canvas)
     with np.errstate(invalid="ignore", over="ignore"):
         length = np.hypot(span[:, 0], span[:, 1])
-        seen = (length >= SHORTEST) & np.isfinite(length)
+        seen = (length >= MIN_LENGTH) & np.isfinite(length)
         for place, side in zip(start.T, canvas.size, strict=True):
             seen &= (place > -limit) & (place < side + limit)
     if not seen.any():

@@ -7,78 +7,93 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform
+from physicslab.components import Material, Transform
 from physicslab.world import World
 
-__all__ = ["TOUCH", "ContactSamples", "impacts_of", "resting_of", "sliding"]
+__all__ = ["SAMPLE", "ContactSamples", "resting_of", "samples_of", "sliding"]
 
 type ContactSamples = NDArray[Any]
-"""An array of TOUCH (n,)."""
+"""An array of SAMPLE (n,)."""
 
-TOUCH = np.dtype(
+SAMPLE = np.dtype(
     [
         ("a", np.int64),  # entities; 0 is the world's bounds
         ("b", np.int64),
-        ("point", np.int64),  # which of the pair's points
+        ("point", np.int64),  # which of the pair's points; for an impact, a negative number of its own
         ("place", np.float64, 2),  # [m]
         ("direction", np.float64, 2),  # unit normal, into the body that the impulses are shown on
         ("friction", np.float64),  # coefficient
         ("normal", np.float64),  # impulses [N s]; the tangent is the direction turned counter-clockwise
         ("tangent", np.float64),
-        ("speed", np.float64),  # approach before the impulse [m/s]
-        ("time", np.float64),  # when the step began [s]
+        ("speed", np.float64),  # of approach before the impulse [m/s]; 0 at rest
+        ("time", np.float64),  # of the impact, or now [s]
     ]
 )
-"""What one point of a contact has felt."""
-
-
-def _touches(world: World, chosen: NDArray[np.int64], normal: str, tangent: str) -> ContactSamples:
-    """Return the points of these numbers, with the impulses of two columns."""
-    pair, manifolds, points = chosen // 2, world.contacts.manifolds, world.contacts.points
-    touches: ContactSamples = np.zeros(len(chosen), TOUCH)
-    # A column at a time: what else there is of a contact is several times as much.
-    touches["a"], touches["b"], touches["point"] = (
-        manifolds["entity_a"][pair], manifolds["entity_b"][pair], chosen % 2,
-    )  # fmt: skip
-    row_a, row_b = manifolds["a"][pair], manifolds["b"][pair]
-    place, centre = touches["place"], world.table(Transform)["position"]
-    for axis, arm in enumerate(("arm_bx", "arm_by")):
-        place[:, axis] = centre[row_b, axis] + points[arm][chosen]
-    # Shown on B, or on A where nothing can push B: seen from there, normal and tangent turn round.
-    inverse_mass = world.bodies.inverse_mass
-    on_a = (inverse_mass[row_b] == 0.0) & (inverse_mass[row_a] > 0.0)
-    for axis, name in enumerate(("normal_x", "normal_y")):
-        component = manifolds[name][pair]
-        touches["direction"][:, axis] = np.where(on_a, -component, component)
-    touches["friction"], touches["speed"] = manifolds["friction"][pair], points["approach_speed"][chosen]
-    touches["normal"], touches["tangent"] = points[normal][chosen], points[tangent][chosen]
-    touches["time"] = world.time
-    return touches
+"""The impulses at one point of a contact."""
 
 
 def resting_of(world: World) -> ContactSamples:
     """Return where bodies touch, with the impulses of the last substep that held them apart."""
     contacts = world.contacts
     contacts.sync()
-    pairs = np.flatnonzero(contacts.manifolds["count"][: contacts.recorded] > 0)
+    manifolds, points = contacts.manifolds, contacts.points
+    pairs = np.flatnonzero(manifolds["count"][: contacts.recorded] > 0)
     both = np.stack((2 * pairs, 2 * pairs + 1), axis=1)
-    in_use = np.arange(2) < contacts.manifolds["count"][pairs][:, None]
-    chosen = both[in_use]
-    return _touches(world, chosen, "normal_impulse", "tangent_impulse")
-
-
-def impacts_of(world: World) -> ContactSamples:
-    """Return the impacts of the step so far."""
-    contacts = world.contacts
-    pairs = np.flatnonzero(contacts.manifolds["struck"][: contacts.recorded] > 0)
-    both = np.stack((2 * pairs, 2 * pairs + 1), axis=1).reshape(-1)
-    return _touches(
-        world, both[contacts.points["impact_normal"][both] > 0.0], "impact_normal", "impact_tangent"
+    chosen = both[np.arange(2) < manifolds["count"][pairs][:, None]]
+    pair = chosen // 2
+    samples: ContactSamples = np.zeros(len(chosen), SAMPLE)
+    # A column at a time: what else there is of a contact is several times as much.
+    samples["a"], samples["b"] = manifolds["entity_a"][pair], manifolds["entity_b"][pair]
+    samples["point"] = chosen % 2
+    row_a, row_b = manifolds["a"][pair], manifolds["b"][pair]
+    centre = world.table(Transform)["position"]
+    for axis, arm in enumerate(("arm_bx", "arm_by")):
+        samples["place"][:, axis] = centre[row_b, axis] + points[arm][chosen]
+    for axis, name in enumerate(("normal_x", "normal_y")):
+        samples["direction"][:, axis] = manifolds[name][pair]
+    samples["friction"] = manifolds["friction"][pair]
+    samples["normal"], samples["tangent"] = (
+        points["normal_impulse"][chosen],
+        points["tangent_impulse"][chosen],
     )
+    samples["time"] = world.time
+    _show_on_what_moves(world, samples, row_a, row_b)
+    return samples
 
 
-def sliding(touches: ContactSamples) -> NDArray[np.bool_]:
+def samples_of(world: World, impacts: NDArray[Any]) -> ContactSamples:
+    """Return impacts, an array of IMPACT, of bodies that still exist."""
+    row_a = world.entity_index.rows_of(impacts["entity_a"])
+    row_b = world.entity_index.rows_of(impacts["entity_b"])
+    exists = (row_a >= 0) & (row_b >= 0)
+    impacts, row_a, row_b = impacts[exists], row_a[exists], row_b[exists]
+    samples: ContactSamples = np.zeros(len(impacts), SAMPLE)
+    samples["a"], samples["b"] = impacts["entity_a"], impacts["entity_b"]
+    samples["place"] = np.stack((impacts["x"], impacts["y"]), axis=1)
+    samples["direction"] = np.stack((impacts["normal_x"], impacts["normal_y"]), axis=1)
+    friction = world.table(Material)["friction"]
+    of_a = np.where(impacts["wall"] >= 0, world.physics.bounds_friction, friction[row_a])
+    samples["friction"] = np.sqrt(of_a * friction[row_b])
+    samples["normal"], samples["tangent"] = impacts["normal_impulse"], impacts["tangent_impulse"]
+    samples["speed"], samples["time"] = impacts["approach_speed"], impacts["time"]
+    _show_on_what_moves(world, samples, row_a, row_b)
+    return samples
+
+
+def _show_on_what_moves(
+    world: World, samples: ContactSamples, row_a: NDArray[np.int64], row_b: NDArray[np.int64]
+) -> None:
+    """Turn normals from A to B into those of the body that impulses are shown on: B, or A if B is immovable.
+
+    The impulses remain: seen from the other side, normal and tangent turn round, and so do the impulses.
+    """
+    inverse_mass = world.bodies.inverse_mass
+    on_a = (inverse_mass[row_b] == 0.0) & (inverse_mass[row_a] > 0.0)
+    samples["direction"][on_a] *= -1.0
+
+
+def sliding(samples: ContactSamples) -> NDArray[np.bool_]:
     """Whether friction is at its limit mu times the normal impulse (Coulomb), so that the contact slips."""
-    limit = touches["friction"] * touches["normal"]
-    slips: NDArray[np.bool_] = (limit > 0.0) & (np.abs(touches["tangent"]) >= limit * (1.0 - 1e-9))
+    limit = samples["friction"] * samples["normal"]
+    slips: NDArray[np.bool_] = (limit > 0.0) & (np.abs(samples["tangent"]) >= limit * (1.0 - 1e-9))
     return slips

@@ -1,72 +1,106 @@
-"""The impacts of the last second: over in one step, but shown for long enough to be seen."""
+"""Impacts: read from the world's log once a frame, and kept for long enough to be seen."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.overlay.contact_samples import TOUCH, ContactSamples, impacts_of
+from physicslab.state.state import State
+from physicslab.view.overlay.contact_samples import SAMPLE, ContactSamples, samples_of
 from physicslab.world import World
 
-__all__ = ["SHOWN", "Impacts"]
+__all__ = ["SHOWN", "ImpactReader", "RecentImpacts"]
 
 SHOWN = 1.0
-"""How long an impact is kept [s]; it is the world's time, which stands still while paused."""
-_MOST = 256
-"""How many are kept."""
+"""How long an impact is shown [s]; it is the world's time, which stands still while paused."""
+_MAX_KEPT = 256
+"""The weakest impacts beyond that number are left out."""
+_SAME_PLACE = 0.15
+"""Impacts of a pair nearer than that look like one; in lengths of the longest arrow."""
 
 
-class Impacts:
-    """Remembers impacts; of those at one contact point, the one that stands out most.
+class ImpactReader:
+    """Reads each impact of a world once.
 
-    Attributes
-    ----------
-    kept : array of TOUCH (n,)
-        The impacts, strongest first when they were last noted.
+    The log of a world (``Contacts.log``) holds the last impacts, and ``Contacts.logged`` says how many there
+    were: what has a higher number than at the last call is new, however many steps were made meanwhile.
     """
 
     def __init__(self) -> None:
+        self._state: State | None = None
+        self._read = 0
+
+    def follow(self, state: State) -> None:
+        """Begin with the next impact of ``state``, unless it is the world that is read already."""
+        if state is not self._state:
+            self._state, self._read = state, state.contacts.logged
+
+    def new(self, state: State) -> NDArray[Any]:
+        """Return the impacts since the last call, oldest first: an array of IMPACT (n,).
+
+        Of more than the log holds, the oldest are missing.
+        """
+        self.follow(state)
+        contacts = state.contacts
+        first = max(min(self._read, contacts.logged), contacts.logged - len(contacts.log))
+        self._read = contacts.logged
+        new: NDArray[Any] = contacts.log[np.arange(first, contacts.logged) % len(contacts.log)]
+        return new
+
+
+class RecentImpacts:
+    """Keeps the impacts of the last second; of those of one pair at one place, the one that stands out most.
+
+    Attributes
+    ----------
+    kept : array of SAMPLE (n,)
+        The impacts, those that stood out most when they were noted first.
+    same_place : float
+        Two impacts of a pair, or an impact and a resting contact, are shown as one if nearer than that [m].
+    """
+
+    def __init__(self) -> None:
+        self.same_place = 0.0
+        self._count = 0
         self.clear()
 
     def clear(self) -> None:
         """Forget them all."""
-        self.kept: ContactSamples = np.zeros(0, TOUCH)
+        self.kept: ContactSamples = np.zeros(0, SAMPLE)
 
-    def note(self, world: World) -> None:
-        """Take in the impacts of this substep; call it where they happen, for normals turn afterwards."""
-        new = impacts_of(world)
-        if not len(new):
+    def note(self, world: World, impacts: NDArray[Any], reach: float) -> None:
+        """Take in new impacts of a world, an array of IMPACT; the longest arrow is ``reach`` [m] long."""
+        self.same_place = _SAME_PLACE * reach
+        if not len(impacts):
             return
-        new = new[np.argsort(-new["normal"], kind="stable")[:_MOST]]
-        old = self.recent(world.time)
-        same_pair = _same(new, old, "a") & _same(new, old, "b")
-        # What this step has told already stays as it was told first.
-        reported = (
-            same_pair & _same(new, old, "time") & _same(new, old, "normal") & _same(new, old, "tangent")
-        )
-        fresh = ~reported.any(axis=1)
-        new, same_point = new[fresh], (same_pair & _same(new, old, "point"))[fresh]
-        before, now = old["normal"] * self.freshness(old, world.time), new["normal"]
-        weaker = before < now[:, None]
-        every = np.concatenate((
-            old[~(same_point & weaker).any(axis=0)], new[~(same_point & ~weaker).any(axis=1)]
-        ))  # fmt: skip
+        strongest = np.argsort(-impacts["normal_impulse"], kind="stable")[:_MAX_KEPT]
+        new = samples_of(world, impacts[strongest])
+        new["point"] = -1 - self._count - np.arange(len(new))  # a key that no other contact or impact has
+        self._count += len(new)
+        every = np.concatenate((self.recent(world.time), new))
         strength = every["normal"] * self.freshness(every, world.time)
-        self.kept = every[np.argsort(-strength, kind="stable")[:_MOST]]
+        every = every[np.argsort(-strength, kind="stable")]
+        stands_behind = np.tril(same_place(every, every, self.same_place), -1).any(axis=1)
+        self.kept = every[~stands_behind][:_MAX_KEPT]
 
     def recent(self, time: float) -> ContactSamples:
         """Return those that are still to be seen at a time [s]."""
-        age = time - self.kept["time"]
-        return self.kept[(age >= 0.0) & (age < SHOWN)]
+        return self.kept[time - self.kept["time"] < SHOWN]
 
     @staticmethod
-    def freshness(touches: ContactSamples, time: float) -> NDArray[np.float64]:
+    def freshness(impacts: ContactSamples, time: float) -> NDArray[np.float64]:
         """Return how far each has faded at a time [s]: 1 is new, 0 is gone."""
-        fresh: NDArray[np.float64] = np.clip(1.0 - (time - touches["time"]) / SHOWN, 0.0, 1.0)
+        fresh: NDArray[np.float64] = np.clip(1.0 - (time - impacts["time"]) / SHOWN, 0.0, 1.0)
         return fresh
 
 
-def _same(new: ContactSamples, old: ContactSamples, column: str) -> NDArray[np.bool_]:
-    """Return whether a column is the same, an array (new, old)."""
-    same: NDArray[np.bool_] = new[column][:, None] == old[column]
+def same_place(one: ContactSamples, other: ContactSamples, distance: float) -> NDArray[np.bool_]:
+    """Return whether samples are of the same pair and nearer than ``distance`` [m], an array (one, other)."""
+    same: NDArray[np.bool_] = one["a"][:, None] == other["a"]
+    same &= one["b"][:, None] == other["b"]
+    first, second = np.nonzero(same)
+    apart = one["place"][first] - other["place"][second]
+    same[first, second] = np.hypot(apart[:, 0], apart[:, 1]) < distance
     return same

@@ -1,4 +1,4 @@
-"""The educational overlay: what every contact did to the bodies, as the resolver has it."""
+"""The educational overlay: the impulses of every contact, as the solver found them."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from numpy.typing import NDArray
 
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points, Rect
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.overlay.arrows import FRICTION_IMPULSE, NORMAL_IMPULSE, dashes, draw_arrows, longest
+from physicslab.view.overlay.arrows import FRICTION_IMPULSE, NORMAL_IMPULSE, dashes, draw_arrows, max_length
 from physicslab.view.overlay.contact_samples import ContactSamples, resting_of, sliding
-from physicslab.view.overlay.impacts import Impacts
+from physicslab.view.overlay.gauge import Gauge
+from physicslab.view.overlay.impacts import RecentImpacts, same_place
 from physicslab.view.overlay.labels import Key, Label
 from physicslab.view.overlay.overlays import Overlays
-from physicslab.view.panels.gauge import Gauge
-from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
 
-__all__ = ["IMPACT_WIDTH", "LABELLED", "REST_WIDTH", "draw_impulses", "said_of"]
+__all__ = ["IMPACT_WIDTH", "LABELLED", "REST_WIDTH", "draw_impulses", "words_of"]
 
 LABELLED = 12
 """How many contacts have their numbers written beside them: the strongest."""
 IMPACT_WIDTH, REST_WIDTH = 3.0, 1.6
 """How thick arrows are drawn [px]: an impact's, and those of resting contact."""
-_LOYALTY = 1.5
-"""So much stronger must another contact be to take the place of one whose numbers are shown."""
+_KEEP_RATIO = 1.5
+"""A contact must be that many times as strong as one whose numbers are shown to take its place."""
 
 _ROUNDING = 1e-9
 """Friction of so small a share of the normal impulse is rounding, and written as 0."""
@@ -39,20 +39,20 @@ def draw_impulses(
     """Draw the impulses of the impacts of the last second, and of what rests, with cones and numbers."""
     impacts = overlays.impacts.recent(world.time)
     impacts = impacts[np.argsort(impacts["time"], kind="stable")]  # the newest on top
-    resting = _without(resting_of(world), impacts)
+    resting = _without(resting_of(world), impacts, overlays.impacts.same_place)
     resting = resting[resting["normal"] > 0.0]
-    fresh = Impacts.freshness(impacts, world.time)
+    fresh = RecentImpacts.freshness(impacts, world.time)
     overlays.impact.follow(impacts["normal"], overlays.reach, world.time)
     overlays.rest.follow(resting["normal"], overlays.reach, world.time)
-    _draw_touches(resting, overlays.rest, REST_WIDTH, 0.9, camera, theme, canvas)
-    _draw_touches(impacts, overlays.impact, IMPACT_WIDTH, fresh, camera, theme, canvas)
-    worth_saying = [
+    _draw_impulses_of(resting, overlays.rest, REST_WIDTH, 0.9, camera, theme, canvas)
+    _draw_impulses_of(impacts, overlays.impact, IMPACT_WIDTH, fresh, camera, theme, canvas)
+    candidates = [
         *_strongest(impacts, fresh, overlays.impact, True, camera),
         *_strongest(resting, np.ones(len(resting)), overlays.rest, False, camera),
     ]
-    worth_saying.sort(key=lambda one: -one.weight * (_LOYALTY if overlays.labels.known(one.key) else 1.0))
-    chosen = [one for one in worth_saying if not _under(one.at, overlays.covered)][:LABELLED]
-    labels = [Label(one.key, one.at, said_of(one.touch, one.impact_count, one.slips)) for one in chosen]
+    candidates.sort(key=lambda one: -one.weight * (_KEEP_RATIO if overlays.labels.known(one.key) else 1.0))
+    chosen = [one for one in candidates if not _under(one.at, overlays.covered)][:LABELLED]
+    labels = [Label(one.key, one.at, words_of(one.sample, one.is_impact, one.slips)) for one in chosen]
     overlays.labels.draw(labels, overlays.covered, text_size, canvas, theme)
 
 
@@ -61,15 +61,17 @@ def _under(at: tuple[float, float], covered: Sequence[Rect]) -> bool:
     return any(x <= at[0] < x + width and y <= at[1] < y + height for x, y, width, height in covered)
 
 
-def _without(touches: ContactSamples, others: ContactSamples) -> ContactSamples:
-    """Return the touches at other points than ``others``."""
-    place = ["a", "b", "point"]
-    kept: ContactSamples = touches[~np.isin(touches[place], others[place])] if len(others) else touches
-    return kept
+def _without(resting: ContactSamples, impacts: ContactSamples, distance: float) -> ContactSamples:
+    """Return the resting contacts but those nearer than ``distance`` [m] to an impact of the same pair."""
+    if not len(impacts):
+        return resting
+    candidates = np.flatnonzero(np.isin(resting[["a", "b"]], impacts[["a", "b"]]))
+    hidden = same_place(resting[candidates], impacts, distance).any(axis=1)
+    return np.delete(resting, candidates[hidden])
 
 
-def _draw_touches(
-    touches: ContactSamples,
+def _draw_impulses_of(
+    samples: ContactSamples,
     gauge: Gauge,
     width: float,
     opacity: float | Numbers,
@@ -78,16 +80,16 @@ def _draw_touches(
     canvas: Canvas,
 ) -> None:
     """Draw cones, then friction, then normal impulses, all from the points of contact."""
-    if not len(touches) or not gauge.per_metre:
+    if not len(samples) or not gauge.per_metre:
         return
-    start = camera.project(touches["place"])
-    normal = touches["direction"] * (1.0, -1.0)  # the screen's y points down
+    start = camera.project(samples["place"])
+    normal = samples["direction"] * (1.0, -1.0)  # the screen's y points down
     tangent = np.stack((normal[:, 1], -normal[:, 0]), axis=1)  # counter-clockwise, as seen
     scale = camera.scale / gauge.per_metre
-    _draw_cones(start, normal, tangent, touches, scale, opacity, theme, canvas)
-    friction_impulse = tangent * (touches["tangent"] * scale)[:, None]
+    _draw_cones(start, normal, tangent, samples, scale, opacity, theme, canvas)
+    friction_impulse = tangent * (samples["tangent"] * scale)[:, None]
     draw_arrows(start, friction_impulse, FRICTION_IMPULSE, canvas, theme, opacity=opacity, width=width)
-    push = normal * (touches["normal"] * scale)[:, None]
+    push = normal * (samples["normal"] * scale)[:, None]
     draw_arrows(start, push, NORMAL_IMPULSE, canvas, theme, opacity=opacity, width=width)
 
 
@@ -95,74 +97,72 @@ def _draw_cones(
     start: Points,
     normal: Points,
     tangent: Points,
-    touches: ContactSamples,
+    samples: ContactSamples,
     scale: float,
     opacity: float | Numbers,
     theme: Theme,
     canvas: Canvas,
 ) -> None:
     """Draw both sides of friction cones, as high as the normal impulse; broken where the contact slips."""
-    height = np.minimum(touches["normal"] * scale, longest(canvas))
-    shown = (touches["friction"] > 0.0) & (height >= 8.0)
-    slips = sliding(touches)
-    share = np.full(len(touches), 0.75) * opacity
+    height = np.minimum(samples["normal"] * scale, max_length(canvas))
+    shown = (samples["friction"] > 0.0) & (height >= 8.0)
+    slips = sliding(samples)
+    share = np.full(len(samples), 0.75) * opacity
     for chosen, broken in ((shown & ~slips, False), (shown & slips, True)):
         if not chosen.any():
             continue
         reach = height[chosen, None]
-        aside = touches["friction"][chosen, None] * tangent[chosen]
+        aside = samples["friction"][chosen, None] * tangent[chosen]
         froms = np.concatenate((start[chosen], start[chosen]))
         sides = normal[chosen] + aside, normal[chosen] - aside
         tos = froms + np.concatenate([side * reach for side in sides])
         shares = np.tile(share[chosen], 2)
         if broken:
-            froms, tos, whose = dashes(froms, tos)
-            shares = shares[whose]
+            froms, tos, line = dashes(froms, tos)
+            shares = shares[line]
         canvas.lines(froms, tos, theme.friction_cone, 1.2, shares)
 
 
 @dataclass(frozen=True, slots=True)
 class _Candidate:
-    """A touch whose numbers may be written: how much it stands out, where it is [px], what it is."""
+    """A contact whose numbers may be written: how much it stands out, where it is [px], what it is."""
 
     weight: float
     key: Key
     at: tuple[float, float]
-    touch: np.void
-    impact_count: bool
+    sample: np.void
+    is_impact: bool
     slips: bool
 
 
 def _strongest(
-    touches: ContactSamples, fresh: NDArray[np.float64], gauge: Gauge, impact_count: bool, camera: Camera
+    samples: ContactSamples, fresh: NDArray[np.float64], gauge: Gauge, is_impact: bool, camera: Camera
 ) -> list[_Candidate]:
-    """Return the touches in the picture that stand out most."""
-    if not len(touches):
+    """Return the samples in the picture that stand out most."""
+    if not len(samples):
         return []
     with np.errstate(invalid="ignore"):
-        at = camera.project(touches["place"])
+        at = camera.project(samples["place"])
         inside = (at >= 0.0) & (at < np.array(camera.size))
-    weight = np.where(inside[:, 0] & inside[:, 1], touches["normal"] * fresh / (gauge.per_metre or 1.0), 0.0)
+    weight = np.where(inside[:, 0] & inside[:, 1], samples["normal"] * fresh / (gauge.per_metre or 1.0), 0.0)
     chosen = np.argsort(-weight, kind="stable")[: 2 * LABELLED]
     chosen = chosen[weight[chosen] > 0.0]
-    touches, slips = touches[chosen], sliding(touches[chosen]).tolist()
-    keys = zip(touches["a"].tolist(), touches["b"].tolist(), touches["point"].tolist(), strict=True)
+    samples, slips = samples[chosen], sliding(samples[chosen]).tolist()
+    keys = zip(samples["a"].tolist(), samples["b"].tolist(), samples["point"].tolist(), strict=True)
     places = ((x, y) for x, y in at[chosen].tolist())
-    every = zip(weight[chosen].tolist(), keys, places, touches, slips, strict=True)
-    return [
-        _Candidate(much, key, place, touch, impact_count, slip) for much, key, place, touch, slip in every
-    ]
+    every = zip(weight[chosen].tolist(), keys, places, samples, slips, strict=True)
+    return [_Candidate(much, key, place, touch, is_impact, slip) for much, key, place, touch, slip in every]
 
 
-def said_of(touch: np.void, impact_count: bool, slips: bool) -> list[str]:
-    """Return the numbers of a touch in SI units, a line each."""
-    lines = [f"impact at {quantity(float(touch['speed']), 'm/s')}"] if impact_count else []
-    lines.append(f"normal {quantity(float(touch['normal']), 'N s')}")
-    if touch["friction"] > 0.0:
-        friction_impulse = abs(float(touch["tangent"]))
-        friction_impulse = friction_impulse if friction_impulse > _ROUNDING * touch["normal"] else 0.0
+def words_of(sample: np.void, is_impact: bool, slips: bool) -> list[str]:
+    """Return the numbers of a contact in SI units, a line each."""
+    lines = [f"impact at {quantity(float(sample['speed']), 'm/s')}"] if is_impact else []
+    lines.append(f"normal {quantity(float(sample['normal']), 'N s')}")
+    if sample["friction"] > 0.0:
+        friction_impulse = abs(float(sample["tangent"]))
+        friction_impulse = friction_impulse if friction_impulse > _ROUNDING * sample["normal"] else 0.0
         lines.append(f"friction {quantity(friction_impulse, 'N s')}")
-        lines.append(f"{'slips' if slips else 'sticks'}, μ = {float(touch['friction']):.3g}")
+        lines.append(f"{'slips' if slips else 'sticks'}, μ = {float(sample['friction']):.3g}")
     else:
         lines.append("μ = 0")
     return lines

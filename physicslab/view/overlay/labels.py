@@ -1,4 +1,4 @@
-"""Numbers beside points of the picture: none over another, none jumping about."""
+"""Numbers beside points of the picture: none over another, none that jumps about."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _cost(slot: Slot) -> float:
 _SLOTS: list[Slot] = sorted(
     ((side, column, row) for column in range(2) for row in range(-3, 4) for side in (1, -1)), key=_cost
 )
-"""Where a label may be: right or left of its place, so many widths away, and so many heights up or down."""
+"""Where a label may be: right (1) or left (-1) of its place, and widths aside, heights down."""
 _BETTER = 2.0
 """By how much a free slot must be nearer for a label to move there."""
 _POINT = 7
@@ -50,7 +50,7 @@ class Label:
     at : tuple of two floats
         The place [px].
     lines : sequence of str
-        What is said of it.
+        Its words.
     """
 
     key: Key

@@ -1,4 +1,4 @@
-"""Which overlays are on, and what they remember from frame to frame."""
+"""Which overlays are shown, and what is kept for them from frame to frame."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ import numpy as np
 from physicslab.components import Shape, Velocity
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.overlay.impacts import Impacts
+from physicslab.view.overlay.gauge import Gauge
+from physicslab.view.overlay.impacts import RecentImpacts
 from physicslab.view.overlay.labels import Labels
-from physicslab.view.panels.gauge import Gauge
 from physicslab.world import World
 
 __all__ = ["Overlays"]
 
 _REACH = 0.13
-"""How long the strongest arrow is, as a share of the smaller side of the picture."""
-_SIZES = 2.0
-"""How long it is at the most in a crowd, in sizes of a body: no arrow is lost among the others."""
-_LEAST = 16.0
-"""How long it is at the least [px]."""
+"""Length of the longest arrow, as a share of the smaller side of the picture."""
+_MAX_IN_CROWD = 2.0
+"""Its greatest length among several bodies, in sizes of a body: no arrow is lost among the others."""
+_MIN_LENGTH = 16.0
+"""Its length is at least that [px]."""
 
 
 class Overlays:
@@ -33,8 +33,8 @@ class Overlays:
         The wanted length of the strongest arrow [m], chosen when an overlay is turned on.
     velocity, force, impact, rest : Gauge
         The scales: of velocities, forces, impulses of impacts, and impulses that hold bodies apart.
-    impacts : Impacts
-        What has struck lately.
+    impacts : RecentImpacts
+        The impacts of the last second.
     labels : Labels
         Where the numbers stand.
     covered : list of Rect
@@ -46,7 +46,7 @@ class Overlays:
         self.reach = 1.0
         self.velocity, self.force = Gauge("m/s"), Gauge("N")
         self.impact, self.rest = Gauge("N s"), Gauge("N s")
-        self.impacts = Impacts()
+        self.impacts = RecentImpacts()
         self.labels = Labels()
         self.covered: list[Rect] = []
 
@@ -66,7 +66,7 @@ class Overlays:
         self.forget()
 
     def forget(self) -> None:
-        """Forget what is no more."""
+        """Forget impacts and the places of labels: they belong to what was shown before."""
         self.impacts.clear()
         self.labels.clear()
 
@@ -78,4 +78,6 @@ class Overlays:
             size = np.maximum(
                 2.0 * shape["radius"][rows], np.maximum(shape["width"][rows], shape["height"][rows])
             )
-            self.reach = min(self.reach, max(_SIZES * float(np.median(size)), _LEAST / camera.scale))
+            self.reach = min(
+                self.reach, max(_MAX_IN_CROWD * float(np.median(size)), _MIN_LENGTH / camera.scale)
+            )

@@ -8,7 +8,7 @@ from physicslab.components import Transform, Velocity
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.overlay.arrows import CONTACT_NORMAL, FORCE, SHORTEST, VELOCITY, draw_arrows
+from physicslab.view.overlay.arrows import CONTACT_NORMAL, FORCE, MIN_LENGTH, VELOCITY, draw_arrows
 from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.view.overlay.overlays import Overlays
 from physicslab.world import World
@@ -20,9 +20,9 @@ NORMAL_LENGTH = 26.0
 
 
 def draw_vectors(world: World, overlays: Overlays, camera: Camera, theme: Theme, canvas: Canvas) -> None:
-    """Draw the velocity of all that moves, the forces of the last substep, and the normals of contacts.
+    """Draw the velocity of each body that moves, the forces of the last substep, and the normals of contacts.
 
-    Forces are those added up by force systems (gravity, springs); what contacts do are impulses.
+    Forces are the sums of the force systems (gravity, springs, drag); contacts act by impulses.
     """
     world.add_up_forces()
     rows = world.batch(Transform, Velocity).rows
@@ -31,7 +31,7 @@ def draw_vectors(world: World, overlays: Overlays, camera: Camera, theme: Theme,
     pulled = rows[world.bodies.inverse_mass[rows] > 0.0]
     force = world.bodies.force[pulled]
     overlays.force.follow(np.hypot(force[:, 0], force[:, 1]), overlays.reach, world.time)
-    # What forces bring about in one step is rest, not motion, where contacts take it away again.
+    # A speed that one step of the forces brings about is no motion where contacts take it away again.
     pull = np.hypot(force[:, 0], force[:, 1]) * world.bodies.inverse_mass[pulled] * world.simulation.dt
     speed = np.concatenate((np.hypot(linear[:, 0], linear[:, 1]), pull))
     overlays.velocity.follow(speed, overlays.reach, world.time)
@@ -43,8 +43,8 @@ def draw_vectors(world: World, overlays: Overlays, camera: Camera, theme: Theme,
     if overlays.velocity.per_metre:
         span = linear * flip * (camera.scale / overlays.velocity.per_metre)
         draw_arrows(camera.project(position), span, VELOCITY, canvas, theme)
-    touches = resting_of(world)
-    touches = touches[touches["normal"] > 0.0]
-    start = camera.project(touches["place"])
-    length = min(NORMAL_LENGTH, max(0.5 * overlays.reach * camera.scale, SHORTEST))
-    draw_arrows(start, touches["direction"] * flip * length, CONTACT_NORMAL, canvas, theme)
+    contacts = resting_of(world)
+    contacts = contacts[contacts["normal"] > 0.0]
+    start = camera.project(contacts["place"])
+    length = min(NORMAL_LENGTH, max(0.5 * overlays.reach * camera.scale, MIN_LENGTH))
+    draw_arrows(start, contacts["direction"] * flip * length, CONTACT_NORMAL, canvas, theme)

@@ -18,7 +18,7 @@ _COMMAND = (sys.executable, "-m", "physicslab.cli", "accuracy")
 
 
 def _series(row: dict[str, str]) -> str:
-    """Return what runs of one line of the plot have in common: the method that was asked for."""
+    """Return what runs of one line of the plot have in common: the method that was given."""
     return f"auto: {row['integrator']}" if row["asked"] == "auto" else row["integrator"]
 
 
@@ -35,8 +35,7 @@ class Sample:
 class ErrorStudy:
     """Runs ``physicslab accuracy`` on a copy of a world, and reads what it found.
 
-    The window stays awake meanwhile, and the world goes on: the copy is of the moment at which it was asked
-    for.
+    The window goes on meanwhile: the copy is of the moment at which the study was started.
 
     Parameters
     ----------
@@ -114,8 +113,8 @@ class ErrorStudy:
     def _read(self, status: int) -> None:
         if status != 0:
             lines = self._log.read_text("utf-8", errors="replace").replace("\r", "\n").split("\n")
-            said = [line.strip() for line in lines if line.strip()]
-            self.failure = said[-1] if said else f"it ended with status {status}"
+            written = [line.strip() for line in lines if line.strip()]
+            self.failure = written[-1] if written else f"it ended with status {status}"
             return
         (found,) = json.loads(self._report.read_text("utf-8"))["scenes"]
         self.remark = f"{found['kind']}; distances after {found['seconds']:g} s from {found['reference']}"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from physicslab.components import Held
 from physicslab.diagnostics.energy import Drift, Energy, Momentum, measure_momentum
-from physicslab.diagnostics.reference_solution import KnownMotion, known_motion
+from physicslab.diagnostics.reference_solution import ReferenceSolution, reference_solution
 from physicslab.view.picture.bodies import body_rows
 from physicslab.world import World
 
@@ -33,7 +33,7 @@ class WorldFigures:
         Time of the world [s] at the last edit.
     momentum : Momentum
         Linear [kg m/s], and angular about the origin [kg m^2/s].
-    known : KnownMotion, optional
+    known : ReferenceSolution, optional
         The exact solution since the last edit, where there is one.
     error : float
         How far the body that is furthest off is from that [m].
@@ -47,7 +47,7 @@ class WorldFigures:
     drift: Drift
     since: float
     momentum: Momentum
-    known: KnownMotion | None
+    known: ReferenceSolution | None
     error: float
 
 
@@ -72,25 +72,25 @@ class EnergyWatch:
     ----------
     since : float
         Time of the world [s] at the last edit.
-    known : KnownMotion, optional
+    known : ReferenceSolution, optional
         The exact solution since then, where there is one.
     """
 
     def __init__(self) -> None:
         self.since = 0.0
-        self.known: KnownMotion | None = None
+        self.known: ReferenceSolution | None = None
         self._drift: Drift | None = None
         self._seen: tuple[World, int] | None = None
 
     def follow(self, world: World) -> None:
-        """Start anew if the world was edited; to be called in every frame, so that nothing is missed."""
+        """Begin again if the world was edited; to be called in every frame, so that nothing is missed."""
         if self._drift is None or self._seen != (world, world.revision):
             self.restart(world)
 
     def restart(self, world: World) -> Drift:
-        """Start anew from the energy as it is now."""
+        """Begin again from the energy as it is now."""
         self._drift = Drift(world)
-        self.known = known_motion(world)
+        self.known = reference_solution(world)
         self._seen, self.since = (world, world.revision), world.time
         return self._drift
 
@@ -127,7 +127,7 @@ class FrameMeter:
         return 1.0 / self._frame_time if self._frame_time > 0.0 else 0.0
 
     def note(self, world: World, elapsed: float) -> None:
-        """Take note of a frame, ``elapsed`` seconds after the last."""
+        """Count a frame, ``elapsed`` seconds after the last."""
         if elapsed <= 0.0:  # the first frame
             return
         share = 1.0 - math.exp(-elapsed / _SMOOTHING)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle, TextSurface
+from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
 from physicslab.view.canvas.theme import Colour, Theme
 
 __all__ = ["Line", "Panel", "broken", "draw_pill", "lay_out", "text_size"]
@@ -16,12 +17,12 @@ type Kind = Literal["heading", "figure", "detail", "remark", "gap"]
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One thing said in a panel.
+    """One line of a panel.
 
     Attributes
     ----------
     label, value : str
-        What stands at the left and at the right.
+        The words at the left, and those at the right.
     kind : str
         ``"heading"``; ``"figure"``; ``"detail"``, a lesser figure; ``"remark"``, words that may take several
         lines; ``"gap"``, some space.
@@ -55,7 +56,7 @@ class Panel:
 
     def show(self, name: str, canvas: Canvas, theme: Theme) -> None:
         """Draw it as a picture that is kept under a name."""
-        canvas.layer(name, self.rect, (self, theme), lambda paper: self.draw(paper, theme))
+        canvas.layer(name, self.rect, (self, theme), lambda surface: self.draw(surface, theme))
 
 
 def text_size(canvas: Canvas) -> int:
@@ -65,10 +66,13 @@ def text_size(canvas: Canvas) -> int:
 
 
 def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str]:
-    """Break words into lines no wider than ``width`` px; a word that is too long by itself is cut."""
+    """Break words into lines no wider than ``width`` px; a word that is too long by itself is cut.
+
+    Of text beyond ``MAX_LETTERS`` the rest is left out.
+    """
     lines: list[str] = []
     line = ""
-    for word in words.split():
+    for word in shortened(words, MAX_LETTERS).split():
         longer = f"{line} {word}" if line else word
         if canvas.text_size(longer, style)[0] <= width:
             line = longer
@@ -77,12 +81,22 @@ def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str
             lines.append(line)
         line = word
         while canvas.text_size(line, style)[0] > width and len(line) > 1:
-            cut = len(line) - 1
-            while cut > 1 and canvas.text_size(line[:cut], style)[0] > width:
-                cut -= 1
+            cut = _fitting(line, width, canvas, style)
             lines.append(line[:cut])
             line = line[cut:]
     return [*lines, line] if line else lines
+
+
+def _fitting(word: str, width: int, canvas: Canvas, style: TextStyle) -> int:
+    """Return how many letters of a word fit into ``width`` px, and one where none does."""
+    fits, too_long = 1, len(word)
+    while too_long - fits > 1:
+        middle = (fits + too_long) // 2
+        if canvas.text_size(word[:middle], style)[0] <= width:
+            fits = middle
+        else:
+            too_long = middle
+    return fits
 
 
 def _styles(kind: Kind, size: int, theme: Theme) -> tuple[TextStyle, TextStyle]:

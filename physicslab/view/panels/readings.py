@@ -1,20 +1,25 @@
-"""What the HUD says of a world, line by line."""
+"""What the HUD shows of a world, line by line."""
 
 from __future__ import annotations
 
 from physicslab.diagnostics.energy import summation
+from physicslab.view.canvas.drawable_text import shortened
+from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity
 from physicslab.view.panels.figures import FrameMeter, WorldFigures
+from physicslab.view.panels.laws import energy_changers, gravity_in_words
 from physicslab.view.panels.panels import Line
-from physicslab.view.panels.quantities import percentage, quantity, vector_quantity
 from physicslab.world import World
 
 __all__ = ["cost_lines", "figure_lines", "left_out_lines", "method_lines"]
+
+_MAX_TITLE = 80
+"""Letters of a title that are shown."""
 
 
 def figure_lines(world: World, figures: WorldFigures, frame_rate: float) -> list[Line]:
     """Return what there is, how it moves, and what should not change."""
     return [
-        Line(world.title or "PhysicsLab", kind="heading"),
+        Line(shortened(world.title, _MAX_TITLE) or "PhysicsLab", kind="heading"),
         Line("Frame rate", f"{frame_rate:.0f} FPS"),
         Line("Time", f"{world.time:.2f} s"),
         Line("Bodies", _bodies(figures)),
@@ -25,8 +30,8 @@ def figure_lines(world: World, figures: WorldFigures, frame_rate: float) -> list
         Line("Total momentum", quantity(figures.momentum.linear.magnitude, "kg m/s")),
         Line("as a vector", vector_quantity(figures.momentum.linear, "kg m/s"), "detail"),
         Line("Angular momentum", quantity(figures.momentum.angular, "kg m²/s")),
-        Line("Gravity", _gravity(world)),
-        *(Line(said, kind="remark") for said in [summation(world)] if said),
+        Line("Gravity", gravity_in_words(world)),
+        *(Line(remark, kind="remark") for remark in [summation(world)] if remark),
     ]
 
 
@@ -45,10 +50,12 @@ def _energy_lines(world: World, figures: WorldFigures) -> list[Line]:
         lines.append(Line("Potential energy", quantity(sum(energy.potential.values()), "J")))
         lines += [Line(name, quantity(stored, "J"), "detail") for name, stored in energy.potential.items()]
     change = drift.latest.total - drift.initial.total
+    causes = energy_changers(world)
     return [
         *lines,
         Line("Total energy", quantity(energy.total, "J")),
-        Line("Energy drift", quantity(change, "J")),
+        Line("Energy change" if causes else "Energy drift", quantity(change, "J")),
+        *([Line(f"by {', '.join(causes)}", kind="detail")] if causes else []),
         Line("largest so far", f"{quantity(drift.largest, 'J')}, {percentage(drift.relative)}", "detail"),
         Line("since the last edit", f"at {figures.since:.2f} s", "detail"),
     ]
@@ -61,17 +68,6 @@ def _error_lines(figures: WorldFigures) -> list[Line]:
         Line("Position error", quantity(figures.error, "m")),
         Line(f"against {figures.known.what}", kind="detail"),
     ]
-
-
-def _gravity(world: World) -> str:
-    physics = world.physics
-    if physics.gravity_mode == "none" or (physics.gravity_mode == "linear" and not physics.gravity):
-        return "off"
-    if physics.gravity_mode == "planet":
-        return f"G = {physics.G:.4g} N m²/kg²"
-    if physics.gravity.x == 0.0:
-        return f"{abs(physics.gravity.y):.4g} m/s² {'down' if physics.gravity.y < 0.0 else 'up'}"
-    return f"({physics.gravity.x:.3g}, {physics.gravity.y:.3g}) m/s²"
 
 
 def method_lines(world: World) -> list[Line]:

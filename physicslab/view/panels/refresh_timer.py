@@ -1,4 +1,4 @@
-"""Work that is done now and then, spread over frames."""
+"""Work that is done a few times a second, spread over frames."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["RefreshTimer"]
 
 
 class RefreshTimer:
-    """Says which job is due, one at a call at the most: two that fall together would make a slow frame.
+    """Returns which job is due, at most one a call: two in one frame would make it slow.
 
     Parameters
     ----------
@@ -17,8 +17,8 @@ class RefreshTimer:
 
     Examples
     --------
-    >>> rota = Rota({"figures": 0.1, "advice": 0.5})
-    >>> [rota.due(0.0), rota.due(0.0), rota.due(0.0), rota.due(0.2)]
+    >>> timer = RefreshTimer({"figures": 0.1, "advice": 0.5})
+    >>> [timer.due(0.0), timer.due(0.0), timer.due(0.0), timer.due(0.2)]
     ['figures', 'advice', None, 'figures']
     """
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
+from physicslab.view.canvas.quantities import length_of
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.panels.quantities import length_of
 from physicslab.view.picture.backdrop import grid_spacing
 
 __all__ = ["draw_scale_bar", "scale_bar_height"]

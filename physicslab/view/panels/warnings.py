@@ -1,38 +1,38 @@
-"""Advice in the window: what is not to be trusted, in a few lines over the world."""
+"""Warnings in the window: what is not to be trusted, in a few lines over the world."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from physicslab.diagnostics.warnings import Advice
+from physicslab.diagnostics.warnings import ModelWarning
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.panels.panels import broken, draw_pill
 
 __all__ = ["draw_advice"]
 
-_MOST = 3
-"""So many are said; the rest is counted. All are in ``run --json``."""
-_WIDEST = 60
+_MAX_SHOWN = 3
+"""Of more warnings the rest is counted. All are in ``run --json``."""
+_MAX_WIDTH = 60
 """How wide a line may be, in heights of the text."""
 
 
 def draw_advice(
-    advice: Sequence[Advice], middle: int, top: int, room: int, size: int, canvas: Canvas, theme: Theme
+    advice: Sequence[ModelWarning], middle: int, top: int, room: int, size: int, canvas: Canvas, theme: Theme
 ) -> Rect | None:
-    """Say what is not to be trusted, around ``middle`` and no wider than ``room`` px; return where [px].
+    """Write what is not to be trusted, around ``middle`` and no wider than ``room`` px; return where [px].
 
-    The worst is said first. Nothing is drawn where there is nothing to say.
+    The worst comes first. Without a warning nothing is drawn.
     """
     if not advice:
         return None
     ordered = sorted(advice, key=lambda one: one.excess, reverse=True)
     small = max(size - 1, 10)
-    width = min(room, _WIDEST * size) - 3 * size
+    width = min(room, _MAX_WIDTH * size) - 3 * size
     lines = ["! ADVICE: not to be trusted"]
-    for one in ordered[:_MOST]:
+    for one in ordered[:_MAX_SHOWN]:
         pieces = broken(str(one), max(width, 4 * size), canvas, TextStyle(small, theme.warning, bold=True))
         lines += [f"- {pieces[0]}", *pieces[1:]]
-    if len(ordered) > _MOST:
-        lines.append(f"and {len(ordered) - _MOST} more")
+    if len(ordered) > _MAX_SHOWN:
+        lines.append(f"and {len(ordered) - _MAX_SHOWN} more")
     return draw_pill(lines, middle, top, small, theme.warning, canvas, theme)

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from physicslab.view.canvas.canvas import Canvas, TextStyle
+from physicslab.view.canvas.quantities import power_of_ten
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.panels.error_study import ErrorStudy, Sample
 from physicslab.view.panels.panels import broken, text_size
-from physicslab.view.panels.quantities import power_of_ten
 
 __all__ = ["draw_work_precision"]
 
@@ -20,17 +20,17 @@ _FLOOR = 1e-17
 """Errors below this are drawn at it [m]: zero has no place on a logarithmic scale."""
 _MARK = 5.0
 """Half the size of a mark [px]."""
-_CIRCLE = tuple((math.cos(n * math.pi / 6), math.sin(n * math.pi / 6)) for n in range(13))
+_RING = tuple((math.cos(n * math.pi / 6), math.sin(n * math.pi / 6)) for n in range(13))
 _MARKS = (
     ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)),
     ((0, -1.3), (1.2, 0.9), (-1.2, 0.9), (0, -1.3)),
     ((0, -1.4), (1.4, 0), (0, 1.4), (-1.4, 0), (0, -1.4)),
     ((-1.1, -1.1), (1.1, 1.1), (0, 0), (-1.1, 1.1), (1.1, -1.1)),
-    _CIRCLE,
+    _RING,
     ((0, -1.4), (0, 1.4), (0, 0), (-1.4, 0), (1.4, 0)),
     ((0, 1.3), (1.2, -0.9), (-1.2, -0.9), (0, 1.3)),
 )
-"""The marks of the methods in turn, as strokes: no two are told apart by colour alone."""
+"""The marks of the methods in turn, as strokes: no two differ by colour alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ def _powers(values: Sequence[float]) -> tuple[int, int]:
 
 
 def _draw_axes(frame: _Frame, size: int, canvas: Canvas, theme: Theme) -> None:
-    """Draw a line for every power of ten, labelled where there is room, and say what is what."""
+    """Draw a line for every power of ten, labelled where there is room, and name the axes."""
     style = TextStyle(size - 1, theme.faint)
     half = canvas.text_size("Ag", style)[1] // 2
     every = max(1, math.ceil((frame.error[1] - frame.error[0]) * 3 * half / max(frame.bottom - frame.top, 1)))

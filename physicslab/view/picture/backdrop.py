@@ -1,4 +1,4 @@
-"""What lies behind the bodies: a grid for the eye, and the walls of the world."""
+"""What lies behind the bodies: a grid, and the walls of the world."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from physicslab.view.canvas.theme import Theme
 
 __all__ = ["draw_bounds", "draw_grid", "grid_spacing"]
 
-_CLOSEST = 45.0
-"""The least distance of grid lines [px]."""
+_MIN_SPACING = 45.0
+"""Least distance of grid lines [px]."""
 
 
 def grid_spacing(scale: float) -> float:
@@ -22,7 +22,7 @@ def grid_spacing(scale: float) -> float:
     >>> grid_spacing(100.0)
     0.5
     """
-    least = _CLOSEST / scale
+    least = _MIN_SPACING / scale
     power = 10.0 ** math.floor(math.log10(least))
     return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= least * (1.0 - 1e-9))
 

@@ -21,8 +21,8 @@ type Rows = NDArray[np.int64]
 
 POINT_RADIUS = 5.0
 """How large a body without a Shape appears [px]."""
-_SMALLEST = 0.9
-"""The least half extent of a body on the screen [px]: one that is far away is still seen."""
+_MIN_HALF = 0.9
+"""Half extent of a body on the screen [px] below which it is drawn larger: it is still seen from far away."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ def _look(world: World, theme: Theme, rows: Rows) -> Look:
 
 
 def _marker_look(world: World, theme: Theme, rows: Rows) -> Look:
-    """Return the look of points: one colour throughout, and each its own, for a fixed sun is no wall."""
+    """Return the look of points: one colour in and around, also of a fixed one: it is no wall."""
     rims, _ = _palette(theme)
     own = _OWN + own_colour(world, theme, rows)
     colour = rims[np.where(world.table(Held).present[rows], _HELD, own)]
@@ -112,7 +112,7 @@ def draw_bodies(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> N
 def _draw_boxes(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: Canvas) -> None:
     transform, shape = world.table(Transform), world.table(Shape)
     extent = np.stack((shape["width"][rows], shape["height"][rows]), axis=1) * camera.scale
-    extent = np.maximum(extent, 2.0 * _SMALLEST)
+    extent = np.maximum(extent, 2.0 * _MIN_HALF)
     centre, angle = camera.project(transform["position"][rows]), transform["angle"][rows]
     seen = _on_screen(centre, 0.5 * np.hypot(extent[:, 0], extent[:, 1]), camera.size) & np.isfinite(angle)
     if seen.any():
@@ -121,7 +121,7 @@ def _draw_boxes(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: 
 
 def _draw_discs(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: Canvas) -> None:
     transform = world.table(Transform)
-    radius = np.maximum(world.table(Shape)["radius"][rows] * camera.scale, _SMALLEST)
+    radius = np.maximum(world.table(Shape)["radius"][rows] * camera.scale, _MIN_HALF)
     centre, angle = camera.project(transform["position"][rows]), transform["angle"][rows]
     seen = _on_screen(centre, radius, camera.size) & np.isfinite(angle)
     if seen.any():

@@ -1,4 +1,4 @@
-"""The part of a world that there is something to see in."""
+"""The part of a world in which there is something to see."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def extent_of(world: World) -> Extent | None:
     everything = np.concatenate((rows.boxes, rows.discs, rows.points))
     shapes = _reach(world, everything)
     movable = moves[everything]
-    lively = np.concatenate((shapes[movable], _fixed_ends(world), _bounds(world)))
+    moving = np.concatenate((shapes[movable], _fixed_ends(world), _bounds(world)))
     still = shapes[~movable]
-    around = _union(lively)
+    around = _union(moving)
     if around is None:
         return _union(still)
     low, high = np.array(around[:2]), np.array(around[2:])

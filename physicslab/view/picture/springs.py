@@ -1,4 +1,4 @@
-"""Springs as coils, and the pins they hang from."""
+"""Springs as coils, and the pins that hold them."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ __all__ = ["coil", "draw_springs"]
 
 _TURN = 13.0
 """About how long a turn of a coil is at rest [px]."""
-_FEWEST, _MOST = 4, 12
+_MIN_TURNS, _MAX_TURNS = 4, 12
 """How many turns a coil may have."""
 _LEAD = 0.12
 """Share of a spring that is straight, at each end."""
 _WIDTH = 7.0
 """Half width of a coil at rest [px]."""
-_SHORTEST = 26.0
+_MIN_COIL = 26.0
 """Length [px] below which a spring is a plain line."""
-_MANY = 500
+_MAX_COILS = 500
 """Number of springs above which each is a plain line."""
 _PIN = 4.0
 """Radius of a pin [px]."""
@@ -39,11 +39,12 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
     start = _end(world, lookup[np.where(a == 0, own, a)], spring["anchor_a"][rows])
     end = _end(world, lookup[b], spring["anchor_b"][rows])
     start, end = camera.project(start), camera.project(end)
-    rest = spring["rest_length"][rows] * camera.scale
+    with np.errstate(over="ignore"):  # a rest length may be as long as numbers go
+        rest = spring["rest_length"][rows] * camera.scale
     seen = _on_screen(start, end, camera.size)
     start, end, rest, fixed = start[seen], end[seen], rest[seen], (b == 0)[seen]
     length = np.hypot(*(end - start).T)
-    plain = (length < _SHORTEST) if len(rows) <= _MANY else np.ones(len(length), np.bool_)
+    plain = (length < _MIN_COIL) if len(rows) <= _MAX_COILS else np.ones(len(length), np.bool_)
     if plain.any():
         canvas.lines(start[plain], end[plain], theme.spring, 1.6)
     if not plain.all():
@@ -59,17 +60,18 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
 def coil(start: Points, end: Points, rest: NDArray[np.float64]) -> Points:
     """Return the corners (n, k, 2) of zigzags between ends (n, 2), for springs of rest lengths (n,) [px].
 
-    The wire keeps its length: a spring that is pulled out grows slender, one that is pressed together wide.
+    The wire keeps its length: a spring that is stretched grows slender, one that is compressed wide.
     """
     along = end - start
     length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-9)
     across = np.stack((-along[:, 1], along[:, 0]), axis=1) / length[:, None]
     # All have as many turns, so that they are one array.
-    turns = int(np.clip(round(float(np.median(rest)) / _TURN), _FEWEST, _MOST))
+    turns = round(float(np.clip(np.median(rest) / _TURN, _MIN_TURNS, _MAX_TURNS)))
     part = (1.0 - 2.0 * _LEAD) / (2 * turns)
-    natural = np.maximum(rest, _SHORTEST)
-    wire = np.hypot(part * natural, 2.0 * np.minimum(_WIDTH, 0.1 * natural))
-    swing = 0.5 * np.sqrt(np.maximum(wire * wire - (part * length) ** 2, 0.0))
+    natural = np.maximum(rest, _MIN_COIL)
+    with np.errstate(over="ignore"):
+        wire = np.hypot(part * natural, 2.0 * np.minimum(_WIDTH, 0.1 * natural))
+        swing = 0.5 * np.sqrt(np.maximum(wire * wire - (part * length) ** 2, 0.0))
     swing = np.clip(swing, 1.0, 2.0 * _WIDTH)
     share = np.concatenate(([0.0, _LEAD], _LEAD + part * (np.arange(2 * turns) + 0.5), [1.0 - _LEAD, 1.0]))
     side = np.concatenate(([0.0, 0.0], np.resize([1.0, -1.0], 2 * turns), [0.0, 0.0]))

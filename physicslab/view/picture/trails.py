@@ -19,21 +19,21 @@ __all__ = ["TrailSwitch", "draw_trails"]
 
 _SHADES = 16
 """Steps in which a trail fades."""
-_BRIGHTEST = 0.85
+_NEWEST_SHARE = 0.85
 """Share of a body's colour in the newest part of its trail, the rest being background."""
-_WIDEST, _NARROWEST = 2.6, 1.0
+_MAX_WIDTH, _MIN_WIDTH = 2.6, 1.0
 """Width of a trail's newest and oldest part [px]."""
 _INK = 0.08
 """Trails longer together than this share of the picture's pixels are finer: something shows between them."""
-_CLOSEST = 3.0
+_MIN_DISTANCE = 3.0
 """The least distance along a trail of the places it is drawn through [px]."""
-_MOST = 12_000
-"""About how many pieces are drawn at the most, of all trails together."""
-_READ = 24_000
+_MAX_PIECES = 12_000
+"""About how many pieces of all trails together are drawn."""
+_MAX_READ = 24_000
 """About how many places are looked at, of all trails together: where trails are many, each is coarser."""
 _COARSENESS = (1, 2, 4, 8, 16)
 """Of how many places one is looked at."""
-_FARTHEST = 1e6
+_MAX_OFFSET = 1e6
 """Places farther away than this are not drawn [px]."""
 
 
@@ -56,13 +56,13 @@ class TrailSwitch:
         A Trail that comes back is as long as it was.
         """
         world.synchronise()
-        worn = world.table(Trail).handles
-        if not worn:
+        with_trail = world.table(Trail).handles
+        if not with_trail:
             self.on = not self.on
             self.follow(world)
             return
         self.on = False
-        self._lengths = {entity: world.component(entity, Trail).length for entity in worn}
+        self._lengths = {entity: world.component(entity, Trail).length for entity in with_trail}
         for entity in self._lengths:
             world.discard(entity, Trail)
 
@@ -71,10 +71,10 @@ class TrailSwitch:
         if not self.on:
             return
         moving = world.batch(Transform, Velocity).entities
-        worn = world.batch(Transform, Velocity, Trail).entities
-        if len(moving) == len(worn):
+        with_trail = world.batch(Transform, Velocity, Trail).entities
+        if len(moving) == len(with_trail):
             return
-        for entity in np.setdiff1d(moving, worn).tolist():
+        for entity in np.setdiff1d(moving, with_trail).tolist():
             if world.has(entity, Velocity) and not world.has(entity, Trail):
                 length = self._lengths.get(entity)
                 world.add(entity, Trail() if length is None else Trail(length))
@@ -85,7 +85,7 @@ def draw_trails(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> N
     system = world.schedule.find(TrailSystem)
     if not isinstance(system, TrailSystem):
         return
-    coarse = len(system.entities) * SAMPLES / _READ
+    coarse = len(system.entities) * SAMPLES / _MAX_READ
     every = next(n for n in _COARSENESS if n >= coarse or n == _COARSENESS[-1])
     places, ages = system.paths(every)
     places = camera.project(places.reshape(-1, 2)).reshape(places.shape)
@@ -99,7 +99,7 @@ def draw_trails(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> N
     colour = own_colour(world, theme, world.entity_index.rows_of(system.entities))[first // ages.shape[1]]
     young = 1.0 - (shade + 0.5) / _SHADES
     room = _INK * camera.size[0] * camera.size[1] / max(total, 1.0)
-    width = np.maximum(_NARROWEST + (_WIDEST - _NARROWEST) * young * min(room, 1.0), _NARROWEST)
+    width = np.maximum(_MIN_WIDTH + (_MAX_WIDTH - _MIN_WIDTH) * young * min(room, 1.0), _MIN_WIDTH)
     tint = _tints(theme)[shade, colour]
     canvas.strokes(points[first], points[second], tint, width)
 
@@ -107,7 +107,7 @@ def draw_trails(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> N
 @lru_cache(maxsize=8)
 def _tints(theme: Theme) -> NDArray[np.uint8]:
     """Return the colours (``_SHADES``, bodies, 3) of trails, newest first."""
-    shares = [_BRIGHTEST * (1.0 - (shade + 0.5) / _SHADES) for shade in range(_SHADES)]
+    shares = [_NEWEST_SHARE * (1.0 - (shade + 0.5) / _SHADES) for shade in range(_SHADES)]
     return np.array(
         [[mixed(theme.background, body, share) for body in theme.bodies] for share in shares], np.uint8
     )
@@ -118,19 +118,19 @@ def _pieces(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], float]:
     """Return the two ends of every piece to draw, as numbers into the flattened ``places`` (n, k, 2) [px].
 
-    Places that lie closer together than can be told apart are passed over; the newest never is. The third
+    Places that lie closer together than can be seen apart are left out; the newest never is. The third
     value is how long all trails are together [px].
     """
     with np.errstate(invalid="ignore", over="ignore"):
         across, down = places[..., 0], places[..., 1]
-        shown = (ages <= 1.0) & (np.abs(across) < _FARTHEST) & (np.abs(down) < _FARTHEST)
+        shown = (ages <= 1.0) & (np.abs(across) < _MAX_OFFSET) & (np.abs(down) < _MAX_OFFSET)
         step = np.hypot(np.diff(across, axis=1), np.diff(down, axis=1))
         step = np.where(shown[:, 1:] & shown[:, :-1], step, 0.0)
-    # Told from the newest end, so that the drawn places do not creep while old ones fall away.
+    # Measured from the newest end, so that the drawn places do not creep while old ones fall away.
     left = np.zeros(shown.shape)
     left[:, :-1] = np.cumsum(step[:, ::-1], axis=1)[:, ::-1]
     total = float(left[:, 0].sum())
-    mark = np.floor(left / max(_CLOSEST, total / _MOST))
+    mark = np.floor(left / max(_MIN_DISTANCE, total / _MAX_PIECES))
     apart = np.ones(shown.shape, np.bool_)
     apart[:, :-1] = mark[:, :-1] != mark[:, 1:]
     kept = np.flatnonzero(shown & apart)
@@ -142,5 +142,5 @@ def _on_screen(start: Points, end: Points, size: tuple[int, int]) -> NDArray[np.
     """Whether each piece can be seen."""
     seen = np.ones(len(start), np.bool_)
     for a, b, side in zip(start.T, end.T, size, strict=True):
-        seen &= (np.maximum(a, b) > -_WIDEST) & (np.minimum(a, b) < side + _WIDEST)
+        seen &= (np.maximum(a, b) > -_MAX_WIDTH) & (np.minimum(a, b) < side + _MAX_WIDTH)
     return seen

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from physicslab.components import Held, Transform, Velocity
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.view.window.edits import announce_edit
 from physicslab.world import World
 
 __all__ = ["Hand"]
 
-_BRIEFEST = 0.03
-"""Time [s] over which a speed can be told at all; a shorter pull is no throw."""
+_MIN_THROW_TIME = 0.03
+"""Time [s] over which a speed can be measured at all; a shorter pull is no throw."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +62,7 @@ class Hand:
         self._was_moved_by_time = False
         velocity.linear, velocity.angular = Vector2(), 0.0
         world.add(entity, Held(grip))
+        announce_edit(world)
         self.entity = entity
         self._path = deque([_Sample(now, place)])
         return True
@@ -97,8 +99,10 @@ class Hand:
             velocity.linear = gap / coming
             self._was_moved_by_time = True
         elif paused:
-            transform.position = transform.position + gap
             velocity.linear = Vector2()
+            if gap:
+                transform.position = transform.position + gap
+                announce_edit(world)
 
     def release(self, world: World, place: Vector2, now: float, paused: bool) -> None:
         """Let go at a point of the world [m]: the body keeps the velocity that the hand had of late.
@@ -123,13 +127,14 @@ class Hand:
     def _let_go(self, world: World) -> None:
         if self.entity is not None and world.has(self.entity, Held):
             world.discard(self.entity, Held)
+            announce_edit(world)
         self.entity = None
 
     def _throw(self) -> Vector2:
         """Return the mean velocity [m/s] over the last of the hand's path, no faster than allowed."""
         first, last = self._path[0], self._path[-1]
         span = last.time - first.time
-        if span < _BRIEFEST:
+        if span < _MIN_THROW_TIME:
             return Vector2()
         velocity = (last.place - first.place) / span
         fastest = self._config.max_throw_speed

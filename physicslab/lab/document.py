@@ -1,20 +1,35 @@
-"""On what the times were taken: the processor and the versions, and nothing that tells whose it is."""
+"""What a lab found, as a JSON document: format, machine, versions; figures are finite or ``null``, in SI."""
 
 from __future__ import annotations
 
+import math
 import os
 import platform
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
-__all__ = ["machine", "machine_text"]
+__all__ = ["finite", "lab_document", "machine", "machine_text"]
 
 _PACKAGES = ("physicslab", "numpy", "numba", "esper")
 _PEERS = ("pymunk", "box2d")
 
 
-def machine(*, peers: bool) -> dict[str, str | int]:
-    """Return the processor's model, how many there are, and the versions of what was timed."""
+def lab_document(lab: str, *, peers: bool = False, **parts: object) -> dict[str, Any]:
+    """Return the document of a lab, with the versions of other engines where ``peers`` took part."""
+    return {"format": f"physicslab-{lab}/1", "machine": machine(peers=peers), **parts}
+
+
+def finite(number: float | None) -> float | None:
+    """Return a number, or ``None`` where it is not finite: JSON has no such numbers."""
+    return number if number is not None and math.isfinite(number) else None
+
+
+def machine(*, peers: bool = False) -> dict[str, str | int]:
+    """Return the processor's model, how many there are, and the versions of what was measured.
+
+    It does not identify the machine.
+    """
     found: dict[str, str | int] = {
         "cpu": _model(),
         "cpus": os.cpu_count() or 1,
@@ -29,7 +44,7 @@ def machine(*, peers: bool) -> dict[str, str | int]:
     return found
 
 
-def machine_text(*, peers: bool) -> str:
+def machine_text(*, peers: bool = False) -> str:
     """Return the same in a line."""
     found = machine(peers=peers)
     head = f"{found.pop('cpu')}, {found.pop('cpus')} CPUs, {found.pop('system')}, {found.pop('python')}"

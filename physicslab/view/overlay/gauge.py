@@ -7,21 +7,21 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.panels.quantities import round_quantity
+from physicslab.view.canvas.quantities import round_quantity
 
 __all__ = ["Gauge"]
 
 _MEMORY = 4.0
 """Time [s] in which the memory of a strong value fades to a third."""
-_LEAST, _MOST = 0.25, 1.3
-"""The strongest arrow may have from so much to so much of the wanted length before the scale changes."""
+_MIN_LENGTH, _MAX_LENGTH = 0.25, 1.3
+"""While the longest arrow is within these shares of the wanted length, the scale stays."""
 
 
 class Gauge:
-    """Says how much of a quantity a metre of arrow stands for: 1, 2 or 5 times a power of ten.
+    """How much of a quantity a metre of arrow stands for: 1, 2 or 5 times a power of ten.
 
-    The scale follows the strongest value of the last seconds. It hangs on the world alone: zooming enlarges
-    arrows together with all else, and what the legend says of them stays true.
+    The scale follows the strongest value of the last seconds. It depends on the world alone: zooming enlarges
+    arrows together with all else, and the legend stays true.
 
     Parameters
     ----------
@@ -53,11 +53,11 @@ class Gauge:
         faded = self._peak * math.exp(-max(time - self._time, 0.0) / _MEMORY)
         self._peak, self._time = max(strongest, faded), time
         wanted = self._peak / reach
-        if wanted > 1e-12 and not _LEAST * self.per_metre <= wanted <= _MOST * self.per_metre:
+        if wanted > 1e-12 and not _MIN_LENGTH * self.per_metre <= wanted <= _MAX_LENGTH * self.per_metre:
             power = 10.0 ** math.floor(math.log10(wanted))
             self.per_metre = next(k * power for k in (1.0, 2.0, 5.0, 10.0) if k * power >= wanted * 0.999)
 
     @property
     def words(self) -> str:
-        """The scale, as the legend says it."""
+        """The scale, as it stands in the legend."""
         return f"1 m = {round_quantity(self.per_metre, self.unit)}" if self.per_metre else "none yet"

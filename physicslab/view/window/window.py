@@ -1,25 +1,24 @@
-"""What the systems of a frame share: the eye, the canvas, the clock and the hand."""
+"""What the systems of a frame share: camera, canvas, clock and hand."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
 
-from physicslab.desktop.pace import Pace
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Rect
 from physicslab.view.canvas.theme import DARK, Theme
-from physicslab.view.controls.hand import Hand
-from physicslab.view.controls.recovery import Recovery
-from physicslab.view.controls.spring_tool import SpringTool
-from physicslab.view.controls.tools import HAND, Tool
 from physicslab.view.overlay.overlays import Overlays
 from physicslab.view.panels.error_study import ErrorStudy
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
+from physicslab.view.window.hand import Hand
+from physicslab.view.window.pace import Pace
+from physicslab.view.window.recovery import Recovery
+from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
 
 __all__ = ["Window"]
@@ -29,7 +28,7 @@ _AROUND = 0.04
 
 
 class Window:
-    """The state of the sandbox's window; the world knows nothing of it.
+    """The state of the sandbox's window; no part of the world depends on it.
 
     Attributes
     ----------
@@ -67,8 +66,8 @@ class Window:
         Why the world stopped; empty while all is well.
     help, grid, figures : bool
         Whether all keys are shown, the grid, and the panels of figures and costs.
-    tool : Tool
-        What the left mouse button does.
+    tool : str
+        What the left mouse button does: the name of a tool of :mod:`physicslab.view.controls.tools`.
     menu : str
         Which menu is open; empty where none is.
     room : callable
@@ -76,7 +75,7 @@ class Window:
     spring_tool : SpringTool
         The spring that is being drawn with the mouse.
     error_study : ErrorStudy
-        Error against run time of the scene, when asked for.
+        Error against run time of the scene, measured when its key is pressed.
     scene_file : path, optional
         The scene file that was last saved or opened.
     next_world : World, optional
@@ -106,7 +105,7 @@ class Window:
         self.error = ""
         self.help = False
         self.grid = self.figures = True
-        self.tool: Tool = HAND
+        self.tool = "circle"
         self.menu = ""
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
         self.error_study = ErrorStudy()
@@ -131,11 +130,11 @@ class Window:
 
     @property
     def notice(self) -> str:
-        """What is to be said for a few seconds; empty when there is nothing."""
+        """The message that is shown for a few seconds; empty when there is none."""
         return self._notice if self.now < self._notice_until else ""
 
     def notify(self, words: str, seconds: float = 3.0, *, failed: bool = False) -> None:
-        """Say something for a while; ``failed`` marks what could not be done."""
+        """Show a message for a while; ``failed`` marks what could not be done."""
         self.notice_failed = failed
         self._notice, self._notice_until = words, self.now + seconds
 

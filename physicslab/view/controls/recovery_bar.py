@@ -8,10 +8,10 @@ from functools import partial
 from physicslab.ecs.fields import InvalidValue
 from physicslab.files.scene import SceneError
 from physicslab.view.canvas.canvas import TextStyle
-from physicslab.view.controls.menus import StepPlan
+from physicslab.view.controls.menus import Choice
 from physicslab.view.controls.widgets import Widgets
 from physicslab.view.panels.panels import broken
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = ["RecoveryBar", "discard_session", "restore_session"]
@@ -26,7 +26,7 @@ class RecoveryBar:
         What its buttons are made of.
     window : Window
         What is on offer there.
-    ask : callable
+    choose : callable
         What is called with the choice that is clicked.
 
     Attributes
@@ -35,18 +35,18 @@ class RecoveryBar:
         What it takes up [px]; 0 where nothing is on offer.
     """
 
-    def __init__(self, widgets: Widgets, window: Window, ask: Callable[[StepPlan], None]) -> None:
+    def __init__(self, widgets: Widgets, window: Window, choose: Callable[[Choice], None]) -> None:
         self._window = window
         self._plate = widgets.plate()
-        choices = (StepPlan("Restore it", restore_session), StepPlan("Discard", discard_session))
+        choices = (Choice("Restore it", restore_session), Choice("Discard", discard_session))
         # No lambda with a default: the widgets would take that for a parameter, and pass it what happened.
-        self._buttons = [(choice, widgets.button(partial(ask, choice))) for choice in choices]
+        self._buttons = [(choice, widgets.button(partial(choose, choice))) for choice in choices]
         self._top = self._room = 0
         self.height = 0
 
     @property
     def places(self) -> dict[str, tuple[int, int, int, int]]:
-        """Where its buttons are, by what they say [px]."""
+        """Where its buttons are, by their words [px]."""
         return {
             choice.title: (button.rect.left, button.rect.top, button.rect.width, button.rect.height)
             for choice, button in self._buttons

@@ -8,9 +8,9 @@ __all__ = ["Pace"]
 
 
 class Pace:
-    """Says how many steps are due in a frame, so that what happens does not hang on the frame rate.
+    """Counts the steps that are due in a frame, so that the motion does not depend on the frame rate.
 
-    Time that has passed on the wall is owed, and paid back in whole steps of ``dt``. Below full speed each
+    Elapsed wall time is made up for in whole steps of ``dt``. Below full speed each
     step is shorter and there are not fewer, so that it looks as smooth; above, there are more steps and none
     is longer, so that it is as accurate.
 
@@ -23,7 +23,7 @@ class Pace:
     Attributes
     ----------
     paused : bool
-        Whether time stands still; :meth:`ask_step` still gives single steps.
+        Whether time stands still; :meth:`queue_step` still gives single steps.
     slow_motion : bool
         Whether the world runs at a quarter of its speed, whatever speed was chosen.
     chosen : float
@@ -50,7 +50,7 @@ class Pace:
         self.slow_motion = False
         self.chosen = 1.0
         self.dropped = 0.0
-        self._owed = 0.0
+        self._due = 0.0
         self._single = 0
 
     @property
@@ -69,7 +69,7 @@ class Pace:
         return max(self.speed, 1.0)
 
     def choose(self, factor: float) -> None:
-        """Make the world run so many times as fast as it does, within the speeds there are."""
+        """Multiply the speed by a factor, within the speeds there are."""
         self.chosen = min(max(self.speed * factor, self.SLOWEST), self.FASTEST)
         self.slow_motion = False
 
@@ -77,7 +77,7 @@ class Pace:
         """Begin a frame, ``elapsed`` seconds after the last."""
         if self.paused:
             return
-        self._owed += min(elapsed, self.max_dt) * self._rate
+        self._due += min(elapsed, self.max_dt) * self._rate
         self.drop(max(elapsed - self.max_dt, 0.0))
 
     def due(self, dt: float) -> int:
@@ -85,31 +85,31 @@ class Pace:
         if self.paused:
             return self._single
         # Rounded to the nearest, not down: frames as long as a step, give or take, get one step each, and no
-        # step hangs on the last bit of a sum of frame times.
-        return max(math.floor(self._owed / dt + 0.5), 0)
+        # step depends on the last bit of a sum of frame times.
+        return max(math.floor(self._due / dt + 0.5), 0)
 
     def done(self, steps: int, dt: float) -> None:
-        """Note that so many steps were made; others that were due are dropped."""
+        """Count steps as made; others that were due are dropped."""
         due = self.due(dt)
         if self.paused:
             self._single = 0
             return
-        self._owed -= due * dt
+        self._due -= due * dt
         self.drop((due - steps) * dt / self._rate)
 
     def drop(self, seconds: float) -> None:
-        """Note that so much time is not made up for."""
+        """Count time [s] that is not made up for."""
         self.dropped += seconds
 
-    def ask_step(self) -> None:
-        """Pause, and ask for one step."""
+    def queue_step(self) -> None:
+        """Pause, and make one step due."""
         self.paused = True
         self._single += 1
 
     def halt(self) -> None:
-        """Pause because the world cannot go on, and owe nothing."""
+        """Pause because the world cannot go on; no step is due."""
         self.paused = True
-        self._owed = 0.0
+        self._due = 0.0
         self._single = 0
 
     def toggle_pause(self) -> None:

@@ -1,4 +1,4 @@
-"""Motions that are known exactly, against references of twenty digits and against the engine."""
+"""Exact solutions, against references of twenty digits and against the engine."""
 
 import math
 
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from physicslab import load_scene
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
-from physicslab.diagnostics.reference_solution import known_motion
+from physicslab.diagnostics.reference_solution import reference_solution
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ode.kepler import propagate_kepler
 from physicslab.systems.standard import standard_systems
@@ -62,7 +62,7 @@ def test_two_bodies_that_both_move_are_followed_and_the_error_falls_with_the_met
             (Transform((-1, 0)), Velocity((0.1, -0.3)), Mass(2)),
             integrator=name, gravity_mode="planet",
         )  # fmt: skip
-        known = known_motion(world)
+        known = reference_solution(world)
         assert known is not None and known.what == "two bodies on Kepler orbits"
         assert known.error(world) == 0.0
         world.run(seconds=3.0)
@@ -76,7 +76,7 @@ def test_a_fixed_star_pulls_by_its_mass_alone() -> None:
         (Transform((0, 0)), Mass(2)), (Transform((1, 0)), Velocity((0, 1.2)), Mass(5)),
         integrator="dop853", gravity_mode="planet",
     )  # fmt: skip
-    known = known_motion(world)
+    known = reference_solution(world)
     assert known is not None
     world.run(seconds=5.0)
     assert known.error(world) < 1e-12
@@ -89,7 +89,7 @@ def test_a_spring_in_line_and_a_thrown_ball_are_known() -> None:
         (Transform(), Velocity((3, 4)), Mass(1)),
     ):
         world = world_of(body, integrator="rk4", gravity_mode="none")
-        known = known_motion(world)
+        known = reference_solution(world)
         assert known is not None
         world.run(seconds=2.0)
         assert 0.0 <= known.error(world) < 1e-6
@@ -97,8 +97,8 @@ def test_a_spring_in_line_and_a_thrown_ball_are_known() -> None:
 
 def test_what_has_no_solution_has_none() -> None:
     swinging = (Transform((2, 0)), Velocity(), Mass(1), Spring(rest_length=1))
-    assert known_motion(world_of(swinging, integrator="auto")) is None
-    assert known_motion(load_scene("solar_system")) is None
+    assert reference_solution(world_of(swinging, integrator="auto")) is None
+    assert reference_solution(load_scene("solar_system")) is None
     touching = [(Transform((x, 0)), Velocity(), Mass(1), Shape.circle(1)) for x in (2, 9)]
-    assert known_motion(world_of(*touching, integrator="auto")) is None
-    assert known_motion(World()) is None
+    assert reference_solution(world_of(*touching, integrator="auto")) is None
+    assert reference_solution(World()) is None

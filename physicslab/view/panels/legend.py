@@ -85,7 +85,7 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
             (Sample(FORCE), FORCE.name, overlays.force.words),
             (Sample(CONTACT_NORMAL, CONTACT_NORMAL.width), CONTACT_NORMAL.name, "direction only"),
         ]
-        remarks.append("Force: of gravity, springs and drag.")
+        remarks.append("Force: gravity, springs, drag; no contacts.")
     if overlays.impulses:
         rows += [
             (Sample(NORMAL_IMPULSE, IMPACT_WIDTH), "Normal, impact", overlays.impact.words),
@@ -118,9 +118,9 @@ def legend_of(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: 
         texts.append((scale, (width - pad, y), value, "right"))
         samples.append((sample, (float(pad), y + 0.5 * row_height), sample_length))
         y += row_height
-    reported = lay_out(_remarks(remarks), 0, y - pad // 2, width, size, canvas, theme)
-    texts += reported.texts
-    return Legend(Panel((0, 0, width, y - pad // 2 + reported.rect[3]), tuple(texts)), tuple(samples))
+    remarked = lay_out(_remarks(remarks), 0, y - pad // 2, width, size, canvas, theme)
+    texts += remarked.texts
+    return Legend(Panel((0, 0, width, y - pad // 2 + remarked.rect[3]), tuple(texts)), tuple(samples))
 
 
 def _remarks(words: Sequence[str]) -> list[Line]:

@@ -13,8 +13,7 @@ __all__ = ["Help"]
 
 _TITLE = "Keys and buttons"
 _FOOT = "F1 or Esc closes this"
-_WIDEST = 3
-"""The most columns there are."""
+_MAX_COLUMNS = 3
 
 
 class Help:
@@ -40,7 +39,7 @@ class Help:
         self._head = canvas.text_size("Ag", self._title)[1] + size
         width, height = canvas.size
         room = max((height - 2 * self._head - 3 * size) // self._row, 1)
-        columns = min(math.ceil(len(controls) / room), _WIDEST)
+        columns = min(math.ceil(len(controls) / room), _MAX_COLUMNS)
         each = math.ceil(len(controls) / columns)
         self._columns = [controls[n : n + each] for n in range(0, len(controls), each)]
         self._labels = {control: _label(control) for control in controls}

@@ -6,26 +6,40 @@ import os
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Protocol
 
-from physicslab.desktop.sessions import Session
 from physicslab.files.scene import load_scene
 from physicslab.world import World
 
-__all__ = ["Recovery"]
+__all__ = ["AbandonedSession", "Recovery"]
+
+
+class AbandonedSession(Protocol):
+    """The state that a session has left, and the lock on it."""
+
+    @property
+    def path(self) -> Path:
+        """The scene file that holds the state."""
+
+    def end(self) -> None:
+        """Remove the state for good."""
+
+    def release(self) -> None:
+        """Leave the state to the next start."""
 
 
 class Recovery:
-    """The sessions that ended without closing, the newest on offer; nothing is opened without being asked.
+    """The sessions that ended without closing, the newest on offer; none is opened before it is chosen.
 
     Parameters
     ----------
-    abandoned : sequence of Session
-        The newest first. Those that nobody decided on are offered again at the next start.
+    abandoned : sequence of AbandonedSession
+        The newest first. Those on which no decision was made are offered again at the next start.
     own : path, optional
         Where this window keeps its own state.
     """
 
-    def __init__(self, abandoned: Sequence[Session] = (), own: Path | None = None) -> None:
+    def __init__(self, abandoned: Sequence[AbandonedSession] = (), own: Path | None = None) -> None:
         self._left, self._own = list(abandoned), own
 
     @property
@@ -66,7 +80,7 @@ class Recovery:
         self._left.pop(0).end()
 
     def leave(self) -> None:
-        """Leave what nobody decided on to the next start."""
+        """Leave the sessions on which no decision was made to the next start."""
         for session in self._left:
             session.release()
         self._left = []

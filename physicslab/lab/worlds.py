@@ -1,4 +1,4 @@
-"""Worlds to begin a case with, and what is looked at while they run."""
+"""Worlds for the labs to begin with, and what is measured while they run."""
 
 from __future__ import annotations
 
@@ -14,30 +14,55 @@ from physicslab.prefabs import box
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
-__all__ = ["energy_change", "energy_growth", "floor", "largest", "open_space", "place", "spawn_point"]
+__all__ = [
+    "GRAVITY", "PLANETS", "empty_world", "energy_change", "energy_growth", "floor", "largest",
+    "open_space", "place", "spawn_point", "velocity",
+]  # fmt: skip
 
-_G = 9.81
+GRAVITY = 9.81
+"""Of the built-in scenes, downwards [m/s^2]."""
+PLANETS = PhysicsConfig(gravity_mode="planet", softening_law="plummer")
+"""Bodies attract each other with G = 1."""
 
 
-def open_space(
-    *, gravity: float | None = _G, physics: PhysicsConfig | None = None, **simulation: float | str | bool
+def empty_world(
+    simulation: SimulationConfig,
+    physics: PhysicsConfig | None = None,
+    *,
+    gravity: float | None = GRAVITY,
 ) -> World:
     """Return a world with every physics system and nothing in it.
 
     Parameters
     ----------
+    physics : PhysicsConfig, optional
+        The laws; where none are given, gravity alone.
     gravity : float, optional
         Downwards [m/s^2]; none where ``None``.
-    physics : PhysicsConfig, optional
-        Other laws, in place of that gravity.
-    **simulation
-        Fields of :class:`SimulationConfig`. Nobody sleeps unless they say so: what creeps is to be seen.
     """
     if physics is None:
         mode = "none" if gravity is None else "linear"
         physics = PhysicsConfig(gravity_mode=mode, gravity=Vector2(0.0, -(gravity or 0.0)))
+    return World(*standard_systems(), physics=physics, simulation=simulation)
+
+
+def open_space(
+    *,
+    gravity: float | None = GRAVITY,
+    physics: PhysicsConfig | None = None,
+    **simulation: float | str | bool,
+) -> World:
+    """Return an empty world in which nothing sleeps unless ``sleeping`` is given, so that creep is seen.
+
+    Parameters
+    ----------
+    gravity, physics
+        As of :func:`empty_world`.
+    **simulation
+        Fields of :class:`SimulationConfig`.
+    """
     config = SimulationConfig(**{"sleeping": False, **simulation})  # type: ignore[arg-type]
-    return World(*standard_systems(), physics=physics, simulation=config)
+    return empty_world(config, physics, gravity=gravity)
 
 
 def floor(
@@ -66,27 +91,32 @@ def spawn_point(
     return world.spawn(Transform(position), Velocity(velocity), Mass(mass), *more)
 
 
-def place(world: World, entity: int) -> Vector2:
-    """Return where a body is [m]."""
-    return world.component(entity, Transform).position
+def place(world: World, body: int | str) -> Vector2:
+    """Return where a body is [m], by its entity or its name."""
+    return world.component(world.entity(body) if isinstance(body, str) else body, Transform).position
+
+
+def velocity(world: World, body: int | str) -> Vector2:
+    """Return how a body moves [m/s], by its entity or its name."""
+    return world.component(world.entity(body) if isinstance(body, str) else body, Velocity).linear
 
 
 def largest(world: World, steps: int, look: Callable[[], float], every: int = 1) -> float:
-    """Return the largest number seen on the way, looking after every so many steps; NaN if one was."""
-    most = -math.inf
+    """Return the largest number that ``look`` returns after every so many steps; NaN if it returns one."""
+    found = -math.inf
     for _ in world.stepping(steps=steps, stride=every):
         seen = look()
-        if not seen <= most:
-            most = seen
-        if math.isnan(most):
+        if not seen <= found:
+            found = seen
+        if math.isnan(found):
             break
-    return most
+    return found
 
 
 def energy_growth(world: World, steps: int, scale: float | None = None, every: int = 1) -> float:
-    """Return by how much the energy rose above that at the start, at the most.
+    """Return the largest rise of the energy above that at the start; 0 where it only fell.
 
-    As a share of ``scale`` [J], or of the energy at the start; where it fell it is 0.
+    As a share of ``scale`` [J], or of the energy at the start.
     """
     start = measure_energy(world).total
     share = abs(start) if scale is None else scale

@@ -1,0 +1,119 @@
+"""What the commands of the labs have in common: names of cases, progress, tables, documents and plots."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TextIO
+
+from physicslab.commands.command_error import CommandError
+from physicslab.commands.output import Output
+from physicslab.commands.pictures import picture_directory
+from physicslab.commands.progress import Progress
+from physicslab.files.checks import shown, suggestion
+from physicslab.files.json_text import json_text
+from physicslab.lab.case import Case, Catalogue, Job, run_jobs
+from physicslab.lab.table import table
+
+__all__ = ["LabRun", "add_lab_arguments", "chosen_cases", "list_cases", "unknown_name"]
+
+
+def add_lab_arguments(parser: ArgumentParser, kind: str, what: str, plot: str = "") -> None:
+    """Declare the arguments of every lab: names, of what ``kind`` and ``what`` they may be, and outputs.
+
+    Parameters
+    ----------
+    plot : str
+        What ``--plot`` draws; there is no such option where it is empty.
+    """
+    parser.add_argument("names", metavar=kind.upper(), nargs="*", help=what)
+    parser.add_argument("--list", action="store_true", help=f"print the name of every {kind} and stop")
+    parser.add_argument("--json", metavar="FILE", help="write everything that was measured (- for stdout)")
+    if plot:
+        parser.add_argument("--plot", metavar="DIR", help=plot)
+
+
+def list_cases[AnyCase: Case](catalogue: Catalogue[AnyCase]) -> int:
+    """Print a line for each case: name, family and title; return the exit status."""
+    print(table([(case.name, case.family, case.title) for case in catalogue.values()], words=(0, 1, 2)))
+    return 0
+
+
+def chosen_cases[AnyCase: Case](
+    names: Iterable[str], catalogue: Catalogue[AnyCase], unknown: Callable[[str], AnyCase | None]
+) -> list[AnyCase]:
+    """Return the cases of these names, each once.
+
+    Parameters
+    ----------
+    unknown : callable
+        Takes a name that is not in the catalogue; returns a case made of it, or ``None`` for one that is
+        dealt with otherwise, or raises :class:`CommandError`.
+    """
+    chosen: dict[str, AnyCase] = {}
+    for name in names:
+        if found := catalogue.select(name):
+            chosen |= {case.name: case for case in found}
+        elif (case := unknown(name)) is not None:
+            chosen[name] = case
+    return list(chosen.values())
+
+
+def unknown_name(name: str, kind: str, names: Iterable[str], known: str) -> CommandError:
+    """Return the error for a name that there is not, with the likeliest of ``names`` or else ``known``."""
+    return CommandError(f"{shown(name)}: is no {kind}{suggestion(name, names) or '; ' + known}")
+
+
+class LabRun:
+    """One run of a lab's command: its outputs are checked when it is made, before any work.
+
+    Parameters
+    ----------
+    label : str
+        The command's name.
+    arguments : Namespace
+        What was parsed.
+    example : str
+        A name that a plot may have.
+
+    Raises
+    ------
+    CommandError
+        If an output cannot be written.
+    """
+
+    def __init__(self, label: str, arguments: Namespace, example: str = "") -> None:
+        self._label = label
+        self._json = None if arguments.json is None else Output("--json", arguments.json)
+        self._quiet = self._json is not None and self._json.to_stdout
+        plot = getattr(arguments, "plot", None)
+        self._pictures = None if plot is None else picture_directory(plot, f"{example}.png")
+
+    def show(self, text: str, stream: TextIO | None = None) -> None:
+        """Print a text to stdout or another stream, unless stdout is for the document alone."""
+        if not self._quiet:
+            print(text, file=stream, flush=True)
+
+    def results[Result](self, jobs: Sequence[tuple[float, Job[Result]]]) -> Iterator[Result]:
+        """Yield the result of each job, and show on the terminal how far all are."""
+        progress = Progress(self._label, sys.stderr)
+        try:
+            for found in run_jobs(jobs):
+                if isinstance(found, float):
+                    progress.show(found)
+                else:
+                    progress.clear()
+                    yield found
+        finally:
+            progress.clear()
+
+    def draw(self, name: str, picture: Callable[[], bytes]) -> None:
+        """Write a plot, if ``--plot`` was given; only then is ``picture`` called."""
+        if self._pictures is not None:
+            Output("--plot", str(self._pictures / f"{name}.png")).write(picture())
+
+    def write(self, document: dict[str, object]) -> None:
+        """Write the document, if ``--json`` was given."""
+        if self._json is not None:
+            self._json.write(json_text(document).encode("utf-8"))

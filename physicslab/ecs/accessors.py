@@ -1,0 +1,121 @@
+"""How the fields of a component are made, read and written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from numpy.typing import NDArray
+
+from physicslab.ecs.fields import REQUIRED, Field, Kind
+from physicslab.ecs.vector import Vector2
+
+__all__ = ["ABSENT", "Derived", "Maker", "Vector", "accessor", "maker"]
+
+type Maker = Callable[[object], list[list[Any]]]
+"""Makes of a value what a detached component holds of it: a list a column."""
+ABSENT: Any = object()
+"""What stands for a value that was not given."""
+
+
+class Vector:
+    """The type of a vector field: reads as :class:`Vector2`, takes any pair of numbers."""
+
+    def __get__(self, handle: object, owner: type | None = None) -> Vector2:
+        """Return the vector stored in the handle's row."""
+        raise NotImplementedError  # the decorator puts a property in this place
+
+    def __set__(self, handle: object, value: Vector2 | Sequence[float] | NDArray[Any]) -> None:
+        """Store a pair of numbers in the handle's row."""
+        raise NotImplementedError
+
+
+class Derived:
+    """The type of a number that the world works out where it is ``None``: reads as ``float``, takes both."""
+
+    def __get__(self, handle: object, owner: type | None = None) -> float:
+        """Return the number in the handle's row; 0 while it is not given and no world has worked it out."""
+        raise NotImplementedError  # the decorator puts a property in this place
+
+    def __set__(self, handle: object, value: float | None) -> None:
+        """Give the number by hand, or hand it back to the world with ``None``."""
+        raise NotImplementedError
+
+
+def maker(spec: Field) -> Maker:
+    """Make what turns a value of a field into what a detached component holds of it: a list a column."""
+    check, low, high, default = spec.check, spec.lowest, spec.highest, spec.default
+
+    def settled(value: object) -> object:
+        if value is not ABSENT:
+            return value
+        if default is REQUIRED:
+            raise TypeError(f"{spec.owner} needs {spec.name}: {spec.allowed}")
+        return default
+
+    def number(value: object) -> list[list[Any]]:
+        if type(value) is float and low <= value <= high:
+            return [[value]]
+        return [[check(settled(value))]]
+
+    def vector(value: object) -> list[list[Any]]:
+        return [list(check(settled(value)))]
+
+    def derived(value: object) -> list[list[Any]]:
+        value = settled(value)
+        return [[0.0], [False]] if value is None else [[check(value)], [True]]
+
+    def other(value: object) -> list[list[Any]]:
+        return [[check(settled(value))]]
+
+    makers: dict[Kind, Maker] = {"number": number, "vector": vector}
+    return derived if spec.derived else makers.get(spec.kind, other)
+
+
+def accessor(spec: Field, column: int, *, validated: bool) -> property:
+    """Make the property that reads and writes one field of a handle's row."""
+    check, low, high = spec.check, spec.lowest, spec.highest
+    reads: dict[Kind, Callable[[Any], Any]] = {
+        "number": lambda self: self._views[column][self._row],
+        "whole": lambda self: self._views[column][self._row],
+        "flag": lambda self: self._views[column][self._row],
+        "entity": lambda self: self._views[column][self._row] or None,
+        "choice": lambda self: spec.choices[self._views[column][self._row] - 1],
+    }
+
+    def read_vector(self: Any) -> Vector2:
+        view, i = self._views[column], 2 * self._row
+        return Vector2(view[i], view[i + 1])
+
+    def write(self: Any, value: object) -> None:
+        self._views[column][self._row] = check(value)
+
+    def write_number(self: Any, value: object) -> None:
+        in_range = type(value) is float and low <= value <= high
+        self._views[column][self._row] = value if in_range else check(value)
+
+    def write_vector(self: Any, value: object) -> None:
+        view, i = self._views[column], 2 * self._row
+        view[i], view[i + 1] = check(value)
+
+    def write_derived(self: Any, value: object) -> None:
+        if value is not None:
+            self._views[column][self._row] = check(value)
+        self._views[column + 1][self._row] = value is not None
+
+    writes: dict[Kind, Callable[[Any, object], None]] = {"number": write_number, "vector": write_vector}
+    write_field = write_derived if spec.derived else writes.get(spec.kind, write)
+
+    def write_validated(self: Any, value: object) -> None:
+        type(self)(**{**self.given(), spec.name: value})  # raises where the values do not go together
+        write_field(self, value)
+
+    def refuse(self: Any, value: object) -> None:
+        raise AttributeError(f"{spec.owner}.{spec.name} is settled when the component is made; add a new one")
+
+    unit = "" if spec.unit == "1" else f" [{spec.unit}]"
+    return property(
+        reads.get(spec.kind, read_vector),
+        refuse if spec.fixed else write_validated if validated else write_field,
+        doc=f"{spec.meaning}{unit}",
+    )

@@ -1,0 +1,114 @@
+"""The columns of one component in one world."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.ecs.component import Component
+from physicslab.ecs.fields import Kind
+
+__all__ = ["Table"]
+
+_DTYPES: Mapping[Kind, type] = {
+    "number": np.float64,
+    "whole": np.int64,
+    "vector": np.float64,
+    "flag": np.bool_,
+    "entity": np.int64,
+    "choice": np.int64,
+}
+
+
+class Table:
+    """The columns of one component in one world, one row an entity.
+
+    All tables of a world number their rows alike, so that a kernel indexes every column with the same number.
+    Row 0 is the world itself, fixed at the origin. A row whose entity lacks the component holds zeros, which
+    every kernel reads as "nothing here": no mass, no speed, no shape.
+
+    ``table["position"]`` is the column of a field, in use rows only; a derived field has a second column
+    ``"<field>_given"``. The arrays are views that stay valid until the next structural change.
+    """
+
+    def __init__(self, component: type[Any], capacity: int) -> None:
+        self.component: type[Component] = component
+        self.handles: dict[int, Component] = {}
+        self.present: NDArray[np.bool_] = np.zeros(0, np.bool_)
+        self._names: list[str] = []
+        self._storage: list[NDArray[Any]] = []
+        self._views: list[Any] = []
+        self._columns: dict[str, NDArray[Any]] = {}
+        for spec in self.component.FIELDS:
+            self._names.append(spec.name)
+            shape = (0, 2) if spec.kind == "vector" else (0,)
+            self._storage.append(np.zeros(shape, _DTYPES[spec.kind]))
+            if spec.derived:
+                self._names.append(f"{spec.name}_given")
+                self._storage.append(np.zeros(0, np.bool_))
+        self._present = self.present
+        self.resize(0, capacity)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self._columns[name]
+
+    @property
+    def columns(self) -> list[NDArray[Any]]:
+        """Every column, in the order in which components hold them."""
+        return list(self._columns.values())
+
+    def resize(self, rows: int, capacity: int) -> None:
+        """Use the first ``rows`` rows, with room for ``capacity``."""
+        if capacity > len(self._present):
+            self._present = _grown(self._present, capacity)
+            self._storage = [_grown(column, capacity) for column in self._storage]
+            # Handles share this list, so replacing its items moves every one of them to the new memory.
+            self._views[:] = [memoryview(column.reshape(-1)) for column in self._storage]
+        self.present = self._present[:rows]
+        self._columns = {name: column[:rows] for name, column in zip(self._names, self._storage, strict=True)}
+
+    def adopt(self, entity: int, handle: Component, row: int) -> None:
+        """Move a detached component's values into ``row``; from here on the handle is a view of it."""
+        if handle._row:
+            raise ValueError(
+                f"entity {entity}: this {type(handle).__name__} object already belongs to an entity; "
+                f"make one for each"
+            )
+        for view, own in zip(self._views, handle._views, strict=True):
+            if len(own) == 2:
+                view[2 * row], view[2 * row + 1] = own
+            else:
+                view[row] = own[0]
+        handle._views, handle._row = self._views, row
+        self._present[row] = True
+        self.handles[entity] = handle
+
+    def release(self, entity: int) -> None:
+        """Detach the entity's handle, which keeps its last values, and blank its row."""
+        handle = self.handles.pop(entity)
+        row = handle._row
+        handle._views = [
+            [view[2 * row], view[2 * row + 1]] if column.ndim == 2 else [view[row]]
+            for view, column in zip(self._views, self._storage, strict=True)
+        ]
+        handle._row = 0
+        self._present[row] = False
+        for column in self._storage:
+            column[row] = 0
+
+    def compact(self, kept: NDArray[np.int64], row_of: Mapping[int, int]) -> None:
+        """Move rows ``kept`` to the front, in order; ``row_of`` gives each entity its new row."""
+        for column in (self._present, *self._storage):
+            column[: len(kept)] = column[kept]
+            column[len(kept) :] = 0
+        for entity, handle in self.handles.items():
+            handle._row = row_of[entity]
+
+
+def _grown(column: NDArray[Any], capacity: int) -> NDArray[Any]:
+    larger = np.zeros((capacity, *column.shape[1:]), column.dtype)
+    larger[: len(column)] = column
+    return larger

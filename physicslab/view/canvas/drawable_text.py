@@ -1,0 +1,47 @@
+"""Text as a font can draw it: scene files and file names may hold any letter, and any number of them."""
+
+from __future__ import annotations
+
+import unicodedata
+
+__all__ = ["MAX_LETTERS", "drawable", "shortened"]
+
+MAX_LETTERS = 1000
+"""Longer text is cut: no line, no caption and no message is read beyond that."""
+_MAX_MARKS = 3
+"""Accents and other marks on one letter."""
+
+
+def shortened(words: str, letters: int) -> str:
+    """Return text of at most ``letters`` letters, the last of which is an ellipsis where it was cut.
+
+    >>> shortened("Five restitutions", 8), shortened("drop", 8)
+    ('Five re…', 'drop')
+    """
+    return words if len(words) <= letters else words[: letters - 1] + "…"
+
+
+def drawable(words: str) -> str:
+    r"""Return text without what fonts refuse: control characters and halves of surrogate pairs.
+
+    Line breaks and tabs become spaces, all else that cannot be printed a replacement character. Of marks
+    piled up on one letter those that would reach into other lines are left out.
+
+    >>> drawable("a\tb\x00c\udce9")
+    'a b\ufffdc\ufffd'
+    """
+    words = shortened(words, MAX_LETTERS)
+    if words.isascii() and words.isprintable():
+        return words
+    letters, marks = [], 0
+    for letter in words:
+        marks = marks + 1 if unicodedata.combining(letter) else 0
+        if marks <= _MAX_MARKS:
+            letters.append(_drawable_letter(letter))
+    return "".join(letters)
+
+
+def _drawable_letter(letter: str) -> str:
+    if letter.isprintable():
+        return letter
+    return " " if letter.isspace() else "\ufffd"

@@ -1,0 +1,71 @@
+"""What the user can do with scene files, and what is written of the window."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from physicslab.ecs.fields import InvalidValue
+from physicslab.files.scene import SceneError, load_scene, save_scene
+from physicslab.view.controls.scene_files import new_scene_path, newest_scene
+from physicslab.view.window.window import Window
+from physicslab.world import World
+
+__all__ = ["open_scene", "reopen", "request_screenshot", "save", "study_error"]
+
+
+def save(world: World, window: Window) -> None:
+    """Save the world to a new scene file where the program was started."""
+    try:
+        path = new_scene_path(Path.cwd(), world.name)
+        save_scene(world, path)
+    except (SceneError, OSError) as error:
+        window.notify(f"The scene could not be saved: {error}", 6.0, failed=True)
+    else:
+        window.scene_file = path
+        window.notify(f"Saved {path}")
+
+
+def reopen(world: World, window: Window) -> None:
+    """Open the scene file last saved or opened, or else the newest; where that fails, all stays as it is."""
+    try:
+        path = window.scene_file or newest_scene(Path.cwd())
+    except OSError as error:
+        window.notify(f"Not opened: {error}", 8.0, failed=True)
+        return
+    if path is None:
+        window.notify(f"There is no scene file in {Path.cwd()}: Ctrl+S saves one", failed=True)
+    else:
+        open_scene(window, path)
+
+
+def open_scene(window: Window, source: str | Path) -> None:
+    """Open a built-in scene by name, or a file; where that fails, all stays as it is."""
+    try:
+        opened = load_scene(source)
+        opened.synchronise()
+    except (SceneError, InvalidValue, OSError) as error:
+        window.notify(f"Not opened: {error}", 8.0, failed=True)
+        return
+    window.next_world = opened
+    if isinstance(source, Path):
+        window.scene_file = source
+    window.notify(f"Opened {source if isinstance(source, Path) else opened.title}")
+
+
+def request_screenshot(world: World, window: Window) -> None:
+    """Let a picture of the window be kept as soon as this frame is drawn."""
+    window.wants_screenshot = True
+
+
+def study_error(world: World, window: Window) -> None:
+    """Measure error against run time of the scene as it is now; show it when that is done."""
+    if window.error_study.running:
+        window.error_study.stop()
+        window.notify("Measuring error against run time: stopped")
+        return
+    try:
+        window.error_study.start(world)
+    except (OSError, SceneError) as error:
+        window.notify(f"Error against run time could not be measured: {error}", failed=True)
+    else:
+        window.notify("Measuring error against run time of this scene; F5 stops it", 600.0)
