@@ -30,10 +30,11 @@ def name_of(jitted: Any) -> str:
 
 
 @contextmanager
-def compared(calls: Counter[str], most: int) -> Iterator[None]:
-    """Compare both tiers in the first ``most`` calls of each kernel that are made within a ``with`` block.
+def compared(calls: Counter[str]) -> Iterator[None]:
+    """Compare both tiers in the calls of kernels that are made within a ``with`` block.
 
-    The run goes on with what the compiled kernels give; ``calls`` counts what was compared. Forces that are
+    Of each kernel in the first call, the second, the fourth and so on: what is settled late counts too. The
+    run goes on with what the compiled kernels give; ``calls`` counts what was compared. Forces that are
     called by address are Python in the one and compiled in the other.
     """
     load_all()
@@ -47,9 +48,9 @@ def compared(calls: Counter[str], most: int) -> Iterator[None]:
         names = list(inspect.signature(jitted.py_func).parameters)
 
         def call(*arguments: Any) -> Any:
-            if seen[name] >= most:
-                return code(*arguments)
             seen[name] += 1
+            if seen[name] & (seen[name] - 1):
+                return code(*arguments)
             calls[name] += 1
             copies = _Copies().of(arguments)
             returned, answer = code(*arguments), entry(*copies)
