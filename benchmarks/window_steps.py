@@ -30,7 +30,7 @@ from physicslab.lab.document import lab_document, machine_text
 from physicslab.lab.table import table
 from physicslab.systems.system import Stage
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.window import Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 DEFAULT = ("circles_10", "pyramid_30", "pyramid_60", "pile_1000", "pile_4000", "gas_2000")

@@ -1,20 +1,40 @@
-"""Kernels: one signature each, and kept between runs."""
+"""Kernels: one signature each, compiled when they are needed."""
 
 import ast
+import gc
 import importlib
-import os
 import re
-import subprocess
-import sys
+import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
+from compiled import compiled
 
-from physicslab import kernels
-from physicslab.kernels import KERNELS, Flags, Numbers, Rows, Vectors, compile_kernels, kernel, motion
+from physicslab import World, kernels
+from physicslab.components import Mass, Transform, Velocity
+from physicslab.kernels import (
+    KERNELS,
+    Flags,
+    Numbers,
+    Rows,
+    Vectors,
+    allocating,
+    ask_before_compiling,
+    compile_kernels,
+    fused,
+    inlined,
+    inlined_loosely,
+    kernel,
+    load,
+    motion,
+    seconds_waited,
+    working_ns,
+)
+from physicslab.state.state import State
+from physicslab.systems.system import Stage, System, at
 
 FOLDER = Path(kernels.__file__).parent
 MODULES = sorted(
@@ -108,53 +128,135 @@ def test_every_kernel_compiles(module: str) -> None:
     assert all(made.py_func.__doc__ for made in own)
 
 
-# ---- the cache ---------------------------------------------------------------------------------------------
+def test_a_kernel_is_compiled_at_its_first_call_and_for_its_signature_alone() -> None:
+    @kernel
+    def doubled(numbers: Numbers, n: int) -> float:
+        return float(2.0 * numbers[n])
 
-COMPILE = """
-from physicslab.kernels import cache_directory, compile_kernels, motion
-compile_kernels((motion.clear,))
-print(cache_directory(), sum(motion.clear.stats.cache_hits.values()))
-"""
-
-
-def run_with(**environment: str) -> tuple[Path, int]:
-    """Compile one kernel in a fresh process; return where it is kept, and whether it was there already."""
-    done = subprocess.run(
-        [sys.executable, "-c", COMPILE],
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    place, hits = done.stdout.split()
-    return Path(place), int(hits)
+    try:
+        assert not doubled.compiled  # type: ignore[attr-defined]
+        before = seconds_waited()
+        with pytest.raises(TypeError, match="No matching definition"):
+            doubled(np.ones(3, np.float32), 1)
+        assert len(doubled.signatures) == 1  # type: ignore[attr-defined]
+        assert doubled(np.ones(3), 1) == 2.0
+        assert doubled.compiled and seconds_waited() > before  # type: ignore[attr-defined]
+    finally:
+        KERNELS.remove(doubled)
 
 
-def test_kernels_are_kept_between_runs(tmp_path: Path) -> None:
-    place, hits = run_with(XDG_CACHE_HOME=str(tmp_path))
-    assert place.is_relative_to(tmp_path) and hits == 0
-    assert list(place.rglob("*.nbc"))
-    assert run_with(XDG_CACHE_HOME=str(tmp_path)) == (place, 1)
+def test_what_is_called_at_first_may_be_answered_by_something_else() -> None:
+    """While another process compiles it, a kernel need not be there."""
+
+    @kernel
+    def tripled(x: float) -> float:
+        return 3.0 * x
+
+    asked: list[Any] = []
+
+    def interpret(missing: Sequence[Any]) -> list[Any]:
+        asked.extend(missing)
+        missing[0]._compile_for_args = lambda *_: missing[0].py_func
+        return list(missing)
+
+    try:
+        ask_before_compiling(interpret)
+        assert tripled(2.0) == 6.0
+        assert asked == [tripled] and not tripled.compiled  # type: ignore[attr-defined]
+        load(tripled)
+        assert tripled(2.0) == 6.0 and len(tripled.signatures) == 1  # type: ignore[attr-defined]
+    finally:
+        ask_before_compiling(None)
+        KERNELS.remove(tripled)
 
 
-def test_a_cache_that_cannot_be_written_is_put_elsewhere(tmp_path: Path) -> None:
-    blocked = tmp_path / "a file"
-    blocked.write_text("no directory")
-    place, _ = run_with(XDG_CACHE_HOME=str(blocked), TMPDIR=str(tmp_path))
-    assert place.is_relative_to(tmp_path) and not place.is_relative_to(blocked)
+@pytest.mark.parametrize("make", [inlined, allocating, inlined_loosely, fused])
+def test_inner_functions_refuse_calls_from_python(make: Any) -> None:
+    """They have no entry for it: of one that a kernel calls, such a call would end the process."""
+
+    @make  # type: ignore[untyped-decorator]
+    def half(x: float) -> float:
+        return 0.5 * x
+
+    @inlined
+    def calls(x: float) -> float:
+        return float(half(x))
+
+    assert compiled(calls)(3.0) == 1.5 == half.py_func(3.0)
+    with pytest.raises(TypeError, match=r"half is called by kernels alone"):
+        half(3.0)
+    assert type(half._cache).__name__ == "NullCache"
 
 
-def test_the_cache_is_named_after_what_is_in_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = kernels.cache_directory()
-    assert kernels.cache_directory() == before
-    monkeypatch.setattr(numba, "__version__", "0.0")
-    assert kernels.cache_directory() != before
-    kernels.cache_directory().rmdir()
+def test_inner_functions_are_compiled_once_for_constants_and_variables() -> None:
+    @inlined
+    def shifted(x: float, n: int, up: bool) -> float:
+        return x + n if up else x - n
+
+    @inlined
+    def calls(n: int) -> float:
+        total, k = 0.0, 0
+        while k < n:
+            total += shifted(1.0, k, True) + shifted(1.0, 1, False)
+            k += 1
+        return total
+
+    assert compiled(calls)(3) == 1.0 + 2.0 + 3.0
+    assert len(shifted.signatures) == 1  # type: ignore[attr-defined]
+
+
+def test_the_clock_of_work_stands_still_while_kernels_are_compiled() -> None:
+    @kernel
+    def squared(x: float) -> float:
+        return x * x
+
+    try:
+        real, work = time.perf_counter_ns(), working_ns()
+        seconds = compile_kernels((squared,))
+        real, work = time.perf_counter_ns() - real, working_ns() - work
+        assert seconds > 0.005
+        assert abs(real - work - 1e9 * seconds) < 1e6
+        assert gc.isenabled()
+    finally:
+        KERNELS.remove(squared)
+
+
+class _Late(System):
+    """Calls a kernel that is not compiled yet."""
+
+    def __init__(self, late: Any) -> None:
+        self._late = late
+
+    @at(Stage.FINISH)
+    def call(self, state: State, h: float) -> None:
+        self._late(h)
+
+
+def test_the_wait_for_a_kernel_is_no_cost_of_the_system_that_calls_it() -> None:
+    @kernel
+    def late(x: float) -> float:
+        return x + 1.0
+
+    def compile_slowly(missing: Sequence[Any]) -> None:
+        time.sleep(0.2)
+
+    world = World(_Late(late))
+    world.spawn(Transform(), Velocity(), Mass(1.0))
+    try:
+        world.synchronise()
+        before = world.compile_s
+        ask_before_compiling(compile_slowly)
+        world.step(0.01)
+    finally:
+        ask_before_compiling(None)
+        KERNELS.remove(late)
+    assert world.schedule.timings["_Late"].ms < 100.0
+    assert world.compile_s - before >= 0.2
 
 
 def test_functions_that_count_no_references_return_no_arrays() -> None:
     """What one of those returned would be given up once too often by whoever called it."""
-    for path in sorted(FOLDER.glob("*.py")):
+    for path in sorted(FOLDER.rglob("*.py")):
         for node in ast.parse(path.read_text()).body:
             if isinstance(node, ast.FunctionDef) and node.returns is not None:
                 decorators = {ast.unparse(decorator) for decorator in node.decorator_list}

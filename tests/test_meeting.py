@@ -3,12 +3,15 @@
 import math
 
 import numpy as np
+from compiled import compiled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from physicslab.kernels.events.meeting import meet_box_box, meet_circle_box, meet_circle_circle, meet_line
+from physicslab.kernels.events import meeting
 
+meet_line, meet_circle_circle = compiled(meeting.meet_line), compiled(meeting.meet_circle_circle)
+meet_circle_box, meet_box_box = compiled(meeting.meet_circle_box), compiled(meeting.meet_box_box)
 away = st.floats(1.0, 3.0)
 turns = st.floats(0.0, 6.28)
 speeds = st.floats(-5.0, 5.0)

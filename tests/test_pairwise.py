@@ -7,13 +7,15 @@ from typing import Any
 import numba
 import numpy as np
 import pytest
+from compiled import compiled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from physicslab.kernels import FASTMATH
 from physicslab.kernels.forces import gravity, packed_forces, pairwise
-from physicslab.kernels.forces.pairwise import inverse_root
+
+inverse_root = compiled(pairwise.inverse_root)
 
 type Array = NDArray[np.float64]
 LAWS = ("clamp", "plummer")

@@ -1,19 +1,22 @@
 """Warmup: kernels are compiled by other processes while the window stays awake."""
 
 import os
+import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import pygame
 import pytest
 
-from physicslab.desktop import compiling
+from physicslab.desktop import app, compiling
 from physicslab.desktop.compiling import Compiling, Left
 from physicslab.ecs.config import WindowConfig
-from physicslab.kernels import motion, warm
-from physicslab.kernels.warm import Progress, Warmup, is_warm, load_all
+from physicslab.kernels import cache, keys, motion, warm
+from physicslab.kernels.warm import Progress, Warmup, is_warm, load_all, mark_warm, name_of
 from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.display import Display, wants_to_leave
 from physicslab.view.canvas.theme import DARK
@@ -22,6 +25,7 @@ from physicslab.view.panels.progress import draw_progress
 ECHO = (sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line.strip(), flush=True)")
 _SLOWLY = "import sys, time\nfor line in sys.stdin: time.sleep(0.02); print(line, end='', flush=True)"
 SLOW = (sys.executable, "-c", _SLOWLY)
+SLOWER = (sys.executable, "-c", _SLOWLY.replace("0.02", "0.6"))
 ASLEEP = (sys.executable, "-c", "import time; time.sleep(60)")
 BROKEN = (sys.executable, "-c", "import sys; sys.stdin.readline(); sys.exit(1)")
 
@@ -31,8 +35,9 @@ class Waiting:
 
     declared_signature = None
 
-    def __init__(self, name: str) -> None:
-        self.__name__, self.__module__, self.compiled = name, "test", False
+    def __init__(self, name: str, module: str = "test") -> None:
+        self.__name__, self.__module__, self.compiled = name, module, False
+        self.py_func = motion.clear.py_func  # type: ignore[attr-defined]
 
     def compile(self, signature: object) -> None: ...
 
@@ -41,9 +46,10 @@ class Waiting:
 
 @pytest.fixture
 def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Put the mark of a full cache elsewhere."""
-    monkeypatch.setattr(warm, "_mark", lambda: tmp_path / "complete")
-    return tmp_path / "complete"
+    """Let the cache be an empty folder, whatever is written there is a full one; return its mark."""
+    monkeypatch.setattr(cache, "_directory", tmp_path)
+    monkeypatch.setattr(warm, "mark_warm", lambda: cache.mark().write_text(""))
+    return cache.mark()
 
 
 def wait_for(warmup: Warmup, seconds: float = 30.0) -> Progress:
@@ -86,16 +92,125 @@ def test_kernels_have_names_of_their_own() -> None:
     assert "physicslab.kernels.raster.paint_discs" in names
 
 
-def test_the_mark_hangs_on_the_sources(tmp_path: Path) -> None:
-    before = warm._mark()
-    source = Path(warm.__file__)
-    status = source.stat()
-    os.utime(source, ns=(status.st_atime_ns, status.st_mtime_ns + 1_000_000_000))
-    try:
-        assert warm._mark() != before
-    finally:
-        os.utime(source, ns=(status.st_atime_ns, status.st_mtime_ns))
-    assert warm._mark() == before
+def plant(root: Path, names: Iterable[str]) -> None:
+    """Put empty files where the compiled kernels of these names would be."""
+    load_all()
+    for jitted in warm._own():
+        if name_of(jitted) in names:
+            function = jitted.py_func
+            folder = root / keys.folder_of(jitted.__module__)
+            folder.mkdir(exist_ok=True)
+            line = function.__code__.co_firstlineno
+            (folder / f"{folder.name}.{function.__qualname__}-{line}.py312.nbi").touch()
+
+
+def test_the_mark_says_that_every_kernel_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cache, "_directory", tmp_path)
+    names = load_all()
+    plant(tmp_path, names[1:])
+    mark_warm()
+    assert not is_warm()
+    plant(tmp_path, names)
+    assert not is_warm()
+    mark_warm()
+    assert is_warm()
+    shutil.rmtree(tmp_path / keys.folder_of("physicslab.kernels.raster"))
+    assert not is_warm()
+
+
+def test_the_mark_depends_on_the_sources(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = cache.mark()
+    monkeypatch.setattr(cache, "current_folders", lambda: keys.current_folders() | {"motion": "motion-0"})
+    assert cache.mark() != before
+
+
+def test_what_is_kept_is_not_compiled_again(mark: Path) -> None:
+    """After an edit most of the cache is still right."""
+    names = load_all()
+    plant(mark.parent, names[2:])
+    with Warmup(3, ECHO) as warmup:
+        assert len(warmup._processes) == 2
+        progress = wait_for(warmup)
+    assert progress.done == progress.total == len(names)
+
+
+needs_priorities = pytest.mark.skipif(
+    not hasattr(os, "setpriority"), reason="no priorities of processes here"
+)
+
+
+@needs_priorities
+def test_workers_stand_back_only_while_nothing_waits(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[tuple[int, int]] = []
+    monkeypatch.setattr(os, "setpriority", lambda kind, process, value: given.append((process, value)))
+    own = os.getpriority(os.PRIO_PROCESS, 0)
+    with Warmup(2, ASLEEP) as warmup:
+        workers = [process.pid for process in warmup._processes]
+        warmup.yield_to_others(False)
+        assert not given
+        warmup.yield_to_others(True)
+        warmup.yield_to_others(True)
+        assert given == [(worker, own + warm._YIELDING) for worker in workers]
+        given.clear()
+        warmup.yield_to_others(False)
+        assert given == [(worker, own) for worker in workers]
+
+
+@needs_priorities
+def test_workers_that_may_not_come_forward_again_are_replaced(
+    mark: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = os.getpriority(os.PRIO_PROCESS, 0)
+
+    def only_back(kind: int, process: int, value: int) -> None:
+        if value <= own:
+            raise PermissionError
+
+    monkeypatch.setattr(os, "setpriority", only_back)
+    with Warmup(2, SLOW) as warmup:
+        first = list(warmup._processes)
+        warmup.yield_to_others(True)
+        assert warmup._processes == first
+        warmup.yield_to_others(False)
+        assert len(warmup._processes) == 4 and warmup._retired == set(first)
+        assert all(process.wait(30.0) is not None for process in first)
+        progress = wait_for(warmup)
+    assert progress.done == progress.total
+
+
+class CountingDisplay:
+    """A display that counts how often it is shown."""
+
+    def __init__(self) -> None:
+        self.canvas, self.shown, self.left = RecordingCanvas((640, 480)), 0, 0.0
+
+    def show(self) -> float:
+        self.shown += 1
+        return 0.0
+
+
+def test_the_bar_is_drawn_where_it_changes(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """To draw it 60 times a second took as much of the processor as the compilers."""
+    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, SLOWER))
+    monkeypatch.setattr(compiling, "wants_to_leave", lambda: False)
+    display: Any = CountingDisplay()
+    names = load_all()
+    with Compiling(display) as waiting:
+        start = time.monotonic()
+        waiting._wait([Waiting(names[0].rpartition(".")[2], names[0].rpartition(".")[0])])
+        seconds = time.monotonic() - start
+    assert seconds > 0.5  # in which there were 30 frames
+    assert display.shown <= 3 + waiting._progress.done + seconds
+
+
+def test_a_window_that_loads_is_drawn_where_it_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(app, "_import", lambda module: time.sleep(0.4))
+    monkeypatch.setattr(app, "wants_to_leave", lambda: False)
+    display: Any = CountingDisplay()
+    assert app._load(display, "nothing")
+    assert 1 <= display.shown <= 3
+    monkeypatch.setattr(app, "wants_to_leave", lambda: True)
+    assert not app._load(display, "nothing")
 
 
 def test_a_worker_compiles_what_it_is_told() -> None:

@@ -1,11 +1,11 @@
 """Eight numbers as one: every operation gives, lane by lane, what it gives of plain numbers."""
 
+import numba
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from physicslab.kernels import inlined
 from physicslab.kernels.wide.float64x8 import (
     choose,
     greater,
@@ -25,7 +25,7 @@ from physicslab.kernels.wide.layout import WIDE
 type Numbers = NDArray[np.float64]
 
 
-@inlined
+@numba.njit(error_model="numpy")
 def arithmetic(x: Numbers, y: Numbers, scale: float, out: Numbers) -> None:
     a, b = take(x, 0), take(y, 0)
     put(out, 0, a + b)
@@ -36,7 +36,7 @@ def arithmetic(x: Numbers, y: Numbers, scale: float, out: Numbers) -> None:
     put(out, 40, 1.0 / size_of(b) + root(size_of(a)))
 
 
-@inlined
+@numba.njit(error_model="numpy")
 def comparisons(x: Numbers, y: Numbers, limit: float, out: Numbers) -> int:
     a, b = take(x, 0), take(y, 0)
     inside = (a < b) & (a > limit)
@@ -46,12 +46,12 @@ def comparisons(x: Numbers, y: Numbers, limit: float, out: Numbers) -> int:
     return true_lanes(inside)
 
 
-@inlined
+@numba.njit(error_model="numpy")
 def plain(x: float, y: float) -> tuple[float, float, float]:
     return least(x, y), greater(x, y), choose(x < y, x, 0.0)
 
 
-@inlined
+@numba.njit(error_model="numpy")
 def moved(vectors: Numbers, numbers: Numbers, rows: NDArray[np.int64], first: int) -> None:
     x, y = take_vectors(vectors, rows, first)
     n = take_numbers(numbers, rows, first)

@@ -10,7 +10,7 @@ from physicslab.desktop.garbage import loading
 from physicslab.ecs.config import WindowConfig
 from physicslab.view.canvas.display import Display, wants_to_leave
 from physicslab.view.canvas.theme import DARK
-from physicslab.view.panels.progress import draw_loading
+from physicslab.view.panels.progress import PAUSE, draw_loading
 
 __all__ = ["FIRST_SCENE", "open_window"]
 
@@ -48,19 +48,22 @@ def _load(display: Display, module: str) -> bool:
     """Import a module in a thread while the window stays awake; return whether the user stayed.
 
     The first time takes seconds, as Python has not kept the bytecode of numba yet. The thread holds frames up
-    for some milliseconds each, which an empty window does not show.
+    for some milliseconds each, which an empty window does not show. The window is drawn where it changes.
     """
     thread = threading.Thread(target=_import, args=(module,), daemon=True)
-    start = time.perf_counter()
-    draw_loading(display.canvas, DARK, "")
-    display.show()
-    thread.start()
-    while thread.is_alive():
+    start, drawn = time.perf_counter(), None
+    while drawn is None or thread.is_alive():
+        seconds = time.perf_counter() - start
+        remark = f"Loading, {int(seconds)} s" if seconds > _PATIENCE else ""
+        if drawn != (remark, display.canvas.size):
+            if drawn is None:
+                thread.start()
+            drawn = remark, display.canvas.size
+            draw_loading(display.canvas, DARK, remark)
+            display.show()
         if wants_to_leave():
             return False
-        seconds = time.perf_counter() - start
-        draw_loading(display.canvas, DARK, f"Loading, {int(seconds)} s" if seconds > _PATIENCE else "")
-        display.show()
+        thread.join(PAUSE)
     return True
 
 

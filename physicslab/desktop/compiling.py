@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from types import TracebackType
 from typing import Any
 
@@ -13,7 +13,7 @@ from physicslab.kernels.solver import fused_contact
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.view.canvas.display import Display, wants_to_leave
 from physicslab.view.canvas.theme import DARK, Theme
-from physicslab.view.panels.progress import draw_corner, draw_progress, draw_waiting
+from physicslab.view.panels.progress import PAUSE, draw_corner, draw_progress, draw_waiting
 
 __all__ = ["Compiling", "Left"]
 
@@ -28,11 +28,11 @@ class Left(Exception):
 
 
 class Compiling:
-    """Sees to it that kernels are there before they are called, in a ``with`` block of the window.
+    """Lets other processes compile kernels, in a ``with`` block of the window, which stays awake.
 
-    On the first launch other processes compile them all, first those that are asked for. What the scene needs
-    at once is interpreted until then if it is small, and else waited for, with the window awake. The rest
-    comes while it runs; only who does something new in a large scene before then waits once more.
+    On the first launch they compile all, first those that the scene is about to call. A small scene is
+    interpreted until these are there; in a large one they are waited for. The rest comes while it runs. A wait
+    follows once more where something new in it needs a kernel that is not there yet.
 
     Parameters
     ----------
@@ -52,6 +52,7 @@ class Compiling:
         self._progress = Progress(0, 1)
         self._frames = 0
         self._theme: Theme = DARK
+        self._drawn: Hashable = None
 
     def __enter__(self) -> Compiling:
         if self._warmup is not None:
@@ -105,24 +106,36 @@ class Compiling:
         assert warmup is not None
         names = [name_of(jitted) for jitted in missing]
         warmup.hurry(names)
-        start = time.perf_counter()
-        self._progress = warmup.poll()
+        start, waits = time.perf_counter(), False
+        self._progress, self._drawn = warmup.poll(), None
         while not (warmup.finished or warmup.has(names)):
+            waits = True
+            warmup.yield_to_others(False)
             if wants_to_leave():
                 raise Left
-            self._show_waiting(time.perf_counter() - start)
+            self._show_waiting(int(time.perf_counter() - start))
             self._load_one(missing)  # all at once would be a long frame when the last is there
-            self._display.show()
-            self._progress = warmup.poll()
+            self._progress = warmup.poll(PAUSE)
+        if waits:
+            self._display.show()  # the next frame begins now: what was waited is no time that passed in it
 
-    def _show_waiting(self, seconds: float) -> None:
-        """Show that it waits: in an empty window before the first frame, over the world after that."""
+    def _show_waiting(self, seconds: int) -> None:
+        """Show that it waits: in an empty window before the first frame, over the world after that.
+
+        It is drawn where it changes, and once a second in case that something lay over the window: to draw it
+        60 times a second took as much of the processor as the compilers.
+        """
         canvas, progress = self._display.canvas, self._progress
+        wanted = progress.done, seconds, canvas.size
+        if wanted == self._drawn:
+            return
+        self._drawn = wanted
         share, so_far = progress.done / progress.total, f"{progress.done} of {progress.total} parts"
         if self._frames:
-            draw_waiting(canvas, self._theme, share, f"{so_far}, {int(seconds)} s")
+            draw_waiting(canvas, self._theme, share, f"{so_far}, {seconds} s")
         else:
             draw_progress(canvas, self._theme, share, so_far)
+        self._display.show()
 
     def advance(self, theme: Theme) -> None:
         """Show in a corner how far it is, and load a kernel if this frame has time left for it."""
@@ -130,6 +143,7 @@ class Compiling:
         self._theme = theme
         if self._warmup is not None and not self._warmup.finished:
             self._progress = self._warmup.poll()
+            self._warmup.yield_to_others(True)
             share = self._progress.done / self._progress.total
             draw_corner(self._display.canvas, theme, share)
         if interpreter.is_forced():

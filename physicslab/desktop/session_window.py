@@ -11,6 +11,7 @@ from physicslab.desktop.sandbox import Sandbox
 from physicslab.desktop.sessions import Session, session_folder
 from physicslab.ecs.config import WindowConfig
 from physicslab.files.scene import load_scene
+from physicslab.kernels import working_ns
 from physicslab.view.canvas.display import Display
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.window import Window
@@ -45,7 +46,10 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     try:
         with Compiling(display) as compiling:
             with loading():
-                sandbox = Sandbox(world, window, autosave=autosave, shown=compiling.scenes.follow)
+                # What is waited for a kernel is no time that steps took.
+                sandbox = Sandbox(
+                    world, window, lambda: 1e-9 * working_ns(), autosave, compiling.scenes.follow
+                )
                 sandbox.frame(0.0)
             _loop(sandbox, display, compiling)
     except Left:  # the window was closed while it waited for kernels

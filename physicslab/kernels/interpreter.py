@@ -25,7 +25,7 @@ from numba.extending import is_jitted
 from numba.np.numpy_support import as_dtype
 from numpy.typing import NDArray
 
-from physicslab import kernels
+from physicslab.kernels import compiler, loading
 from physicslab.kernels.stand_ins import Records
 from physicslab.kernels.twins import Overdue, patience, twin_of
 
@@ -66,7 +66,7 @@ def unlimited() -> None:
 
 def _load(jitted: Any) -> None:
     """Load a kernel that has been interpreted for too long, where nothing else is to be done about it."""
-    kernels.load(jitted)
+    loading.load(jitted)
 
 
 _limit: float = math.inf
@@ -112,16 +112,16 @@ def interpreted() -> Iterator[None]:
     """
     global _forced
     before, _forced = _forced, True
-    aside = {jitted: dict(jitted.overloads) for jitted in kernels.KERNELS if jitted.compiled}
+    aside = {jitted: dict(jitted.overloads) for jitted in compiler.KERNELS if jitted.compiled}
     for jitted in aside:
         _set_aside(jitted)
-    for jitted in kernels.KERNELS:
+    for jitted in compiler.KERNELS:
         stand_in(jitted)
     try:
         yield
     finally:
         _forced = before
-        for jitted in kernels.KERNELS:
+        for jitted in compiler.KERNELS:
             _stand_back(jitted)
         for jitted, overloads in aside.items():
             _take_back(jitted, overloads)
@@ -135,7 +135,7 @@ def _is_dispatcher(value: Any) -> bool:
 def _stand_back(jitted: Any) -> None:
     """Let a kernel be compiled where it is called, as it was before :func:`stand_in`."""
     if _is_dispatcher(jitted):
-        vars(jitted).pop("_compile_for_args", None)
+        loading.at_first_call(jitted)
     else:
         jitted.stands_in = False
 
@@ -162,7 +162,7 @@ def _take_back(jitted: Any, overloads: dict[Any, Any]) -> None:
 
 def prepare() -> None:
     """Make the twins of all kernels there are, which the first that is called would else wait for."""
-    for jitted in kernels.KERNELS:
+    for jitted in compiler.KERNELS:
         twin_of(jitted)
 
 

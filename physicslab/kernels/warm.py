@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import os
 import pkgutil
@@ -12,18 +11,18 @@ import sys
 import threading
 from collections import deque
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import llvmlite.binding
-
 from physicslab import kernels
+from physicslab.kernels import cache
+from physicslab.kernels.keys import current_folders
 
-__all__ = ["Progress", "Warmup", "is_warm", "load_all", "name_of"]
+__all__ = ["Progress", "Warmup", "is_warm", "load_all", "mark_warm", "name_of", "rank_of"]
 
-_MOST_WORKERS = 4
+_WORKERS_LIMIT = 4
 _FIRST = (
     "raster",
     "motion",
@@ -37,24 +36,28 @@ _FIRST = (
 )
 """Modules whose kernels almost every scene needs; they are compiled first."""
 _WORKER = (sys.executable, "-m", "physicslab.kernels", "worker")
-
-
-def _mark() -> Path:
-    """Return the file that says that all kernels are in the cache.
-
-    Its name stands for all that numba looks at before it uses what it finds there: when the sources were
-    written, the processor, and which Python it is.
-    """
-    digest = hashlib.sha256(f"{sys.version} {llvmlite.binding.get_host_cpu_name()}".encode())
-    for source in sorted(Path(__file__).parent.rglob("*.py")):
-        status = source.stat()
-        digest.update(f"{source} {status.st_mtime_ns} {status.st_size}".encode())
-    return kernels.cache_directory() / f"complete-{digest.hexdigest()[:16]}"
+_YIELDING = 15
+"""By how much a running scene comes before the workers, as Unix counts it."""
 
 
 def is_warm() -> bool:
     """Return whether every kernel can be loaded from the cache, so that nothing needs compiling."""
-    return _mark().is_file()
+    try:
+        kept = cache.mark().read_text(encoding="utf-8").split()
+    except OSError:
+        return False
+    return all((cache.cache_directory() / folder).is_dir() for folder in kept)
+
+
+def mark_warm() -> None:
+    """Note that every kernel is in the cache, if that is so, and remove what was not used for long."""
+    load_all()
+    if not all(cache.is_kept(jitted.py_func) for jitted in _own()):
+        return
+    folders = sorted({current_folders()[jitted.__module__] for jitted in _own()})
+    with suppress(OSError):
+        cache.mark().write_text("\n".join(folders), encoding="utf-8")
+    cache.prune()
 
 
 def load_all() -> list[str]:
@@ -63,7 +66,12 @@ def load_all() -> list[str]:
     for module in pkgutil.walk_packages(kernels.__path__, prefix):
         if module.name not in (f"{prefix}__main__", __name__):
             importlib.import_module(module.name)
-    return [name_of(jitted) for jitted in kernels.KERNELS]
+    return [name_of(jitted) for jitted in _own()]
+
+
+def _own() -> list[Any]:
+    """Return the kernels of this package: others, of a test or of a user's program, are compiled there."""
+    return [jitted for jitted in kernels.KERNELS if jitted.__module__.startswith(f"{kernels.__name__}.")]
 
 
 def name_of(jitted: Any) -> str:
@@ -71,7 +79,7 @@ def name_of(jitted: Any) -> str:
     return f"{jitted.__module__}.{jitted.__name__}"
 
 
-def _rank(name: str) -> int:
+def rank_of(name: str) -> int:
     """Return how late a kernel is to be compiled, as far as that is known before there is a scene."""
     module = name.split(".")[-2]
     return _FIRST.index(module) if module in _FIRST else len(_FIRST)
@@ -87,7 +95,7 @@ class Progress:
 
 
 class Warmup:
-    """Compiles every kernel into the cache, in processes of their own.
+    """Compiles every kernel that the cache does not hold, in processes of their own.
 
     In a thread of this process it would hold up everything else for tenths of a second, time and again. Used
     in a ``with`` block, at whose end the processes are stopped if they still run. If one fails, nothing is
@@ -108,27 +116,22 @@ class Warmup:
 
     def __init__(self, workers: int | None = None, command: tuple[str, ...] = _WORKER) -> None:
         self._command = command
-        self._mark = _mark()  # of the sources as they are now, whatever is saved meanwhile
-        self._names = load_all()
-        self._jobs = deque(sorted(self._names, key=_rank))
+        names = load_all()
+        self._compiled = {name_of(jitted) for jitted in _own() if cache.is_kept(jitted.py_func)}
+        self._jobs = deque(sorted((name for name in names if name not in self._compiled), key=rank_of))
         self._lock = threading.Lock()
         self._answers: queue.SimpleQueue[str] = queue.SimpleQueue()
-        self._compiled: set[str] = set()
-        self._workers = workers or min(os.cpu_count() or 1, _MOST_WORKERS)
+        self._workers = min(workers or min(os.cpu_count() or 1, _WORKERS_LIMIT), len(self._jobs))
         self._processes: list[subprocess.Popen[str]] = []
+        self._retired: set[subprocess.Popen[str]] = set()
         self._threads: list[threading.Thread] = []
-        self._progress = Progress(0, len(self._names))
+        self._yields = False
+        self._progress = Progress(len(self._compiled), len(names))
         self.finished = False
 
     def __enter__(self) -> Warmup:
         for _ in range(self._workers):
-            process = subprocess.Popen(
-                self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
-            )
-            thread = threading.Thread(target=self._employ, args=(process,), daemon=True)
-            self._processes.append(process)
-            self._threads.append(thread)
-            thread.start()
+            self._start_worker()
         return self
 
     def __exit__(
@@ -139,13 +142,24 @@ class Warmup:
         for thread in self._threads:
             thread.join()
 
+    def _start_worker(self) -> None:
+        environment = {**os.environ, cache.VARIABLE: str(cache.cache_directory())}
+        process = subprocess.Popen(
+            self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1,
+            env=environment,
+        )  # fmt: skip
+        thread = threading.Thread(target=self._employ, args=(process,), daemon=True)
+        self._processes.append(process)
+        self._threads.append(thread)
+        thread.start()
+
     def _employ(self, process: subprocess.Popen[str]) -> None:
-        """Give one process a kernel after the other, until there are none left or it has died."""
+        """Give one process a kernel after the other, until there are none left or it is not to go on."""
         with process:
             assert process.stdin is not None
             assert process.stdout is not None
             try:
-                while job := self._next():
+                while job := self._next(process):
                     process.stdin.write(f"{job}\n")
                     name = process.stdout.readline().strip()
                     if not name:
@@ -155,9 +169,9 @@ class Warmup:
             except OSError:
                 return
 
-    def _next(self) -> str:
+    def _next(self, process: subprocess.Popen[str]) -> str:
         with self._lock:
-            return self._jobs.popleft() if self._jobs else ""
+            return self._jobs.popleft() if self._jobs and process not in self._retired else ""
 
     def hurry(self, names: Iterable[str]) -> None:
         """Let these kernels be compiled before all others, except for those that are being compiled."""
@@ -167,19 +181,43 @@ class Warmup:
                 self._jobs.remove(name)
             self._jobs.extendleft(reversed(wanted))
 
+    def yield_to_others(self, yields: bool) -> None:
+        """Let other processes come before the workers, or not: not while something waits for a kernel.
+
+        Where the system lets no process come forward again that stood back, others take the workers' places
+        once these are done with what they compile.
+        """
+        if yields == self._yields or not hasattr(os, "setpriority"):
+            return
+        self._yields = yields
+        niceness = os.getpriority(os.PRIO_PROCESS, 0) + (_YIELDING if yields else 0)
+        for process in list(self._processes):
+            if process in self._retired or process.poll() is not None:
+                continue
+            try:
+                os.setpriority(os.PRIO_PROCESS, process.pid, niceness)
+            except PermissionError:
+                with self._lock:
+                    self._retired.add(process)
+                self._start_worker()
+            except ProcessLookupError:
+                continue
+
     def has(self, names: Iterable[str]) -> bool:
         """Whether these kernels were in the cache at the last :meth:`poll`."""
         return self._compiled.issuperset(names)
 
-    def poll(self) -> Progress:
-        """Return how far it is now, without waiting."""
-        done, name = self._progress.done, self._progress.name
+    def poll(self, wait: float = 0.0) -> Progress:
+        """Return how far it is, at once or after the next kernel; after ``wait`` seconds at the latest."""
+        done, name, total = self._progress.done, self._progress.name, self._progress.total
         ended = not any(thread.is_alive() for thread in self._threads)
-        while not self._answers.empty():
-            done, name = done + 1, self._answers.get()
-            self._compiled.add(name)
-        self._progress = Progress(done, len(self._names), name)
-        if done == len(self._names) and not self.finished:
-            self._mark.touch()
-        self.finished = self.finished or ended or done == len(self._names)
+        with suppress(queue.Empty):
+            while True:
+                name = self._answers.get(timeout=wait) if wait else self._answers.get_nowait()
+                done, wait = done + 1, 0.0
+                self._compiled.add(name)
+        self._progress = Progress(done, total, name)
+        if done == total and not self.finished:
+            mark_warm()
+        self.finished = self.finished or ended or done == total
         return self._progress

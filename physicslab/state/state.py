@@ -17,7 +17,7 @@ from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Table
-from physicslab.kernels import compile_kernels
+from physicslab.kernels import compile_kernels, seconds_waited
 from physicslab.state.bodies import Bodies
 from physicslab.state.checkpoint import Checkpoint
 from physicslab.state.contacts import Contacts
@@ -46,8 +46,6 @@ class State:
         Into how many parts the last step was divided, which was longer than ``simulation.dt``; or 1.
     force_evaluations, collisions : int
         How often forces were evaluated, and how many impacts there were.
-    compile_s : float
-        Seconds spent compiling kernels, or loading them.
     has_forces : bool
         Whether a force system runs.
     event_driven : bool
@@ -84,7 +82,7 @@ class State:
         self.time, self.steps, self.revision = 0.0, 0, 0
         self.substeps, self.step_divisions = self._simulation.substeps, 1
         self.force_evaluations = self.collisions = 0
-        self.compile_s = 0.0
+        self._waited_before = seconds_waited()
         self.generation = 0
         self.has_forces = self.event_driven = False
         self.window, self.kick_before_contacts, self.moment = (-0.5, 0.5), 0.5, 0.0
@@ -278,8 +276,13 @@ class State:
         return self.force_evaluations, self.collisions, self.contacts.logged
 
     def compile(self, kernels: Iterable[Any]) -> None:
-        """Compile kernels, or load them, and note how long it took."""
-        self.compile_s += compile_kernels(kernels)
+        """Compile kernels that are about to be called, or load them."""
+        compile_kernels(kernels)
+
+    @property
+    def compile_s(self) -> float:
+        """Seconds that this process has spent on compiling or loading kernels since this world was made."""
+        return seconds_waited() - self._waited_before
 
 
 def _kind(component: Any) -> type[Any]:

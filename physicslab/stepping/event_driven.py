@@ -247,7 +247,7 @@ class EventDriven:
         near["count"][others] = -1  # the contact step passes over them
         impact_count, felt = near["impact_count"].copy(), [points[name].copy() for name in _FELT]
         substeps, run = state.simulation.substeps, self._schedule.run
-        state.compile(self._schedule.kernels(state))
+        # What the stages call is compiled at its first call: most of it is not called here.
         for substep in range(substeps):
             state.moment = began + (substep + 0.5) * span / substeps
             for stage, share in self._stages:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from physicslab.kernels import working_ns
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage, System
 
@@ -121,10 +121,9 @@ class Schedule:
 
     def _timed(self, call: Callable[[State, float], None], timing: Timing, state: State, h: float) -> None:
         """Call, and note the time that it took, without what went by while kernels were compiled."""
-        start, compiling = time.perf_counter_ns(), state.compile_s
+        start = working_ns()
         call(state, h)
-        waited = int(1e9 * (state.compile_s - compiling))
-        timing.nanoseconds += time.perf_counter_ns() - start - waited
+        timing.nanoseconds += working_ns() - start
         timing.calls += 1
 
     def note(self, name: str, calls: int, nanoseconds: int) -> None:

@@ -317,5 +317,6 @@ def find_pairs(
             boxes, fat, members, count, 1.25 * count / inverse_sizes, inverse_mass, couples, found, larges,
             company,
         )  # fmt: skip
-        members[:count] = larges[:count]
+        for k in range(count):  # one by one: for slices, numba compiles the text of an error that never comes
+            members[k] = larges[k]
     return found, walls

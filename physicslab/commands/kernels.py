@@ -1,0 +1,89 @@
+"""Compile the physics for this computer ahead of time, or share what is compiled with others of its kind."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands.output import Output
+from physicslab.commands.progress import Progress
+from physicslab.files.checks import printable
+from physicslab.kernels import cache_directory
+from physicslab.kernels.archive import ArchiveError, pack, unpack
+from physicslab.kernels.keys import platform_key
+from physicslab.kernels.warm import Warmup, is_warm, load_all, mark_warm
+
+__all__ = ["add_arguments", "execute"]
+
+_LOOK_EVERY_S = 0.1
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Declare what the command takes."""
+    parser.add_argument(
+        "action", nargs="?", choices=("export", "import"),
+        help="export: compile all and write them to FILE; import: take them from FILE in place of compiling; "
+        "neither: compile all and keep them",
+    )  # fmt: skip
+    parser.add_argument("file", metavar="FILE", nargs="?", help="an archive of compiled kernels")
+
+
+def execute(arguments: Namespace) -> int:
+    """Compile all kernels, or write or read an archive of them."""
+    if (arguments.action is None) != (arguments.file is None):
+        raise CommandError(f"kernels {arguments.action}: FILE is missing (see physicslab kernels --help)")
+    if arguments.action == "import":
+        return _import(arguments.file)
+    output = None if arguments.action is None else Output("kernels export", arguments.file)
+    _fill()
+    if output is not None:
+        return _export(output)
+    print(f"{len(load_all())} kernels are compiled, and kept in {printable(str(cache_directory()))}")
+    return 0
+
+
+def _fill() -> None:
+    """Have every kernel compiled that the cache does not hold."""
+    if is_warm():
+        return
+    line = Progress("compiling kernels", sys.stderr)
+    try:
+        with Warmup() as warmup:
+            while not warmup.finished:
+                progress = warmup.poll(_LOOK_EVERY_S)
+                line.show(progress.done / progress.total)
+    finally:
+        line.clear()
+    if not is_warm():
+        raise CommandError("not every kernel could be compiled", FAILED)
+
+
+def _export(output: Output) -> int:
+    content = pack()
+    output.write(content)
+    if not output.to_stdout:
+        kind = ", ".join(f"{name} {value}" for name, value in platform_key().items())
+        print(f"{len(content) / 1e6:.1f} MB written to {printable(output.path)}")
+        print(f"They fit computers with just this: {kind}")
+    return 0
+
+
+def _import(file: str) -> int:
+    print(
+        "physicslab: compiled kernels are programs: import none from people whose programs you would not run",
+        file=sys.stderr,
+    )
+    try:
+        unpack(Path(file))
+    except ArchiveError as error:
+        raise CommandError(f"{file}: {error}") from error
+    except OSError as error:
+        raise CommandError(f"{file}: {error.strerror or error}") from error
+    except ValueError as error:  # a null character in the name
+        raise CommandError(f"{file}: {error}") from error
+    mark_warm()
+    complete = "all kernels are there" if is_warm() else "some kernels are missing: those will be compiled"
+    print(f"imported; {complete}")
+    return 0

@@ -1,0 +1,90 @@
+"""What compiling costs: every kernel once, in one process, into an empty cache.
+
+The first launch waits for it, so it may not grow unnoticed. Processor time is counted, which other programs
+on the machine change less than the time that passes. Kernels come in the order of the first launch; an inner
+function counts for the first that calls it.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import platform
+import shutil
+import tempfile
+import time
+from pathlib import Path
+
+from physicslab.kernels import cache
+from physicslab.kernels.compiler import KERNELS
+from physicslab.kernels.keys import platform_key
+from physicslab.kernels.loading import load, prepare
+from physicslab.kernels.warm import load_all, mark_warm, name_of, rank_of
+
+__all__ = ["LIMIT_EACH_S", "LIMIT_TOTAL_S", "check", "measure", "table"]
+
+LIMIT_TOTAL_S = 50.0
+LIMIT_EACH_S = 5.0
+
+
+def measure() -> list[tuple[float, str]]:
+    """Compile every kernel into an empty cache; return processor seconds and names, in that order.
+
+    What was compiled then goes into the real cache, so that it need not be compiled again. Call it in a fresh
+    process, before any module of kernels is imported.
+    """
+    target = cache.cache_directory()
+    # Beside the real cache, and so on the same disk.
+    with tempfile.TemporaryDirectory(prefix="budget-", dir=target) as fresh:
+        cache.use_directory(Path(fresh))
+        try:
+            load_all()
+            prepare()
+            gc.disable()
+            costs = []
+            for jitted in sorted(KERNELS, key=lambda jitted: rank_of(name_of(jitted))):
+                start = time.process_time()
+                load(jitted)
+                costs.append((time.process_time() - start, name_of(jitted)))
+        finally:
+            gc.enable()
+            cache.use_directory(target)
+        _keep(Path(fresh), target)
+    mark_warm()
+    return costs
+
+
+def _keep(fresh: Path, target: Path) -> None:
+    """Move compiled kernels to where they are kept, in place of those that are there."""
+    for folder in fresh.iterdir():
+        shutil.rmtree(target / folder.name, ignore_errors=True)
+        os.replace(folder, target / folder.name)
+
+
+def check(
+    costs: list[tuple[float, str]], each: float = LIMIT_EACH_S, total: float = LIMIT_TOTAL_S
+) -> list[str]:
+    """Return what exceeds the budget, a line each; nothing where all is within it."""
+    found = [f"{name}: {cost:.1f} s, more than {each:g} s" for cost, name in costs if cost > each]
+    whole = sum(cost for cost, _ in costs)
+    return found + ([f"all kernels: {whole:.1f} s, more than {total:g} s"] if whole > total else [])
+
+
+def table(costs: list[tuple[float, str]]) -> str:
+    """Return the costs as text, the largest first, with their sum and the processor that they are of."""
+    rows = [
+        f"{cost:7.2f} s  {name.removeprefix('physicslab.kernels.')}" for cost, name in sorted(costs)[::-1]
+    ]
+    whole = sum(cost for cost, _ in costs)
+    return "\n".join([*rows, f"{whole:7.2f} s  all {len(costs)} kernels, of processor time; {_processor()}"])
+
+
+def _processor() -> str:
+    """Return the processor's own name, and numba's for its kind."""
+    kind = platform_key()["processor"]
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:  # not Linux
+        lines = []
+    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return f"{(models or [platform.processor() or platform.machine()])[0]} ({kind})"

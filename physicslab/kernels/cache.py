@@ -1,0 +1,231 @@
+"""Where compiled kernels are kept between runs, and which of them are still right.
+
+Each module's kernels lie in a folder named after a hash of all that decides on their machine code
+(:mod:`physicslab.kernels.keys`). An edit leaves the folders of modules that do not depend on it as they are.
+
+numba unpickles what lies there, so **a compiled kernel is a program that will be run**. The folder is used
+only if it is this user's, closed to all others (mode 0700), and no link. Its place is the environment
+variable ``PHYSICSLAB_KERNELS``, or ``physicslab/kernels`` in the user's cache folder, or, where there is no
+such folder, ``physicslab-<user>/kernels`` among the temporary files; else a new temporary one that is removed
+at the end of the process.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import inspect
+import logging
+import os
+import re
+import shutil
+import stat
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba.core.config
+from numba.core.caching import CacheImpl, UserProvidedCacheLocator
+
+from physicslab.kernels.keys import current_folders, folder_of, hash_of
+
+__all__ = ["VARIABLE", "cache_directory", "cached", "is_kept", "mark", "note_use", "prune", "use_directory"]
+
+VARIABLE = "PHYSICSLAB_KERNELS"
+"""The environment variable that says where compiled kernels are to be kept."""
+_DAY = 86400.0
+_UNUSED = 30 * _DAY
+"""Time [s] for which what is not used is kept."""
+_VERSIONS = 8
+"""How many folders of one module are kept, however many were in use: those used last."""
+_log = logging.getLogger(__name__)
+
+
+# ---- where it lies -----------------------------------------------------------------------------------------
+
+_directory: Path | None = None
+
+
+def cache_directory() -> Path:
+    """Return where compiled kernels are kept: a folder of this user's that nobody else can write or read."""
+    global _directory
+    if _directory is None:
+        _directory = _first_private()
+    return _directory
+
+
+def use_directory(directory: Path) -> None:
+    """Keep kernels in another folder, of which the caller knows that it is private.
+
+    Kernels that are defined by then stay with the folder of before.
+    """
+    global _directory
+    _directory = directory
+
+
+def _first_private() -> Path:
+    """Return the first of the folders that may be used, or a temporary one."""
+    for place in _places():
+        try:
+            if all(_is_private(folder) for folder in place):
+                return place[-1]
+        except (OSError, RuntimeError, KeyError):  # no home, or one that cannot be written to
+            continue
+    directory = Path(tempfile.mkdtemp(prefix="physicslab-kernels-"))  # which makes it private
+    _log.warning("compiled kernels cannot be kept for the next start; this one has them in %s", directory)
+    atexit.register(_remove_own, directory, os.getpid())
+    return directory
+
+
+def _places() -> Iterator[tuple[Path, ...]]:
+    """Yield where kernels may be kept, best first: each the folders that must be private."""
+    if os.environ.get(VARIABLE):
+        yield (Path(os.environ[VARIABLE]),)
+        return
+    with contextlib.suppress(RuntimeError, KeyError):
+        yield (_user_cache() / "physicslab" / "kernels",)
+    shared = Path(tempfile.gettempdir()) / f"physicslab-{os.getuid() if hasattr(os, 'getuid') else 0}"
+    yield shared, shared / "kernels"
+
+
+def _user_cache() -> Path:
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or tempfile.gettempdir())
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+
+
+def _is_private(folder: Path) -> bool:
+    """Make a folder if it is not there; return whether it can be written, and by this user alone.
+
+    Raises
+    ------
+    OSError
+        If it cannot be made or written.
+    """
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with contextlib.suppress(FileExistsError):
+        folder.mkdir(mode=0o700)
+    status = os.lstat(folder)
+    if not stat.S_ISDIR(status.st_mode):
+        reason = "is a link" if stat.S_ISLNK(status.st_mode) else "is no folder"
+    elif hasattr(os, "geteuid") and status.st_uid != os.geteuid():
+        reason = "belongs to another user"
+    elif hasattr(os, "geteuid") and stat.S_IMODE(status.st_mode) & 0o077:
+        reason = f"is open to other users (mode {stat.S_IMODE(status.st_mode):o}, not 700)"
+    elif not os.access(folder, os.W_OK | os.X_OK):
+        raise PermissionError(folder)
+    else:
+        return True
+    _log.warning("compiled kernels in %s are not used: it %s", folder, reason)
+    return False
+
+
+def _remove_own(directory: Path, process: int) -> None:
+    if os.getpid() == process:  # and not a process that was forked from it
+        shutil.rmtree(directory, ignore_errors=True)
+
+
+def mark() -> Path:
+    """Return the file that says that every kernel of this package is kept."""
+    return cache_directory() / f"complete-{hash_of(*sorted(current_folders().values()))[:16]}"
+
+
+# ---- what numba is given -----------------------------------------------------------------------------------
+
+
+class _Locator(UserProvidedCacheLocator):
+    """Says to numba where a kernel is kept: by what decides on its code, and not by paths or dates."""
+
+    def __init__(self, function: Callable[..., Any], path: str) -> None:
+        self._py_file, self._lineno = path, function.__code__.co_firstlineno
+        self._folder = folder_of(function.__module__, path)
+        self._cache_path = str(cache_directory() / self._folder)
+
+    def ensure_cache_path(self) -> None:
+        """Make the folder; numba calls this before it writes."""
+        if os.path.isdir(cache_directory()):
+            os.makedirs(self._cache_path, mode=0o700, exist_ok=True)
+
+    def get_source_stamp(self) -> str:
+        """Return what must be the same for a kept kernel to be right."""
+        return self._folder
+
+    @classmethod
+    def from_function(cls, function: Callable[..., Any], path: str) -> _Locator | None:
+        """Return the place of a function; numba looks elsewhere for what has no file."""
+        return cls(function, path) if os.path.exists(path) else None
+
+
+@contextmanager
+def cached() -> Iterator[None]:
+    """Let what numba is given within a ``with`` block keep its code in the cache."""
+    settings: Any = numba.core.config
+    before = CacheImpl._locator_classes
+    chosen = getattr(settings, "CACHE_LOCATOR_CLASSES", "")
+    CacheImpl._locator_classes = [_Locator, *before]  # read by numba when a function is decorated
+    settings.CACHE_LOCATOR_CLASSES = ""
+    try:
+        yield
+    finally:
+        CacheImpl._locator_classes = before
+        settings.CACHE_LOCATOR_CLASSES = chosen
+
+
+def _folder(function: Callable[..., Any]) -> Path:
+    return cache_directory() / folder_of(function.__module__, inspect.getfile(function))
+
+
+def is_kept(function: Callable[..., Any]) -> bool:
+    """Whether a kernel's machine code is in the cache.
+
+    Parameters
+    ----------
+    function : callable
+        The Python function of the kernel.
+    """
+    name = f"*.{function.__qualname__}-{function.__code__.co_firstlineno}.py*.nbi"
+    return any(_folder(function).glob(name.replace("<", "").replace(">", "")))
+
+
+@cache
+def note_use(function: Callable[..., Any]) -> None:
+    """Note that a kernel's folder is in use, so that it is not removed as forgotten."""
+    _touch(_folder(function))
+
+
+def _touch(path: Path) -> None:
+    with contextlib.suppress(OSError):
+        if time.time() - path.stat().st_mtime > _DAY:
+            os.utime(path)
+
+
+def prune() -> None:
+    """Remove what the sources as they are do not need and what was not used for a month.
+
+    Of each module the eight folders that were used last stay at most: other versions of this program, and
+    other Pythons, have theirs in the same place.
+    """
+    root, own = cache_directory(), set(current_folders().values())
+    old: dict[str, list[tuple[float, Path]]] = {}
+    with contextlib.suppress(OSError):
+        beside = root.parent.glob(f"kernels-{'[0-9a-f]' * 16}")  # as they were named before
+        for path in (*root.iterdir(), *beside):
+            name, _, digest = path.name.rpartition("-")
+            if re.fullmatch("[0-9a-f]{16}", digest) and path.name not in own and path != mark():
+                old.setdefault(name, []).append((path.stat().st_mtime, path))
+    for found in old.values():
+        for place, (used, path) in enumerate(sorted(found, reverse=True)):
+            if place >= _VERSIONS - 1 or time.time() - used > _UNUSED:
+                _remove(path)
+
+
+def _remove(path: Path) -> None:
+    with contextlib.suppress(OSError):
+        path.unlink() if path.is_file() else shutil.rmtree(path, ignore_errors=True)

@@ -1,0 +1,49 @@
+"""The types that kernels take, as annotations, and the signatures that follow from them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+import numba
+import numpy as np
+from numba import boolean, float64, int64, void
+from numpy.typing import NDArray
+
+__all__ = ["Flags", "Numbers", "Rows", "Vectors", "signature_of"]
+
+Numbers = Annotated[NDArray[np.float64], float64[::1]]
+"""A float64 array (n,)."""
+Vectors = Annotated[NDArray[np.float64], float64[:, ::1]]
+"""A float64 array (n, k), contiguous: a vector a row."""
+Rows = Annotated[NDArray[np.int64], int64[::1]]
+"""An int64 array (n,): row numbers, or codes."""
+Flags = Annotated[NDArray[np.bool_], boolean[::1]]
+"""A bool array (n,)."""
+
+
+def signature_of(function: Callable[..., Any]) -> Any:
+    """Return numba's signature of a function, which its annotations give.
+
+    Raises
+    ------
+    KeyError
+        If an annotation is not the type of anything that a kernel takes or returns.
+    """
+    hints = get_type_hints(function, include_extras=True)
+    returned = _numba_type(hints.pop("return"))
+    return returned(*(_numba_type(hint) for hint in hints.values()))
+
+
+def _numba_type(hint: Any) -> Any:
+    """Return numba's type for an annotation: the one that an alias carries, or that of a plain type."""
+    if get_origin(hint) is Annotated:
+        return hint.__metadata__[0]
+    if isinstance(hint, type) and issubclass(hint, tuple) and hasattr(hint, "_fields"):
+        fields = get_type_hints(hint, include_extras=True)
+        make_named: Any = numba.types.BaseTuple.from_types
+        return make_named([_numba_type(part) for part in fields.values()], hint)
+    if get_origin(hint) is tuple:
+        make_tuple: Any = numba.types.Tuple
+        return make_tuple([_numba_type(part) for part in get_args(hint)])
+    return {float: float64, int: int64, bool: boolean, type(None): void}[hint]
