@@ -421,12 +421,13 @@ def test_a_scene_that_turns_out_to_be_slow_is_waited_for() -> None:
 
 
 def test_the_window_hands_over_what_is_small_and_hurries_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    hurried: list[str] = []
     monkeypatch.setattr(compiling, "is_warm", lambda: False)
     monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, (sys.executable, "-c", "input()")))
+    monkeypatch.setattr(Warmup, "hurry", lambda _, names: hurried.extend(names))
     with Display.open(WindowConfig(), "test") as display, compiling.Compiling(display) as started:
         started.scenes.follow(load_scene("drop"))
         assert started._ask([motion.drift]) == [motion.drift]
-        assert started._warmup is not None
-        assert started._warmup._jobs[0] == "physicslab.kernels.motion.drift"
+        assert hurried == ["physicslab.kernels.motion.drift"]
         assert interpreter._limit == LONGEST
     assert interpreter._limit == math.inf

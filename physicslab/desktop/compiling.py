@@ -31,8 +31,8 @@ class Compiling:
     """Lets other processes compile kernels, in a ``with`` block of the window, which stays awake.
 
     On the first launch they compile all, first those that the scene is about to call. A small scene is
-    interpreted until these are there; in a large one they are waited for. The rest comes while it runs. A wait
-    follows once more where something new in it needs a kernel that is not there yet.
+    interpreted until these are there; in a large one they are waited for. The rest comes while it runs. A
+    wait follows once more where something new in it needs a kernel that is not there yet.
 
     Parameters
     ----------
