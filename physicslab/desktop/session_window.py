@@ -47,7 +47,9 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
         with Compiling(display) as compiling:
             with loading():
                 # What is waited for a kernel is no time that steps took.
-                sandbox = Sandbox(world, window, lambda: 1e-9 * working_ns(), autosave)
+                sandbox = Sandbox(
+                    world, window, lambda: 1e-9 * working_ns(), autosave, compiling.scenes.follow
+                )
                 sandbox.frame(0.0)
             _loop(sandbox, display, compiling)
     except Left:  # the window was closed while it waited for kernels
@@ -70,6 +72,7 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
     while not window.closing:
         sandbox.frame(elapsed)
         compiling.advance(window.theme)
+        window.pace.max_dt = compiling.scenes.made_up_for(window.config.max_dt)
         display.title = _title(sandbox.world)
         if window.wants_screenshot:
             window.wants_screenshot = False
