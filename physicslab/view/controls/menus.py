@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from physicslab.files.checks import printable
 from physicslab.scenes import SCENES
 from physicslab.view.controls import actions
 from physicslab.view.controls.scene_files import scene_files
@@ -53,7 +54,10 @@ def _scenes(world: World, window: Window) -> list[Choice]:
         window.notify(f"Files could not be listed: {error}", failed=True)
         files = []
     built_in = [choice(scene.title, name) for name, scene in SCENES.items()]
-    saved = [Choice("Files in the working directory"), *(choice(path.name, path) for path in files)]
+    saved = [
+        Choice("Files in the working directory"),
+        *(choice(printable(path.name), path) for path in files),
+    ]
     return [Choice("Built-in scenes"), *built_in, *(saved if files else [])]
 
 
