@@ -11,12 +11,26 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 __all__ = [
-    "JsonObject", "SceneError", "checked_keys", "checked_object", "checked_text", "is_line", "is_number",
-    "printable", "refusal", "shown", "suggestion",
+    "JsonObject",
+    "SceneError",
+    "checked_keys",
+    "checked_object",
+    "checked_text",
+    "checked_title",
+    "has_width",
+    "is_line",
+    "is_number",
+    "printable",
+    "refusal",
+    "shortened",
+    "shown",
+    "suggestion",
 ]  # fmt: skip
 
 _LONGEST = 60
-_MOST_KNOWN = 2_000
+"""Characters of a value, a key or a name that a message shows."""
+_SUGGESTED_FROM = 2_000
+"""Known words that a misspelt one is compared with."""
 _BREAKS = dict.fromkeys(map(ord, "\n\t"), " ")
 
 
@@ -67,7 +81,7 @@ def shown(value: object) -> str:
     except (ValueError, RecursionError):  # a whole number of thousands of digits, or lists without end
         text = f"<{type(value).__name__}>"
     text = printable(text)
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+    return shortened(text)
 
 
 def _beginning(value: object) -> object:
@@ -82,6 +96,15 @@ def _beginning(value: object) -> object:
             for key, item in itertools.islice(value.items(), _LONGEST)
         }
     return value
+
+
+def shortened(text: str, length: int = _LONGEST) -> str:
+    """Return a text of at most ``length`` characters, the end of a longer one left out.
+
+    >>> shortened("x" * 1000, 8), shortened("drop", 8)
+    ('xxxxx...', 'drop')
+    """
+    return text if len(text) <= length else f"{text[: length - 3]}..."
 
 
 def printable(text: str) -> str:
@@ -102,7 +125,7 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     '; did you mean "Velocity"?'
     """
     # Comparing takes time with the square of a word's length, and with the number of words.
-    likely = difflib.get_close_matches(word[:_LONGEST], list(itertools.islice(known, _MOST_KNOWN)), n=1)
+    likely = difflib.get_close_matches(word[:_LONGEST], list(itertools.islice(known, _SUGGESTED_FROM)), n=1)
     return f"; did you mean {shown(likely[0])}?" if likely else ""
 
 
@@ -144,6 +167,28 @@ def checked_text(value: object, where: str, *, lines: bool = False) -> str:
     if isinstance(value, str) and is_line(value.translate(_BREAKS) if lines else value):
         return value
     raise refusal(where, value, "a text" if lines else "a text on one line")
+
+
+def checked_title(value: object, where: str, longest: int) -> str:
+    """Return a text on one line of at most ``longest`` characters: empty, or with something to be seen.
+
+    A text of joiners and marks of direction alone has no width, and a font refuses to draw it.
+    """
+    text = checked_text(value, where)
+    if len(text) > longest:
+        raise refusal(where, text, f"a text of at most {longest} characters")
+    if text and not has_width(text):
+        raise refusal(where, text, "a text in which something can be seen, or empty")
+    return text
+
+
+def has_width(text: str) -> bool:
+    r"""Whether a text has a letter, sign or symbol that can be seen.
+
+    >>> has_width("a"), has_width("\u200b\u200d"), has_width(" ")
+    (True, False, False)
+    """
+    return any(unicodedata.category(c)[0] not in "CZM" or unicodedata.category(c) == "Co" for c in text)
 
 
 def is_number(value: object) -> bool:
