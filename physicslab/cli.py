@@ -11,11 +11,14 @@ from typing import NoReturn
 
 from physicslab.commands import COMMANDS, CommandError, command
 from physicslab.commands.command_error import FAILED, USAGE
-from physicslab.files.checks import SceneError, printable
+from physicslab.ecs.fields import InvalidValue
+from physicslab.files.checks import SceneError, printable, shortened
 from physicslab.scenes import SCENES
 
 __all__ = ["main"]
 
+_LONGEST_LINE = 4_000
+"""Characters of what is said on stderr: names of files and values come from outside."""
 _INTERRUPTED = 130
 _PIPE_CLOSED = 141
 """What a shell reports of a program that a signal ended: 128 and the signal's number."""
@@ -63,7 +66,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return done.code if isinstance(done.code, int) else 0
     except CommandError as error:
         return _complain(str(error), error.status)
-    except SceneError as error:
+    except (SceneError, InvalidValue) as error:
         return _complain(str(error), USAGE)
     except KeyboardInterrupt:
         return _complain("interrupted", _INTERRUPTED)
@@ -101,7 +104,7 @@ def _open(arguments: list[str]) -> int:
 
 
 def _complain(message: str, status: int) -> int:
-    print(f"physicslab: {printable(message)}", file=sys.stderr)
+    print(f"physicslab: {shortened(printable(message), _LONGEST_LINE)}", file=sys.stderr)
     return status
 
 

@@ -281,7 +281,7 @@ def test_no_report_holds_what_is_not_a_number(
     (tmp_path / "fast.json").write_text(json.dumps(scene))
     line = complaint(capsys, "run", str(tmp_path / "fast.json"), "--json", "-", status=1)
     assert line.startswith("fast: ") and "finite at t = " in line
-    ball |= {"Transform": {"position": [0, -1e308]}, "Velocity": {}, "Mass": {"mass": 1e3}, "Spring": {}}
+    ball |= {"Transform": {"position": [0, -1e299]}, "Velocity": {}, "Mass": {"mass": 1e9}}
     (tmp_path / "far.json").write_text(json.dumps({"format": "physicslab-scene/1", "entities": [ball]}))
     line = complaint(capsys, "run", str(tmp_path / "far.json"), status=1)
     assert line.startswith("far: ") and "finite at t = " in line
@@ -352,7 +352,9 @@ def test_an_output_knows_its_file(tmp_path: Path) -> None:
     output = Output("--json", str(tmp_path / "a"))
     assert output.is_same_as(str(tmp_path / "b" / ".." / "a"))
     assert not output.is_same_as(str(tmp_path / "b"))
-    assert not Output("--json", "-").is_same_as("-")
+    assert not Output("--json", "-").is_same_as(str(tmp_path / "a"))
+    assert Output("--json", "-").is_same_as("-")
+    assert not Output("--json", os.devnull).is_same_as("-")
 
 
 def test_a_scene_or_nothing_opens_the_window(monkeypatch: pytest.MonkeyPatch) -> None:

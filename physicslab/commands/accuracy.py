@@ -13,8 +13,8 @@ from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.output import Output
 from physicslab.commands.pictures import picture_directory
 from physicslab.commands.progress import Progress
-from physicslab.files.checks import shown, suggestion
-from physicslab.files.json_text import json_text
+from physicslab.files.checks import printable, shown, suggestion
+from physicslab.files.json_text import json_bytes
 from physicslab.files.scene import load_scene
 from physicslab.lab.accuracy.catalogue import PROBLEMS, families, names, select
 from physicslab.lab.accuracy.document import document
@@ -46,7 +46,7 @@ def execute(arguments: Namespace) -> int:
     jobs: list[Iterator[float | Study] | Iterator[float | SceneStudy]] = [
         study(problem, sparse=not arguments.problems) for problem in problems
     ]
-    jobs += [study_scene(name, partial(load_scene, name)) for name in scenes]
+    jobs += [study_scene(printable(name), partial(load_scene, name)) for name in scenes]
     studies: list[Study] = []
     scene_studies: list[SceneStudy] = []
     for result in _results(jobs):
@@ -63,9 +63,8 @@ def execute(arguments: Namespace) -> int:
     if not arguments.problems:
         _show(left_out_text(), quiet)
     if output is not None:
-        output.write(
-            json_text(document(studies, [scene_document(found) for found in scene_studies])).encode("utf-8")
-        )
+        scenes_found = [scene_document(found) for found in scene_studies]
+        output.write(json_bytes(document(studies, scenes_found)))
     _check_scenes(scene_studies)
     return 0
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.output import Output
 from physicslab.commands.pictures import picture_directory
 from physicslab.commands.progress import Progress
-from physicslab.files.checks import shown, suggestion
-from physicslab.files.json_text import json_text
+from physicslab.files.checks import printable, shown, suggestion
+from physicslab.files.json_text import json_bytes
 from physicslab.lab.bench.catalogue import MOST_BESIDE, SCENES, groups, names, opened, select
 from physicslab.lab.bench.document import document
 from physicslab.lab.bench.engine import PEERS, missing_peers
@@ -75,7 +76,7 @@ def execute(arguments: Namespace) -> int:
     if not quiet:
         print(report_text(report), flush=True)
     if output is not None:
-        output.write(json_text(document(report)).encode("utf-8"))
+        output.write(json_bytes(document(report)))
     if pictures is not None:
         from physicslab.lab.bench.plot import bench_picture  # matplotlib takes a while, and may not be there
 
@@ -104,7 +105,8 @@ def _chosen(wanted: Sequence[str]) -> tuple[list[BenchScene], list[str]]:
         elif found := select(name):
             chosen |= {scene.name: scene for scene in found}
         elif name in BUILT_IN or Path(name).exists():
-            chosen[name] = opened(name)
+            scene = opened(name)
+            chosen[name] = replace(scene, name=printable(scene.name), title=printable(scene.title))
         else:
             likely = suggestion(name, [*names(), _UNUSED, _MEMORY, *BUILT_IN])
             there_is = f"the groups are {', '.join(groups())}; built-in scenes and files are taken as well"
@@ -126,7 +128,7 @@ def _results(
     ]
     if _UNUSED in extras:
         jobs += [(1_000, measure_unused(case)) for case in UNUSED]
-    whole, done = sum(size for size, _ in jobs), 0
+    whole, done = max(1, sum(size for size, _ in jobs)), 0
     progress = Progress("bench", sys.stderr)
     try:
         for size, job in jobs:

@@ -10,7 +10,7 @@ from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.files.checks import shown, suggestion
-from physicslab.files.json_text import json_text
+from physicslab.files.json_text import json_bytes
 from physicslab.lab.stability.case import Case, Outcome, Verdict, run_case
 from physicslab.lab.stability.catalogue import CASES, groups, names, select
 from physicslab.lab.stability.document import document
@@ -38,7 +38,7 @@ def execute(arguments: Namespace) -> int:
         _show(row_text(outcome, cases), quiet)
     _show(summary_text(outcomes), quiet)
     if output is not None:
-        output.write(json_text(document(outcomes)).encode("utf-8"))
+        output.write(json_bytes(document(outcomes)))
     short = [outcome.case.name for outcome in outcomes if outcome.verdict is Verdict.SHORT]
     if short:
         raise CommandError(f"{len(short)} of {len(outcomes)} cases fall short: {', '.join(short)}", FAILED)
