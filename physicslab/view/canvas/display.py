@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import io
+import itertools
 import time
 import warnings
 from collections.abc import Iterator
@@ -13,10 +15,11 @@ from pathlib import Path
 import pygame
 
 from physicslab.ecs.config import WindowConfig
+from physicslab.files.replace import create_file
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
 
-__all__ = ["Display", "wants_to_leave"]
+__all__ = ["Display", "ask_to_leave", "wants_to_leave"]
 
 
 class Display:
@@ -91,14 +94,20 @@ class Display:
     def save_screenshot(self, directory: Path) -> Path:
         """Write a PNG of the window and return its path; raise ``OSError`` if that cannot be done."""
         name = datetime.now().strftime("physicslab-%Y%m%d-%H%M%S")
-        path = directory / f"{name}.png"
-        count = 1
-        while path.exists():
-            count += 1
-            path = directory / f"{name}-{count}.png"
-        with path.open("wb") as stream:
-            pygame.image.save(self.canvas.surface, stream, path.name)
+        picture = io.BytesIO()
+        pygame.image.save(self.canvas.surface, picture, f"{name}.png")
+        for count in itertools.count(1):
+            path = directory / (f"{name}.png" if count == 1 else f"{name}-{count}.png")
+            with contextlib.suppress(FileExistsError):
+                create_file(path, picture.getvalue())
+                break
         return path
+
+
+def ask_to_leave() -> None:
+    """Have the window closed, as a click on its cross does."""
+    if pygame.display.get_init():
+        pygame.event.post(pygame.Event(pygame.QUIT))
 
 
 def wants_to_leave() -> bool:
