@@ -27,6 +27,7 @@ from physicslab.state.contacts import Contacts
 from physicslab.state.sleep import Sleep
 from physicslab.stepping.checkpoint import Checkpoint
 from physicslab.stepping.event_driven import Flights
+from physicslab.stepping.fastest_body import fastest_body
 from physicslab.stepping.fused_contact import CompiledSteps, why_not_compiled
 from physicslab.stepping.select import choose, provisional
 from physicslab.stepping.split_forces import Tethers
@@ -233,7 +234,9 @@ class World:
         raise KeyError(f"no entity has the id {name!r}")
 
     def label(self, entity: int) -> str:
-        """Return the entity's id if it has one, else ``entity <number>``."""
+        """Return the entity's id if it has one, else ``entity <number>``; of row 0 it is ``the world``."""
+        if not entity:
+            return "the world"
         with self.active():
             named = esper.try_component(entity, Name)
         return named.id if named is not None else f"entity {entity}"
@@ -454,7 +457,7 @@ class World:
         try:
             made = method.integrator.flow(self, equations, h, count)
         except StepTooSmall as error:
-            label = self.label(self._liveliest())
+            label = self.label(fastest_body(self))
             what = f"{label}: Velocity changes too fast: {error}"
             raise Diverged(f"{what} (after t = {self.time:.9g} s)") from error
         except NoClosedForm:  # somebody gave a body another velocity, or another spring
@@ -466,13 +469,6 @@ class World:
         for name in equations.forces:
             self.schedule.note(name, made, 0)  # their time is within the loop's
         self.force_evaluations += made
-
-    def _liveliest(self) -> int:
-        """Return the entity whose velocity changes fastest as things stand."""
-        self.add_up_forces()
-        bodies = self.bodies
-        rates = np.hypot(bodies.force[:, 0], bodies.force[:, 1]) * bodies.inverse_mass
-        return int(self.roster.entities[np.argmax(rates)])
 
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.

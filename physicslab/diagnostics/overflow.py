@@ -87,5 +87,4 @@ def _line(
 ) -> str:
     words = ", ".join(f"{number:.6g}" for number in np.atleast_1d(value).tolist())
     words = f"[{words}]" if np.ndim(value) else words
-    label = world.label(int(world.roster.entities[row])) if row else "the world"
-    return f"{label}: {field} = {words} {unit}: {what}"
+    return f"{world.label(int(world.roster.entities[row]))}: {field} = {words} {unit}: {what}"

@@ -11,6 +11,7 @@ from physicslab.components import Velocity
 from physicslab.integrators import Integrator, StepTooSmall
 from physicslab.ode.system import Equations
 from physicslab.state.bodies import Diverged
+from physicslab.stepping.fastest_body import fastest_body
 from physicslab.stepping.split_rows import tethered_rows
 from physicslab.systems.schedule import ForceSystem
 
@@ -81,6 +82,7 @@ class Tethers:
         try:
             made = self._method.flow(world, equations, h / self._steps, self._steps)
         except StepTooSmall as error:
-            raise Diverged(f"{error} (after t = {world.time:.9g} s)") from error
+            what = f"{world.label(fastest_body(world))}: Velocity changes too fast: {error}"
+            raise Diverged(f"{what} (after t = {world.time:.9g} s)") from error
         equations.scatter(world, h)
         world.force_evaluations += made
