@@ -44,6 +44,7 @@ _MOST_PARTS = 100_000
 """Into so many parts, at the most, a step is divided that is longer than the scene's own."""
 _STEP = Field("dt", "number", minimum=SHORTEST, unit="s", owner="step")
 _STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
+_STRIDE = Field("stride", "whole", minimum=1, maximum=_MOST, owner="stepping")
 _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
 """What the methods of a world may be given."""
 _TOO_LONG = 0.01
@@ -557,8 +558,16 @@ class World:
         """Advance like :meth:`run`, yielding the number of steps done after every ``stride`` steps.
 
         What lies between is one compiled loop where it can be.
+
+        Raises
+        ------
+        InvalidValue
+            When it is called, not when it is first advanced: if a value is none that a run can have.
         """
-        seconds, whole, rest = self._plan(seconds, steps)
+        return self._stepping_by(_STRIDE.check(stride), *self._plan(seconds, steps))
+
+    def _stepping_by(self, stride: int, seconds: float, whole: int, rest: float) -> Iterator[int]:
+        """Advance by so many whole steps and the rest of one, which take so many seconds."""
         dt, start, done = self._simulation.dt, self.time, 0
         last = whole + 1 if rest else whole
         if not last:

@@ -238,3 +238,9 @@ def test_a_time_that_is_none_is_refused(seconds: Any) -> None:
 def test_a_run_of_more_steps_than_can_be_counted_is_refused() -> None:
     with pytest.raises(ValueError, match=r"run\.seconds = 1e\+308: must be less than 2\*\*53 steps"):
         World().run(seconds=1e308)
+
+
+@pytest.mark.parametrize("stride", [0, -1, 1.5, True, "1", 10**400, None])
+def test_a_stride_that_never_ends_is_refused_when_it_is_given(stride: Any) -> None:
+    with pytest.raises(InvalidValue, match=r"stepping\.stride = .*: must be a whole number from 1 to"):
+        World().stepping(steps=3, stride=stride)
