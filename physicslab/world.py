@@ -7,7 +7,6 @@ import math
 import time
 import weakref
 from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import esper
@@ -17,6 +16,7 @@ from physicslab.components import Name
 from physicslab.components.name import why_no_id
 from physicslab.ecs.component import Batch, InvalidValue, Table
 from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
+from physicslab.ecs.context import Active, switch
 from physicslab.ecs.entity_index import Roster
 from physicslab.ecs.fields import Field
 from physicslab.integrators import StepTooSmall
@@ -80,7 +80,10 @@ class World:
     Notes
     -----
     Each world lives in an esper context of its own, so worlds never mix. A new world is esper's active one
-    until another is made or activated; every method enters its own context and leaves the one before.
+    until another is made or activated; every method enters its own context and leaves the one before. That
+    context is one for the whole process: one thread at a time can work with worlds. Where another does
+    meanwhile, a ``RuntimeError`` says so before anything is touched. Worlds that are to run at the same time
+    need a process each (``concurrent.futures.ProcessPoolExecutor``).
 
     Examples
     --------
@@ -126,27 +129,30 @@ class World:
         self._before = Checkpoint()
         self.method = provisional(self._simulation)
         self.context = f"physicslab-{next(_numbers)}"
-        esper.switch_world(self.context)
+        self.activate()
         weakref.finalize(self, _forget, self.context)
 
     # ---- contexts ------------------------------------------------------------------------------------------
 
     def activate(self) -> None:
-        """Make this the world that plain esper calls speak of, until another is activated."""
-        esper.switch_world(self.context)
+        """Make this the world that plain esper calls speak of, until another is activated.
 
-    @contextmanager
-    def active(self) -> Iterator[World]:
-        """Make this the world that plain esper calls speak of, within a ``with`` block."""
-        before = esper.current_world
-        if before != self.context:
-            esper.switch_world(self.context)
-        try:
-            yield self
-        finally:
-            if esper.current_world != before:
-                # The world that was active before may have been forgotten meanwhile.
-                esper.switch_world(before if before in esper.list_worlds() else "default")
+        Raises
+        ------
+        RuntimeError
+            If a world is active in another thread.
+        """
+        switch(self.context)
+
+    def active(self) -> Active[World]:
+        """Make this the world that plain esper calls speak of, within a ``with`` block.
+
+        Raises
+        ------
+        RuntimeError
+            At the start of the block, if a world is active in another thread.
+        """
+        return Active(self, self.context)
 
     # ---- entities and components ---------------------------------------------------------------------------
 
