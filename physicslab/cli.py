@@ -11,6 +11,7 @@ from typing import NoReturn
 
 from physicslab.commands import COMMANDS, CommandError, command
 from physicslab.commands.command_error import FAILED, USAGE
+from physicslab.desktop.no_screen import NoScreen
 from physicslab.ecs.fields import InvalidValue
 from physicslab.files.checks import SceneError, printable, shortened
 from physicslab.scenes import SCENES
@@ -35,12 +36,14 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _WindowParser(_Parser):
-    """Says what commands there are, where help is asked for: a window does not wait for them."""
+    """Says what commands there are, a line each, where help is asked for: a window does not wait for them."""
 
     def format_help(self) -> str:
-        lines = (f"{name} - {(command(name).__doc__ or '').splitlines()[0]}" for name in COMMANDS)
-        self.epilog = "commands: " + "; ".join(lines)
-        return super().format_help()
+        self.usage = "physicslab [SCENE] | physicslab COMMAND ... (physicslab COMMAND --help says more)"
+        width = max(map(len, COMMANDS))
+        summaries = ((command(name).__doc__ or "").splitlines()[0] for name in COMMANDS)
+        lines = (f"  {name:<{width}}  {said}" for name, said in zip(COMMANDS, summaries, strict=True))
+        return super().format_help() + "\n".join(["\ncommands:", *lines, ""])
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -73,6 +76,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         _let_go_of_stdout()
         return _PIPE_CLOSED
+    except NoScreen as error:
+        return _complain(str(error), USAGE)
     except OSError as error:
         _let_go_of_stdout()
         return _complain(": ".join(filter(None, (error.filename, error.strerror or str(error)))), FAILED)

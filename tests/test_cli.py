@@ -7,6 +7,7 @@ import io
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -17,9 +18,11 @@ import pytest
 
 import physicslab
 from physicslab import cli, load_scene, save_scene
-from physicslab.commands import progress, run
+from physicslab.commands import COMMANDS, progress, run
 from physicslab.commands.output import Output
 from physicslab.diagnostics.run_report import find_not_finite
+from physicslab.lab.accuracy.catalogue import names
+from physicslab.lab.stability.catalogue import CASES
 from physicslab.scenes import SCENES
 
 ROOT = Path(__file__).parent.parent
@@ -327,9 +330,44 @@ def test_a_full_disk_is_said(capsys: pytest.CaptureFixture[str], monkeypatch: py
 
 def test_help_is_no_failure(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["--help"]) == 0
-    assert "run - Run a scene without a window" in " ".join(capsys.readouterr().out.split())
+    lines = capsys.readouterr().out.splitlines()
+    listed = lines[lines.index("commands:") + 1 :]
+    assert [line.split()[0] for line in listed] == list(COMMANDS)
+    assert listed[0] == "  run        Run a scene without a window, and say what came of it."
     assert cli.main(["run", "--help"]) == 0
     assert "--substeps N" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_fits_on_a_screen(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main([name, "--help"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) <= 45
+
+
+def test_names_are_listed_where_help_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["stability", "--list"]) == 0
+    cases = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [name for name, _ in cases] == list(CASES) and ["spring_1_rest", "springs"] in cases
+    assert cli.main(["accuracy", "--list"]) == 0
+    assert capsys.readouterr().out.splitlines() == list(names())
+
+
+def test_without_packages_one_line_says_what_to_do() -> None:
+    done = process("-S", "-E", "main.py", "scenes")
+    line = r"physicslab: the package \w+ is not installed: 'uv run main\.py' fetches what is needed, .*\n"
+    assert (done.returncode, done.stdout) == (2, "") and re.fullmatch(line, done.stderr)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is always a screen")
+def test_without_a_screen_one_line_says_so() -> None:
+    screens = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER", "SDL_VIDEO_DRIVER")
+    environment = {name: value for name, value in os.environ.items() if name not in screens}
+    for scene in ([], ["drop"]):
+        done = process("main.py", *scene, env=environment)
+        assert (done.returncode, done.stdout) == (2, "")
+        said = [line for line in done.stderr.splitlines() if line.startswith("physicslab: ")]
+        assert len(said) == 1 and said[0].startswith("physicslab: no window can be opened: ")
+        assert said[0].endswith("; physicslab run SCENE needs none")
 
 
 def test_progress_is_for_terminals_and_long_runs() -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import copy
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 from deadline import deadline
 from test_fuzz_scenes import run_or_refuse
 
+from physicslab.cli import main
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.component import COMPONENTS, InvalidValue
 from physicslab.files.scene import SceneError, read_scene
@@ -244,3 +247,28 @@ def test_a_run_of_more_steps_than_can_be_counted_is_refused() -> None:
 def test_a_stride_that_never_ends_is_refused_when_it_is_given(stride: Any) -> None:
     with pytest.raises(InvalidValue, match=r"stepping\.stride = .*: must be a whole number from 1 to"):
         World().stepping(steps=3, stride=stride)
+
+
+@pytest.mark.parametrize("command", [["run"], ["accuracy"], ["bench"], []])
+def test_every_command_refuses_what_its_world_refuses_in_one_line(
+    command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "far.json"
+    path.write_text(json.dumps(scene(changed(BOX, Shape={"height": 1e308}))))
+    assert main([*command, str(path)]) == 2
+    said = capsys.readouterr()
+    line = 'far.json: entity "box": Shape.height = 1e+308: must be a finite number >= 0 m, at most 1e+150'
+    assert said.out == "" and said.err.endswith(f"{line}\n") and said.err.count("\n") == 1
+
+
+def test_what_only_a_world_can_refuse_is_one_line_too(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refuse(world: World) -> None:
+        raise InvalidValue("box: Mass", "inertia", float("inf"), "a finite number")
+
+    monkeypatch.setattr(World, "synchronise", refuse)
+    for command in ("run", "accuracy", "bench"):
+        assert main([command, "drop"]) == 2
+        said = capsys.readouterr().err
+        assert "box: Mass.inertia = inf: must be a finite number" in said and said.count("\n") == 1

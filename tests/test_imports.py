@@ -7,8 +7,8 @@ IMPORT_ALL = """
 import importlib, pkgutil, sys
 import physicslab
 
-window = ["app", "compiling", "sandbox", "session_window", "view"]
-window += ["systems.input", "systems.render", "systems.hud"]
+window = ["desktop.app", "desktop.compiling", "desktop.sandbox", "desktop.session_window", "view"]
+window += ["systems.frame.input", "systems.frame.render", "systems.frame.hud"]
 names = [module.name for module in pkgutil.walk_packages(physicslab.__path__, "physicslab.", onerror=print)]
 for name in names:
     if not name.removeprefix("physicslab.").startswith(tuple(window)):

@@ -3,15 +3,18 @@
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
+import pygame
 import pytest
 from desk import Desk, bits, empty_world
 
 from physicslab.desktop.rescue import save_last_good
 from physicslab.files.new_scene import file_stem
 from physicslab.files.replace import create_file
-from physicslab.files.scene import load_scene
+from physicslab.files.scene import load_scene, save_scene
+from physicslab.view.controls.menus import MENUS
 
 AT_ONCE = """
 import sys, time
@@ -31,8 +34,6 @@ for _ in range(10):
 
 
 def test_programs_that_save_at_once_get_a_file_each(tmp_path: Path) -> None:
-    import time
-
     start = str(time.time() + 6.0)
     command = [sys.executable, "-c", AT_ONCE, str(tmp_path), start]
     processes = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(4)]
@@ -67,8 +68,6 @@ def test_where_files_have_one_name_alone_they_are_created_all_the_same(
 
 
 def test_saving_follows_no_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    import pygame
-
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scene-1.json").symlink_to(tmp_path / "elsewhere.json")
     desk = Desk(empty_world())
@@ -87,3 +86,22 @@ def test_a_long_name_is_shortened_for_its_file(name: str, tmp_path: Path) -> Non
     assert path.name.endswith("-before-divergence.json") and len(path.name.encode()) <= 143
     assert save_last_good(world, world.name, tmp_path).name.endswith("-before-divergence-2.json")
     assert load_scene(path).name == name and bits(load_scene(path)) == bits(world)
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="file names are Unicode there")
+def test_a_file_name_that_is_not_utf_8_is_listed_opened_and_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in (os.fsdecode(b"caf\xe9.json"), "\u200b.json"):
+        save_scene(load_scene("two_planets"), name)
+    desk = Desk(empty_world())
+    desk.key("l")
+    desk.frames(3)
+    titles = [choice.title for choice in MENUS["scenes"](desk.world, desk.window)]
+    assert "caf\\udce9.json" in titles and "\\u200b.json" in titles
+    Path("\u200b.json").unlink()
+    desk.key("l")
+    desk.key("o", pygame.KMOD_LCTRL)
+    desk.frames(3)
+    assert desk.world.name == "two_planets" and desk.window.notice.endswith("caf\\udce9.json")

@@ -33,11 +33,15 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("problems", metavar="PROBLEM", nargs="*", help=what)
     parser.add_argument("--json", metavar="FILE", help="write everything that was measured (- for stdout)")
     parser.add_argument("--plot", metavar="DIR", help="draw a work-precision plot of each problem, as PNG")
-    parser.epilog = f"problems: {', '.join(names())}"
+    parser.add_argument("--list", action="store_true", help="name every problem and variant, and run none")
+    parser.epilog = f"problems: {', '.join(families())}; --list names all {len(names())} with their variants"
 
 
 def execute(arguments: Namespace) -> int:
     """Study what was named, print a table of each, and write what was asked for."""
+    if arguments.list:
+        print("\n".join(names()))
+        return 0
     problems, scenes = _chosen(arguments.problems)
     output = None if arguments.json is None else Output("--json", arguments.json)
     pictures = None if arguments.plot is None else picture_directory(arguments.plot, "accuracy.png")

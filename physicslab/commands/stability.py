@@ -23,11 +23,18 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
     parser.add_argument("cases", metavar="CASE", nargs="*", help="a case, or a group of them; all if none")
     parser.add_argument("--json", metavar="FILE", help="write every figure and verdict (- for stdout)")
-    parser.epilog = f"groups: {', '.join(groups())}; cases: {', '.join(CASES)}"
+    parser.add_argument("--list", action="store_true", help="name every case, with its group, and run none")
+    parser.epilog = f"groups: {', '.join(groups())}; --list names the {len(CASES)} cases"
 
 
 def execute(arguments: Namespace) -> int:
     """Run what was named, print a line of each, and write what was asked for."""
+    if arguments.list:
+        width = max(map(len, CASES))
+        for group in groups():
+            for case in select(group):
+                print(f"{case.name:<{width}}  {group}")
+        return 0
     cases = _chosen(arguments.cases)
     output = None if arguments.json is None else Output("--json", arguments.json)
     quiet = output is not None and output.to_stdout
@@ -59,7 +66,7 @@ def _chosen(wanted: Sequence[str]) -> list[Case]:
     for name in wanted:
         found = select(name)
         if not found:
-            there_is = f"there are the groups {', '.join(groups())}, and the cases that --help names"
+            there_is = f"there are the groups {', '.join(groups())}, and the cases that --list names"
             raise CommandError(f"{shown(name)}: is no case{suggestion(name, names())}; {there_is}")
         chosen |= {case.name: case for case in found}
     return list(chosen.values())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import itertools
+import os
 import time
 import warnings
 from collections.abc import Iterator
@@ -14,12 +15,18 @@ from pathlib import Path
 
 import pygame
 
+from physicslab.desktop.no_screen import NoScreen
 from physicslab.ecs.config import WindowConfig
 from physicslab.files.replace import create_file
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
 
 __all__ = ["Display", "ask_to_leave", "wants_to_leave"]
+
+
+_INVISIBLE = ("dummy", "offscreen")
+"""Drivers of SDL without a window."""
+_WITHOUT_WINDOW = "physicslab run SCENE needs none"
 
 
 class Display:
@@ -43,17 +50,18 @@ class Display:
 
         Raises
         ------
-        OSError
+        NoScreen
             If there is no screen to open it on.
         """
         try:
             pygame.display.init()  # not pygame.init(): sound is not needed, and complains where there is none
+            _check_visible()
             pygame.font.init()
             pygame.display.set_icon(_icon(theme))
             surface = pygame.display.set_mode(config.size, pygame.RESIZABLE)
         except pygame.error as error:
             pygame.quit()
-            raise OSError(f"no window can be opened: {error}") from error
+            raise NoScreen(f"no window can be opened: {error}; {_WITHOUT_WINDOW}") from error
         try:
             pygame.display.set_caption(title)
             _limit(config.least_size)
@@ -102,6 +110,18 @@ class Display:
                 create_file(path, picture.getvalue())
                 break
         return path
+
+
+def _check_visible() -> None:
+    """Refuse a driver that shows nothing, which SDL takes where there is no screen.
+
+    One that SDL_VIDEODRIVER names is taken: tests draw without a screen.
+    """
+    driver = pygame.display.get_driver()
+    chosen = any(os.environ.get(name) for name in ("SDL_VIDEODRIVER", "SDL_VIDEO_DRIVER"))
+    if driver in _INVISIBLE and not chosen:
+        pygame.quit()
+        raise NoScreen(f"no window can be opened: there is no screen; {_WITHOUT_WINDOW}")
 
 
 def ask_to_leave() -> None:
