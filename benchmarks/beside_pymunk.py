@@ -84,11 +84,11 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=9, help="blocks of steps a scene (default: 9)")
     repeats = parser.parse_args().repeats
     print(f"{'scene':12} {'PhysicsLab':>12} {'pymunk':>12} {'ratio':>7}   ms a step; energy kept by both")
-    for name, (build, settle) in SCENES.items():
+    for name, (build, add_constraints) in SCENES.items():
         world = build()
         space = PymunkMirror(world).space
         dt = world.simulation.dt
-        for _ in range(round(settle / dt)):
+        for _ in range(round(add_constraints / dt)):
             world.step()
             space.step(dt)
         before = measure_energy(world).kinetic, kinetic_energy(space)

@@ -75,7 +75,7 @@ def stepped_by(peer: type[Peer], substeps: int) -> Iterator[list[Peer]]:
             mirrors[world] = peer(world)
             made.append(mirrors[world])
             # What PhysicsLab would say of its own method does not hold for another.
-            world.method = replace(world.method, reason=peer.__name__)
+            world.plan = replace(world.plan, reason=peer.__name__)
         mirror = mirrors[world]
         for _ in range(steps * substeps):
             mirror.step(dt / substeps)

@@ -81,15 +81,16 @@ def start(scene: str, cache: Path, seconds: float) -> dict[str, float]:
     """Start the program once, let it run, and return what came when [s] and the slowest frame [ms]."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "sitecustomize.py").write_text(HOOK)
-        told = Path(folder) / "moments.json"
+        reported = Path(folder) / "moments.json"
         environment = {"SDL_VIDEODRIVER": "dummy", **os.environ} | {
             "PYTHONPATH": folder, "XDG_CACHE_HOME": str(cache), "XDG_STATE_HOME": folder,
             "PYTHONPYCACHEPREFIX": str(cache / "bytecode"), "PYTHONDONTWRITEBYTECODE": "",
-            "STARTUP_BEGAN": repr(time.time()), "STARTUP_FILE": str(told), "STARTUP_SECONDS": str(seconds),
+            "STARTUP_BEGAN": repr(time.time()), "STARTUP_FILE": str(reported),
+            "STARTUP_SECONDS": str(seconds),
         }  # fmt: skip
         command = (sys.executable, str(ROOT / "main.py"), scene)
         subprocess.run(command, env=environment, check=True, cwd=folder)
-        moments = json.loads(told.read_text())
+        moments = json.loads(reported.read_text())
     flips = moments["flips"]
     gaps = [1e3 * (after - before) for before, after in itertools.pairwise(flips)]
     return {

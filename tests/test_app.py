@@ -18,7 +18,7 @@ from physicslab.desktop.app import open_window
 from physicslab.desktop.sandbox import Sandbox
 from physicslab.files.scene import SceneError, load_scene
 from physicslab.prefabs import box, circle
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.display import Display
 from physicslab.view.window import Window
@@ -90,7 +90,7 @@ def test_a_world_that_diverges_is_paused_and_says_so() -> None:
     ball = circle(world, (0, 0), name="ball")
     desk = Desk(world)
     desk.frames(2)
-    world.table(Velocity)["linear"][world.roster.row_of[ball]] = float("nan")
+    world.table(Velocity)["linear"][world.entity_index.row_of[ball]] = float("nan")
     desk.frames(3)
     assert desk.window.pace.due(FRAME) == 0
     assert "ball" in desk.window.error and "no longer finite" in desk.window.error

@@ -67,7 +67,7 @@ def test_only_what_changed_is_saved_and_not_too_often(tmp_path: Path) -> None:
     clock, world = Clock(), load_scene("stack")
     autosave = Autosave(tmp_path / "s.json", clock=clock)
     world.synchronise()
-    autosave.settle(world)
+    autosave.add_constraints(world)
     assert not saved(autosave, world, clock, 30.0), "nothing was done to it"
     world.step()
     assert saved(autosave, world, clock)
@@ -98,19 +98,19 @@ def test_what_cannot_be_saved_is_told_once_and_the_sandbox_goes_on(
         folder.rmdir()
     else:
         entity = world.batch(Transform).entities[0]
-        world.table(Transform)["position"][world.roster.row_of[int(entity)]] = float("nan")
+        world.table(Transform)["position"][world.entity_index.row_of[int(entity)]] = float("nan")
         world.steps += 1  # numbers written into a column by hand are not noticed
         window.pace.paused = True
-    told: list[str] = []
+    reported: list[str] = []
     for _ in range(200):
         clock.now += 0.25
         sandbox.frame(FRAME)
         if autosave._thread is not None:
             autosave._thread.join()
         if window.notice.startswith("The state cannot be kept"):
-            told.append(window.notice)
+            reported.append(window.notice)
             window.notify("")
-    assert len(told) == 1 and window.notice_failed is False
+    assert len(reported) == 1 and window.notice_failed is False
     assert gc.isenabled() and (way == "nan" or sandbox.world.time > 1.0)
 
 

@@ -24,7 +24,7 @@ from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.bench.targets import Check
 from physicslab.lab.bench.unused import UNUSED, Unused, measure_unused
 from physicslab.lab.peers.pymunk_mirror import PymunkMirror
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.world import World
 
 

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
-from physicslab.systems.schedule import ForceSystem, Stage, at
+from physicslab.systems.system import ForceSystem, Stage, at
 from physicslab.world import World
 
 NO_GRAVITY = PhysicsConfig(gravity_mode="none")

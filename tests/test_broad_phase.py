@@ -18,11 +18,14 @@ from physicslab.world import World
 
 def near(world: World) -> list[tuple[int, int, int]]:
     """Return the near pairs as (entity, entity, wall)."""
-    contacts, entities = world.contacts, world.roster.entities
+    contacts, entities = world.contacts, world.entity_index.entities
     manifolds = contacts.manifolds[: contacts.recorded]
     recorded = [(int(m["entity_a"]), int(m["entity_b"]), int(m["wall"])) for m in manifolds]
-    idle = [(*pair, -1) for pair in entities[contacts.idle[: 2 * contacts.lying].reshape(-1, 2)].tolist()]
-    return sorted(recorded + idle)
+    proximity = [
+        (*pair, -1)
+        for pair in entities[contacts.proximity[: 2 * contacts.proximity_count].reshape(-1, 2)].tolist()
+    ]
+    return sorted(recorded + proximity)
 
 
 def body(world: World, x: float, y: float, shape: Shape, *, moves: bool = True, angle: float = 0.0) -> int:

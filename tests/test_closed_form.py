@@ -71,7 +71,7 @@ def test_two_half_ways_are_one_whole(
     for parts in (1, 2):
         spring = Spring(rest_length=50, stiffness=k, damping=c)
         world = hung(spring, (50 + place) * line, speed * line)
-        if world.method.integrator.name != "exact":
+        if world.plan.integrator.name != "exact":
             return  # thrown so hard that it may swing through the middle
         for _ in range(parts):
             world.run(seconds=2 * t / parts)
@@ -85,7 +85,7 @@ def test_stiff_springs_sag_to_their_rest_under_gravity(z: float) -> None:
     spring = Spring(rest_length=0, stiffness=k, damping=2 * 0.05 * math.sqrt(k))
     world = hung(spring, (0, 0), (0, 0), gravity_mode="linear")
     world.run(seconds=1000.0 if z < 1 else 100.0)
-    assert world.method.integrator.name == "exact"
+    assert world.plan.integrator.name == "exact"
     assert state(world)[1] == pytest.approx(-9.81 / k, rel=1e-9)
 
 
@@ -100,7 +100,7 @@ def test_stiff_springs_sag_to_their_rest_under_gravity(z: float) -> None:
 )
 def test_where_there_is_none_it_says_why(spring: Spring, x: object, v: object, why: str) -> None:
     with pytest.raises(NoClosedForm, match=why):
-        closed_form(hung(spring, x, v))
+        closed_form(world := hung(spring, x, v), world.schedule.forces)
 
 
 def test_several_springs_of_no_length_pull_to_their_middle() -> None:

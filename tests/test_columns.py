@@ -15,7 +15,7 @@ from physicslab.components import Mass, Material, Shape, Spring, Trail, Transfor
 from physicslab.ecs.component import COMPONENTS, Component, InvalidValue, Table, Vector, component, field
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
 
@@ -60,7 +60,7 @@ def test_a_handle_and_its_column_are_one_memory() -> None:
     world = World()
     entity = world.spawn(Transform((1, 2), 0.5), Mass(3.0, fixed_rotation=True), Shape.box(1, 2))
     transform, mass = world.component(entity, Transform), world.component(entity, Mass)
-    row = world.roster.row_of[entity]
+    row = world.entity_index.row_of[entity]
 
     transform.position = (3, 4)
     mass.mass = 5

@@ -10,9 +10,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.contacts.report import Contact, contact_between
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.state.contacts import Contact
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.world import World
@@ -33,7 +33,7 @@ def touch(
             Transform(place, angle), copy.copy(shape), Velocity(), Mass(1), Material(0.4, 0.25)
         )
     world.step(1e-6)
-    return world.contacts.between(world, made[0], made[1])
+    return contact_between(world, made[0], made[1])
 
 
 def circle(x: float, y: float, radius: float) -> tuple[Shape, tuple[float, float], float]:
@@ -108,7 +108,7 @@ def test_a_pair_uses_the_lesser_restitution_and_the_geometric_mean_of_friction()
     a = world.spawn(Transform(), Shape.circle(1), Velocity(), Mass(1), Material(0.9, 0.2))
     b = world.spawn(Transform((1.9, 0)), Shape.circle(1), Velocity(), Mass(1), Material(0.3, 0.8))
     world.step(1e-6)
-    contact = world.contacts.between(world, a, b)
+    contact = contact_between(world, a, b)
     assert contact is not None
     assert contact.restitution == 0.3
     assert contact.friction == pytest.approx(0.4)
@@ -119,7 +119,7 @@ def test_bounds_touch_with_an_inward_normal() -> None:
     ball = world.spawn(Transform((4.6, 0)), Shape.circle(0.5), Velocity(), Mass(1), Material())
     crate = world.spawn(Transform((0, -4.55)), Shape.box(1, 1), Velocity(), Mass(1), Material())
     world.step(1e-6)
-    wall, floor = world.contacts.between(world, 0, ball), world.contacts.between(world, 0, crate)
+    wall, floor = contact_between(world, 0, ball), contact_between(world, 0, crate)
     assert wall is not None and floor is not None
     assert (wall.normal, floor.normal, len(floor.points)) == (Vector2(-1, 0), Vector2(0, 1), 2)
     assert (wall.depth, floor.depth) == pytest.approx((0.1, 0.05))

@@ -8,10 +8,11 @@ from physicslab.components import Held, Mass, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import Drift, Energy, measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.state.state import State
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
-from physicslab.systems.schedule import ForceSystem, Stage, at
 from physicslab.systems.spring import SpringSystem
+from physicslab.systems.system import ForceSystem, Stage, at
 from physicslab.world import World
 
 
@@ -47,7 +48,7 @@ def test_every_force_reports_what_it_stores() -> None:
         @at(Stage.FORCE)
         def blow(self, world: World, h: float) -> None: ...
 
-        def potential_energy(self, world: World) -> float:
+        def potential_energy(self, state: State) -> float:
             return 7.0
 
     world = World(GravitySystem(), SpringSystem(), Wind())

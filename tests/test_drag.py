@@ -28,7 +28,7 @@ def thrown(
 def test_linear_drag_against_the_closed_form() -> None:
     world, ball = thrown(Drag(linear=0.5), 2.0, (10, 15))
     world.run(seconds=3.0)
-    assert world.method.integrator.name == "exact"
+    assert world.plan.integrator.name == "exact"
     place, velocity = world.component(ball, Transform).position, world.component(ball, Velocity).linear
     assert tuple(place) == pytest.approx((21.10533789035941171448, -3.244647282690550860671), rel=1e-13)
     assert tuple(velocity) == pytest.approx((4.723665527410147071380, -13.61883817932736228483), rel=1e-13)
@@ -37,7 +37,7 @@ def test_linear_drag_against_the_closed_form() -> None:
 def test_quadratic_drag_against_the_closed_form() -> None:
     world, ball = thrown(Drag(quadratic=0.1), 1.0, (0, 0))
     world.run(seconds=2.0)
-    assert world.method.integrator.name == "dop853"
+    assert world.plan.integrator.name == "dop853"
     assert world.component(ball, Transform).position.y == pytest.approx(-13.06611417826422700240, rel=1e-13)
     assert world.component(ball, Velocity).linear.y == pytest.approx(-9.534645904705057135767, rel=1e-13)
 
@@ -63,7 +63,7 @@ def test_it_acts_in_scenes_that_touch_too() -> None:
     ball = world.spawn(Transform(), Velocity((1, 0)), Mass(1), Shape.circle(0.1), Drag(linear=1.0))
     world.spawn(Transform((9, 9)), Shape.circle(0.1))
     world.run(seconds=1.0)
-    assert world.method.integrator.name == "leapfrog"
+    assert world.plan.integrator.name == "leapfrog"
     assert world.component(ball, Velocity).linear.x == pytest.approx(math.exp(-1), rel=1e-2)
 
 

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from physicslab import World, load_scene
 from physicslab.components import Held, Mass, Material, Shape, Transform, Velocity
+from physicslab.contacts.report import contact_between
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels import compile_kernels
@@ -129,9 +130,9 @@ def test_bounces_come_at_their_times_and_end_at_rest(by_step: bool) -> None:
     world.run(seconds=zeno + world.simulation.dt - 9.0)
     assert times(world)[-1] == pytest.approx(zeno, abs=0.02 * world.simulation.dt)
     assert abs(world.component(ball, Velocity).linear.y) < 1e-12
-    struck = world.collisions
+    impact_count = world.collisions
     world.run(seconds=5.0)
-    assert world.collisions == struck and world.contacts.count == 1
+    assert world.collisions == impact_count and world.contacts.count == 1
     transform, velocity = world.component(ball, Transform), world.component(ball, Velocity)
     assert (
         abs(transform.position.x) < 1e-12 and abs(transform.position.y - 0.25) < 1e-3
@@ -237,7 +238,7 @@ def test_momentum_is_kept_energy_never_grows_and_nothing_overlaps(
         )  # fmt: skip
     before, energy = measure_momentum(world), measure_energy(world).total
     world.run(steps=20)
-    assert world.method.collisions == "exact"
+    assert world.plan.collisions == "exact"
     after, most = measure_momentum(world), fast * sum(mass for _, mass, *_ in bodies)
     assert (after.linear - before.linear).magnitude <= 1e-14 * most
     assert after.angular == pytest.approx(before.angular, abs=1e-13 * most * 40 * size)
@@ -389,10 +390,12 @@ def test_friction_spins_a_disc_by_coulombs_law() -> None:
         world.run(seconds=0.5)
         j = 1.5 * math.sqrt(2 * G)
         stops = 4 / 3  # m_t v with m_t = 1 / (1/m + r^2/I) = 1/3
-        rub = min(mu * j, stops)
-        assert speed(world, ball) == pytest.approx(4 - rub, rel=1e-13)
-        assert world.component(ball, Velocity).angular == pytest.approx(-rub * 0.5 / 0.125, rel=1e-13)
-        assert world.contacts.impacts["tangent_impulse"][0] == pytest.approx(rub, rel=1e-13)
+        friction_impulse = min(mu * j, stops)
+        assert speed(world, ball) == pytest.approx(4 - friction_impulse, rel=1e-13)
+        assert world.component(ball, Velocity).angular == pytest.approx(
+            -friction_impulse * 0.5 / 0.125, rel=1e-13
+        )
+        assert world.contacts.impacts["tangent_impulse"][0] == pytest.approx(friction_impulse, rel=1e-13)
 
 
 def test_what_is_let_go_below_or_beside_a_box_just_falls() -> None:
@@ -478,8 +481,8 @@ def test_a_crowd_between_inelastic_walls_ends() -> None:
 def test_auto_chooses_exact_for_few_bodies_that_bounce(name: str, collisions: str) -> None:
     world = load_scene(name)
     world.synchronise()
-    assert world.method.collisions == collisions
-    assert world.method.collision_reason
+    assert world.plan.collisions == collisions
+    assert world.plan.collision_reason
 
 
 def one_ball(world: World) -> None:
@@ -498,7 +501,7 @@ def dull(world: World) -> None:
     circle(world, (0, 3), restitution=0.0)
 
 
-def lying(world: World) -> None:
+def proximity_count(world: World) -> None:
     circle(world, (0, 0.25), radius=0.25, restitution=0.5)
 
 
@@ -522,7 +525,7 @@ def many(world: World) -> None:
         (turning, "exact", {}, "step", "exact was asked for, and crate is a box that may turn"),
         (dull, "auto", {}, "step", "some pairs do not bounce"),
         (dull, "exact", {}, "exact", "asked for"),
-        (lying, "auto", {}, "step", "everything rests"),
+        (proximity_count, "auto", {}, "step", "everything rests"),
         (piled, "auto", {}, "step", "bodies rest on each other"),
         (many, "auto", {}, "step", "more than 32 bodies move"),
         (one_ball, "auto", {"linear_damping": 0.1}, "step", "velocities are damped"),
@@ -536,7 +539,7 @@ def test_the_choice_and_its_reason(
     world.physics = dataclasses.replace(world.physics, **physics)
     fill(world)
     world.synchronise()
-    assert (world.method.collisions, world.method.collision_reason) == (found, reason)
+    assert (world.plan.collisions, world.plan.collision_reason) == (found, reason)
     world.run(seconds=0.2)
 
 
@@ -544,10 +547,10 @@ def test_a_box_set_free_to_turn_is_noticed() -> None:
     world = falling()
     crate = box(world, (0, 3), fixed_rotation=True, restitution=0.5, name="crate")
     world.run(seconds=0.1)
-    assert world.method.collisions == "exact"
+    assert world.plan.collisions == "exact"
     world.component(crate, Mass).fixed_rotation = False
     world.run(seconds=0.1)
-    assert world.method.collision_reason == "exact was asked for, and crate is a box that may turn"
+    assert world.plan.collision_reason == "exact was asked for, and crate is a box that may turn"
 
 
 def test_a_method_asked_for_by_name_comes_first() -> None:
@@ -555,8 +558,8 @@ def test_a_method_asked_for_by_name_comes_first() -> None:
     one_ball(world)
     world.simulation = dataclasses.replace(world.simulation, integrator="leapfrog")
     world.synchronise()
-    assert (world.method.integrator.name, world.method.collisions) == ("leapfrog", "step")
-    assert world.method.collision_reason.startswith("leapfrog was asked for")
+    assert (world.plan.integrator.name, world.plan.collisions) == ("leapfrog", "step")
+    assert world.plan.collision_reason.startswith("leapfrog was asked for")
 
 
 def test_impacts_are_told_as_those_of_the_contact_step_are() -> None:
@@ -565,7 +568,7 @@ def test_impacts_are_told_as_those_of_the_contact_step_are() -> None:
     ball = circle(world, (0, 0.3), radius=0.25, velocity=(1, 0), restitution=0.5, friction=0.2)
     while not world.collisions:
         world.step()
-    contact = world.contacts.between(world, floor, ball)
+    contact = contact_between(world, floor, ball)
     assert contact is not None
     (point,) = contact.points
     fall = math.sqrt(2 * G * 0.05)
@@ -574,7 +577,7 @@ def test_impacts_are_told_as_those_of_the_contact_step_are() -> None:
     assert point.impact_tangent == pytest.approx(0.2 * 1.5 * fall, rel=1e-13)
     assert tuple(point.position) == pytest.approx((fall / G, 0.0), abs=1e-14)
     world.step()
-    assert world.contacts.between(world, floor, ball) is None
+    assert contact_between(world, floor, ball) is None
 
 
 def test_the_log_keeps_the_newest() -> None:
@@ -602,5 +605,5 @@ def test_a_saved_scene_goes_on_alike(tmp_path: Path) -> None:
 
 
 def test_the_event_loop_takes_what_it_says() -> None:
-    compile_kernels((events.fly,))
-    assert events.fly.py_func.__doc__  # type: ignore[attr-defined]
+    compile_kernels((events.run_events,))
+    assert events.run_events.py_func.__doc__  # type: ignore[attr-defined]

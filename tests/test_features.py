@@ -74,7 +74,7 @@ def test_left_click_on_a_body_drags_it_infinitely_heavy(desk: Desk) -> None:
     desk.press(0, 0)
     desk.frames()
     assert desk.world.has(ball, Held)
-    assert desk.world.bodies.inverse_mass[desk.world.roster.row_of[ball]] == 0.0
+    assert desk.world.bodies.inverse_mass[desk.world.entity_index.row_of[ball]] == 0.0
     for n in range(1, 13):
         desk.move(0.1 * n, 0)
         desk.frames()

@@ -21,7 +21,7 @@ from physicslab.diagnostics.run_report import RunRecord, find_not_finite, run_re
 from physicslab.ecs.component import COMPONENTS, InvalidValue
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import SceneError, read_scene, write_scene
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.world import World
 
 STEPS = 3

@@ -19,7 +19,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 from physicslab import World, load_scene, save_scene
 from physicslab.components import Mass, Name, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import COMPONENTS, InvalidValue
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.systems.standard import standard_systems
 
 VALUES = HOSTILE | st.sampled_from(

@@ -44,7 +44,7 @@ def test_a_held_body_is_infinitely_heavy(world: World) -> None:
     ball = circle(world, (0, 0))
     Hand(WindowConfig()).take(world, ball, Vector2(), 0.0)
     world.synchronise()
-    assert world.bodies.inverse_mass[world.roster.row_of[ball]] == 0.0
+    assert world.bodies.inverse_mass[world.entity_index.row_of[ball]] == 0.0
 
 
 def test_the_hand_pushes_and_does_not_jump_over(world: World) -> None:

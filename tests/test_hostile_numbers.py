@@ -15,7 +15,7 @@ from physicslab.cli import main
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.component import COMPONENTS, InvalidValue
 from physicslab.files.scene import SceneError, read_scene
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.systems.spring import SpringSystem
 from physicslab.world import World
 
@@ -244,9 +244,9 @@ def test_a_run_of_more_steps_than_can_be_counted_is_refused() -> None:
 
 
 @pytest.mark.parametrize("stride", [0, -1, 1.5, True, "1", 10**400, None])
-def test_a_stride_that_never_ends_is_refused_when_it_is_given(stride: Any) -> None:
-    with pytest.raises(InvalidValue, match=r"stepping\.stride = .*: must be a whole number from 1 to"):
-        World().stepping(steps=3, stride=stride)
+def test_a_stride_that_never_ends_is_refused(stride: Any) -> None:
+    with pytest.raises(InvalidValue, match=r"stepping\.stride = .*: must be a whole number >= 1"):
+        next(World().stepping(steps=3, stride=stride))
 
 
 @pytest.mark.parametrize("command", [["run"], ["accuracy"], ["bench"], []])

@@ -129,8 +129,8 @@ def test_the_integrator_is_shown_with_its_reason() -> None:
     desk, canvas = recorded(world)
     frame(desk, canvas)
     words = " ".join(canvas.words)
-    assert world.method.integrator.title in words
-    assert world.method.reason in words
+    assert world.plan.integrator.title in words
+    assert world.plan.reason in words
     assert "16.7 ms in 4 substeps" in words
 
 

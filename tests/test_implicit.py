@@ -13,7 +13,7 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import implicit_midpoint
 from physicslab.kernels.forces import springs
-from physicslab.ode.system import Equations
+from physicslab.ode.system import OdeSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
@@ -73,7 +73,7 @@ def test_the_order_of_the_coordinates_changes_the_work_and_not_the_answer(
     for banded in (True, False):
         world = net(5, 1e4)
         if not banded:
-            monkeypatch.setattr(implicit_midpoint, "_banded", lambda world, slots: _whole(slots))
+            monkeypatch.setattr(implicit_midpoint, "_banded", _whole)
         world.run(seconds=0.5)
         ends.append(world.table(Transform)["position"].copy())
         works.append(world.force_evaluations)
@@ -81,18 +81,18 @@ def test_the_order_of_the_coordinates_changes_the_work_and_not_the_answer(
     assert works[0] < 0.8 * works[1]
 
 
-def _whole(slots: object) -> tuple[object, int]:
-    count = getattr(slots, "moving_count")  # noqa: B009
+def _whole(state: object, ode: OdeSystem) -> tuple[object, int]:
+    count = ode.layout.moving_count
     return np.arange(count), count - 1
 
 
 def test_neighbours_stand_close_together_in_the_order() -> None:
     world = net(8, 1e4)
     world.synchronise()
-    equations = Equations(world)
-    order, band = implicit_midpoint._banded(world, equations.slots)
-    assert sorted(order.tolist()) == list(range(equations.slots.moving_count))
-    assert band < 40 < equations.slots.moving_count
+    ode = OdeSystem(world, world.schedule.forces)
+    order, band = implicit_midpoint._banded(world, ode)
+    assert sorted(order.tolist()) == list(range(ode.layout.moving_count))
+    assert band < 40 < ode.layout.moving_count
 
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e9])

@@ -11,11 +11,11 @@ from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import INTEGRATORS
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
-from physicslab.systems.schedule import Stage, System, at
 from physicslab.systems.spring import SpringSystem
+from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
 
@@ -199,7 +199,7 @@ def test_a_compiled_run_agrees_with_the_stages_step_by_step(name: str) -> None:
         if watched:
             world.install(Onlooker())
         world.run(seconds=5.0)
-        assert world.method.smooth != watched
+        assert world.plan.smooth != watched
         ends.append((*world.component(bob, Transform).position, *world.component(bob, Velocity).linear))
     assert ends[0] == pytest.approx(ends[1], abs=1e-12)
 
@@ -223,10 +223,10 @@ def test_a_bob_thrown_off_its_line_is_no_longer_solved_in_closed_form() -> None:
     world = World(SpringSystem(), IntegrateSystem())
     bob = world.spawn(Transform((1.5, 0)), Velocity(), Mass(1), Spring(rest_length=1, stiffness=0.5))
     world.step()
-    assert world.method.integrator.name == "exact"
+    assert world.plan.integrator.name == "exact"
     world.component(bob, Velocity).linear = Vector2(0, 1)
     world.step()
-    assert world.method.integrator.name == "dop853"
+    assert world.plan.integrator.name == "dop853"
 
 
 def test_planets_that_meet_in_a_point_stop_the_run_and_say_why() -> None:

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.contacts.report import list_contacts
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import compile_kernels
@@ -36,11 +37,15 @@ def test_a_disc_on_its_way_gets_a_record_when_it_comes_within_reach() -> None:
     world = World(BroadPhaseSystem(), ContactSystem())
     one, other = disc(world, 0.0, 0.0), disc(world, 1.05, 0.0)
     world.step()
-    assert (world.contacts.recorded, world.contacts.lying, world.contacts.candidate_pairs) == (0, 1, 1)
+    assert (world.contacts.recorded, world.contacts.proximity_count, world.contacts.candidate_pairs) == (
+        0,
+        1,
+        1,
+    )
     world.component(other, Velocity).linear = (-30.0, 0.0)
     world.step()
     assert recorded(world) == [(one, other)]
-    assert (world.contacts.lying, world.contacts.count) == (0, 1)
+    assert (world.contacts.proximity_count, world.contacts.count) == (0, 1)
 
 
 def test_what_parts_again_lies_idle_in_the_next_list() -> None:
@@ -54,7 +59,7 @@ def test_what_parts_again_lies_idle_in_the_next_list() -> None:
     assert world.contacts.count == 0
     world.contacts.stale = True
     world.step()
-    assert (world.contacts.recorded, world.contacts.lying) == (0, 1)
+    assert (world.contacts.recorded, world.contacts.proximity_count) == (0, 1)
 
 
 def test_records_are_gone_through_in_the_order_of_rows_whenever_they_came() -> None:
@@ -71,10 +76,10 @@ def test_records_are_gone_through_in_the_order_of_rows_whenever_they_came() -> N
     contacts = world.contacts
     assert contacts.recorded > 5
     assert recorded(world) != sorted(recorded(world))
-    loose = [recorded(world)[p] for p in contacts.loose[: contacts.loose_count]]
-    assert loose == sorted(recorded(world))
-    told = [(contact.a, contact.b) for contact in contacts.listed(world)]
-    assert told == sorted(told)
+    scalar = [recorded(world)[p] for p in contacts.scalar[: contacts.scalar_count]]
+    assert scalar == sorted(recorded(world))
+    reported = [(contact.a, contact.b) for contact in list_contacts(world)]
+    assert reported == sorted(reported)
 
 
 def test_a_gas_goes_on_with_the_same_bits_whatever_lies_idle() -> None:
@@ -104,19 +109,31 @@ def test_just_those_within_reach_are_promoted(made: list[tuple[float, float]], h
     rows = len(position)
     couples = [(a, b) for a in range(1, rows) for b in range(a + 1, rows)]
     shuffled = np.random.default_rng(seed).permutation(couples)
-    idle, reach = shuffled.astype(np.uint32).ravel(), np.full(len(couples), 0.8)
+    proximity, activation_distance = shuffled.astype(np.uint32).ravel(), np.full(len(couples), 0.8)
     room = len(couples)
     manifolds, points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
-    loose, entities = np.zeros(room, np.int64), 10 * np.arange(rows)
-    compile_kernels((near_pairs.promote,))
-    lying, count, loose_count = near_pairs.promote(
-        idle, reach, room, manifolds, points, 0, loose, 0, entities, position, linear, h, 0.01
+    scalar, entities = np.zeros(room, np.int64), 10 * np.arange(rows)
+    compile_kernels((near_pairs.activate,))
+    proximity_count, count, scalar_count = near_pairs.activate(
+        proximity,
+        activation_distance,
+        room,
+        manifolds,
+        points,
+        0,
+        scalar,
+        0,
+        entities,
+        position,
+        linear,
+        h,
+        0.01,
     )
     moved = np.abs(linear[:, None] - linear[None]).sum(axis=2) * h
     apart = np.linalg.norm(position[:, None] - position[None], axis=2) - (0.8 + moved + 0.01)
-    left = {tuple(pair) for pair in idle[: 2 * lying].reshape(-1, 2).tolist()}
-    promoted = [(int(m["a"]), int(m["b"])) for m in manifolds[loose[:loose_count]]]
-    assert count == loose_count == room - lying
+    left = {tuple(pair) for pair in proximity[: 2 * proximity_count].reshape(-1, 2).tolist()}
+    promoted = [(int(m["a"]), int(m["b"])) for m in manifolds[scalar[:scalar_count]]]
+    assert count == scalar_count == room - proximity_count
     assert promoted == sorted(promoted)
     assert left | set(promoted) == set(couples)
     assert not left & set(promoted)
@@ -132,7 +149,7 @@ def test_loose_pairs_are_sorted_by_rows_and_walls(pairs: list[tuple[int, int, in
     manifolds = np.zeros(len(pairs), MANIFOLD)
     for p, pair in enumerate(pairs):
         manifolds[p]["a"], manifolds[p]["b"], manifolds[p]["wall"] = pair
-    loose = np.arange(len(pairs))
-    compile_kernels((near_pairs.sort_loose,))
-    near_pairs.sort_loose(manifolds, loose, len(pairs), 10)
-    assert [pairs[p] for p in loose] == sorted(pairs)
+    scalar = np.arange(len(pairs))
+    compile_kernels((near_pairs.sort_scalar,))
+    near_pairs.sort_scalar(manifolds, scalar, len(pairs), 10)
+    assert [pairs[p] for p in scalar] == sorted(pairs)

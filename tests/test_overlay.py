@@ -109,8 +109,10 @@ def test_slip_stick_and_the_cone(friction: float, word: str) -> None:
         span = cone["end"] - cone["start"]
         angle = np.degrees(np.arctan2(np.abs(span[:, 0]), -span[:, 1]))
         assert angle == pytest.approx(math.degrees(math.atan(friction)))
-    rub = lines_in(canvas, DARK.friction_impulse)[0]
-    assert (rub["end"][:, 0] < rub["start"][:, 0]).all()  # against the pull to the right
+    friction_impulse = lines_in(canvas, DARK.friction_impulse)[0]
+    assert (
+        friction_impulse["end"][:, 0] < friction_impulse["start"][:, 0]
+    ).all()  # against the pull to the right
 
 
 def test_impacts_fade_within_a_second_and_not_while_paused() -> None:

@@ -81,6 +81,6 @@ def test_a_lost_body_does_no_harm(camera: Camera) -> None:
     world = empty_world()
     lost, ball = circle(world, (0, 0)), circle(world, (3, 0))
     world.synchronise()
-    world.table(Transform)["position"][world.roster.row_of[lost]] = math.nan
+    world.table(Transform)["position"][world.entity_index.row_of[lost]] = math.nan
     assert at(world, camera, 0, 0) is None
     assert at(world, camera, 3, 0) == ball

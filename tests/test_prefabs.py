@@ -165,8 +165,8 @@ def test_a_chain_hangs_together_without_force_at_the_start() -> None:
     assert len(springs) == 6
     world.run(seconds=0.5)
     assert [place(world, ball)[0] for ball in balls] == pytest.approx([1, 2, 3, 4, 5], abs=1e-12)
-    loose = chain(world, 3, (0, 5), (0, 2))
-    assert [place(world, ball)[1] for ball in loose] == pytest.approx([4, 3, 2])
+    scalar = chain(world, 3, (0, 5), (0, 2))
+    assert [place(world, ball)[1] for ball in scalar] == pytest.approx([4, 3, 2])
     with pytest.raises(ValueError, match="count = 0"):
         chain(world, 0, (0, 0), (1, 0))
 

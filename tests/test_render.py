@@ -13,7 +13,7 @@ from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.scenes import SCENES
 from physicslab.systems.frame.render import RenderSystem
-from physicslab.systems.schedule import Stage
+from physicslab.systems.system import Stage
 from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK
@@ -190,7 +190,7 @@ def test_extent_of_walls_alone_and_of_lost_bodies() -> None:
     assert extent_of(world) == (-2.0, -1.0, 2.0, 1.0)
     lost = circle(world, (0, 0))
     world.synchronise()
-    world.table(Transform)["position"][world.roster.row_of[lost]] = math.nan
+    world.table(Transform)["position"][world.entity_index.row_of[lost]] = math.nan
     assert extent_of(world) == (-2.0, -1.0, 2.0, 1.0)
 
 

@@ -84,8 +84,8 @@ def test_a_bad_file_is_told_and_nothing_is_lost(folder: Path, text: str) -> None
     frame(desk, canvas)
     assert desk.world is world and world.has(ball, Held)
     assert "Not opened" in desk.window.notice and "bad.json" in desk.window.notice
-    (told,) = [t for t in canvas.called("text") if t["words"].startswith("Not opened")]
-    assert told["style"].colour == desk.window.theme.error
+    (reported,) = [t for t in canvas.called("text") if t["words"].startswith("Not opened")]
+    assert reported["style"].colour == desk.window.theme.error
 
 
 def test_no_file_is_told() -> None:
@@ -101,7 +101,7 @@ def test_a_world_that_no_file_can_hold_is_told(folder: Path) -> None:
     desk = Desk(world)
     desk.key("space")
     desk.frames()
-    world.table(Velocity)["linear"][world.roster.row_of[ball]] = float("nan")
+    world.table(Velocity)["linear"][world.entity_index.row_of[ball]] = float("nan")
     desk.key("s", CTRL)
     desk.frames()
     assert "could not be saved" in desk.window.notice

@@ -24,7 +24,7 @@ from physicslab.files.scene import read_scene, write_scene
 from physicslab.files.writer import unique_name
 from physicslab.prefabs import box, circle, container, pendulum, pile, stack
 from physicslab.scenes import SCENES
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.systems.standard import standard_systems
 
 numbers = st.floats(-1e3, 1e3)
@@ -310,7 +310,7 @@ def test_a_pile_that_was_edited_goes_on_with_the_same_bits(
     for _ in range(30):
         world.step()
         again.step()
-    assert world.contacts.blocks.lanes + world.sleep.count > 0
+    assert world.contacts.wide.filled + world.sleep.count > 0
     pairs = zip(world.entities(), again.entities(), strict=True)
     for entity, copy in pairs:
         for component in (Transform, Velocity):

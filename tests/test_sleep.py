@@ -12,6 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.contacts.islands import export_rests, wake
+from physicslab.contacts.memory import export_contacts
+from physicslab.contacts.report import contact_between, list_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
@@ -19,8 +22,8 @@ from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.lab.stability.worlds import floor, open_space
 from physicslab.prefabs import box, circle, container, pile, stack
-from physicslab.systems.schedule import ForceSystem, Stage, System, at
 from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import ForceSystem, Stage, System, at
 from physicslab.world import World
 
 
@@ -43,7 +46,7 @@ def sleeping_boxes(*places: float, friction: float = 0.5) -> tuple[World, list[i
 def sleepers(world: World) -> set[int]:
     """Return the entities that sleep."""
     assert world.sleep.count == np.count_nonzero(world.sleep.asleep)
-    return set(world.roster.entities[world.sleep.asleep].tolist())
+    return set(world.entity_index.entities[world.sleep.asleep].tolist())
 
 
 # ---- falling asleep ----------------------------------------------------------------------------------------
@@ -61,10 +64,10 @@ def test_half_a_second_of_rest_and_not_less() -> None:
 
 def test_a_sleeper_stays_where_it_is_and_its_contacts_are_still_told() -> None:
     world, (first,) = sleeping_boxes(0.0)
-    before, contact = bits(world), world.contacts.between(world, 1, first)
+    before, contact = bits(world), contact_between(world, 1, first)
     world.run(seconds=5.0)
     assert bits(world) == before
-    assert contact is not None and world.contacts.between(world, 1, first) == contact
+    assert contact is not None and contact_between(world, 1, first) == contact
     weight = sum(point.normal_impulse for point in contact.points) * 4 * 60
     assert weight == pytest.approx(9.81, rel=1e-3)
     assert world.contacts.count == 1 and world.contacts.max_penetration == contact.depth
@@ -79,7 +82,7 @@ def test_a_whole_island_or_nobody() -> None:
         world.step()
         asleep = sleepers(world)
         assert asleep in (set(), set(boxes), {*boxes, ball})
-        touching = {end for contact in world.contacts.listed(world) for end in (contact.a, contact.b)}
+        touching = {end for contact in list_contacts(world) for end in (contact.a, contact.b)}
         if ball in touching:
             assert (ball in asleep) == (boxes[0] in asleep)
     assert asleep == {*boxes, ball}
@@ -182,7 +185,7 @@ def test_flights_between_located_impacts_know_no_sleep() -> None:
     floor(world, friction=0.5, restitution=0.5)
     circle(world, (0.0, 0.3), radius=0.25, friction=0.5, restitution=0.5)
     world.run(seconds=3.0)
-    assert world.method.collisions == "exact"
+    assert world.plan.collisions == "exact"
     reasons = {left.name: left.reason for left in world.schedule.left_out}
     assert reasons["SleepSystem"] == "impacts are located exactly"
 
@@ -194,18 +197,18 @@ def test_a_discs_pile_sleeps_out_of_its_blocks_and_wakes_into_them() -> None:
     world.run(seconds=8.0)
     contacts = world.contacts
     assert world.sleep.count == 120
-    assert (contacts.blocks.lanes, contacts.active, contacts.loose_count) == (0, 0, 0)
-    assert contacts.count == contacts.resting_count > 200
-    world.sleep.wake(world, world.sleep.asleep.copy())
+    assert (contacts.wide.filled, contacts.active, contacts.scalar_count) == (0, 0, 0)
+    assert contacts.count == contacts.sleeping_count > 200
+    wake(world, world.sleep.asleep.copy())
     assert contacts.count > 200
     world.run(steps=2)
-    assert contacts.blocks.lanes > 0.7 * contacts.count > 140
+    assert contacts.wide.filled > 0.7 * contacts.count > 140
 
 
 # ---- waking ------------------------------------------------------------------------------------------------
 
 
-def struck(sleeping: bool) -> tuple[World, int, int]:
+def impact_count(sleeping: bool) -> tuple[World, int, int]:
     """Return a box on a floor with hardly any friction, at rest for a second, and a ball about to hit it."""
     world, (target,) = resting_boxes(0.0, friction=1e-9, sleeping=sleeping)
     world.component(target, Material).restitution = 0.5
@@ -215,8 +218,8 @@ def struck(sleeping: bool) -> tuple[World, int, int]:
 
 
 def test_a_blow_wakes_and_finds_the_bodys_own_mass() -> None:
-    world, target, ball = struck(sleeping=True)
-    awake, other, its_ball = struck(sleeping=False)
+    world, target, ball = impact_count(sleeping=True)
+    awake, other, its_ball = impact_count(sleeping=False)
     assert sleepers(world) == {target}
     before = measure_momentum(world).linear.x
     for each in (world, awake):
@@ -473,7 +476,7 @@ def test_a_world_in_which_some_sleep_goes_on_from_a_file_bit_for_bit(before: int
     circle(world, (4.2, 6.0), radius=0.3, friction=0.5, restitution=0.4)
     world.run(steps=before)
     again = assert_goes_on_alike(world, 150)
-    assert again.contacts.listed(again) == world.contacts.listed(world)
+    assert list_contacts(again) == list_contacts(world)
 
 
 def test_a_pile_beside_a_sleeping_one_goes_on_from_a_file_bit_for_bit() -> None:
@@ -483,7 +486,7 @@ def test_a_pile_beside_a_sleeping_one_goes_on_from_a_file_bit_for_bit() -> None:
         pile(world, 120, (middle, higher), columns=columns)
     while world.sleep.count < 120:
         world.step()
-    assert world.contacts.blocks.lanes > 0 and world.sleep.count < 240
+    assert world.contacts.wide.filled > 0 and world.sleep.count < 240
     assert_goes_on_alike(world, 60)
 
 
@@ -555,8 +558,8 @@ def test_runs_steps_and_files_agree_while_bodies_sleep_and_wake(
         circle(world, (late[1], 5.0), radius=0.5 * late[3], velocity=(late[5], 0.0), friction=late[7])
         world.run(steps=60)
     assert bits(stepped) == bits(ran)
-    assert stepped.contacts.export() == ran.contacts.export()
-    assert stepped.sleep.export(stepped) == ran.sleep.export(ran)
+    assert export_contacts(stepped.contacts) == export_contacts(ran.contacts)
+    assert export_rests(stepped) == export_rests(ran)
     again = read_scene(json.loads(json_text(write_scene(ran))))
     for world in (again, ran):
         world.run(steps=60)

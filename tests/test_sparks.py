@@ -21,7 +21,7 @@ def meeting(speed: float, mass: float = 1.0) -> World:
     return world
 
 
-def struck(world: World, steps: int = 60) -> Sparks:
+def impact_count(world: World, steps: int = 60) -> Sparks:
     """Step until there are sparks, or for so many steps."""
     sparks = Sparks()
     for _ in range(steps):
@@ -33,30 +33,30 @@ def struck(world: World, steps: int = 60) -> Sparks:
 
 
 def test_an_impact_strikes_sparks_where_it_was() -> None:
-    sparks = struck(meeting(4.0))
+    sparks = impact_count(meeting(4.0))
     assert 3 <= len(sparks) <= 18
     assert np.allclose(sparks.place, (0, 0), atol=0.05)
 
 
 def test_a_harder_impact_makes_more_and_faster_sparks() -> None:
-    soft, hard = struck(meeting(2.0, mass=0.2)), struck(meeting(8.0, mass=3.0))
+    soft, hard = impact_count(meeting(2.0, mass=0.2)), impact_count(meeting(8.0, mass=3.0))
     assert len(hard) > 2 * len(soft) > 0
     assert np.hypot(*hard.velocity.T).max() > np.hypot(*soft.velocity.T).max()
 
 
 def test_contacts_at_rest_and_faint_ones_make_none() -> None:
-    assert not len(struck(meeting(0.2), steps=120))
+    assert not len(impact_count(meeting(0.2), steps=120))
     world = empty_world()
     box(world, (0, -0.5), width=20, height=1, static=True)
     stack(world, 3)
     world.run(seconds=1.0)
     assert world.contacts.count
-    assert not len(struck(world, steps=60))
+    assert not len(impact_count(world, steps=60))
 
 
 def test_they_fly_apart_and_go_out() -> None:
     world = meeting(6.0)
-    sparks = struck(world)
+    sparks = impact_count(world)
     begun = len(sparks)
     world.step(FRAME)
     sparks.advance(world, FRAME, 100.0)
@@ -68,7 +68,7 @@ def test_they_fly_apart_and_go_out() -> None:
 
 
 def test_the_same_run_makes_the_same_sparks() -> None:
-    one, other = struck(meeting(5.0)), struck(meeting(5.0))
+    one, other = impact_count(meeting(5.0)), impact_count(meeting(5.0))
     assert np.array_equal(one.velocity, other.velocity) and np.array_equal(one.life, other.life)
     assert len(np.unique(one.velocity)) == one.velocity.size
 
@@ -79,7 +79,7 @@ def test_there_are_never_too_many() -> None:
         for side in (-1, 1):
             ball = circle(world, (0.28 * side, 0.6 * n), radius=0.25, mass=5.0, restitution=1.0)
             world.component(ball, Velocity).linear = (-4 * side, 0)
-    assert len(struck(world)) == 400
+    assert len(impact_count(world)) == 400
 
 
 def test_they_stand_still_with_the_world_and_r_puts_them_out() -> None:

@@ -29,7 +29,7 @@ def pull_on(world: World, *entities: int) -> list[tuple[list[float], float]]:
     """Return force and torque on each body, as things are now."""
     world.step(1e-12)
     world.add_up_forces()
-    rows = [world.roster.row_of[entity] for entity in entities]
+    rows = [world.entity_index.row_of[entity] for entity in entities]
     return [(world.bodies.force[row].tolist(), float(world.bodies.torque[row])) for row in rows]
 
 
@@ -247,4 +247,4 @@ def test_rows_may_move_under_a_spring() -> None:
     for entity in crowd:
         world.remove(entity)
     assert pull_on(world, b)[0][0] == pytest.approx([-20, 0])
-    assert len(world.roster) == 4
+    assert len(world.entity_index) == 4

@@ -9,7 +9,7 @@ import pytest
 from physicslab import cli
 from physicslab.lab.stability.case import Case, Verdict, run_case
 from physicslab.lab.stability.catalogue import CASES, select
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 
 
 @pytest.mark.parametrize(

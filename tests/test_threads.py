@@ -10,7 +10,7 @@ from desk import bits
 from physicslab.components import Transform, Velocity
 from physicslab.files.scene import load_scene
 from physicslab.systems.integrate import IntegrateSystem
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
 LINE = "another thread is working with a world: esper's context is one for the whole process"

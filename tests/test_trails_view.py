@@ -10,7 +10,7 @@ from physicslab.components import Trail, Velocity
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.systems.frame.render import RenderSystem
-from physicslab.systems.schedule import Stage
+from physicslab.systems.system import Stage
 from physicslab.systems.trail import TrailSystem
 from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.theme import DARK, mixed

@@ -79,7 +79,7 @@ def test_arithmetic_is_that_of_each_lane(x: Numbers, y: Numbers, scale: float) -
 def test_comparisons_are_those_of_each_lane(x: Numbers, y: Numbers, limit: float) -> None:
     out = np.zeros(24)
     inside = (x < y) & (x > limit)
-    assert comparisons(x, y, limit, out) == sum(int(yes) << lane for lane, yes in enumerate(inside))
+    assert comparisons(x, y, limit, out) == sum(int(yes) << slot for slot, yes in enumerate(inside))
     expected = [np.minimum(x, y), np.maximum(x, limit), np.where(inside | (y > 1.0), x, limit)]
     assert np.array_equal(out.reshape(3, WIDE), expected)
 

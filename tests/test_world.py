@@ -18,8 +18,8 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
-from physicslab.systems.schedule import Stage, System, at
 from physicslab.systems.spring import SpringSystem
+from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
 
@@ -104,7 +104,7 @@ def test_clear_leaves_nothing_behind() -> None:
     world.clear()
     assert esper.get_component(Velocity) == []
     world.step()
-    assert world.entities() == [] and len(world.roster) == 1
+    assert world.entities() == [] and len(world.entity_index) == 1
 
 
 def test_what_is_about_to_be_deleted_is_not_there_any_more() -> None:
@@ -333,7 +333,7 @@ def test_configuration_is_replaced_at_any_time() -> None:
     assert world.component(ball, Velocity).linear.y == pytest.approx(-0.981)
     world.physics = PhysicsConfig(gravity=Vector2(10, 0))
     world.simulation = SimulationConfig(dt=0.1, substeps=1, integrator="symplectic_euler")
-    assert world.method.integrator.name == "symplectic_euler"
+    assert world.plan.integrator.name == "symplectic_euler"
     world.step(0.1)
     assert world.component(ball, Velocity).linear.x == pytest.approx(1.0)
     assert world.force_evaluations == 1  # the closed form before took none
@@ -349,30 +349,30 @@ def test_a_step_longer_than_the_scenes_own_is_divided_so_that_no_substep_is_long
     long, short = load_scene("stack"), load_scene("stack")
     for world in (long, short):  # how long bodies have rested is looked at at the end of a step
         world.simulation = replace(world.simulation, sleeping=False)
-    assert long.divided == 1
+    assert long.step_divisions == 1
     long.step(2.0)
-    assert (long.divided, long.steps, long.time) == (120, 1, 2.0)
+    assert (long.step_divisions, long.steps, long.time) == (120, 1, 2.0)
     short.run(seconds=2.0)
     boxes = short.table(Transform)["position"]
     assert abs(long.table(Transform)["position"] - boxes).max() < 1e-9
     long.step()
-    assert long.divided == 1
+    assert long.step_divisions == 1
 
 
 def test_where_forces_alone_act_a_long_step_is_divided_unless_the_method_is_exact() -> None:
     world = World(GravitySystem(), IntegrateSystem(), simulation=SimulationConfig(integrator="rk4"))
     world.spawn(Transform(), Velocity(), Mass(1.0))
     world.step(1.0)
-    assert world.divided == 60
+    assert world.step_divisions == 60
     world.simulation = SimulationConfig(integrator="exact")
     world.step(1.0)
-    assert world.divided == 1
+    assert world.step_divisions == 1
 
 
 def test_the_last_step_of_a_run_may_take_in_a_rest_undivided() -> None:
     world = load_scene("stack")
     world.step(world.simulation.dt * 1.001)
-    assert world.divided == 1
+    assert world.step_divisions == 1
 
 
 def test_a_step_that_would_have_to_be_divided_beyond_measure_is_refused() -> None:

@@ -30,7 +30,7 @@ from physicslab.files.checks import printable, shortened, shown
 from physicslab.files.json_text import json_bytes
 from physicslab.files.scene import SceneError, load_scene
 from physicslab.scenes import SCENES
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.world import World
 
 __all__ = ["add_arguments", "execute"]
@@ -133,8 +133,8 @@ def _configure(world: World, arguments: Namespace) -> None:
         if error.component == world.simulation.section and error.field in changes:
             raise CommandError(f"--{error.field} {shown(error.value)}: must be {error.allowed}") from error
         raise CommandError(f"{scene}: {error}") from error
-    if world.method.refused and arguments.integrator is not None:
-        raise CommandError(f"--integrator {arguments.integrator}: {world.method.refused}")
+    if world.plan.refused and arguments.integrator is not None:
+        raise CommandError(f"--integrator {arguments.integrator}: {world.plan.refused}")
     if arguments.steps is not None and not math.isfinite(arguments.steps * world.simulation.dt):
         raise CommandError(
             f"--steps {arguments.steps}: must take a finite time at {world.simulation.dt:g} s each"
@@ -209,12 +209,12 @@ class _Stopwatch:
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._start = time.perf_counter() - world.schedule.compile_s
+        self._start = time.perf_counter() - world.compile_s
 
     @property
     def seconds(self) -> float:
         """How long it has been [s]."""
-        return time.perf_counter() - self._world.schedule.compile_s - self._start
+        return time.perf_counter() - self._world.compile_s - self._start
 
 
 def _where_stopped(world: World, record: RunRecord, at_most: float, end: float, whole: int) -> str:
@@ -228,7 +228,7 @@ def _where_stopped(world: World, record: RunRecord, at_most: float, end: float, 
 def _measure(world: World, record: RunRecord) -> None:
     record.drift.sample(world)
     record.max_penetration = max(record.max_penetration, world.contacts.max_penetration)
-    record.divided = max(record.divided, world.divided)
+    record.divided = max(record.divided, world.step_divisions)
     _check_sums(world, record)
 
 

@@ -59,14 +59,14 @@ class StepWatch:
     def _reason(self, impacts: float, evaluations: float) -> tuple[str, str, str]:
         """Return in words what takes the time, what would help, and the figures."""
         world = self._world
-        method = world.method.integrator
-        if impacts >= _STORM and world.method.collisions == "exact":
+        method = world.plan.integrator
+        if impacts >= _STORM and world.plan.collisions == "exact":
             return "one impact follows another", 'simulation.collisions = "step"', f"{impacts:.3g} impacts"
         if evaluations >= _EVALUATIONS:
             setting = "a shorter dt" if not method.chooses_steps else "a larger simulation.tolerance"
             figures = f"{evaluations:.3g} force evaluations by {method.name}"
             return "forces change so fast that it is divided into many", setting, figures
-        bodies = len(world.roster) - 1
+        bodies = len(world.entity_index) - 1
         pairs = int(world.contacts.candidate_pairs)
         figures = f"{bodies} entities, {pairs} near pairs, {world.substeps} substeps"
         return "there is much to compute", "fewer bodies or substeps", figures

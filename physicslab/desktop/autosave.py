@@ -11,7 +11,7 @@ from pathlib import Path
 from physicslab.files.checks import SceneError
 from physicslab.files.json_text import json_pieces
 from physicslab.files.replace import replace_file
-from physicslab.files.snapshot import Frozen
+from physicslab.files.snapshot import WorldSnapshot
 from physicslab.files.writer import scene_pieces
 from physicslab.world import World
 
@@ -61,7 +61,7 @@ class Autosave:
         self._thread: threading.Thread | None = None
         self._outcome: list[OSError] = []
 
-    def settle(self, world: World) -> None:
+    def add_constraints(self, world: World) -> None:
         """Take the world as it is now for one that need not be saved: nothing was done to it yet."""
         self._saved = _state(world)
 
@@ -82,7 +82,7 @@ class Autosave:
                 self._saved, self._content = state, []
                 self._collected = gc.isenabled()
                 gc.disable()
-                self._writing = _text(Frozen(world))
+                self._writing = _text(WorldSnapshot(world))
 
     def _write(self) -> None:
         """Write as much as there is time for in a frame; at the end, hand it to the disk."""
@@ -141,7 +141,9 @@ class Autosave:
         if not under_way and _state(world) == self._saved and not self._outcome:
             return
         try:
-            replace_file(self.path, b"".join(piece for piece in _text(Frozen(world)) if piece is not None))
+            replace_file(
+                self.path, b"".join(piece for piece in _text(WorldSnapshot(world)) if piece is not None)
+            )
         except (OSError, SceneError, ValueError) as error:
             self.failure = str(error)
 
@@ -158,7 +160,7 @@ def _state(world: World) -> tuple[object, ...]:
     return id(world), world.time, world.steps, world.revision
 
 
-def _text(frozen: Frozen) -> Iterator[bytes | None]:
+def _text(frozen: WorldSnapshot) -> Iterator[bytes | None]:
     """Yield a scene file piece by piece, and ``None`` where a pause is possible."""
     document = yield from scene_pieces(frozen)
     for piece in json_pieces(document):

@@ -8,7 +8,7 @@ from types import TracebackType
 from typing import Any
 
 from physicslab.kernels import KERNELS, ask_before_compiling, load
-from physicslab.kernels.solver import contact_steps
+from physicslab.kernels.solver import fused_contact
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.view.canvas.display import Display, wants_to_leave
 from physicslab.view.canvas.theme import DARK, Theme
@@ -51,7 +51,7 @@ class Compiling:
             self._warmup.__enter__()
             ask_before_compiling(self._wait)
         else:
-            load(contact_steps.advance)  # 26 ms, for which no frame has room
+            load(fused_contact.advance)  # 26 ms, for which no frame has room
         return self
 
     def __exit__(

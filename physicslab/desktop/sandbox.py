@@ -9,11 +9,11 @@ from pathlib import Path
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.rescue import save_last_good
 from physicslab.files.scene import SceneError
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
-from physicslab.systems.schedule import Stage
+from physicslab.systems.system import Stage
 from physicslab.view.controls.toolbar import Toolbar
 from physicslab.view.window import Window
 from physicslab.world import World
@@ -53,7 +53,7 @@ class Sandbox:
         self.window = window
         self._clock = clock
         self._autosave = autosave
-        self._told = False  # that the state cannot be kept
+        self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
         self.toolbar = Toolbar(window)
         hud = HudSystem(window, self.toolbar)
@@ -61,7 +61,7 @@ class Sandbox:
         self._systems = InputSystem(window, self.toolbar), RenderSystem(window), hud
         self.show(world)
         if autosave is not None:
-            autosave.settle(world)
+            autosave.add_constraints(world)
 
     def show(self, world: World) -> None:
         """Show a world in place of the one that was shown, with nothing held and nothing begun."""
@@ -90,10 +90,10 @@ class Sandbox:
     def _keep(self, autosave: Autosave) -> None:
         """Let the state be saved where that is due; say once where it cannot be."""
         autosave.advance(self.world)
-        if autosave.failure and not self._told:
+        if autosave.failure and not self._reported:
             words = f"The state cannot be kept for the case of a crash: {autosave.failure}"
             self.window.notify(words, 8.0, failed=True)
-        self._told = bool(autosave.failure)
+        self._reported = bool(autosave.failure)
 
     def _advance(self) -> None:
         """Make the steps that are due.

@@ -13,14 +13,14 @@ from physicslab.components import Mass, Velocity
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["Near", "near_pairs"]
+__all__ = ["ContactGraph", "contact_graph"]
 
 _ABOVE = 0.5
 """Cosine between gravity and the normal from which on one body lies on the other."""
 
 
 @dataclass(frozen=True, slots=True)
-class Near:
+class ContactGraph:
     """Near pairs, and those of them that touch.
 
     Attributes
@@ -48,14 +48,14 @@ class Near:
         """Return the name of the lighter body of a pair."""
         inverse = world.bodies.inverse_mass
         row = self.a[pair] if inverse[self.a[pair]] > inverse[self.b[pair]] else self.b[pair]
-        return world.label(int(world.roster.entities[row]))
+        return world.label(int(world.entity_index.entities[row]))
 
     def faster(self, world: World, pair: int) -> str:
         """Return the name of the faster body of a pair."""
         linear = world.table(Velocity)["linear"]
         a, b = int(self.a[pair]), int(self.b[pair])
         row = a if np.hypot(*linear[a]) > np.hypot(*linear[b]) else b
-        return world.label(int(world.roster.entities[row]))
+        return world.label(int(world.entity_index.entities[row]))
 
     def crowded(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Return which pairs have a body that is in several of the ``chosen`` pairs."""
@@ -90,7 +90,7 @@ class Near:
         return ratio
 
 
-def near_pairs(world: World) -> Near:
+def contact_graph(world: World) -> ContactGraph:
     """Return the near pairs of the last step."""
     contacts = world.contacts
     manifolds = contacts.manifolds[: contacts.recorded]
@@ -102,7 +102,7 @@ def near_pairs(world: World) -> Near:
     depth = -np.where(held["count"] > 1, np.minimum(first, second), first)
     depth[held["count"] <= 0] = 0.0
     size = np.where(manifolds["size"] > 0.0, manifolds["size"], np.inf)  # 0 where nothing was measured yet
-    return Near(
+    return ContactGraph(
         manifolds["a"].copy(), manifolds["b"].copy(), size, touching.copy(), depth,
         np.stack((held["normal_x"], held["normal_y"]), axis=1),
     )  # fmt: skip

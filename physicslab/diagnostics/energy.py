@@ -9,7 +9,7 @@ import numpy as np
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels import energy
-from physicslab.systems.schedule import ForceSystem
+from physicslab.systems.system import ForceSystem
 from physicslab.world import World
 
 __all__ = ["Drift", "Energy", "Momentum", "measure_energy", "measure_momentum", "summation"]
@@ -52,7 +52,7 @@ class Momentum:
 
 def _motion(world: World) -> tuple[float, float, float, float, float]:
     world.synchronise()
-    world.schedule.compile((energy.motion_totals,))
+    world.compile((energy.motion_totals,))
     velocity, mass = world.table(Velocity), world.table(Mass)
     return energy.motion_totals(
         world.table(Transform)["position"], velocity["linear"], velocity["angular"],

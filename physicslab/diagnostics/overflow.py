@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import Energy, measure_momentum
-from physicslab.ode.system import spring_ends
+from physicslab.state.packed import spring_ends
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -87,4 +87,4 @@ def _line(
 ) -> str:
     words = ", ".join(f"{number:.6g}" for number in np.atleast_1d(value).tolist())
     words = f"[{words}]" if np.ndim(value) else words
-    return f"{world.label(int(world.roster.entities[row]))}: {field} = {words} {unit}: {what}"
+    return f"{world.label_of_row(row)}: {field} = {words} {unit}: {what}"

@@ -12,8 +12,8 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.ode.kepler import propagate_kepler
-from physicslab.ode.system import why_not_smooth
-from physicslab.systems.schedule import ForceSystem
+from physicslab.stepping.plan import why_not_smooth
+from physicslab.systems.system import ForceSystem
 from physicslab.world import World
 
 __all__ = ["KnownMotion", "known_motion"]
@@ -53,15 +53,15 @@ def known_motion(world: World) -> KnownMotion | None:
     :func:`~physicslab.ode.closed_form.closed_form`), and two bodies that attract each other.
     """
     world.synchronise()
-    if why_not_smooth(world) is not None or not len(world.batch(Transform, Velocity)):
+    if why_not_smooth(world, world.schedule) is not None or not len(world.batch(Transform, Velocity)):
         return None
     try:
-        form = closed_form(world)
+        form = closed_form(world, world.schedule.forces)
     except NoClosedForm:
         return _two_bodies(world)
     x = world.table(Transform)["position"][form.rows].copy()
     v = world.table(Velocity)["linear"][form.rows].copy()
-    world.schedule.compile((propagate,))
+    world.compile((propagate,))
 
     def positions_after(t: float) -> NDArray[np.float64]:
         moved, pushed = x.copy(), v.copy()

@@ -66,15 +66,15 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "steps": record.steps,
         "dt": world.simulation.dt,
         "substeps": world.simulation.substeps,
-        "integrator": world.method.integrator.name,
-        "integrator_reason": world.method.reason,
-        "collision_method": world.method.collisions,
-        "collision_reason": world.method.collision_reason,
+        "integrator": world.plan.integrator.name,
+        "integrator_reason": world.plan.reason,
+        "collision_method": world.plan.collisions,
+        "collision_reason": world.plan.collision_reason,
         "summation": summation(world),
         "interpreted": list(world.interpreted),
         "force_evaluations": world.force_evaluations,
         "wall_s": record.wall_s,
-        "compile_s": world.schedule.compile_s,
+        "compile_s": world.compile_s,
         "systems": [
             {"name": name, "calls": timing.calls, "ms": timing.ms}
             for name, timing in world.schedule.timings.items()

@@ -14,10 +14,10 @@ import numpy as np
 
 from physicslab.components import Shape, Spring, Transform, Velocity
 from physicslab.components.shape import BOX
-from physicslab.diagnostics.contact_graph import Near, near_pairs
+from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
 from physicslab.diagnostics.warning_records import Advice, WorstAdvice
-from physicslab.ode.system import spring_ends
-from physicslab.systems.schedule import ForceSystem
+from physicslab.state.packed import spring_ends
+from physicslab.systems.system import ForceSystem
 
 if TYPE_CHECKING:
     from physicslab.world import World
@@ -56,15 +56,15 @@ def advise(world: World) -> tuple[Advice, ...]:
     Nothing is changed; the figures are those of the last step.
     """
     found = [*_refusals(world), *_division(world), *_rates(world), *_distance(world)]
-    if world.method.collisions == "step":
-        near = near_pairs(world)
+    if world.plan.collisions == "step":
+        near = contact_graph(world)
         found += [*_overlap(world, near), *_loads(world, near), *_speeds(world, near), *_turning(world, near)]
     return tuple(found)
 
 
 def _refusals(world: World) -> Iterator[Advice]:
     """Yield what was asked for and could not be had."""
-    method = world.method
+    method = world.plan
     if method.refused:
         yield Advice(None, method.refused, None, "", None, 'simulation.integrator = "auto"')
     if world.simulation.collisions == "exact" and method.collisions == "step":
@@ -72,15 +72,15 @@ def _refusals(world: World) -> Iterator[Advice]:
 
 
 def _division(world: World) -> Iterator[Advice]:
-    if world.divided > 1:
+    if world.step_divisions > 1:
         what = "steps were asked for that are longer than the scene's, and are divided into so many"
-        yield Advice(None, what, float(world.divided), "", 1.0, "a shorter step")
+        yield Advice(None, what, float(world.step_divisions), "", 1.0, "a shorter step")
 
 
 def _rates(world: World) -> Iterator[Advice]:
     """Yield a force too fast for the steps that are made."""
-    method, dt = world.method, world.simulation.dt
-    integrator = method.integrator if method.smooth else method.tethers or method.stages
+    method, dt = world.plan, world.simulation.dt
+    integrator = method.integrator if method.smooth else method.split_forces or method.stages
     if method.collisions == "exact" or integrator.chooses_steps or math.isinf(integrator.order):
         return
     rates = [
@@ -91,7 +91,7 @@ def _rates(world: World) -> Iterator[Advice]:
     rate, system = max(rates, key=lambda pair: pair[0], default=(0.0, None))
     if system is None or not math.isfinite(rate):
         return
-    parts = method.substeps * (2 * method.tether_steps if method.tethers else 1)
+    parts = method.substeps * (2 * method.split_steps if method.split_forces else 1)
     value, bounded = rate * dt / parts, math.isinf(integrator.stability_limit)
     limit = _FOLLOWED if bounded else _RESOLVED * integrator.stability_limit
     if value <= limit:
@@ -132,7 +132,7 @@ def _stiffest(world: World) -> str | None:
     spring, inverse = world.table(Spring), world.bodies.inverse_mass
     give = inverse[a] + inverse[b]
     rates = np.maximum(np.sqrt(spring["stiffness"][rows] * give), spring["damping"][rows] * give)
-    return world.label(int(world.roster.entities[rows[np.argmax(rates)]]))
+    return world.label(int(world.entity_index.entities[rows[np.argmax(rates)]]))
 
 
 def _distance(world: World) -> Iterator[Advice]:
@@ -152,7 +152,7 @@ def _distance(world: World) -> Iterator[Advice]:
         yield Advice(name, what, float(reach[worst]), "m", limit, "a place nearer to the origin")
 
 
-def _overlap(world: World, near: Near) -> Iterator[Advice]:
+def _overlap(world: World, near: ContactGraph) -> Iterator[Advice]:
     if not len(near.touching):
         return
     share = near.depth / near.size[near.touching]
@@ -164,7 +164,7 @@ def _overlap(world: World, near: Near) -> Iterator[Advice]:
         yield Advice(name, what, float(near.depth[worst]), "m", _DEEP * size, "")
 
 
-def _loads(world: World, near: Near) -> Iterator[Advice]:
+def _loads(world: World, near: ContactGraph) -> Iterator[Advice]:
     """Yield the heaviest body that lies on a lighter one, which something holds from below."""
     ratio = near.loads(world)
     if len(ratio) and ratio.max() > _HEAVY:
@@ -173,7 +173,7 @@ def _loads(world: World, near: Near) -> Iterator[Advice]:
         yield Advice(name, what, float(ratio.max()), "", _HEAVY, "")
 
 
-def _speeds(world: World, near: Near) -> Iterator[Advice]:
+def _speeds(world: World, near: ContactGraph) -> Iterator[Advice]:
     """Yield the fastest body that has several neighbours."""
     h = world.simulation.dt / world.simulation.substeps
     linear = world.table(Velocity)["linear"]
@@ -187,7 +187,7 @@ def _speeds(world: World, near: Near) -> Iterator[Advice]:
         yield Advice(near.faster(world, worst), what, float(sizes[worst]), "", _FAST, setting)
 
 
-def _turning(world: World, near: Near) -> Iterator[Advice]:
+def _turning(world: World, near: ContactGraph) -> Iterator[Advice]:
     """Yield the box that spins fastest near others."""
     h = world.simulation.dt / world.simulation.substeps
     kind = world.table(Shape)["kind"]
@@ -198,7 +198,7 @@ def _turning(world: World, near: Near) -> Iterator[Advice]:
     if len(angles) and angles.max() > _TURNING:
         setting = _more_substeps(world, float(angles.max()) / _TURNING)
         what = "turns so far in a substep that its corners strike by chance"
-        name = world.label(int(world.roster.entities[rows[np.argmax(angles)]]))
+        name = world.label(int(world.entity_index.entities[rows[np.argmax(angles)]]))
         yield Advice(name, what, float(angles.max()), "rad", _TURNING, setting)
 
 

@@ -9,13 +9,8 @@ from physicslab.ecs.fields import FARTHEST, Field, InvalidValue
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
-    "GRAVITY_MODES",
-    "SOFTENING_LAWS",
-    "PhysicsConfig",
-    "SimulationConfig",
-    "WindowConfig",
-    "field_names",
-]
+    "GRAVITY_MODES", "SOFTENING_LAWS", "PhysicsConfig", "SimulationConfig", "WindowConfig", "field_names",
+]  # fmt: skip
 
 GRAVITY_MODES = ("linear", "planet", "none")
 SOFTENING_LAWS = ("clamp", "plummer")

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from physicslab.ecs.component import Batch, Component, Table
 
-__all__ = ["Roster"]
+__all__ = ["EntityIndex"]
 
 
 class _Nothing:
     """A component that no entity has: asking esper for it is cheap, and tells whether anything changed."""
 
 
-class Roster:
+class EntityIndex:
     """The rows of one world. esper alone decides who has what; :meth:`synchronise` follows.
 
     Row 0 is the world itself. The others are in the order of their entity ids, so that results never hang on
@@ -58,7 +58,7 @@ class Roster:
         esper hands out the same list object until something structural changes, which makes the test one
         comparison.
         """
-        self.bury_dead()
+        self.flush_deleted()
         if esper.get_component(_Nothing) is self._seen:
             return False
         self._batches.clear()
@@ -78,7 +78,7 @@ class Roster:
         self._seen = esper.get_component(_Nothing)
         return True
 
-    def bury_dead(self) -> None:
+    def flush_deleted(self) -> None:
         """Finish what ``esper.delete_entity`` put off.
 
         Raises

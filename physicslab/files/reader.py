@@ -7,6 +7,8 @@ from typing import Any
 
 import esper
 
+from physicslab.contacts.islands import restore_rests
+from physicslab.contacts.memory import restore_contacts
 from physicslab.ecs.component import Component, InvalidValue
 from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.fields import Field
@@ -21,7 +23,7 @@ from physicslab.files.checks import (
     shown,
 )
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_rests
-from physicslab.kernels.solver.impulse import MOST_PARTS
+from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
@@ -109,15 +111,15 @@ def read_scene(document: object, source: str = "scene") -> World:
     for number, (id_, components) in enumerate(draft.entities, start=1):
         entity = world.spawn(*components, name=id_)
         assert entity == number, "a new world numbers its entities from 1"
-    world.contacts.span, world.contacts.finer = draft.solver
+    world.contacts.impulse_dt, world.contacts.substep_factor = draft.solver
     if draft.contacts or draft.rests:
         world.synchronise()
         try:
-            world.contacts.restore(world, draft.contacts)
+            restore_contacts(world.contacts, draft.contacts)
         except (ValueError, OverflowError) as error:
             esper.switch_world(before)
             raise SceneError(f"{source}: contacts: {error}") from error
-        world.sleep.restore(world, draft.rests)
+        restore_rests(world, draft.rests)
     return world
 
 
@@ -148,7 +150,7 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
 
 
 _SPAN = Field("span", "number", unit="s", minimum=SHORTEST, owner="solver")
-_FINER = Field("finer", "whole", minimum=1, maximum=MOST_PARTS, owner="solver")
+_FINER = Field("finer", "whole", minimum=1, maximum=MAX_SUBSTEP_FACTOR, owner="solver")
 
 
 def _solver(value: Any, simulation: SimulationConfig, where: str) -> tuple[float, int]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Generator, Iterable, Mapping
 from typing import Any
 
+from physicslab.contacts.memory import remembered
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.fields import REQUIRED, Field
@@ -12,7 +13,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.checks import SceneError
 from physicslab.files.entities import UNSAVED
 from physicslab.files.reader import FORMAT
-from physicslab.files.snapshot import Frozen
+from physicslab.files.snapshot import WorldSnapshot
 from physicslab.world import World
 
 __all__ = ["scene_pieces", "unique_name", "write_scene"]
@@ -32,7 +33,7 @@ def write_scene(world: World) -> dict[str, Any]:
     SceneError
         If a component refers to an entity that is not there.
     """
-    pieces = scene_pieces(Frozen(world))
+    pieces = scene_pieces(WorldSnapshot(world))
     while True:
         try:
             next(pieces)
@@ -41,7 +42,7 @@ def write_scene(world: World) -> dict[str, Any]:
             return document
 
 
-def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
+def scene_pieces(frozen: WorldSnapshot) -> Generator[None, None, dict[str, Any]]:
     """Write like :func:`write_scene`, stopping after every entity: the world may go on meanwhile.
 
     The document is what the generator returns.
@@ -52,7 +53,7 @@ def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
         yield
     contacts: list[list[Any]] = []
     shaped = {0, *frozen.shaped}
-    for row in frozen.contacts.remembered():
+    for row in remembered(frozen.contacts):
         if row is not None and shaped.issuperset(row[:2]):  # what is still there to touch
             contacts.append(row)
         yield
@@ -78,11 +79,15 @@ def scene_pieces(frozen: Frozen) -> Generator[None, None, dict[str, Any]]:
     return document | {key: value for key, value in kept.items() if value}
 
 
-def _solver(frozen: Frozen) -> dict[str, Any]:
+def _solver(frozen: WorldSnapshot) -> dict[str, Any]:
     """Return for what time impulses stand, and how much finer the next step is, where not as asked."""
     contacts, simulation = frozen.contacts, frozen.simulation
-    span = {"span": contacts.span} if contacts.span not in (0.0, simulation.dt / simulation.substeps) else {}
-    return span | ({"finer": contacts.finer} if contacts.finer != 1 else {})
+    span = (
+        {"span": contacts.impulse_dt}
+        if contacts.impulse_dt not in (0.0, simulation.dt / simulation.substeps)
+        else {}
+    )
+    return span | ({"finer": contacts.substep_factor} if contacts.substep_factor != 1 else {})
 
 
 def unique_name(wanted: str, taken: Container[str]) -> str:
@@ -98,7 +103,7 @@ def unique_name(wanted: str, taken: Container[str]) -> str:
     return name
 
 
-def _saved(frozen: Frozen, entity: int) -> list[Component]:
+def _saved(frozen: WorldSnapshot, entity: int) -> list[Component]:
     """Return those of an entity's components that a file holds, the contract's first."""
     order = [*_FIRST, *(name for name in COMPONENTS if name not in _FIRST)]
     kinds = [COMPONENTS[name] for name in order if COMPONENTS[name] not in UNSAVED]

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853
-from physicslab.ode.system import Equations
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.ode.system import OdeSystem
+from physicslab.state.state import State
 
 __all__ = ["DOP853"]
 
@@ -18,16 +14,16 @@ _MOST = 1_000_000
 120,000 at the finest tolerance; a million take 0.2 s for two bodies."""
 
 
-def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
-    eq, tolerance = equations, equations.tolerance
+def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
+    eq, tolerance = ode, ode.tolerance
     made = dop853(
-        eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, steps * h, tolerance, world.simulation.dt, _MOST
+        eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, steps * h, tolerance, state.simulation.dt, _MOST
     )
     if made == NOT_FINITE:
-        raise StepTooSmall(f"forces are no longer finite at t = {world.time:.9g} s")
+        raise StepTooSmall(f"forces are no longer finite at t = {state.time:.9g} s")
     if made == EXHAUSTED:
         raise StepTooSmall(
-            f"{_MOST:,} force evaluations do not make a step of {world.simulation.dt:g} s at a tolerance of "
+            f"{_MOST:,} force evaluations do not make a step of {state.simulation.dt:g} s at a tolerance of "
             f"{tolerance:g}; a larger tolerance, a smaller dt or the integrator implicit_midpoint may help"
         )
     if made < 0:

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.closed_form import closed_form
-from physicslab.ode.system import Equations
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.ode.system import OdeSystem
+from physicslab.state.state import State
 
 __all__ = ["EXACT"]
 
 
-def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
-    position, velocity = closed_form(world).advanced(world, steps * h)
-    n = 2 * len(equations.slots.moving)
-    equations.q[:n], equations.v[:n] = position.ravel(), velocity.ravel()
-    turning = slice(n, equations.slots.moving_count)
-    equations.q[turning] += steps * h * equations.v[turning]
+def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
+    position, velocity = closed_form(state, ode.forces).advanced(state, steps * h)
+    n = 2 * len(ode.layout.moving)
+    ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
+    turning = slice(n, ode.layout.moving_count)
+    ode.q[turning] += steps * h * ode.v[turning]
     return 0
 
 

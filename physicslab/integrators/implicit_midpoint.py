@@ -9,26 +9,21 @@ space are kept only where the force is linear. All other forces are taken at the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.kernels.ode.implicit import implicit_midpoint
-from physicslab.ode.system import Equations, Slots
-from physicslab.systems.schedule import ForceSystem
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.ode.system import OdeSystem
+from physicslab.state.state import State
 
 __all__ = ["IMPLICIT_MIDPOINT"]
 
 
-def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
-    eq = equations
+def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
+    eq = ode
     if eq.near is None:
-        eq.near = _banded(world, eq.slots)
+        eq.near = _banded(state, ode)
     order, band = eq.near
     if len(eq.damping) or len(eq.resistances):
         # Beside each coordinate of the mean velocity stands that of what the end's has more.
@@ -43,12 +38,13 @@ def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
     return made
 
 
-def _banded(world: World, slots: Slots) -> tuple[NDArray[np.int64], int]:
+def _banded(state: State, ode: OdeSystem) -> tuple[NDArray[np.int64], int]:
     """Return an order of the coordinates in which those that forces couple are near, and how near."""
-    pairs = [system.couples(world) for system in world.schedule.running if isinstance(system, ForceSystem)]
-    bodies = slots.moving.tolist()
+    layout = ode.layout
+    pairs = [force.couples(state) for force in ode.forces]
+    bodies = layout.moving.tolist()
     if any(found is None for found in pairs):
-        return np.arange(slots.moving_count), max(slots.moving_count - 1, 0)
+        return np.arange(layout.moving_count), max(layout.moving_count - 1, 0)
     neighbours: dict[int, set[int]] = {row: set() for row in bodies}
     for found in pairs:
         for a, b in [] if found is None else found.tolist():
@@ -56,11 +52,11 @@ def _banded(world: World, slots: Slots) -> tuple[NDArray[np.int64], int]:
                 neighbours[a].add(b)
                 neighbours[b].add(a)
     chain = _cuthill_mckee(neighbours)
-    parts = [[slots.place[row], slots.place[row] + 1, slots.turn[row]] for row in chain]
+    parts = [[layout.place[row], layout.place[row] + 1, layout.turn[row]] for row in chain]
     order = [int(part) for body in parts for part in body if part >= 0]
     number = {row: n for n, row in enumerate(chain)}
     reach = max((abs(number[a] - number[b]) for a in chain for b in neighbours[a]), default=0)
-    width = 3 if len(slots.turning) else 2
+    width = 3 if len(layout.turning) else 2
     return np.array(order, np.int64), min((reach + 1) * width - 1, max(len(order) - 1, 0))
 
 

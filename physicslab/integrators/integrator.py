@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from physicslab.ode.system import Equations
-from physicslab.systems.schedule import Stage
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.ode.system import OdeSystem
+from physicslab.state.state import State
+from physicslab.systems.system import Stage
 
 __all__ = ["Flow", "Integrator", "StepTooSmall"]
 
-type Flow = Callable[[World, Equations, float, int], int]
+type Flow = Callable[[State, OdeSystem, float, int], int]
 """Advances the equations of a world by so many steps of so many seconds; returns the force evaluations."""
 
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 from physicslab.integrators.integrator import Integrator
 from physicslab.integrators.splitting import splitting
 from physicslab.kernels.ode.splitting import split
-from physicslab.systems.schedule import Stage
+from physicslab.systems.system import Stage
 
-__all__ = ["LEAPFROG", "LEAPFROG_BESIDE_TETHERS"]
+__all__ = ["LEAPFROG", "LEAPFROG_WITH_SPLIT_FORCES"]
 
 # Between the two half kicks, positions and velocities are both those of the middle of the substep. Impacts
 # are resolved there: turning a velocity round at the place it belongs to leaves the energy as it was. The
@@ -38,15 +38,15 @@ LEAPFROG = Integrator(
     window=(-0.5, 0.5),
 )
 
-_FORESEEN = ((Stage.FORESEE, 0.5), (Stage.SOLVE, 1.0), (Stage.FORESEE, -0.5))
+_PREDICTED = ((Stage.PREDICT, 0.5), (Stage.SOLVE, 1.0), (Stage.PREDICT, -0.5))
 
 # What is tethered (see physicslab.stepping.split_forces) is not kicked: the contact solver is
 # shown ahead what comes.
-LEAPFROG_BESIDE_TETHERS = replace(
+LEAPFROG_WITH_SPLIT_FORCES = replace(
     LEAPFROG,
     substep=tuple(
         part
         for stage in LEAPFROG.substep
-        for part in (_FORESEEN if stage == (Stage.SOLVE, 1.0) else (stage,))
+        for part in (_PREDICTED if stage == (Stage.SOLVE, 1.0) else (stage,))
     ),
 )

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.ode.classical import rk4
-from physicslab.ode.system import Equations
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.ode.system import OdeSystem
+from physicslab.state.state import State
 
 __all__ = ["RK4"]
 
 
-def _flow(world: World, equations: Equations, h: float, steps: int) -> int:
-    eq = equations
+def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
+    eq = ode
     return rk4(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, h, steps)
 
 

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from physicslab.integrators.integrator import Flow
 from physicslab.kernels.ode.splitting import split
-from physicslab.ode.system import Equations
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.ode.system import OdeSystem
+from physicslab.state.state import State
 
 __all__ = ["splitting"]
 
@@ -20,8 +16,8 @@ def splitting(*, drifts: tuple[float, ...], kicks: tuple[float, ...]) -> Flow:
     """Return the flow of the method kick, drift, kick, ..., drift, kick with these shares of the step."""
     drift_shares, kick_shares = np.array(drifts), np.array(kicks)
 
-    def flow(world: World, equations: Equations, h: float, steps: int) -> int:
-        eq = equations
+    def flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
+        eq = ode
         return split(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, drift_shares, kick_shares, h, steps)
 
     return flow

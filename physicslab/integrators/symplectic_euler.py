@@ -3,7 +3,7 @@
 from physicslab.integrators.integrator import Integrator
 from physicslab.integrators.splitting import splitting
 from physicslab.kernels.ode.splitting import split
-from physicslab.systems.schedule import Stage
+from physicslab.systems.system import Stage
 
 __all__ = ["SYMPLECTIC_EULER"]
 

@@ -165,6 +165,10 @@ def _numba_type(hint: Any) -> Any:
     """Return what numba calls a type: the one that an alias carries, or that of a plain Python type."""
     if get_origin(hint) is Annotated:
         return hint.__metadata__[0]
+    if isinstance(hint, type) and issubclass(hint, tuple) and hasattr(hint, "_fields"):
+        fields = get_type_hints(hint, include_extras=True)
+        make_named: Any = numba.types.BaseTuple.from_types
+        return make_named([_numba_type(part) for part in fields.values()], hint)
     if get_origin(hint) is tuple:
         make_tuple: Any = numba.types.Tuple
         return make_tuple([_numba_type(part) for part in get_args(hint)])

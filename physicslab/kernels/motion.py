@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, kernel
 
-__all__ = ["clear", "derive_masses", "drift", "find_not_finite", "foresee", "kick"]
+__all__ = ["clear", "derive_masses", "drift", "find_not_finite", "kick", "predict"]
 
 
 @kernel
@@ -57,7 +57,7 @@ def clear(force: Vectors, torque: Numbers) -> None:
 @kernel
 def kick(
     linear: Vectors, angular: Numbers, force: Vectors, torque: Numbers,
-    inverse_mass: Numbers, inverse_inertia: Numbers, tethered: Flags,
+    inverse_mass: Numbers, inverse_inertia: Numbers, sub_integrated: Flags,
     linear_damping: float, angular_damping: float, h: float,
 ) -> None:  # fmt: skip
     """Change velocities by constant forces over a time h, with damping dv/dt = -c v solved exactly.
@@ -75,7 +75,7 @@ def kick(
         angular_decay = math.exp(-angular_damping * h)
         angular_gain = -math.expm1(-angular_damping * h) / angular_damping
     for i in range(len(inverse_mass)):
-        if inverse_mass[i] > 0.0 and not tethered[i]:
+        if inverse_mass[i] > 0.0 and not sub_integrated[i]:
             linear[i, 0] = linear[i, 0] * decay + force[i, 0] * inverse_mass[i] * gain
             linear[i, 1] = linear[i, 1] * decay + force[i, 1] * inverse_mass[i] * gain
             angular[i] = angular[i] * angular_decay + torque[i] * inverse_inertia[i] * angular_gain
@@ -83,12 +83,12 @@ def kick(
 
 @kernel
 def drift(
-    position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers, tethered: Flags, h: float
+    position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers, sub_integrated: Flags, h: float
 ) -> None:
     """Move and turn every row that is not tethered at its present velocity for a time h."""
     free = True
-    for i in range(len(tethered)):
-        free &= not tethered[i]
+    for i in range(len(sub_integrated)):
+        free &= not sub_integrated[i]
     if free:  # as a rule: nothing to decide, so that vectors of numbers are added
         places, velocities = position.reshape(position.size), linear.reshape(linear.size)
         for i in range(len(places)):
@@ -97,14 +97,14 @@ def drift(
             angle[i] += h * angular[i]
         return
     for i in range(len(angle)):
-        if not tethered[i]:
+        if not sub_integrated[i]:
             position[i, 0] += h * linear[i, 0]
             position[i, 1] += h * linear[i, 1]
             angle[i] += h * angular[i]
 
 
 @kernel
-def foresee(
+def predict(
     linear: Vectors, angular: Numbers, force: Vectors, torque: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers, gentle: Flags, h: float,
 ) -> None:  # fmt: skip

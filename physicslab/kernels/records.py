@@ -35,12 +35,12 @@ MANIFOLD = np.dtype(
         ("base_angle_b", np.float64),
         ("gap", np.float64),  # of boxes in that pose, where they had no points: they have none while it lasts
         ("base_sizes", np.float64),  # of both boxes, mixed into one number
-        ("struck", np.int64),  # impacts of this step
+        ("impact_count", np.int64),  # impacts of this step
         # 1 where the normal is that of the moment within this substep at which they meet, 2 where they are
         # known not to meet within it, 0 where normal and separation are those of now.
         ("swept", np.int64),
         ("size", np.float64),  # of the smaller body
-        ("lane", np.int64),  # twice the number of its lane, plus the kind of block; -1 for a loose pair
+        ("slot", np.int64),  # twice the number of its lane, plus the kind of block; -1 for a loose pair
     ]
 )
 """A pair that the broad phase found near each other, and where it touches."""

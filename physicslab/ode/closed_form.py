@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.kernels.ode.propagate import propagate
-from physicslab.ode.system import spring_ends
-from physicslab.systems.schedule import ForceSystem
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.state.packed import spring_ends
+from physicslab.state.state import State
+from physicslab.systems.drag import DragSystem
+from physicslab.systems.spring import SpringSystem
+from physicslab.systems.system import ForceSystem
 
 __all__ = ["ClosedForm", "NoClosedForm", "closed_form"]
 
-_FORCES = {"GravitySystem", "SpringSystem", "DragSystem"}
+_KNOWN = (SpringSystem, DragSystem)
+"""The forces that have a closed form, beside those that accelerate every body alike."""
 _IN_LINE = 1e-12
 """How far [share of the length] a body may be off the line of its springs and still count as on it."""
 
@@ -52,18 +53,18 @@ class ClosedForm:
     acceleration: NDArray[np.float64]
     what: str
 
-    def advanced(self, world: World, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def advanced(self, state: State, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the positions [m] and velocities [m/s] (n, 2) a time t [s] from now."""
-        position = world.table(Transform)["position"][self.rows]
-        velocity = world.table(Velocity)["linear"][self.rows]
+        position = state.table(Transform)["position"][self.rows]
+        velocity = state.table(Velocity)["linear"][self.rows]
         propagate(
             position, velocity, self.direction, self.rate2, self.drag, self.centre, self.acceleration, t
         )
         return position, velocity
 
 
-def closed_form(world: World) -> ClosedForm:
-    """Return the closed form of a world in which nothing but forces acts.
+def closed_form(state: State, forces: Sequence[ForceSystem]) -> ClosedForm:
+    """Return the closed form of a world in which nothing but ``forces`` act.
 
     There is one for uniform gravity, linear drag and damping, and springs to fixed points: those of no rest
     length and no damper in the plane, all of them along one line, on which the body must then stay.
@@ -73,106 +74,109 @@ def closed_form(world: World) -> ClosedForm:
     NoClosedForm
         If there is none.
     """
-    _check_forces(world)
-    rows = np.flatnonzero(world.table(Transform).present & world.table(Velocity).present)
+    uniform = _uniform(state, forces)
+    rows = np.flatnonzero(state.table(Transform).present & state.table(Velocity).present)
     n = len(rows)
-    bodies, physics, mass = world.bodies, world.physics, world.table(Mass)["mass"]
+    bodies, physics, mass = state.bodies, state.physics, state.table(Mass)["mass"]
     inverse = bodies.inverse_mass[rows]
     if not np.isfinite(inverse).all():
         raise NoClosedForm("a mass is too small for its inverse to be a number")
     free = inverse > 0.0
     gravity = np.zeros((n, 2))
-    if any(system.name == "GravitySystem" for system in world.schedule.running):
-        gravity[free] = physics.gravity.x, physics.gravity.y
+    gravity[free] = uniform
     decay = np.where(free, physics.linear_damping, 0.0)
-    dragged = world.table(Drag)
+    dragged = state.table(Drag)
     has_drag = dragged.present[rows] & (mass[rows] > 0.0)
     decay = decay + np.where(has_drag, dragged["linear"][rows] * inverse, 0.0)
     form = ClosedForm(
         rows, np.tile((1.0, 0.0), (n, 1)), np.zeros((n, 2)), np.stack((decay, decay), axis=1),
-        np.zeros((n, 2)), gravity, _words(world, bool(decay.any())),
+        np.zeros((n, 2)), gravity, _words(forces, bool(decay.any())),
     )  # fmt: skip
-    if len(world.batch(Spring)):
-        _hang(world, form)
+    if len(state.batch(Spring)):
+        _hang(state, form)
     return form
 
 
-def _words(world: World, damped: bool) -> str:
-    names = {system.name for system in world.schedule.running if isinstance(system, ForceSystem)}
-    parts = ["uniform gravity"] if "GravitySystem" in names else []
-    parts += ["springs to fixed points"] if "SpringSystem" in names else []
-    parts += ["linear drag"] if damped else []
+def _words(forces: Sequence[ForceSystem], damped: bool) -> str:
+    uniform = any(type(force) not in _KNOWN for force in forces)
+    springs = any(type(force) is SpringSystem for force in forces)
+    parts = ["uniform gravity"] * uniform + ["springs to fixed points"] * springs + ["linear drag"] * damped
     return (" and ".join(parts) or "no force") + " alone"
 
 
-def _check_forces(world: World) -> None:
-    for system in world.schedule.running:
-        if isinstance(system, ForceSystem) and system.name not in _FORCES:
-            raise NoClosedForm(f"the force of {system.name} has no closed form")
-    if world.physics.gravity_mode == "planet" and any(
-        system.name == "GravitySystem" for system in world.schedule.running
-    ):
-        raise NoClosedForm("planets attract each other")
-    if (world.table(Drag)["quadratic"][world.batch(Drag, Velocity, Mass).rows] > 0.0).any():
+def _uniform(state: State, forces: Sequence[ForceSystem]) -> tuple[float, float]:
+    """Return the acceleration that all bodies with Mass have alike; refuse forces without a closed form."""
+    x = y = 0.0
+    for force in forces:
+        if type(force) in _KNOWN:
+            continue
+        uniform = force.uniform_acceleration(state) if type(force).packs() else None
+        if uniform is None:
+            attracts = force.attractors > 0
+            why = "bodies attract each other" if attracts else f"the force of {force.name} has no closed form"
+            raise NoClosedForm(why)
+        x, y = x + uniform.x, y + uniform.y
+    if (state.table(Drag)["quadratic"][state.batch(Drag, Velocity, Mass).rows] > 0.0).any():
         raise NoClosedForm("there is quadratic drag")
+    return x, y
 
 
-def _hang(world: World, form: ClosedForm) -> None:
+def _hang(state: State, form: ClosedForm) -> None:
     """Put the springs into a form that has none so far."""
-    springs, a, b = spring_ends(world)
-    bodies, velocity = world.bodies, world.table(Velocity).present
+    springs, a, b = spring_ends(state)
+    bodies, velocity = state.bodies, state.table(Velocity).present
     index = {row: i for i, row in enumerate(form.rows.tolist())}
     of_body: dict[int, list[tuple[int, NDArray[np.float64]]]] = {}
     for spring, end_a, end_b in zip(springs.tolist(), a.tolist(), b.tolist(), strict=True):
-        label = world.label(int(world.roster.entities[spring]))
+        label = state.label(int(state.entity_index.entities[spring]))
         moving = [end for end in (end_a, end_b) if velocity[end]]
         if not any(bodies.inverse_mass[end] > 0.0 for end in moving):
             continue
         if len(moving) > 1:
             raise NoClosedForm(f"the spring of {label} joins two bodies that move")
         side, body, other = ("a", end_a, end_b) if velocity[end_a] else ("b", end_b, end_a)
-        if world.table(Spring)[f"anchor_{side}"][spring].any():
+        if state.table(Spring)[f"anchor_{side}"][spring].any():
             raise NoClosedForm(f"the spring of {label} holds its body beside the middle, and turns it")
-        of_body.setdefault(body, []).append((spring, _fixed_point(world, spring, side, other)))
+        of_body.setdefault(body, []).append((spring, _fixed_point(state, spring, side, other)))
     for body, held in of_body.items():
-        _hang_body(world, form, index[body], held)
+        _hang_body(state, form, index[body], held)
 
 
-def _fixed_point(world: World, spring: int, side: str, other: int) -> NDArray[np.float64]:
+def _fixed_point(state: State, spring: int, side: str, other: int) -> NDArray[np.float64]:
     """Return where the end that does not move is [m]."""
-    transform = world.table(Transform)
-    anchor = world.table(Spring)["anchor_b" if side == "a" else "anchor_a"][spring]
+    transform = state.table(Transform)
+    anchor = state.table(Spring)["anchor_b" if side == "a" else "anchor_a"][spring]
     c, s = np.cos(transform["angle"][other]), np.sin(transform["angle"][other])
     turned = np.array((c * anchor[0] - s * anchor[1], s * anchor[0] + c * anchor[1]))
     place: NDArray[np.float64] = transform["position"][other] + turned
     return place
 
 
-def _hang_body(world: World, form: ClosedForm, i: int, held: list[tuple[int, NDArray[np.float64]]]) -> None:
+def _hang_body(state: State, form: ClosedForm, i: int, held: list[tuple[int, NDArray[np.float64]]]) -> None:
     """Put the springs of one body into the form."""
-    row, table = int(form.rows[i]), world.table(Spring)
-    inverse = world.bodies.inverse_mass[row]
-    numbers = [(float(table["rest_length"][s]), float(table["stiffness"][s]), float(table["damping"][s]))
+    row, table = int(form.rows[i]), state.table(Spring)
+    inverse = state.bodies.inverse_mass[row]
+    parameters = [(float(table["rest_length"][s]), float(table["stiffness"][s]), float(table["damping"][s]))
                for s, _ in held]  # fmt: skip
     points = np.array([point for _, point in held])
-    stiffness = np.array([k for _, k, _ in numbers])
-    if all(rest == 0.0 and c == 0.0 for rest, _, c in numbers):
+    stiffness = np.array([k for _, k, _ in parameters])
+    if all(rest == 0.0 and c == 0.0 for rest, _, c in parameters):
         rate2 = float(stiffness.sum() * inverse)
         form.rate2[i] = rate2
         if rate2 > 0.0:
             form.centre[i] = stiffness @ points / stiffness.sum() + form.acceleration[i] / rate2
         return
-    _hang_in_line(world, form, i, points, np.array(numbers))
+    _hang_in_line(state, form, i, points, np.array(parameters))
 
 
 def _hang_in_line(
-    world: World, form: ClosedForm, i: int, points: NDArray[np.float64], numbers: NDArray[np.float64]
+    state: State, form: ClosedForm, i: int, points: NDArray[np.float64], parameters: NDArray[np.float64]
 ) -> None:
     """Put springs into the form that pull along one line, on which the body stays."""
     row = int(form.rows[i])
-    label = world.label(int(world.roster.entities[row]))
-    position = world.table(Transform)["position"][row]
-    velocity = world.table(Velocity)["linear"][row]
+    label = state.label(int(state.entity_index.entities[row]))
+    position = state.table(Transform)["position"][row]
+    velocity = state.table(Velocity)["linear"][row]
     reach = position - points
     lengths = np.hypot(reach[:, 0], reach[:, 1])
     line = reach[int(lengths.argmax())] / (lengths.max() or 1.0)
@@ -180,8 +184,8 @@ def _hang_in_line(
         along = next((v for v in (velocity, form.acceleration[i]) if v.any()), np.array((1.0, 0.0)))
         line = along / np.hypot(*along)
     normal = np.array((-line[1], line[0]))
-    rest, stiffness, damping = numbers.T
-    inverse = world.bodies.inverse_mass[row]
+    rest, stiffness, damping = parameters.T
+    inverse = state.bodies.inverse_mass[row]
     rate = float(np.sqrt(stiffness.sum() * inverse))
     speed = float(np.hypot(*velocity)) + rate * float(lengths.max())  # what rounding is measured against
     for vector, scale in ((velocity, speed), (form.acceleration[i], float(np.hypot(*form.acceleration[i])))):
@@ -203,7 +207,7 @@ def _hang_in_line(
     if rigid.any():
         place, speed = float(position @ line), float(velocity @ line)
         if rate2 == 0.0:
-            return  # dampers alone: no force hangs on the length
+            return  # dampers alone: no force depends on the length
         swing = float(np.hypot(place - form.centre[i, 0], speed / np.sqrt(rate2)))
         room = np.abs(form.centre[i, 0] - points @ line)
         sides = np.sign(form.centre[i, 0] - points @ line)

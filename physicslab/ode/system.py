@@ -3,111 +3,29 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Spring, Transform, Velocity
-from physicslab.kernels.forces.force_calls import ForceKernel
-from physicslab.systems.schedule import ForceSystem, Stage
+from physicslab.components import Transform, Velocity
+from physicslab.state.packed import StateLayout
+from physicslab.state.state import State
+from physicslab.systems.system import ForceSystem, Stage
 
-if TYPE_CHECKING:
-    from physicslab.world import World
-
-__all__ = ["Equations", "PackedForce", "Slots", "spring_ends", "why_not_smooth"]
+__all__ = ["OdeSystem"]
 
 _REAL = ctypes.POINTER(ctypes.c_double)
 _WHOLE = ctypes.POINTER(ctypes.c_int64)
 _CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, ctypes.c_double, _REAL, _REAL, _WHOLE)
 
 
-@dataclass(frozen=True, slots=True)
-class PackedForce:
-    """A force that compiled integrators call: its kernel, and what the kernel reads.
-
-    Attributes
-    ----------
-    kernel : ForceKernel
-        What adds to the forces.
-    numbers, whole : float64 array, int64 array
-        Whatever the kernel wants to know; it gets pointers to them.
-    resistance : ForceKernel, optional
-        What the force answers to another velocity than that of the moment, where it resists motion (see
-        :mod:`physicslab.kernels.forces.resistance`).
-    """
-
-    kernel: ForceKernel
-    numbers: NDArray[np.float64]
-    whole: NDArray[np.int64]
-    resistance: ForceKernel | None = None
-
-
-class Slots:
-    """Where each row of a world stands among the packed coordinates.
-
-    First two coordinates for every row that moves, then an angle for every row that forces may turn, then the
-    two coordinates of the rows that stay where they are, the world itself among them.
-
-    Attributes
-    ----------
-    moving, turning, fixed : int64 arrays
-        The rows in that order.
-    steady : int64 array
-        The rows that move and no force turns.
-    place, turn : int64 arrays (rows,)
-        Where x of a row stands, and where its angle; -1 for a row that has none, or takes no part.
-    """
-
-    def __init__(self, world: World, part: NDArray[np.bool_] | None, *, all_turn: bool) -> None:
-        transform, velocity = world.table(Transform).present, world.table(Velocity).present
-        if part is not None:
-            transform = transform & part
-        self.moving = np.flatnonzero(transform & velocity)
-        turns = np.zeros(len(transform), np.bool_)
-        turns[self.moving] = all_turn
-        if not all_turn:
-            turns[_swung(world)] = True
-            turns &= transform & velocity
-        self.turning = np.flatnonzero(turns)
-        self.steady = np.setdiff1d(self.moving, self.turning, assume_unique=True)
-        fixed = transform & ~velocity
-        fixed[0] = True
-        self.fixed = np.flatnonzero(fixed)
-        n, m = len(self.moving), len(self.turning)
-        self.place, self.turn = np.full((2, len(transform)), -1, np.int64)
-        self.place[self.moving] = 2 * np.arange(n)
-        self.turn[self.turning] = 2 * n + np.arange(m)
-        self.place[self.fixed] = 2 * n + m + 2 * np.arange(len(self.fixed))
-
-    @property
-    def moving_count(self) -> int:
-        """How many coordinates move."""
-        return 2 * len(self.moving) + len(self.turning)
-
-
-def spring_ends(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return the rows of the springs, of the bodies at their ends A, and at B (0 for the world)."""
-    batch, spring, rows_of = world.batch(Spring), world.table(Spring), world.roster.rows_of
-    a = spring["a"][batch.rows]
-    return batch.rows, rows_of(np.where(a == 0, batch.entities, a)), rows_of(spring["b"][batch.rows])
-
-
-def _swung(world: World) -> NDArray[np.int64]:
-    """Return the rows that springs hold away from their middle, and so can turn."""
-    rows, a, b = spring_ends(world)
-    spring = world.table(Spring)
-    off_a, off_b = spring["anchor_a"][rows].any(axis=1), spring["anchor_b"][rows].any(axis=1)
-    return np.concatenate((a[off_a], b[off_b]))
-
-
-class Equations:
+class OdeSystem:
     """Packed state and packed forces of a world in which nothing acts but forces.
 
-    ``q`` holds the coordinates as :class:`Slots` orders them, ``v`` their rates (zero for what is fixed);
-    q'' = ``inverse_mass`` * force - ``damping`` * v.
+    ``q`` holds the coordinates as :class:`StateLayout` orders them, ``v`` their rates (zero for what is
+    fixed); q'' = ``inverse_mass`` * force - ``damping`` * v.
 
     A force system that packs its force (:meth:`ForceSystem.packed`) is called without Python. One that does
     not is called back at its ``Stage.FORCE``, with the state that it reads in the world's tables: slower, and
@@ -115,7 +33,7 @@ class Equations:
 
     Attributes
     ----------
-    slots : Slots
+    layout : Slots
         Where each row stands.
     q, v : float64 arrays
         The state.
@@ -130,40 +48,45 @@ class Equations:
         it finds it once, as it hangs on the layout alone.
     tolerance : float
         Relative error a step for methods that choose their steps.
-    forces, interpreted : tuple of str
-        The force systems, and those of them that are not compiled.
+    forces : tuple of ForceSystem
+        What acts.
+    interpreted : tuple of str
+        The names of those that are not compiled.
 
     Parameters
     ----------
-    world : World
+    state : State
         Whose motion.
+    forces : sequence of ForceSystem
+        What acts.
     part : bool array (rows,), optional
         The rows that take part; all where nothing is said.
     """
 
-    def __init__(self, world: World, part: NDArray[np.bool_] | None = None) -> None:
-        self._forces = [system for system in world.schedule.running if isinstance(system, ForceSystem)]
-        interpreted = [system for system in self._forces if not type(system).packs()]
+    def __init__(
+        self, state: State, forces: Sequence[ForceSystem], part: NDArray[np.bool_] | None = None
+    ) -> None:
+        self.forces = tuple(forces)
+        interpreted = [system for system in self.forces if not type(system).packs()]
         self.interpreted = tuple(system.name for system in interpreted)
-        self.forces = tuple(system.name for system in self._forces)
-        self.slots = Slots(world, part, all_turn=bool(interpreted))
+        self.layout = StateLayout(state, part, all_turn=bool(interpreted))
         self.near: tuple[NDArray[np.int64], int] | None = None
-        self.tolerance = world.simulation.tolerance
+        self.tolerance = state.simulation.tolerance
         self._error: BaseException | None = None
-        self._settings = self._look(world)
+        self._settings = self._look(state)
 
-    def _look(self, world: World) -> bytes:
-        return world.bodies.inverse_mass.tobytes() + b"".join(f.settings(world) for f in self._forces)
+    def _look(self, state: State) -> bytes:
+        return state.bodies.inverse_mass.tobytes() + b"".join(f.settings(state) for f in self.forces)
 
-    def outdated(self, world: World) -> bool:
-        """Whether a number was changed that the layout, or the choice of a method, hangs on."""
-        return self._look(world) != self._settings
+    def outdated(self, state: State) -> bool:
+        """Whether a number was changed that the layout, or the choice of a method, depends on."""
+        return self._look(state) != self._settings
 
-    def gather(self, world: World) -> None:
+    def gather(self, state: State) -> None:
         """Take the state, the masses and the forces from the world's tables."""
-        self.gather_state(world)
-        bodies, physics = world.bodies, world.physics
-        moving, turning = self.slots.moving, self.slots.turning
+        self.gather_state(state)
+        bodies, physics = state.bodies, state.physics
+        moving, turning = self.layout.moving, self.layout.turning
         self.inverse_mass = np.concatenate(
             (np.repeat(bodies.inverse_mass[moving], 2), bodies.inverse_inertia[turning])
         )
@@ -173,12 +96,12 @@ class Equations:
             pulled = np.concatenate((np.repeat(moving, 2), turning))
             rates_of = np.repeat(rates, (2 * len(moving), len(turning)))
             self.damping = rates_of * (bodies.inverse_mass[pulled] > 0.0)
-        self._calls(world)
+        self._calls(state)
 
-    def gather_state(self, world: World) -> None:
+    def gather_state(self, state: State) -> None:
         """Take the state alone, where masses and forces are those of the last :meth:`gather`."""
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        moving, turning, fixed = self.slots.moving, self.slots.turning, self.slots.fixed
+        transform, velocity = state.table(Transform), state.table(Velocity)
+        moving, turning, fixed = self.layout.moving, self.layout.turning, self.layout.fixed
         position, linear = transform["position"], velocity["linear"]
         self.q = np.concatenate(
             (position[moving].ravel(), transform["angle"][turning], position[fixed].ravel())
@@ -187,96 +110,75 @@ class Equations:
             (linear[moving].ravel(), velocity["angular"][turning], np.zeros(2 * len(fixed)))
         )
 
-    def scatter(self, world: World, span: float) -> None:
+    def scatter(self, state: State, span: float) -> None:
         """Put the state back into the tables; what no force turns has turned steadily for ``span`` s."""
         if self._error is not None:
             error, self._error = self._error, None
             raise error
-        slots, transform, velocity = self.slots, world.table(Transform), world.table(Velocity)
-        self._write(world, self.q, self.v)
-        steady = slots.steady
+        layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
+        self._write(state, self.q, self.v)
+        steady = layout.steady
         if len(steady):
-            spin, c = velocity["angular"][steady], world.physics.angular_damping
-            free = world.bodies.inverse_mass[steady] > 0.0
+            spin, c = velocity["angular"][steady], state.physics.angular_damping
+            free = state.bodies.inverse_mass[steady] > 0.0
             lasting = np.where(free & (c > 0.0), -np.expm1(-c * span) / (c or 1.0), span)
             transform["angle"][steady] += spin * lasting
             velocity["angular"][steady] = np.where(free, spin * np.exp(-c * span), spin)
 
-    def _write(self, world: World, q: NDArray[np.float64], v: NDArray[np.float64]) -> None:
-        slots, transform, velocity = self.slots, world.table(Transform), world.table(Velocity)
-        n, d = 2 * len(slots.moving), slots.moving_count
-        transform["position"][slots.moving] = q[:n].reshape(-1, 2)
-        velocity["linear"][slots.moving] = v[:n].reshape(-1, 2)
-        transform["angle"][slots.turning] = q[n:d]
-        velocity["angular"][slots.turning] = v[n:d]
+    def _write(self, state: State, q: NDArray[np.float64], v: NDArray[np.float64]) -> None:
+        layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
+        n, d = 2 * len(layout.moving), layout.moving_count
+        transform["position"][layout.moving] = q[:n].reshape(-1, 2)
+        velocity["linear"][layout.moving] = v[:n].reshape(-1, 2)
+        transform["angle"][layout.turning] = q[n:d]
+        velocity["angular"][layout.turning] = v[n:d]
 
-    def _calls(self, world: World) -> None:
+    def _calls(self, state: State) -> None:
         packed = [
-            (system, system.packed(world, self.slots) if type(system).packs() else None)
-            for system in self._forces
+            (system, system.packed(state, self.layout) if type(system).packs() else None)
+            for system in self.forces
         ]
         forces = [force for _, force in packed if force is not None]
         # Behind how many coordinates there are, as resistances get several velocities in one.
         resisting = [
-            (force.resistance, force.numbers, np.concatenate(([len(self.q)], force.whole)))
+            (force.resistance, force.parameters, np.concatenate(([len(self.q)], force.indices)))
             for force in forces
             if force.resistance is not None
         ]
         self._kept: list[Any] = [*forces, *resisting]  # while C may read them
-        world.schedule.compile([*(force.kernel for force in forces), *(kernel for kernel, _, _ in resisting)])
+        state.compile([*(force.kernel for force in forces), *(kernel for kernel, _, _ in resisting)])
         rows = [
-            (force.kernel.address, force.numbers.ctypes.data, force.whole.ctypes.data) for force in forces
+            (force.kernel.address, force.parameters.ctypes.data, force.indices.ctypes.data)
+            for force in forces
         ]
-        against = [(kernel.address, n.ctypes.data, whole.ctypes.data) for kernel, n, whole in resisting]
+        against = [(kernel.address, n.ctypes.data, indices.ctypes.data) for kernel, n, indices in resisting]
         self.resistances = np.array(against, np.int64).reshape(-1, 3)
         python = [system for system, force in packed if force is None]
         if python:
-            callback = _CALLBACK(self._caller(world, python))
+            callback = _CALLBACK(self._caller(state, python))
             self._kept.append(callback)
             rows.append((ctypes.cast(callback, ctypes.c_void_p).value or 0, 0, 0))
         self.calls = np.array(rows, np.int64).reshape(-1, 3)
 
-    def _caller(self, world: World, systems: Iterable[ForceSystem]) -> Any:
+    def _caller(self, state: State, systems: Iterable[ForceSystem]) -> Any:
         """Return a C function that lets force systems written in Python act on the world's tables."""
         methods = [getattr(system, type(system).marked()[Stage.FORCE]) for system in systems]
-        slots, bodies = self.slots, world.bodies
-        n, d, size = 2 * len(slots.moving), slots.moving_count, len(self.q)
+        layout, bodies = self.layout, state.bodies
+        n, d, size = 2 * len(layout.moving), layout.moving_count, len(self.q)
 
-        def call(q: Any, v: Any, _span: float, force: Any, numbers: Any, whole: Any) -> None:
+        def call(q: Any, v: Any, _span: float, force: Any, parameters: Any, indices: Any) -> None:
             if self._error is not None:
                 return
             try:
-                self._write(world, np.ctypeslib.as_array(q, (size,)), np.ctypeslib.as_array(v, (size,)))
+                self._write(state, np.ctypeslib.as_array(q, (size,)), np.ctypeslib.as_array(v, (size,)))
                 bodies.force[:] = 0.0
                 bodies.torque[:] = 0.0
                 for method in methods:
-                    method(world, 0.0)
+                    method(state, 0.0)
                 total = np.ctypeslib.as_array(force, (size,))
-                total[:n] += bodies.force[slots.moving].ravel()
-                total[n:d] += bodies.torque[slots.turning]
+                total[:n] += bodies.force[layout.moving].ravel()
+                total[n:d] += bodies.torque[layout.turning]
             except BaseException as error:  # C code cannot be unwound: it is raised when that has returned
                 self._error = error
 
         return call
-
-
-_WITHIN = {Stage.FORCE, Stage.KICK, Stage.DRIFT}
-"""What happens at these stages is within the substeps of a world in which nothing touches."""
-
-
-def why_not_smooth(world: World) -> str | None:
-    """Return what else than forces acts on bodies within a step, or ``None``."""
-    schedule = world.schedule
-    if schedule.runs(Stage.BROAD_PHASE) or schedule.runs(Stage.CONTACT):
-        return "bodies can touch"
-    if not any(system.name == "IntegrateSystem" for system in schedule.running):
-        return "nothing moves the bodies"
-    for system in schedule.running:
-        stages = set(type(system).marked()) & _WITHIN
-        if isinstance(system, ForceSystem):
-            stages -= {Stage.FORCE}
-        if stages and system.name not in ("Bodies", "IntegrateSystem"):
-            return f"{system.name} acts within the step"
-    if (world.table(Velocity).present & ~world.table(Transform).present).any():
-        return "something moves that is nowhere"
-    return None

@@ -2,34 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Material, Shape
 from physicslab.kernels.wide import graph_colour, refresh, restore_slots, slots
 from physicslab.kernels.wide.layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE
-from physicslab.kernels.wide.slots import Seats
+from physicslab.kernels.wide.slots import Slots
 
-if TYPE_CHECKING:
-    from physicslab.world import World
-
-__all__ = ["Blocks", "Lanes"]
+__all__ = ["WideConstraints", "WideContacts"]
 
 type _Numbers = NDArray[np.float64]
 type _Rows = NDArray[np.int64]
 
 
-class Lanes:
+class WideConstraints:
     """The blocks of one kind of contact.
 
     Attributes
     ----------
     kind, rows : int
         ``DISC`` or ``BOX``, and how many numbers a block has.
-    count : int
-        How many blocks there are.
     data : float64 array (capacity * rows,)
         What they hold, as :mod:`physicslab.kernels.wide.layout` has it.
     a, b, pair : int64 arrays (capacity * WIDE,)
@@ -42,11 +34,21 @@ class Lanes:
         The colours that each body has been given, bit by bit.
     """
 
-    def __init__(self, kind: int) -> None:
+    def __init__(self, kind: int, counts: _Rows) -> None:
+        self._counts, self._place = counts, slots.DISC_BLOCKS if kind == DISC else slots.BOX_BLOCKS
         self.kind, self.rows = kind, DISC_ROWS if kind == DISC else BOX_ROWS
         self.data: NDArray[np.float64] = np.zeros(0)
         self.a, self.b, self.pair, self.colour, self.order = (np.zeros(0, np.int64) for _ in range(5))
         self.reset(1)
+
+    @property
+    def count(self) -> int:
+        """How many blocks there are."""
+        return int(self._counts[self._place])
+
+    @count.setter
+    def count(self, blocks: int) -> None:
+        self._counts[self._place] = blocks
 
     def reset(self, rows: int) -> None:
         """Hold nothing, in a world of so many rows."""
@@ -60,17 +62,17 @@ class Lanes:
             data, (colour, order) = _in_lines(room * self.rows), np.zeros((2, room), np.int64)
             data[: len(self.data)], colour[: len(self.colour)] = self.data, self.colour
             order[: len(self.order)] = self.order
-            lanes = np.zeros((3, room * WIDE), np.int64)
-            lanes[:, : len(self.pair)] = self.a, self.b, self.pair
+            constraints = np.zeros((3, room * WIDE), np.int64)
+            constraints[:, : len(self.pair)] = self.a, self.b, self.pair
             self.data, self.colour, self.order = data, colour, order
-            self.a, self.b, self.pair = (np.ascontiguousarray(lane) for lane in lanes)
+            self.a, self.b, self.pair = (np.ascontiguousarray(slot) for slot in constraints)
 
     def sort(self) -> None:
         """Put the blocks in the order in which they are solved."""
         graph_colour.sort_blocks(self.count, self.colour, self.order)
 
     @property
-    def seats(self) -> Seats:
+    def slots(self) -> Slots:
         """What kernels want to know that count the blocks themselves."""
         return self.data, self.a, self.b, self.pair, self.colour, self.used, self.order
 
@@ -85,52 +87,56 @@ class Lanes:
         return self.data, self.count, self.order, self.a, self.b
 
 
-class Blocks:
+class WideContacts:
     """The settled contacts of a world, and what they were made of.
 
-    A contact is settled when its bodies move little for their size, it is not struck, and overlaps little.
-    Discs and boxes lie in blocks of their own; all else, and all in a world of few contacts, stays loose.
+    A contact is settled when its bodies move little for their size, it has no impact, and overlaps little.
+    Discs and boxes lie in blocks of their own; all else, and all in a world of few contacts, stays scalar.
 
     Attributes
     ----------
-    discs, boxes : Lanes
+    discs, boxes : WideConstraints
         The blocks.
-    lanes : int
-        How many contacts have one.
+    made_of : float64 array (rows, 7)
+        The masses, sizes and materials that slots hold as well.
+
+    Parameters
+    ----------
+    counts : int64 array (COUNTED,)
+        The counts of the contacts that these are part of.
     """
 
     kernels = (
-        graph_colour.settle, restore_slots.seat_again, graph_colour.sort_blocks,
+        graph_colour.add_constraints, restore_slots.restore_slots, graph_colour.sort_blocks,
         restore_slots.remember, restore_slots.outdated,
-        slots.store, slots.list_loose, slots.follow_pairs, slots.wake,
-        slots.release, refresh.refresh, refresh.deepest_lane,
+        slots.store, slots.list_scalar, slots.follow_pairs,
+        slots.release, refresh.deepest_wide,
     )  # fmt: skip
 
-    def __init__(self) -> None:
-        self.discs, self.boxes = Lanes(DISC), Lanes(BOX)
-        self.lanes = 0
-        self._made_of: NDArray[np.float64] = np.zeros((0, 7))
+    def __init__(self, counts: _Rows) -> None:
+        self._counts = counts
+        self.discs, self.boxes = WideConstraints(DISC, counts), WideConstraints(BOX, counts)
+        self.made_of: NDArray[np.float64] = np.zeros((0, 7))
 
     @property
-    def kinds(self) -> tuple[Lanes, Lanes]:
+    def kinds(self) -> tuple[WideConstraints, WideConstraints]:
         """Both."""
         return self.discs, self.boxes
 
+    @property
+    def filled(self) -> int:
+        """How many contacts have a slot."""
+        return int(self._counts[slots.WIDE_COUNT])
+
+    @filled.setter
+    def filled(self, contacts: int) -> None:
+        self._counts[slots.WIDE_COUNT] = contacts
+
     def reset(self, rows: int) -> None:
-        """Forget every lane, in a world of so many rows."""
-        for lanes in self.kinds:
-            lanes.reset(rows)
-        self.lanes = 0
-
-    def remember(self, world: World) -> None:
-        """Keep the masses, sizes and materials that lanes hold as well."""
-        columns = _columns(world)
-        self._made_of = np.zeros((len(columns[0]), len(columns)))
-        restore_slots.remember(self._made_of, *columns)
-
-    def outdated(self, world: World) -> bool:
-        """Whether one of those has been changed."""
-        return bool(restore_slots.outdated(self._made_of, *_columns(world)))
+        """Empty every slot, in a world of so many rows."""
+        for constraints in self.kinds:
+            constraints.reset(rows)
+        self.filled = 0
 
 
 def _in_lines(size: int) -> NDArray[np.float64]:
@@ -139,11 +145,3 @@ def _in_lines(size: int) -> NDArray[np.float64]:
     room = np.zeros(size + WIDE)
     start = -room.ctypes.data % line // 8
     return room[start : start + size]
-
-
-def _columns(world: World) -> tuple[_Numbers, ...]:
-    shape, material, bodies = world.table(Shape), world.table(Material), world.bodies
-    return (
-        bodies.inverse_mass, bodies.inverse_inertia, material["restitution"], material["friction"],
-        shape["radius"], shape["width"], shape["height"],
-    )  # fmt: skip

@@ -1,22 +1,30 @@
-"""Steps a world whose bodies fly freely between impacts, each impact at its own time."""
+"""Scenes of few bodies that bounce: ballistic motion between impacts, each impact at its own time."""
 
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.contacts.near_pairs import list_all
+from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.events import events, flight
-from physicslab.stepping.event_driven_limits import pairs_that_may_meet, turning_boxes
-from physicslab.systems.schedule import Stage
+from physicslab.kernels.wide import slots
+from physicslab.state.masses import check_finite
+from physicslab.state.state import State
+from physicslab.stepping.ballistic import pairs_that_may_meet, turning_boxes
+from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.stepper import Advance, divisions
+from physicslab.systems.contact import ContactSystem
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.resolve import ResolveSystem
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.system import Stage
 
-if TYPE_CHECKING:
-    from physicslab.world import World
-
-__all__ = ["Flights"]
+__all__ = ["EventDriven"]
 
 type _State = list[NDArray[np.float64]]
 """Copies of the columns below."""
@@ -27,111 +35,138 @@ _PULL = slice(8, 10)
 """The columns of a flight's acceleration."""
 _SHORT = 1e-6
 """Share of a step that is too short for what rests to move."""
-_MOST_PARTS = 1000
-"""How often flights may be broken off within a step before all bodies are left to the contact step."""
+_MAX_PARTS = 1000
+"""After so many interruptions within a step all bodies are left to the contact step."""
 
 
-class Flights:
-    """Flights and impacts of one world, until its structure changes.
+class EventDriven:
+    """Advances bodies in closed form from impact to impact.
 
-    A body flies in closed form from impact to impact. One that comes to rest on another is handed over to the
-    contact step, together with all others that rest, and comes back when nothing presses on it or when a
-    flying body strikes it: the step is then divided at the time of the blow.
+    One that comes to rest on another is handed over to the contact step, together with all others that rest,
+    and comes back when nothing presses on it or when a ballistic body strikes it: the step is then divided at
+    the time of the blow.
 
-    Who rests follows from the contacts of the last step, so that nothing here needs to be saved.
-
-    Attributes
-    ----------
-    kernels : tuple of kernels
-        What it calls.
+    What rests follows from the contacts of the last step, so that nothing here needs to be saved.
     """
 
-    kernels = (events.fly,)
+    name: ClassVar[str] = "event_driven"
+    leaps: ClassVar[bool] = True
+    leaves_forces: ClassVar[bool] = False
+    kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 
-    def __init__(self, world: World) -> None:
-        rows = len(world.roster)
-        self._pairs = pairs_that_may_meet(world)
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
+        self._schedule, self._stages = schedule, plan.stages.substep
+        self.reason = plan.collision_reason
+        rows = len(state.entity_index)
+        self._pairs = pairs_that_may_meet(state)
         self._listed = False
         self._urgent = -1
-        self._flights = np.zeros((rows, flight.FIELDS))
-        moving = world.table(Velocity).present & world.table(Transform).present
-        free = moving & (world.bodies.inverse_mass > 0.0)
-        self._unpressed = np.where(free, events.FLYING, np.where(moving, events.CARRIED, events.FIXED))
+        self._paths = np.zeros((rows, flight.FIELDS))
+        moving = state.table(Velocity).present & state.table(Transform).present
+        free = moving & (state.bodies.inverse_mass > 0.0)
+        self._unpressed = np.where(free, events.BALLISTIC, np.where(moving, events.KINEMATIC, events.FIXED))
         self._mode = self._unpressed.copy()
         self._face = np.zeros(len(self._pairs), np.int64)
         self._due = np.zeros((len(self._pairs), 5))
         self._struck_at = np.full((len(self._pairs), 2), np.nan)
-        self._bounds = np.array(world.physics.bounds or (0.0, 0.0, 0.0, 0.0))
-        gravity = world.physics.gravity
-        pulled = any(system.name == "GravitySystem" for system in world.schedule.running)
-        self._within = ("GravitySystem",) * pulled + ("ContactSystem", "ResolveSystem")
-        self._gravity = np.array((gravity.x, gravity.y) if pulled else (0.0, 0.0))
+        self._bounds = np.array(state.physics.bounds or (0.0, 0.0, 0.0, 0.0))
+        uniform = [force.uniform_acceleration(state) for force in schedule.forces]
+        self._gravity = np.array([(g.x, g.y) for g in uniform if g is not None] or [(0.0, 0.0)]).sum(axis=0)
+        looked_after = (*schedule.forces, schedule.find(ContactSystem), schedule.find(ResolveSystem))
+        self._within = [system.name for system in looked_after if system is not None]
 
-    def holds(self, world: World) -> bool:
-        """Whether the world may still be stepped so; values that anybody may change can forbid it."""
-        return not len(turning_boxes(world))
+    @classmethod
+    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
+        """Return why collisions are not located in time, or ``None``."""
+        return None if plan.collisions == "exact" else plan.collision_reason
 
-    def step(self, world: World, dt: float) -> None:
-        """Advance by one step, and let those look at its impacts who do."""
-        self._begin(world)
-        self._advance(world, dt, dt, 0.0)
-        self._point_to_impacts(world)
-        world.schedule.run_beside("ResolveSystem", Stage.IMPACT, world, dt)
+    def holds(self, state: State) -> bool:
+        """Whether the world may still be stepped so; values that may change at any time can forbid it."""
+        return not len(turning_boxes(state))
 
-    def run(self, world: World, dt: float, steps: int) -> None:
-        """Advance by so many steps, in one compiled loop while nothing rests."""
+    def ready(self, state: State, h: float) -> bool:
+        """Be ready for any step."""
+        return True
+
+    def advance(self, state: State, h: float, steps: int) -> Advance:
+        """Make all of the steps, in one compiled loop while nothing rests."""
+        parts = divisions(state, h)
+        if parts * steps > 1:
+            self._run(state, h / parts, parts * steps)
+        else:
+            self._step(state, h)
+        check_finite(state, state.time + h * steps)
+        return Advance(steps, parts)
+
+    def _step(self, state: State, dt: float) -> None:
+        """Make one step, and let those systems look at its impacts that do."""
+        self._begin(state)
+        self._begin_contact_step(state)
+        self._advance(state, dt, dt, 0.0)
+        self._point_to_impacts(state)
+        self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, dt)
+
+    def _run(self, state: State, dt: float, steps: int) -> None:
+        """Make so many steps."""
         done = 0
         while done < steps:
-            self._begin(world)
+            self._begin(state)
             gone = 0.0
-            if not (self._mode == events.RESTING).any():
-                gone, why = self._fly(world, dt * (steps - done), dt, done * dt)
+            if not (self._mode == events.IN_CONTACT).any():
+                gone, why = self._run_events(state, dt * (steps - done), dt, done * dt)
                 if why == events.DONE:
                     return
                 whole = min(int(gone / dt), steps - done - 1)
                 done, gone = done + whole, gone - whole * dt
-            # Whoever rests from here on is moved by the contact step, which goes by whole steps.
-            world.schedule.run(Stage.PREPARE, world, dt)
-            self._advance(world, dt - gone, dt, done * dt + gone)
+            # What rests from here on is moved by the contact step, which goes by whole steps.
+            self._begin_contact_step(state)
+            self._advance(state, dt - gone, dt, done * dt + gone)
             done += 1
 
-    def _begin(self, world: World) -> None:
+    def _begin_contact_step(self, state: State) -> None:
+        contact = self._schedule.find(ContactSystem)
+        if contact is not None:
+            contact.begin_step(state)
+
+    def _begin(self, state: State) -> None:
         """Find out what each row does, and forget the impacts of the step before."""
-        contacts = world.contacts
+        contacts = state.contacts
         if contacts.stale or not self._listed:
-            contacts.relist(world, self._pairs, len(self._pairs))
-            self._list_touching(world)
+            list_all(state, self._pairs, len(self._pairs))
+            self._list_touching(state)
             self._listed = True
         near = contacts.manifolds[: contacts.recorded]
-        if near["struck"].any():
-            near["struck"] = 0
+        if near["impact_count"].any():
+            near["impact_count"] = 0
             points = contacts.points[: 2 * contacts.recorded]
             for name in _FELT:
                 points[name] = 0.0
             self._struck_at[:] = np.nan
         self._mode[:] = self._unpressed
         if contacts.count:
-            self._mode[self._pressed(world) & (self._unpressed == events.FLYING)] = events.RESTING
+            self._mode[self._held_by_contacts(state) & (self._unpressed == events.BALLISTIC)] = (
+                events.IN_CONTACT
+            )
 
-    def _point_to_impacts(self, world: World) -> None:
+    def _point_to_impacts(self, state: State) -> None:
         """Let the arms of what was struck in flight lead from where B is now to where the impact was."""
         pairs = np.flatnonzero(np.isfinite(self._struck_at[:, 0]) & ~self._left_to_contacts())
         if len(pairs):
-            points = world.contacts.points
-            moved = self._struck_at[pairs] - world.table(Transform)["position"][self._pairs[pairs, 1]]
+            points = state.contacts.points
+            moved = self._struck_at[pairs] - state.table(Transform)["position"][self._pairs[pairs, 1]]
             for k in range(2):
                 points["arm_bx"][2 * pairs + k] += moved[:, 0]
                 points["arm_by"][2 * pairs + k] += moved[:, 1]
 
-    def _list_touching(self, world: World) -> None:
-        contacts = world.contacts
+    def _list_touching(self, state: State) -> None:
+        contacts = state.contacts
         touching = np.flatnonzero(contacts.manifolds["count"][: contacts.recorded] > 0)
         contacts.active = len(touching)
         contacts.touching[: len(touching)] = touching
 
-    def _pressed(self, world: World) -> NDArray[np.bool_]:
+    def _held_by_contacts(self, state: State) -> NDArray[np.bool_]:
         """Return which rows the contact step has left with a contact that holds them."""
-        contacts = world.contacts
+        contacts = state.contacts
         near = contacts.manifolds[: contacts.recorded]
         points = contacts.points[: 2 * contacts.recorded].reshape(-1, 2)
         in_use = np.arange(2) < near["count"][:, None]
@@ -144,128 +179,138 @@ class Flights:
 
     # ---- parts of a step -----------------------------------------------------------------------------------
 
-    def _advance(self, world: World, span: float, dt: float, offset: float) -> None:
+    def _advance(self, state: State, span: float, dt: float, offset: float) -> None:
         """Advance by a step, or by what is left of it."""
         left, parts = span, 0
         while left > 0.0:
             parts += 1
-            if parts > _MOST_PARTS:
-                self._mode[self._mode == events.FLYING] = events.RESTING
-            if (self._mode == events.RESTING).any():
-                elapsed = self._both(world, left, dt, offset + (span - left))
+            if parts > _MAX_PARTS:
+                self._mode[self._mode == events.BALLISTIC] = events.IN_CONTACT
+            if (self._mode == events.IN_CONTACT).any():
+                elapsed = self._both(state, left, dt, offset + (span - left))
             else:
-                elapsed, why = self._fly(world, left, dt, offset + (span - left))
-                if why == events.CROWDED:
-                    self._mode[self._mode == events.FLYING] = events.RESTING
+                elapsed, why = self._run_events(state, left, dt, offset + (span - left))
+                if why == events.TOO_MANY_IMPACTS:
+                    self._mode[self._mode == events.BALLISTIC] = events.IN_CONTACT
             left = left - elapsed if elapsed < left else 0.0
 
-    def _both(self, world: World, span: float, dt: float, offset: float) -> float:
+    def _both(self, state: State, span: float, dt: float, offset: float) -> float:
         """Let some bodies rest and the others fly until the flights break off; return the time gone by."""
-        resting = self._mode == events.RESTING
+        in_contact = self._mode == events.IN_CONTACT
         pairs = np.flatnonzero(self._left_to_contacts())
-        before, kept, collisions = _state(world), _contacts(world, pairs), world.collisions
-        after = self._rest(world, pairs, span, dt)
+        before, kept = _copied(state), _contacts(state, pairs)
+        collisions, logged = state.collisions, state.contacts.logged
+        after = self._rest(state, pairs, state.time + offset, span, dt)
         elapsed = span
-        if (self._mode == events.FLYING).any():
+        if (self._mode == events.BALLISTIC).any():
             # To those that fly, what rests moves as it will: from where, how fast and to where is known.
             way = after[0] - before[0] - span * before[2]
-            self._flights[:, _PULL] = self._gravity
-            self._flights[resting, _PULL] = 2.0 * way[resting] / (span * span) if span > _SHORT * dt else 0.0
-            struck = world.collisions - collisions
-            _restore(world, before)
-            elapsed, _ = self._fly(world, span, dt, offset)
-            flown = _state(world)
+            self._paths[:, _PULL] = self._gravity
+            self._paths[in_contact, _PULL] = (
+                2.0 * way[in_contact] / (span * span) if span > _SHORT * dt else 0.0
+            )
+            impact_count = state.collisions - collisions
+            _restore(state, before)
+            elapsed, _ = self._run_events(state, span, dt, offset)
+            advanced = _copied(state)
             if elapsed < span:
-                world.collisions -= struck
-                _restore(world, before)
-                _restore_contacts(world, pairs, kept)
-                after = self._rest(world, pairs, elapsed, dt)
-            for whole, part in zip(flown, after, strict=True):
-                whole[resting] = part[resting]
-            _restore(world, flown)
+                state.collisions -= impact_count
+                state.contacts.forget_impacts(logged, impact_count)
+                _restore(state, before)
+                _restore_contacts(state, pairs, kept)
+                after = self._rest(state, pairs, state.time + offset, elapsed, dt)
+            for whole, part in zip(advanced, after, strict=True):
+                whole[in_contact] = part[in_contact]
+            _restore(state, advanced)
         if elapsed > _SHORT * dt:
-            self._mode[resting & (self._mode == events.RESTING) & ~self._pressed(world)] = events.FLYING
+            self._mode[in_contact & (self._mode == events.IN_CONTACT) & ~self._held_by_contacts(state)] = (
+                events.BALLISTIC
+            )
         return elapsed
 
     def _left_to_contacts(self) -> NDArray[np.bool_]:
         """Return of which pairs the contact step takes care: one rests, and the other does not fly."""
         one, other = self._mode[self._pairs[:, 0]], self._mode[self._pairs[:, 1]]
-        resting = (one == events.RESTING) | (other == events.RESTING)
-        left: NDArray[np.bool_] = resting & (one != events.FLYING) & (other != events.FLYING)
+        in_contact = (one == events.IN_CONTACT) | (other == events.IN_CONTACT)
+        left: NDArray[np.bool_] = in_contact & (one != events.BALLISTIC) & (other != events.BALLISTIC)
         return left
 
-    def _rest(self, world: World, pairs: NDArray[np.int64], span: float, dt: float) -> _State:
-        """Let the contact step move everything for ``span`` s, minding these contacts; return where to."""
+    def _rest(self, state: State, pairs: NDArray[np.int64], began: float, span: float, dt: float) -> _State:
+        """Let the contact step move everything for ``span`` s, with these contacts alone; return where to."""
         if span <= _SHORT * dt:
-            return _state(world)
-        contacts = world.contacts
+            return _copied(state)
+        contacts = state.contacts
         near = contacts.manifolds[: contacts.recorded]
         points = contacts.points[: 2 * contacts.recorded]
         others = np.ones(len(near), np.bool_)
         others[pairs] = False
         near["count"][others] = -1  # the contact step passes over them
-        struck, felt = near["struck"].copy(), [points[name].copy() for name in _FELT]
-        substeps, run = world.simulation.substeps, world.schedule.run
-        for _ in range(substeps):
-            for stage, share in world.method.stages.substep:
+        impact_count, felt = near["impact_count"].copy(), [points[name].copy() for name in _FELT]
+        substeps, run = state.simulation.substeps, self._schedule.run
+        state.compile(self._schedule.kernels(state))
+        for substep in range(substeps):
+            state.moment = began + (substep + 0.5) * span / substeps
+            for stage, share in self._stages:
                 if stage is not Stage.BROAD_PHASE:
-                    run(stage, world, share * span / substeps)
+                    run(stage, state, share * span / substeps)
         near["count"][others] = 0
         # The step's first look at contacts has begun a new record; what they felt in flight belongs to it.
-        new = struck > near["struck"]
-        near["struck"][new] += struck[new]
+        new = impact_count > near["impact_count"]
+        near["impact_count"][new] += impact_count[new]
         both = np.repeat(new, 2)
         for name, before in zip(_FELT, felt, strict=True):
             joined = np.maximum if name == "approach_speed" else np.add
             points[name][both] = joined(points[name][both], before[both])
-        return _state(world)
+        return _copied(state)
 
-    def _fly(self, world: World, span: float, dt: float, offset: float) -> tuple[float, int]:
+    def _run_events(self, state: State, span: float, dt: float, offset: float) -> tuple[float, int]:
         """Let bodies fly for ``span`` s, or until one comes to rest or is woken; return how long, and why."""
         began = time.perf_counter_ns()
-        contacts, bodies, physics = world.contacts, world.bodies, world.physics
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        shape, material = world.table(Shape), world.table(Material)
-        flying = self._mode == events.FLYING
-        self._flights[:, _PULL] = np.where(
-            (self._mode == events.RESTING)[:, None], self._flights[:, _PULL], flying[:, None] * self._gravity
+        contacts, bodies, physics = state.contacts, state.bodies, state.physics
+        transform, velocity = state.table(Transform), state.table(Velocity)
+        shape, material = state.table(Shape), state.table(Material)
+        ballistic = self._mode == events.BALLISTIC
+        self._paths[:, _PULL] = np.where(
+            (self._mode == events.IN_CONTACT)[:, None],
+            self._paths[:, _PULL],
+            ballistic[:, None] * self._gravity,
         )
-        elapsed, impacts, why, pair = events.fly(
+        elapsed, impacts, why, pair = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,
-            self._flights, self._mode, self._face, self._due, self._struck_at,
+            self._paths, self._mode, self._face, self._due, self._struck_at,
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
             shape["kind"], shape["radius"], shape["width"], shape["height"],
             material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
             self._bounds, physics.bounds_restitution, physics.bounds_friction,
-            contacts.log, contacts.logged, world.time + offset, span, dt, self._urgent,
+            contacts.log, contacts.logged, state.time + offset, span, dt, self._urgent,
         )  # fmt: skip
-        # Who is woken is struck before anything else happens to it, or it would lie down again at once.
+        # What is woken has its impact before anything else, or it would come to rest again at once.
         self._urgent = pair if why == events.WOKEN else -1
         contacts.logged += impacts
-        world.collisions += impacts
-        world.schedule.note("IntegrateSystem", 1, time.perf_counter_ns() - began)
+        state.collisions += impacts
+        self._schedule.note(IntegrateSystem.__name__, 1, time.perf_counter_ns() - began)
         for name in self._within:
-            world.schedule.note(name, 1, 0)  # their time is within the loop's
+            self._schedule.note(name, 1, 0)  # their time is within the loop's
         return elapsed, why
 
 
-def _state(world: World) -> _State:
+def _copied(state: State) -> _State:
     """Return a copy of all places and velocities."""
-    return [world.table(component)[name].copy() for component, name in _COLUMNS]
+    return [state.table(component)[name].copy() for component, name in _COLUMNS]
 
 
-def _restore(world: World, state: _State) -> None:
-    for (component, name), column in zip(_COLUMNS, state, strict=True):
-        world.table(component)[name][:] = column
+def _restore(state: State, kept: _State) -> None:
+    for (component, name), column in zip(_COLUMNS, kept, strict=True):
+        state.table(component)[name][:] = column
 
 
-def _contacts(world: World, pairs: NDArray[np.int64]) -> tuple[NDArray[Any], NDArray[Any]]:
+def _contacts(state: State, pairs: NDArray[np.int64]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return a copy of the contacts of some pairs."""
-    return world.contacts.manifolds[pairs], world.contacts.points.reshape(-1, 2)[pairs]
+    return state.contacts.manifolds[pairs], state.contacts.points.reshape(-1, 2)[pairs]
 
 
 def _restore_contacts(
-    world: World, pairs: NDArray[np.int64], kept: tuple[NDArray[Any], NDArray[Any]]
+    state: State, pairs: NDArray[np.int64], kept: tuple[NDArray[Any], NDArray[Any]]
 ) -> None:
-    world.contacts.manifolds[pairs] = kept[0]
-    world.contacts.points.reshape(-1, 2)[pairs] = kept[1]
+    state.contacts.manifolds[pairs] = kept[0]
+    state.contacts.points.reshape(-1, 2)[pairs] = kept[1]

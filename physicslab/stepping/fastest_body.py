@@ -2,45 +2,39 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 import numpy as np
 
 from physicslab.components import Velocity
-from physicslab.systems.schedule import ForceSystem, Stage
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.state.state import State
+from physicslab.systems.system import ForceSystem, Stage
 
 __all__ = ["fastest_body"]
 
 
 @np.errstate(all="ignore")
-def fastest_body(world: World) -> int:
-    """Return the entity whose speed, with what the forces add to it in a step, is largest or not finite.
+def fastest_body(state: State, forces: Iterable[ForceSystem]) -> str:
+    """Return the label of the body whose speed, with what forces add in a step, is largest or not finite.
 
-    Forces are added up at the present state, for which the world's context must be active; nothing that moves
-    is changed. Row 0, which is the world itself, is never meant.
+    ``bodies.force`` and ``.torque`` hold the forces at the present state afterwards; nothing that moves is
+    changed. Row 0, which is the world itself, is never meant.
 
     Parameters
     ----------
-    world : World
-        In which something has a Velocity.
-
-    Returns
-    -------
-    int
-        An entity; 0 if nothing moves.
+    state : State
+        In which something has a Velocity; its context is active.
+    forces : iterable of ForceSystem
+        Those that act.
     """
-    bodies, velocity = world.bodies, world.table(Velocity)
-    evaluations = world.force_evaluations
-    for system in (bodies, *world.schedule.running):
-        if system is bodies or isinstance(system, ForceSystem):
-            getattr(system, system.marked()[Stage.FORCE])(world, 0.0)
-    world.force_evaluations = evaluations  # looking at them is no work of the method
-    gained = np.hypot(bodies.force[:, 0], bodies.force[:, 1]) * bodies.inverse_mass * world.simulation.dt
+    bodies, velocity = state.bodies, state.table(Velocity)
+    bodies.force[:] = 0.0
+    bodies.torque[:] = 0.0
+    for force in forces:
+        state.compile(force.kernels_for(state))
+        getattr(force, force.marked()[Stage.FORCE])(state, 0.0)
+    gained = np.hypot(bodies.force[:, 0], bodies.force[:, 1]) * bodies.inverse_mass * state.simulation.dt
     speeds = np.hypot(velocity["linear"][:, 0], velocity["linear"][:, 1]) + gained
     speeds = np.where(np.isfinite(speeds), speeds, np.inf)
     speeds[~velocity.present] = -1.0
-    row = int(np.argmax(speeds))
-    return int(world.roster.entities[row]) if velocity.present[row] else 0
+    return state.label_of_row(int(np.argmax(speeds)))

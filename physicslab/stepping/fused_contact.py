@@ -1,222 +1,216 @@
-"""Runs of whole steps in one compiled call, for worlds whose bodies touch and which nobody looks at."""
+"""The contact step of whole steps in one compiled call, for scenes in which nothing looks at substeps."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from physicslab.components import Mass, Material, Shape, Transform, Velocity
-from physicslab.integrators.leapfrog import LEAPFROG
-from physicslab.kernels.solver import contact_steps
-from physicslab.kernels.solver.contact_steps import (
-    BEGIN,
-    CROWDED,
-    DIVERGED,
-    DROWSY,
-    FIND,
-    STIRRED,
-    STRIKE,
-    SYSTEMS,
-    UNLISTED,
+from physicslab.components import Mass
+from physicslab.contacts.arguments import (
+    acting_in,
+    bounds_of,
+    inverse_in,
+    materials_of,
+    motion_of,
+    near_in,
+    sizes_of,
+    speculative_margin,
 )
-from physicslab.systems.schedule import Stage
+from physicslab.contacts.islands import all_asleep, keep_places
+from physicslab.contacts.wide import refill
+from physicslab.ecs.vector import Vector2
+from physicslab.integrators.leapfrog import LEAPFROG
+from physicslab.kernels.broad import grid, near_pairs
+from physicslab.kernels.solver import fused_contact as fused
+from physicslab.kernels.solver.arguments import Motion
+from physicslab.kernels.wide import slots
+from physicslab.state.masses import check_finite
+from physicslab.state.state import State
+from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.stepper import Advance, divisions
+from physicslab.systems.accelerate import AccelerateSystem
+from physicslab.systems.broad_phase import BroadPhaseSystem
+from physicslab.systems.contact import ContactSystem
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.resolve import ResolveSystem
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.sleep import SleepSystem
+from physicslab.systems.system import ForceSystem, System
 
-if TYPE_CHECKING:
-    from physicslab.stepping.checkpoint import Checkpoint
-    from physicslab.systems.broad_phase import BroadPhaseSystem
-    from physicslab.systems.contact import ContactSystem
-    from physicslab.systems.resolve import ResolveSystem
-    from physicslab.systems.sleep import SleepSystem
-    from physicslab.world import World
+__all__ = ["FusedContact"]
 
-__all__ = ["COMPILED", "OF_FRAMES", "CompiledSteps", "why_not_compiled"]
-
-COMPILED = {
-    "Bodies": "physicslab.state.bodies",
-    "GravitySystem": "physicslab.systems.gravity",
-    "IntegrateSystem": "physicslab.systems.integrate",
-    "BroadPhaseSystem": "physicslab.systems.broad_phase",
-    "ContactSystem": "physicslab.systems.contact",
-    "SleepSystem": "physicslab.systems.sleep",
-    "ResolveSystem": "physicslab.systems.resolve",
-}
-"""Whose work the loop does, and in which modules those are: a class of that name may be somebody's own."""
-_NEEDED = ("Bodies", "IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem")
-OF_FRAMES = {Stage.INPUT, Stage.RENDER, Stage.HUD}
-"""The stages that belong to frames, and not to steps."""
-_MOST = 4096
-"""So many steps, at the most, are one call: whoever wants to stop a run waits for it."""
-_PLAN = [stage for stage, _ in LEAPFROG.substep]
-
-
-def why_not_compiled(world: World) -> str | None:
-    """Return why steps of this world cannot be made in a compiled loop, or ``None``."""
-    running = {system.name: system for system in world.schedule.running}
-    for name in _NEEDED:
-        if name not in running:
-            return f"{name} is not among the systems"
-    if world.method.collisions != "step":
-        return "collisions are not found within steps"
-    if world.method.stages is not LEAPFROG or world.tethers is not None:
-        return f"bodies are not moved by {LEAPFROG.name} alone"
-    if world.physics.gravity_mode == "planet" and "GravitySystem" in running:
-        return "planets attract each other"
-    for name, system in running.items():
-        if type(system).__module__ != COMPILED.get(name) and not set(type(system).marked()) <= OF_FRAMES:
-            return f"{name} acts or looks at every step"
-    return None
+_NEEDED = (AccelerateSystem, IntegrateSystem, BroadPhaseSystem, ContactSystem, ResolveSystem)
+_MAX_STEPS = 4096
+"""So many steps are one call: a run that is to stop waits for it."""
+_SUBSTEP = [stage for stage, _ in LEAPFROG.substep]
 
 
-class CompiledSteps:
-    """Makes steps of one world in a compiled loop, until its structure changes; the bits are those of steps.
+class FusedContact:
+    """Makes steps in a compiled loop, with the bits of the contact step.
 
-    The loop comes back where Python is needed: to list the near pairs anew, to make the first blocks or room
-    for more, to wake who is touched, to let fall asleep who has rested, to report a divergence.
-
-    Parameters
-    ----------
-    world : World
-        One of which :func:`why_not_compiled` says nothing.
+    The loop comes back where Python is needed: to list the near pairs, to make the first blocks or room for
+    more, to wake what is touched, to let fall asleep what has rested, to report a divergence.
     """
 
-    kernels = (contact_steps.advance,)
+    name: ClassVar[str] = "fused_contact"
+    leaps: ClassVar[bool] = False
+    leaves_forces: ClassVar[bool] = True
+    kernels: tuple[Any, ...] = (
+        fused.advance, grid.fat_boxes, grid.find_pairs, near_pairs.partition, near_pairs.carry_over,
+        near_pairs.sort_scalar, slots.list_scalar,
+    )  # fmt: skip
 
-    def __init__(self, world: World) -> None:
-        running = {system.name: system for system in world.schedule.running}
-        self._broad_phase = cast("BroadPhaseSystem", running["BroadPhaseSystem"])
-        self._contact = cast("ContactSystem", running["ContactSystem"])
-        self._resolve = cast("ResolveSystem", running["ResolveSystem"])
-        self._sleep = cast("SleepSystem | None", running.get("SleepSystem"))
-        self._cost = np.zeros(len(SYSTEMS), np.int64)
-        self._calls: list[tuple[int, str, int, int]] = []
-        for place, name in enumerate(SYSTEMS):
-            if name in running:
-                marked = type(running[name]).marked()
-                once = len({Stage.PREPARE, Stage.FINISH} & marked.keys())
-                self._calls.append((place, name, once, sum(stage in marked for stage in _PLAN)))
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        shape, material = world.table(Shape), world.table(Material)
-        self._columns = (
-            (transform["position"], transform["angle"], velocity["linear"], velocity["angular"]),
-            (shape["kind"], shape["radius"], shape["width"], shape["height"]),
-            (material["restitution"], material["friction"]),
-        )
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
+        self._schedule = schedule
+        self._systems: list[System | None] = [None] * fused.COSTS
+        self._calls = [0] * fused.COSTS
+        for system in schedule.running:
+            place = _place(system) if system.is_engine else None
+            if place is not None:
+                self._systems[place] = system
+                self._calls[place] = sum(stage in type(system).marked() for stage in _SUBSTEP)
+        self._broad_phase = _found(schedule, BroadPhaseSystem)
+        self._contact = _found(schedule, ContactSystem)
+        self._resolve = _found(schedule, ResolveSystem)
+        self._sleep = schedule.find(SleepSystem)
+        uniform = [force.uniform_acceleration(state) for force in schedule.forces]
+        self._gravity = sum((g for g in uniform if g is not None), start=Vector2(0.0, 0.0))
+        self._cost = np.zeros(fused.COSTS, np.int64)
+        self.reason = "bodies can touch, and nothing looks at substeps"
 
-    def ready(self, world: World) -> bool:
-        """Whether the coming step can be made so, as things stand."""
-        contacts = world.contacts
-        heavy = world.bodies.unequal and world.has_forces
-        if heavy or contacts.stale:
-            return False
-        return not (world.sleep.unseen or world.sleep.everything(world))
+    @classmethod
+    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
+        """Return why steps of this world cannot be made in a compiled loop, or ``None``."""
+        for needed in _NEEDED:
+            found = schedule.find(needed)
+            if found is None or not found.is_engine:
+                return f"the engine's {needed.__name__} is not among the systems"
+        if plan.collisions != "step":
+            return "collisions are not found within steps"
+        if plan.stages is not LEAPFROG or plan.split_forces is not None:
+            return f"bodies are not moved by {LEAPFROG.name} alone"
+        for force in schedule.forces:
+            if not force.is_engine or force.uniform_acceleration(state) is None:
+                return f"the force of {force.name} is no uniform acceleration"
+        for system in schedule.running:
+            if not system.is_engine and system.acts_within_step():
+                return f"{system.name} acts within the step"
+        return None
 
-    def run(self, world: World, steps: int, before: Checkpoint) -> int:
-        """Make ``steps`` steps or fewer, at least one, and return how many; the clock goes with them.
+    def holds(self, state: State) -> bool:
+        """Nothing that it is made from can change without a change of structure or laws."""
+        return True
 
-        ``before`` keeps the state in which the last of them began.
+    def ready(self, state: State, h: float) -> bool:
+        """Whether no body carries a far heavier one, and the coming step is not divided."""
+        heavy = state.bodies.unequal and state.has_forces
+        return not (heavy or state.sleep.unverified or divisions(state, h) > 1)
 
-        Raises
-        ------
-        Diverged
-            If a value is not finite; all steps before that one are made and counted.
-        """
-        h = world.simulation.dt / world.simulation.substeps
-        contacts = world.contacts
-        contacts.in_order(len(world.roster))
-        contacts.refill(world)
-        self._contact.begin(world, h)
-        made, substep, stage, steps = 0, 0, BEGIN, min(steps, _MOST)
-        while made < steps:
-            why, done, substep = self._advance(world, before, steps - made, substep, stage, h)
-            made += done
-            if why == DIVERGED:
-                world.bodies.check_finite(world, world.simulation.dt)
-            elif why == UNLISTED:
-                self._timed("BroadPhaseSystem", self._broad_phase.search, world, h)
-                stage = FIND
-            elif why == CROWDED:
-                self._contact.begin(world, h)  # another step than the one before may have begun
-                self._timed("ContactSystem", self._contact.settle, world, h)
-                self._rouse(world, h)
-                stage = STRIKE
-            elif why == STIRRED:
-                self._rouse(world, h)
-                stage = STRIKE
-            elif why == DROWSY and self._sleep is not None:
-                self._timed("SleepSystem", self._sleep.lull, world, world.simulation.dt)
-                stage = BEGIN
-                if world.sleep.everything(world):
-                    break
-        world.sleep.keep(world)
-        return made
-
-    def _rouse(self, world: World, h: float) -> None:
-        """Wake whom something touches."""
-        if self._sleep is not None:
-            self._timed("SleepSystem", self._sleep.rouse, world, h)
+    def advance(self, state: State, h: float, steps: int) -> Advance:
+        """Make ``steps`` steps or fewer; where one fails, those before it are counted."""
+        state.substeps, state.contacts.substep_factor = state.simulation.substeps, 1
+        span = h / state.substeps
+        refill(state)
+        self._broad_phase.follow_rows(state)
+        self._contact.begin_step(state)
+        made, substep, stage, steps = 0, 0, fused.BEGIN, min(steps, _MAX_STEPS)
+        try:
+            while made < steps:
+                why, done, substep = self._advance(state, made, steps - made, substep, stage, h)
+                made += done
+                if why == fused.DIVERGED:
+                    check_finite(state, state.time + (made + 1) * h)
+                elif why == fused.PAIRS_STALE:
+                    self._timed(self._broad_phase, self._broad_phase.list_pairs, state, span)
+                    stage = fused.FIND
+                elif why in (fused.BLOCKS_FULL, fused.WAKE_PENDING):
+                    if why == fused.BLOCKS_FULL:
+                        self._timed(self._contact, self._contact.make_wide, state, span)
+                    if self._sleep is not None:
+                        self._timed(self._sleep, self._sleep.wake_touched_islands, state, span)
+                    stage = fused.IMPACTS
+                elif why == fused.SLEEP_PENDING and self._sleep is not None:
+                    state.checkpoint.take(motion_of(state), state.counts)
+                    self._timed(self._sleep, self._sleep.put_islands_to_sleep, state, h)
+                    stage = fused.BEGIN
+                    if all_asleep(state):
+                        break
+        except BaseException:
+            state.time, state.steps = state.time + made * h, state.steps + made
+            raise
+        keep_places(state)
+        return Advance(made)
 
     def _advance(
-        self, world: World, before: Checkpoint, steps: int, substep: int, stage: int, h: float
+        self, state: State, made: int, steps: int, substep: int, stage: int, h: float
     ) -> tuple[int, int, int]:
         """Let the loop go as far as it gets; return why it came back, after how many steps, and where."""
         began = time.perf_counter_ns()
-        contacts, substeps = world.contacts, world.simulation.substeps
+        contacts, substeps = state.contacts, state.substeps
         self._cost[:] = 0
-        counts = contacts.counted()
-        why, done, substep, struck_before, struck, contacts.span = contact_steps.advance(
-            steps, substeps, substep, stage, h, *self._numbers(world, before, h, counts)
+        plan = fused.Plan(substeps, state.simulation.iterations or 1, h / substeps, h, state.time + made * h)
+        why, done, substep, struck_before, struck, contacts.impulse_dt = fused.advance(
+            steps, substep, stage, plan, *self._arguments(state, h / substeps)
         )
-        contacts.recount(counts)
         contacts.changed()
-        world.steps += done
-        world.time += done * world.simulation.dt
-        world.collisions += struck_before
+        state.collisions += struck_before
         if done:
-            world.force_evaluations += done * substeps * world.has_forces
-            before.count(world)
-        world.collisions += struck - struck_before
-        self._note(world, done, time.perf_counter_ns() - began)
+            state.force_evaluations += done * substeps * state.has_forces
+            state.checkpoint.counts = state.counts
+        state.collisions += struck - struck_before
+        self._note(state, done, time.perf_counter_ns() - began)
         return why, done, substep
 
-    def _numbers(
-        self, world: World, before: Checkpoint, h: float, counts: NDArray[np.int64]
-    ) -> tuple[Any, ...]:
+    def _arguments(self, state: State, h: float) -> tuple[Any, ...]:
         """Return what the loop works on."""
-        (state, sizes, materials), bodies = self._columns, world.bodies
-        contacts, physics, resolve, sleep = world.contacts, world.physics, self._resolve, world.sleep
+        bodies, contacts, physics, sleep = state.bodies, state.contacts, state.physics, state.sleep
+        margin = speculative_margin(state, h)
         return (
-            world.simulation.iterations or 1,
-            state, before.columns, sizes, materials,
-            (bodies.awake_inverse_mass, bodies.awake_inverse_inertia), bodies.tethered,
-            (bodies.force, bodies.torque, world.table(Mass)["mass"], world.has_forces, *physics.gravity),
-            (
-                self._sleep is not None, sleep.count, world.simulation.dt, bodies.inverse_mass,
-                sleep.asleep, sleep.rest, sleep.slowest, np.zeros_like(sleep.asleep),
-                contacts.quiet, contacts.resting,
+            motion_of(state), Motion(*state.checkpoint.columns), sizes_of(state), materials_of(state),
+            inverse_in(state), bodies.sub_integrated, acting_in(state),
+            fused.Gravity(state.table(Mass)["mass"], bodies.inverse_mass, *self._gravity, margin),
+            fused.Sleepers(
+                self._sleep is not None, sleep.count, sleep.asleep, sleep.rest, sleep.slowest,
+                np.zeros_like(sleep.asleep), contacts.inactive, contacts.sleeping,
             ),
-            (physics.linear_damping, physics.angular_damping), self._contact.fall(world, h),
-            self._broad_phase.fat,
-            (self._broad_phase.bounds, physics.bounds_restitution, physics.bounds_friction),
-            (contacts.idle, contacts.reach, world.roster.entities),
-            (contacts.manifolds, contacts.points, contacts.loose, contacts.touching),
-            counts, contacts.blocks.discs.seats, contacts.blocks.boxes.seats, contacts.opened,
-            (resolve.hertz, resolve.damping_ratio, resolve.slop, resolve.max_push), contacts.span, self._cost,
+            (physics.linear_damping, physics.angular_damping), self._broad_phase.fat, bounds_of(state),
+            near_in(state), contacts.opened, self._resolve.softness(1.0), contacts.impulse_dt, contacts.log,
+            self._cost,
         )  # fmt: skip
 
-    def _note(self, world: World, steps: int, nanoseconds: int) -> None:
-        """Note as many calls as stepping would make; the time is shared out by the loop's own clock."""
+    def _note(self, state: State, steps: int, nanoseconds: int) -> None:
+        """Note as many calls as the stages would make; the time is shared out by the loop's own clock."""
         costs: list[int] = self._cost.tolist()
-        whole = max(1, sum(costs))
-        for place, name, once, within in self._calls:
-            calls = once + world.simulation.substeps * within
-            world.schedule.note(name, steps * calls, nanoseconds * costs[place] // whole)
+        total = max(1, sum(costs))
+        for system, calls, cost in zip(self._systems, self._calls, costs, strict=True):
+            if system is not None:
+                self._schedule.note(
+                    system.name, steps * (calls * state.substeps + isinstance(system, SleepSystem)),
+                    nanoseconds * cost // total,
+                )  # fmt: skip
 
-    def _timed(self, name: str, call: Callable[[World, float], None], world: World, h: float) -> None:
+    def _timed(self, system: System, call: Callable[[State, float], None], state: State, h: float) -> None:
         """Call a system's method, whose call is counted with the step, and note what it cost."""
-        began = time.perf_counter_ns()
-        call(world, h)
-        world.schedule.note(name, 0, time.perf_counter_ns() - began)
+        began, compiling = time.perf_counter_ns(), state.compile_s
+        call(state, h)
+        waited = int(1e9 * (state.compile_s - compiling))
+        self._schedule.note(system.name, 0, time.perf_counter_ns() - began - waited)
+
+
+def _place(system: System) -> int | None:
+    """Return where the loop keeps the cost of a system's work."""
+    places: dict[type[System], int] = {
+        AccelerateSystem: fused.ACCELERATE, IntegrateSystem: fused.INTEGRATE,
+        BroadPhaseSystem: fused.BROAD_PHASE, ContactSystem: fused.CONTACT, ResolveSystem: fused.RESOLVE,
+        SleepSystem: fused.SLEEP,
+    }  # fmt: skip
+    return fused.GRAVITY if isinstance(system, ForceSystem) else places.get(type(system))
+
+
+def _found[S: System](schedule: Schedule, kind: type[S]) -> S:
+    found = schedule.find(kind)
+    assert found is not None  # else why_not would have said so
+    return found

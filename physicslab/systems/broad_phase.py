@@ -2,43 +2,41 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
+from physicslab.contacts.arguments import motion_of, sizes_of
+from physicslab.contacts.near_pairs import partition
 from physicslab.kernels.broad import grid, near_pairs
 from physicslab.kernels.wide import slots
-from physicslab.systems.schedule import Stage, System, at
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.state.state import State
+from physicslab.systems.system import Stage, System, at
 
 __all__ = ["BroadPhaseSystem"]
 
-_FARTHEST = 8.0
-"""So many times as far as usual, at the most, a body that moves looks ahead."""
+_MAX_LOOKAHEAD = 8.0
+"""At most so many times as far as usual the margin of a moving body reaches."""
 
 
-def nothing_to_touch(world: World) -> str | None:
+def nothing_to_touch(state: State) -> str | None:
     """Return why no two things in this world can ever meet, or ``None`` if they can."""
-    shapes, moving = len(world.batch(Shape, Transform)), len(world.batch(Shape, Transform, Velocity))
+    shapes, moving = len(state.batch(Shape, Transform)), len(state.batch(Shape, Transform, Velocity))
     if not shapes:
         return "no Shape in the scene"
     if not moving:
         return "nothing that has a Shape moves"
-    if shapes == 1 and world.physics.bounds is None:
+    if shapes == 1 and state.physics.bounds is None:
         return "only one Shape in the scene, and no bounds"
     return None
 
 
-def _foresight(sleepers: int, awake: int) -> float:
-    """Return how many times as far as usual those look ahead who are awake.
+def _lookahead(sleepers: int, awake: int) -> float:
+    """Return how many times as far as usual the margins of awake bodies reach.
 
-    Among many sleepers a new list costs more than the pairs that a few of them have too many in an old one.
+    Among many sleepers a new list costs more than the pairs that an old one has too many.
     """
-    return min(max(1.0, sleepers / max(1, awake)), _FARTHEST)
+    return min(max(1.0, sleepers / max(1, awake)), _MAX_LOOKAHEAD)
 
 
 class BroadPhaseSystem(System):
@@ -54,9 +52,10 @@ class BroadPhaseSystem(System):
         Of the world: xmin, ymin, xmax, ymax [m].
     """
 
+    engine = True
     kernels = (
         grid.still_holds, grid.fat_boxes, grid.find_pairs,
-        near_pairs.part, near_pairs.carry_over, near_pairs.sort_loose, slots.list_loose,
+        near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
     )  # fmt: skip
 
     def __init__(self) -> None:
@@ -66,37 +65,47 @@ class BroadPhaseSystem(System):
         self._pairs: NDArray[np.int64] = np.zeros((512, 3), np.int64)
         self.bounds: NDArray[np.float64] = np.zeros(4)
 
-    def attach(self, world: World) -> None:
+    def attach(self, state: State) -> None:
         """Find the pairs anew: bodies came, went or changed."""
-        world.contacts.stale = True
-        if world.physics.bounds is not None:
-            self.bounds[:] = world.physics.bounds
+        state.contacts.stale = True
+        if state.physics.bounds is not None:
+            self.bounds[:] = state.physics.bounds
 
-    def why_left_out(self, world: World) -> str | None:
+    def why_left_out(self, state: State) -> str | None:
         """Needed where two things could ever meet."""
-        reason = nothing_to_touch(world)
+        reason = nothing_to_touch(state)
         if reason is not None:
-            world.contacts.clear()
+            state.contacts.clear()
         return reason
 
+    def follow_rows(self, state: State) -> None:
+        """Have room for every row; where the list is stale, let no fat box hold."""
+        rows = len(state.entity_index)
+        if self.fat.shape[1] != rows:
+            self.fat, self._boxes = np.zeros((5, rows)), np.zeros((rows, 4))
+            state.contacts.stale = True
+        if state.contacts.stale:
+            self.fat[3] = np.nan
+
     @at(Stage.BROAD_PHASE)
-    def search(self, world: World, h: float) -> None:
+    def search(self, state: State, h: float) -> None:
         """Bring the list of near pairs up to date, where it no longer holds."""
-        transform, shape = world.table(Transform), world.table(Shape)
-        position, angle, linear = transform["position"], transform["angle"], world.table(Velocity)["linear"]
-        sizes = shape["kind"], shape["radius"], shape["width"], shape["height"]
-        if self.fat.shape[1] != len(angle):
-            self.fat, self._boxes = np.zeros((5, len(angle))), np.zeros((len(angle), 4))
-            world.contacts.stale = True
-        if not world.contacts.stale and grid.still_holds(position, angle, linear, *sizes, self.fat, h):
-            return
-        awake = world.bodies.awake_inverse_mass
-        ahead = h * _foresight(world.sleep.count, int(np.count_nonzero(awake)))
+        self.follow_rows(state)
+        motion = motion_of(state)
+        if not grid.still_holds(motion.position, motion.angle, motion.linear, *sizes_of(state), self.fat, h):
+            self.list_pairs(state, h)
+
+    def list_pairs(self, state: State, h: float) -> None:
+        """List the near pairs again, with margins for the time to come."""
+        (position, angle, linear, _), sizes = motion_of(state), sizes_of(state)
+        shape = state.table(Shape)
+        awake = state.bodies.awake_inverse_mass
+        ahead = h * _lookahead(state.sleep.count, int(np.count_nonzero(awake)))
         grid.fat_boxes(position, angle, linear, *sizes, awake, self.fat, self._boxes, ahead)
-        inverse_mass = world.bodies.inverse_mass
-        bounded = world.physics.bounds is not None
+        inverse_mass = state.bodies.inverse_mass
+        bounded = state.physics.bounds is not None
         found, walls = self._count_pairs(shape["kind"], inverse_mass, bounded)
-        world.contacts.part(world, self._couples, found, self._pairs, walls)
+        partition(state, self._couples, found, self._pairs, walls)
 
     def _count_pairs(
         self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-import numpy as np
-from numpy.typing import NDArray
-
-from physicslab.components import Material, Shape, Transform, Velocity
-from physicslab.kernels.broad import near_pairs
+from physicslab.contacts.arguments import (
+    bounds_of,
+    inverse_in,
+    materials_of,
+    motion_of,
+    near_in,
+    sizes_of,
+    speculative_margin,
+)
+from physicslab.contacts.wide import add_constraints, refill
 from physicslab.kernels.narrow import contact
-from physicslab.kernels.narrow.pair import NEAR, STILL
-from physicslab.kernels.wide import refresh
+from physicslab.kernels.solver import stages
+from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
-from physicslab.systems.schedule import Stage, System, at
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.systems.system import Stage, System, at
 
 __all__ = ["ContactSystem"]
 
@@ -28,79 +28,40 @@ class ContactSystem(System):
     swept, so that none passes through another.
     """
 
-    kernels = (near_pairs.promote, contact.find_contacts)
-    observes = False  # what it begins anew at a step is its own record
+    engine = True
+    kernels = (stages.find_touching, contact.find_contacts)
 
     def __init__(self) -> None:
-        self._bounds = np.zeros(4)
         self._first = True
 
-    def why_left_out(self, world: World) -> str | None:
+    def why_left_out(self, state: State) -> str | None:
         """Needed where two things could ever meet."""
-        return nothing_to_touch(world)
+        return nothing_to_touch(state)
 
-    @at(Stage.PREPARE)
-    def begin(self, world: World, h: float) -> None:
-        """Begin a new record of impacts."""
+    def begin_step(self, state: State) -> None:
+        """Begin new records of impacts at the next substep."""
         self._first = True
-        if world.physics.bounds is not None:
-            self._bounds[:] = world.physics.bounds
+
+    @property
+    def first(self) -> bool:
+        """Whether the next substep is the first of a step."""
+        return self._first
 
     @at(Stage.CONTACT)
-    def find(self, world: World, h: float) -> None:
-        """Find or refresh the points of every near pair."""
-        contacts, bodies = world.contacts, world.bodies
-        if contacts.blocks.lanes:
-            self._refresh(world, h, self.fall(world, h))
-            contacts.changed()
-        contacts.in_order(len(world.roster))
-        contacts.promote(world, h, self.fall(world, h))
-        contacts.active = self.find_among(
-            world, contacts.loose, contacts.loose_count, contacts.touching,
-            bodies.awake_inverse_mass, bodies.awake_inverse_inertia, self._first, h,
+    def find(self, state: State, h: float) -> None:
+        """Find or refresh the points of every near pair; once a step, take what has settled into blocks."""
+        if self._first:
+            refill(state)
+        stages.find_touching(
+            near_in(state), motion_of(state), sizes_of(state), materials_of(state), inverse_in(state),
+            bounds_of(state), self._first, h, state.window[0], speculative_margin(state, h),
         )  # fmt: skip
-        self.settle(world, h)
-
-    def find_among(
-        self, world: World, pairs: NDArray[np.int64], count: int, touching: NDArray[np.int64],
-        inverse_mass: NDArray[np.float64], inverse_inertia: NDArray[np.float64], first: bool, h: float,
-    ) -> int:  # fmt: skip
-        """Find or refresh the points of ``count`` of the pairs; return how many of them touch."""
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        shape, material = world.table(Shape), world.table(Material)
-        contacts, physics = world.contacts, world.physics
-        return contact.find_contacts(
-            contacts.manifolds, contacts.points, pairs, count, touching,
-            transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
-            shape["kind"], shape["radius"], shape["width"], shape["height"],
-            material["restitution"], material["friction"], inverse_mass, inverse_inertia,
-            self._bounds, physics.bounds_restitution, physics.bounds_friction, first, h,
-            world.method.stages.window[0], self.fall(world, h),
-        )  # fmt: skip
-
-    def fall(self, world: World, h: float) -> float:
-        """Return how far [m] uniform gravity may bring two bodies together within a time h."""
-        physics = world.physics
-        return 0.5 * physics.gravity.magnitude * h * h if physics.gravity_mode == "linear" else 0.0
-
-    def settle(self, world: World, h: float) -> None:
-        """Once a step, take what has settled into blocks."""
-        if self._first and world.method.collisions == "step":
-            world.contacts.settle(world, h)
-            world.contacts.changed()
+        state.contacts.changed()
+        if self._first and not state.event_driven:
+            self.make_wide(state, h)
         self._first = False
 
-    def _refresh(self, world: World, h: float, fall: float) -> None:
-        """Find where settled contacts touch now; those that are settled no longer join the loose ones."""
-        contacts, transform, velocity = world.contacts, world.table(Transform), world.table(Velocity)
-        if self._first:
-            contacts.refill(world)
-        before = contacts.loose_count
-        for lanes in contacts.blocks.kinds:
-            contacts.loose_count = refresh.refresh(
-                *lanes.layout, contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
-                transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
-                self._first, h, STILL, NEAR, fall, contact.KEEP, contact.KEEP_TURN,
-            )  # fmt: skip
-        contacts.blocks.lanes -= contacts.loose_count - before
-        contacts.unordered |= contacts.loose_count > before
+    def make_wide(self, state: State, h: float) -> None:
+        """Take what has settled into blocks."""
+        add_constraints(state, h)
+        state.contacts.changed()

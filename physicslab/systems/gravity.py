@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Transform, Velocity
+from physicslab.ecs.vector import Vector2
 from physicslab.kernels.forces import gravity, packed_forces
 from physicslab.kernels.forces.tree_pull import LARGEST_ERROR, RMS_ERROR, THETA
-from physicslab.ode.system import PackedForce
-from physicslab.systems.schedule import ForceSystem, Stage, at
-
-if TYPE_CHECKING:
-    from physicslab.ode.system import Slots
-    from physicslab.world import World
+from physicslab.state.packed import PackedForce, StateLayout
+from physicslab.state.state import State
+from physicslab.systems.system import ForceSystem
 
 __all__ = ["GravitySystem"]
 
@@ -27,91 +25,80 @@ class GravitySystem(ForceSystem):
     Very many are pulled by groups of others: :meth:`summation` says so, and how far off that is.
     """
 
-    kernels = (
-        gravity.uniform_gravity,
-        gravity.uniform_potential,
-        gravity.planet_gravity,
-        gravity.planet_potential,
-        gravity.fastest_fall,
-    )
+    engine = True
     potential = "gravity"
 
     def __init__(self) -> None:
         self._attracting: NDArray[np.int64] = np.zeros(0, np.int64)
+        self._pairwise = False
 
-    def attach(self, world: World) -> None:
+    def attach(self, state: State) -> None:
         """Note which rows attract each other."""
-        rows = world.batch(Transform, Mass).rows
-        self._attracting = rows[~world.table(Held).present[rows]]
+        self._pairwise = state.physics.gravity_mode == "planet"
+        rows = state.batch(Transform, Mass).rows
+        self._attracting = rows[~state.table(Held).present[rows]]
 
-    def why_left_out(self, world: World) -> str | None:
+    def why_left_out(self, state: State) -> str | None:
         """Needed where the mode pulls and something can be pulled."""
-        mode = world.physics.gravity_mode
+        mode = state.physics.gravity_mode
         if mode == "none":
-            return 'gravity_mode is "none"'
-        if not len(world.batch(Velocity, Mass)):
+            return "gravity is switched off"
+        if not len(state.batch(Velocity, Mass)):
             return "nothing that moves has Mass"
-        if mode == "linear" and not world.physics.gravity:
-            return "gravity is [0, 0]"
+        if mode == "linear" and not state.physics.gravity:
+            return "gravity is zero"
         if mode == "planet" and len(self._attracting) < 2:
             return "fewer than two bodies attract each other"
-        if mode == "planet" and world.physics.G == 0.0:
+        if mode == "planet" and state.physics.G == 0.0:
             return "G is 0"
         return None
 
-    def kernels_for(self, world: World) -> tuple[Any, ...]:
-        """Return the kernels of one mode: those of planets take long to compile."""
-        return self.kernels[:2] if world.physics.gravity_mode == "linear" else self.kernels[2:]
+    def kernels_for(self, state: State) -> tuple[Any, ...]:
+        """Return the kernel of the law that holds."""
+        linear = state.physics.gravity_mode == "linear"
+        return (packed_forces.uniform_gravity if linear else packed_forces.planet_gravity,)
 
-    @at(Stage.FORCE)
-    def pull(self, world: World, h: float) -> None:
-        """Add the pull to the forces."""
-        bodies, physics, mass = world.bodies, world.physics, world.table(Mass)["mass"]
-        if physics.gravity_mode == "linear":
-            g = physics.gravity
-            gravity.uniform_gravity(bodies.force, mass, bodies.inverse_mass, g.x, g.y)
-        else:
-            gravity.planet_gravity(
-                bodies.force, world.table(Transform)["position"], mass, self._attracting,
-                physics.G, physics.softening, physics.softening_law == "plummer",
-            )  # fmt: skip
+    def uniform_acceleration(self, state: State) -> Vector2 | None:
+        """Return g; planets attract each other differently from place to place."""
+        return state.physics.gravity if state.physics.gravity_mode == "linear" else None
 
-    def packed(self, world: World, slots: Slots) -> PackedForce:
+    def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the pull for compiled integrators."""
-        physics, mass = world.physics, world.table(Mass)["mass"]
+        physics, mass = state.physics, state.table(Mass)["mass"]
         if physics.gravity_mode == "linear":
-            rows = np.flatnonzero((world.bodies.inverse_mass > 0.0) & (slots.place >= 0))
-            whole = np.concatenate(([len(rows)], slots.place[rows]))
-            numbers = np.concatenate(((physics.gravity.x, physics.gravity.y), mass[rows]))
-            return PackedForce(packed_forces.uniform_gravity, numbers, whole)
+            rows = np.flatnonzero((state.bodies.inverse_mass > 0.0) & (layout.place >= 0))
+            indices = np.concatenate(([len(rows)], layout.place[rows]))
+            parameters = np.concatenate(((physics.gravity.x, physics.gravity.y), mass[rows]))
+            return PackedForce(packed_forces.uniform_gravity, parameters, indices)
         rows = self._attracting
-        whole = np.concatenate(([len(rows), physics.softening_law == "plummer"], slots.place[rows]))
-        numbers = np.concatenate(((physics.G, physics.softening), mass[rows]))
-        return PackedForce(packed_forces.planet_gravity, numbers, whole)
+        indices = np.concatenate(([len(rows), physics.softening_law == "plummer"], layout.place[rows]))
+        parameters = np.concatenate(((physics.G, physics.softening), mass[rows]))
+        return PackedForce(packed_forces.planet_gravity, parameters, indices)
 
-    def strongest_rate(self, world: World) -> float:
+    def strongest_rate(self, state: State) -> float:
         """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair as they stand; 0 for uniform gravity."""
-        physics = world.physics
+        physics = state.physics
         if physics.gravity_mode == "linear":
             return 0.0
+        state.compile((gravity.fastest_fall,))
         return gravity.fastest_fall(
-            world.table(Transform)["position"], world.table(Mass)["mass"], self._attracting,
+            state.table(Transform)["position"], state.table(Mass)["mass"], self._attracting,
             physics.G, physics.softening, physics.softening_law == "plummer",
         )  # fmt: skip
 
-    def couples(self, world: World) -> NDArray[np.int64] | None:
+    def couples(self, state: State) -> NDArray[np.int64] | None:
         """Uniform gravity couples nothing, that of planets every body with every other."""
-        return np.zeros((0, 2), np.int64) if world.physics.gravity_mode == "linear" else None
+        return np.zeros((0, 2), np.int64) if state.physics.gravity_mode == "linear" else None
 
     @property
     def attractors(self) -> int:
-        """How many bodies attract each other."""
-        return len(self._attracting)
+        """How many bodies attract each other; none where gravity is uniform."""
+        return len(self._attracting) if self._pairwise else 0
 
-    def summation(self, world: World) -> str:
+    def summation(self, state: State) -> str:
         """Return how pairs are summed, as :mod:`physicslab.kernels.forces.gravity` decides by number."""
         n = self.attractors
-        if world.physics.gravity_mode != "planet" or n <= gravity.FEW:
+        if state.physics.gravity_mode != "planet" or n <= gravity.FEW:
             return ""
         if n < gravity.MANY:
             return f"each pair of {n} bodies, in vectors"
@@ -120,13 +107,15 @@ class GravitySystem(ForceSystem):
             f"root mean square, {LARGEST_ERROR:g} at most; momentum is kept as well as they are right"
         )
 
-    def potential_energy(self, world: World) -> float:
+    def potential_energy(self, state: State) -> float:
         """Return the sum of -m g . x [J], zero at the origin, or the pairs' energy, zero at infinity."""
-        physics, mass = world.physics, world.table(Mass)["mass"]
-        position = world.table(Transform)["position"]
+        physics, mass = state.physics, state.table(Mass)["mass"]
+        position = state.table(Transform)["position"]
         if physics.gravity_mode == "linear":
             g = physics.gravity
-            return gravity.uniform_potential(position, mass, world.bodies.inverse_mass, g.x, g.y)
+            state.compile((gravity.uniform_potential,))
+            return gravity.uniform_potential(position, mass, state.bodies.inverse_mass, g.x, g.y)
+        state.compile((gravity.planet_potential,))
         return gravity.planet_potential(
             position, mass, self._attracting,
             physics.G, physics.softening, physics.softening_law == "plummer",

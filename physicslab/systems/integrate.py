@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from physicslab.components import Transform, Velocity
 from physicslab.kernels import motion
-from physicslab.systems.schedule import Stage, System, at
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.state.state import State
+from physicslab.systems.system import Stage, System, at
 
 __all__ = ["IntegrateSystem"]
 
@@ -17,26 +13,15 @@ __all__ = ["IntegrateSystem"]
 class IntegrateSystem(System):
     """Moves and turns every body that has a Velocity, when the integrator's plan says so."""
 
+    engine = True
     needs = (Transform, Velocity)
-    kernels = (motion.drift, motion.foresee)
+    kernels = (motion.drift,)
 
     @at(Stage.DRIFT)
-    def drift(self, world: World, h: float) -> None:
-        """Move at the present velocity for a time h, and what is tethered as its tethers have it."""
-        transform, velocity = world.table(Transform), world.table(Velocity)
+    def drift(self, state: State, h: float) -> None:
+        """Move at the present velocity for a time h, but for what a method of its own moves."""
+        transform, velocity = state.table(Transform), state.table(Velocity)
         motion.drift(
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
-            world.bodies.tethered, h,
+            state.bodies.sub_integrated, h,
         )  # fmt: skip
-        if world.tethers is not None:
-            world.tethers.move(world, h)
-
-    @at(Stage.FORESEE)
-    def foresee(self, world: World, h: float) -> None:
-        """Show contacts the velocity that tethers will bring about in a time h; take it back with -h."""
-        if world.tethers is not None:
-            bodies, velocity = world.bodies, world.table(Velocity)
-            motion.foresee(
-                velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
-                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, world.tethers.gentle, h,
-            )  # fmt: skip

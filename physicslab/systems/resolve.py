@@ -2,130 +2,92 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from physicslab.components import Transform, Velocity
-from physicslab.kernels.solver import impact, impulse
-from physicslab.kernels.wide import slots
+from physicslab.contacts.arguments import acting_in, inverse_in, motion_of, near_in
+from physicslab.kernels.solver import impulse, stages
+from physicslab.kernels.solver.arguments import Log, Softness
+from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
-from physicslab.systems.schedule import Stage, System, at
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.systems.system import Stage, System, at
 
 __all__ = ["ResolveSystem"]
 
 _LIGHT_LOAD = 12.0
-"""So many times its own weight a body carries without further ado."""
+"""So many times its own weight a body carries with the substeps that were asked for."""
 
 
 class ResolveSystem(System):
-    """Bounces what approaches, keeps apart what rests, rubs what slides.
+    """Resolves impacts, keeps apart what rests, and applies friction.
 
     Parameters
     ----------
     hertz, damping_ratio : float
-        The contact spring that takes overlap away: frequency [Hz] (a quarter of the substep rate at the most)
-        and damping ratio.
+        The contact spring that takes overlap away: frequency [Hz] (at most a quarter of the substep rate) and
+        damping ratio.
     max_push : float
         Fastest [m/s] that overlap is taken away.
     slop : float
         Overlap that is left alone, as a share of the smaller body's size.
     """
 
-    kernels = (impact.strike, impulse.solve, impulse.relax, impulse.separate, impulse.heaviest_load)
+    engine = True
+    kernels = (stages.resolve_all_impacts, stages.press, stages.relax)
 
     def __init__(
         self, hertz: float = 45.0, damping_ratio: float = 2.0, max_push: float = 1.5, slop: float = 0.0005
     ) -> None:
         self.hertz, self.damping_ratio, self.max_push, self.slop = hertz, damping_ratio, max_push, slop
 
-    def why_left_out(self, world: World) -> str | None:
+    def why_left_out(self, state: State) -> str | None:
         """Needed where two things could ever meet."""
-        return nothing_to_touch(world)
+        return nothing_to_touch(state)
 
-    def finer(self, world: World) -> int:
+    def substep_factor(self, state: State) -> int:
         """Where bodies carry far heavier ones, the contact spring must be stiffer, and substeps shorter.
 
         Its stiffness goes by the lighter body: what carries a hundred times its weight sinks in by as much
         more. A frequency that is higher by the root of that takes it back.
         """
-        contacts, bodies = world.contacts, world.bodies
-        if not (contacts.count and world.has_forces and bodies.unequal):
+        contacts, bodies = state.contacts, state.bodies
+        if not (contacts.count and state.has_forces and bodies.unequal):
             return 1
         contacts.sync()
-        load = impulse.heaviest_load(
+        state.compile((impulse.worst_load_ratio,))
+        load = impulse.worst_load_ratio(
             contacts.manifolds, contacts.recorded, bodies.force, bodies.awake_inverse_mass
         )
         parts = 1
-        while parts < impulse.MOST_PARTS and parts * parts * _LIGHT_LOAD < load:
+        while parts < impulse.MAX_SUBSTEP_FACTOR and parts * parts * _LIGHT_LOAD < load:
             parts *= 2
         return parts
 
-    @at(Stage.IMPACT)
-    def strike(self, world: World, h: float) -> None:
-        """Bounce the pairs that meet within the substep."""
-        contacts, bodies = world.contacts, world.bodies
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        start, end = world.method.stages.window
-        contacts.left = 0
-        while contacts.active:
-            impacts, contacts.left = impact.strike(
-                contacts.manifolds, contacts.points, contacts.touching, contacts.active,
-                transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
-                bodies.force, bodies.awake_inverse_mass, bodies.awake_inverse_inertia, world.has_forces,
-                h, start * h, end * h,
-            )  # fmt: skip
-            world.collisions += impacts
-            if not (impacts and self._wake(world, h)):
-                break
+    def softness(self, substep_factor: float) -> Softness:
+        """Return the contact spring for substeps that are so many times as short as asked for."""
+        return Softness(self.hertz * substep_factor, self.damping_ratio, self.slop, self.max_push)
 
-    def _wake(self, world: World, h: float) -> bool:
-        """After impacts, let settled contacts that may bounce take part in them; return whether any does."""
-        contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
-        before = contacts.active
-        if contacts.blocks.lanes:
-            for lanes in contacts.blocks.kinds:
-                contacts.loose_count, contacts.active = slots.wake(
-                    *lanes.layout, contacts.manifolds, contacts.points, contacts.loose, contacts.loose_count,
-                    contacts.touching, contacts.active, velocity["linear"], velocity["angular"],
-                    bodies.force, bodies.awake_inverse_mass, h,
-                )  # fmt: skip
-            contacts.blocks.lanes -= contacts.active - before
-            contacts.unordered |= contacts.active > before
-        return contacts.active > before
+    @at(Stage.IMPACT)
+    def resolve_impacts(self, state: State, h: float) -> None:
+        """Bounce the pairs that meet within the substep."""
+        start, end = state.window
+        state.collisions += stages.resolve_all_impacts(
+            near_in(state), motion_of(state), inverse_in(state), acting_in(state),
+            Log(state.contacts.log, state.moment), h, start * h, end * h,
+        )  # fmt: skip
 
     @at(Stage.SOLVE)
-    def solve(self, world: World, h: float) -> None:
+    def solve(self, state: State, h: float) -> None:
         """Find the impulses that keep bodies apart, taking some of the overlap away."""
-        contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
-        if contacts.left or contacts.blocks.lanes:
-            # What an instant left behind is mostly rounding, which is not to be blown up.
-            carried = h / max(contacts.span, h / impulse.MOST_PARTS) if contacts.span > 0.0 else 1.0
-            contacts.span = h
-            finer = world.substeps / world.simulation.substeps
-            impulse.solve(
-                contacts.manifolds, contacts.points, contacts.touching, contacts.active,
-                *contacts.blocks.discs.solved, *contacts.blocks.boxes.solved,
-                velocity["linear"], velocity["angular"],
-                bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
-                bodies.force, world.has_forces, h, carried, world.simulation.iterations or 1,
-                self.hertz * finer, self.damping_ratio, self.slop,
-            )  # fmt: skip
+        state.contacts.impulse_dt = stages.press(
+            near_in(state), motion_of(state), inverse_in(state), acting_in(state), self._softness_now(state),
+            h, state.contacts.impulse_dt, state.simulation.iterations or 1,
+        )  # fmt: skip
 
     @at(Stage.RELAX)
-    def relax(self, world: World, h: float) -> None:
+    def relax(self, state: State, h: float) -> None:
         """Take back the velocity that came from taking overlap away."""
-        contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
-        if contacts.left or contacts.blocks.lanes:
-            impulse.relax(
-                contacts.manifolds, contacts.points, contacts.touching, contacts.active,
-                *contacts.blocks.discs.solved, *contacts.blocks.boxes.solved,
-                velocity["linear"], velocity["angular"],
-                bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
-                h, world.simulation.iterations or 1,
-            )  # fmt: skip
-            impulse.separate(
-                contacts.manifolds, contacts.points, contacts.touching, contacts.active,
-                world.table(Transform)["position"], bodies.awake_inverse_mass, self.max_push * h,
-            )  # fmt: skip
+        stages.relax(
+            near_in(state), motion_of(state), inverse_in(state), self._softness_now(state),
+            h, state.simulation.iterations or 1,
+        )  # fmt: skip
+
+    def _softness_now(self, state: State) -> Softness:
+        return self.softness(state.substeps / state.simulation.substeps)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
-
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Velocity
+from physicslab.contacts.arguments import bounds_of, materials_of, motion_of, sizes_of, speculative_margin
+from physicslab.contacts.islands import check_edits, fall_asleep, keep_places, wake, wake_all
 from physicslab.kernels import motion
+from physicslab.kernels.narrow import contact
 from physicslab.kernels.sleep import edits, islands
+from physicslab.kernels.solver.arguments import Inverse
 from physicslab.state.sleep import Sleep
+from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
-from physicslab.systems.contact import ContactSystem
-from physicslab.systems.schedule import Stage, System, at
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.systems.system import Stage, System, at
 
 __all__ = ["SleepSystem"]
 
@@ -25,148 +24,136 @@ class SleepSystem(System):
     """Lets islands of bodies that have rested fall asleep, and wakes those that something touches or pushes.
 
     An island, bodies that touch each other, sleeps when all of it has been slower than 0.05 m/s for half a
-    second and not been getting faster, and something holds it that nothing moves. Nobody sleeps who touches
-    what moves by itself, or on whom a spring or drag acts.
+    second and not been getting faster, and something holds it that nothing moves. A body stays awake that
+    touches what moves by itself, or on which a spring or drag acts.
     """
 
+    engine = True
     kernels = (
         *Sleep.kernels, islands.count_rest, islands.find_held, islands.find_touched, edits.find_pushed,
         motion.kick,
     )  # fmt: skip
-    observes = False  # where bodies may sleep, a world goes step by step anyway
 
-    def __init__(self) -> None:
-        self._contact: ContactSystem | None = None
-
-    def attach(self, world: World) -> None:
-        """Note who finds contacts."""
-        found = (system for system in world.schedule.systems if isinstance(system, ContactSystem))
-        self._contact = next(found, None)
-
-    def why_left_out(self, world: World) -> str | None:
+    def why_left_out(self, state: State) -> str | None:
         """Needed where bodies may come to rest on each other."""
-        reason = self._why_awake(world)
-        if reason is not None and world.sleep.on:
-            world.sleep.forget(world)
-        world.sleep.on = reason is None
+        reason = self._why_awake(state)
+        if reason is not None and state.sleep.on:
+            wake_all(state)
+        state.sleep.on = reason is None
         return reason
 
-    def _why_awake(self, world: World) -> str | None:
-        reason = nothing_to_touch(world)
+    def _why_awake(self, state: State) -> str | None:
+        reason = nothing_to_touch(state)
         if reason is not None:
             return reason
-        if not world.simulation.sleeping:
-            return "sleeping is false"
-        if world.physics.gravity_mode == "planet":
+        if not state.simulation.sleeping:
+            return "sleeping is switched off"
+        if state.physics.gravity_mode == "planet":
             return "planets attract each other"
-        if world.method.collisions == "exact":
+        if state.event_driven:
             return "impacts are located exactly"
-        if self._contact is None:
-            return "ContactSystem is not among the systems"
         return None
 
     @at(Stage.CONTACT)
-    def rouse(self, world: World, h: float) -> None:
-        """Wake whom something touches that moves or is awake, and on whom the forces have changed.
+    def wake_touched_islands(self, state: State, h: float) -> None:
+        """Wake what something touches that moves or is awake, and what other forces act on than before.
 
-        That is done before the impacts: nobody is struck as if nothing could move him.
+        That is done before the impacts: no sleeper is struck as if nothing could move it.
         """
-        sleep, contacts, bodies = world.sleep, world.contacts, world.bodies
-        if sleep.unseen:
-            self._take_part(world, self._see(world), h)
+        sleep, contacts, bodies = state.sleep, state.contacts, state.bodies
+        if sleep.unverified:
+            self._take_part(state, self._verify(state), h)
         while sleep.count:
-            velocity, marked = world.table(Velocity), np.zeros(len(sleep.asleep), np.bool_)
+            velocity, marked = state.table(Velocity), np.zeros(len(sleep.asleep), np.bool_)
             contacts.active, found = islands.find_touched(
                 contacts.manifolds, contacts.points, contacts.touching, contacts.active,
                 bodies.awake_inverse_mass, velocity["linear"], velocity["angular"], sleep.asleep, marked,
             )  # fmt: skip
-            if world.has_forces:
+            if state.has_forces:
                 found += edits.find_pushed(bodies.force, bodies.torque, sleep.forces, sleep.asleep, marked)
             if not found:
                 return
-            self._take_part(world, sleep.wake(world, marked), h)
+            self._take_part(state, wake(state, marked), h)
 
-    def _take_part(self, world: World, woken: NDArray[np.bool_], h: float) -> None:
-        """Let those who have just woken take part in the substep that has begun without them."""
+    def _take_part(self, state: State, woken: NDArray[np.bool_], h: float) -> None:
+        """Let what has just woken take part in the substep that has begun without it."""
         if not woken.any():
             return
-        contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
-        if world.has_forces:
+        contacts, bodies, velocity = state.contacts, state.bodies, state.table(Velocity)
+        if state.has_forces:
             motion.kick(
                 velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
-                np.where(woken, bodies.inverse_mass, 0.0), bodies.inverse_inertia, bodies.tethered,
-                world.physics.linear_damping, world.physics.angular_damping, _missed(world) * h,
+                np.where(woken, bodies.inverse_mass, 0.0), bodies.inverse_inertia, bodies.sub_integrated,
+                state.physics.linear_damping, state.physics.angular_damping, state.kick_before_contacts * h,
             )  # fmt: skip
-        loose = contacts.loose[: contacts.loose_count]
-        near = contacts.manifolds[loose]
-        theirs = np.ascontiguousarray(loose[woken[near["a"]] | woken[near["b"]]])
+        scalar = contacts.scalar[: contacts.scalar_count]
+        near = contacts.manifolds[scalar]
+        theirs = np.ascontiguousarray(scalar[woken[near["a"]] | woken[near["b"]]])
         # Of these the masses are others now; no impact of this step can have been theirs.
-        self._find(world, theirs, len(theirs), contacts.touching, h, first=True)
-        contacts.active = self._find(world, contacts.loose, len(loose), contacts.touching, h)
+        awake = Inverse(bodies.awake_inverse_mass, bodies.awake_inverse_inertia)
+        _find_among(state, theirs, contacts.touching, awake, h, first=True)
+        contacts.active = _find_among(state, scalar, contacts.touching, awake, h, first=False)
 
-    def _find(
-        self, world: World, pairs: NDArray[np.int64], count: int, touching: NDArray[np.int64], h: float,
-        first: bool = False,
-    ) -> int:  # fmt: skip
-        bodies, finder = world.bodies, cast("ContactSystem", self._contact)
-        return finder.find_among(
-            world, pairs, count, touching, bodies.awake_inverse_mass, bodies.awake_inverse_inertia, first, h
-        )
-
-    @at(Stage.FINISH)
-    def settle(self, world: World, h: float) -> None:
-        """Count how long bodies have rested; let the islands that have rested long enough fall asleep."""
-        sleep, velocity, shape = world.sleep, world.table(Velocity), world.table(Shape)
-        if sleep.meddled:
-            sleep.check(world, within=True)
+    def count_rest(self, state: State, h: float) -> None:
+        """At the end of a step, count how long bodies have rested; put islands to sleep that are due."""
+        sleep, velocity, shape = state.sleep, state.table(Velocity), state.table(Shape)
+        if sleep.has_external_writers:
+            check_edits(state, within=True)
         if islands.count_rest(
             velocity["linear"], velocity["angular"],
             shape["kind"], shape["radius"], shape["width"], shape["height"],
-            world.bodies.inverse_mass, world.bodies.tethered, sleep.asleep, sleep.rest, sleep.slowest,
-            min(h, world.simulation.dt),  # of a step that was divided no more than the end is seen
+            state.bodies.inverse_mass, state.bodies.sub_integrated, sleep.asleep, sleep.rest, sleep.slowest,
+            min(h, state.simulation.dt),  # of a step that was divided no more than the end is seen
         ):  # fmt: skip
-            self.lull(world, h)
-        sleep.keep(world)
+            self.put_islands_to_sleep(state, h)
+        keep_places(state)
 
-    def lull(self, world: World, h: float) -> None:
+    def put_islands_to_sleep(self, state: State, h: float) -> None:
         """Let the islands fall asleep that have rested long enough."""
-        sleep, contacts = world.sleep, world.contacts
-        contacts.sync()
+        sleep = state.sleep
+        state.contacts.sync()
         ready = (sleep.rest >= islands.READY) & ~sleep.asleep
-        held = self._held(world, ready)
+        held = self._held(state, ready)
         if held.any():
-            sleep.lull(world, held)
-            self._see(world)
+            fall_asleep(state, held)
+            self._verify(state)
 
-    def _held(self, world: World, ready: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return which of those who are ready to sleep belong to an island that may."""
-        contacts, velocity, held = world.contacts, world.table(Velocity), np.zeros(len(ready), np.bool_)
+    def _held(self, state: State, ready: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return which of the rows that are ready to sleep belong to an island that may."""
+        contacts, velocity, held = state.contacts, state.table(Velocity), np.zeros(len(ready), np.bool_)
         islands.find_held(
-            contacts.manifolds, contacts.points, contacts.recorded, world.bodies.inverse_mass,
+            contacts.manifolds, contacts.points, contacts.recorded, state.bodies.inverse_mass,
             velocity["linear"], velocity["angular"], ready, held,
         )  # fmt: skip
         return held
 
-    def _see(self, world: World) -> NDArray[np.bool_]:
-        """Find where sleepers touch as they lie now; wake those whom nothing holds, and return who woke.
+    def _verify(self, state: State) -> NDArray[np.bool_]:
+        """Find where sleepers touch as they lie now; wake those that nothing holds, and return which woke.
 
-        A file may have it that somebody sleeps in the air.
+        A file may have it that a body sleeps in the air.
         """
-        sleep, contacts, bodies = world.sleep, world.contacts, world.bodies
-        sleep.unseen = False
-        quiet = sleep.asleep | ~world.table(Velocity).present
+        sleep, contacts, bodies = state.sleep, state.contacts, state.bodies
+        sleep.unverified = False
+        inactive = sleep.asleep | ~state.table(Velocity).present
         pairs = np.empty(contacts.recorded, np.int64)
-        count = islands.list_resting(contacts.manifolds, contacts.recorded, quiet, pairs)
-        h = world.simulation.dt / world.simulation.substeps
-        contacts.resting_count = cast("ContactSystem", self._contact).find_among(
-            world, pairs, count, contacts.resting, bodies.inverse_mass, bodies.inverse_inertia, True, h
-        )
-        loose = sleep.asleep & ~self._held(world, sleep.asleep)
-        return sleep.wake(world, loose) if loose.any() else loose
+        count = islands.list_sleeping(contacts.manifolds, contacts.recorded, inactive, pairs)
+        h = state.simulation.dt / state.simulation.substeps
+        own = Inverse(bodies.inverse_mass, bodies.inverse_inertia)
+        contacts.sleeping_count = _find_among(state, pairs[:count], contacts.sleeping, own, h, first=True)
+        unsupported = sleep.asleep & ~self._held(state, sleep.asleep)
+        return wake(state, unsupported) if unsupported.any() else unsupported
 
 
-def _missed(world: World) -> float:
-    """Return which share of a substep's kick comes before contacts are found."""
-    plan = world.method.stages.substep
-    before = plan[: [stage for stage, _ in plan].index(Stage.CONTACT)]
-    return sum(share for stage, share in before if stage is Stage.KICK)
+def _find_among(
+    state: State, pairs: NDArray[np.int64], touching: NDArray[np.int64], inverse: Inverse, h: float, *,
+    first: bool,
+) -> int:  # fmt: skip
+    """Find or refresh the points of some of the pairs; return how many of them touch."""
+    contacts, bounds = state.contacts, bounds_of(state)
+    state.compile((contact.find_contacts,))
+    return contact.find_contacts(
+        contacts.manifolds, contacts.points, pairs, len(pairs), touching, *motion_of(state), *sizes_of(state),
+        *materials_of(state), *inverse, bounds.walls, bounds.restitution, bounds.friction, first, h,
+        state.window[0],
+        speculative_margin(state, h),
+    )  # fmt: skip

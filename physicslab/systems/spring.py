@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import esper
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +11,9 @@ from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels.forces import packed_forces, springs
 from physicslab.kernels.forces.resistance import damper_resistance
-from physicslab.ode.system import PackedForce, spring_ends
-from physicslab.systems.schedule import ForceSystem, Stage, at
-
-if TYPE_CHECKING:
-    from physicslab.ode.system import Slots
-    from physicslab.world import World
+from physicslab.state.packed import PackedForce, StateLayout, spring_ends
+from physicslab.state.state import State
+from physicslab.systems.system import ForceSystem
 
 __all__ = ["SpringSystem"]
 
@@ -31,13 +26,13 @@ class SpringSystem(ForceSystem):
     """Pulls the ends of every Spring together by F = k (length - rest_length) + c (rate of lengthening)."""
 
     needs = (Spring,)
-    kernels = (springs.spring_forces, springs.spring_potential)
+    kernels = (packed_forces.springs,)
     potential = "spring"
 
     def __init__(self) -> None:
         self._rows = self._a = self._b = np.zeros(0, np.int64)
 
-    def attach(self, world: World) -> None:
+    def attach(self, state: State) -> None:
         """Find the bodies at both ends of every spring; a spring whose body was removed goes with it.
 
         Raises
@@ -45,59 +40,47 @@ class SpringSystem(ForceSystem):
         InvalidValue
             If an end never was an entity, or is one without a Transform; or if both are the same.
         """
-        self._rows, self._a, self._b = rows, a, b = spring_ends(world)
-        placed = world.table(Transform).present
+        self._rows, self._a, self._b = rows, a, b = spring_ends(state)
+        placed = state.table(Transform).present
         lost_a, lost_b = (a < 0) | ~placed[a], (b < 0) | ~(placed[b] | (b == 0))
-        spring, entities = world.table(Spring), world.batch(Spring).entities
+        spring, entities = state.table(Spring), state.batch(Spring).entities
         for i in np.flatnonzero((a == b) & (a > 0)).tolist():
-            end = int(world.roster.entities[b[i]])
-            raise InvalidValue(f"{world.label(int(entities[i]))}: Spring", "b", end, OTHER_END)
+            end = int(state.entity_index.entities[b[i]])
+            raise InvalidValue(f"{state.label(int(entities[i]))}: Spring", "b", end, OTHER_END)
         for i in np.flatnonzero(lost_a | lost_b).tolist():
             entity, name = int(entities[i]), "a" if lost_a[i] else "b"
             end = int(spring[name][rows[i]]) or entity
-            if end in world.roster.row_of or end > world.roster.newest:
-                raise InvalidValue(f"{world.label(entity)}: Spring", name, end, "an entity with a Transform")
+            if end in state.entity_index.row_of or end > state.entity_index.newest:
+                raise InvalidValue(f"{state.label(entity)}: Spring", name, end, "an entity with a Transform")
             esper.remove_component(entity, Spring)
             left: tuple[object, ...] = esper.components_for_entity(entity)
             if all(isinstance(component, Name) for component in left):
                 esper.delete_entity(entity, immediate=True)
 
-    @at(Stage.FORCE)
-    def pull(self, world: World, h: float) -> None:
-        """Add the springs' pull to the forces."""
-        bodies, spring = world.bodies, world.table(Spring)
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        springs.spring_forces(
-            bodies.force, bodies.torque, transform["position"], transform["angle"],
-            velocity["linear"], velocity["angular"],
-            self._rows, self._a, self._b, spring["anchor_a"], spring["anchor_b"],
-            spring["rest_length"], spring["stiffness"], spring["damping"],
-        )  # fmt: skip
-
-    def packed(self, world: World, slots: Slots) -> PackedForce:
+    def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the pull for compiled integrators."""
-        spring, angle = world.table(Spring), world.table(Transform)["angle"]
+        spring, angle = state.table(Spring), state.table(Transform)["angle"]
         rows, ends = self._rows, (self._a, self._b)
-        places = [part for end in ends for part in (slots.place[end], slots.turn[end])]
-        whole = np.concatenate(([len(rows)], np.stack(places, axis=1).ravel()))
-        numbers = np.empty((len(rows), 7))
+        places = [part for end in ends for part in (layout.place[end], layout.turn[end])]
+        indices = np.concatenate(([len(rows)], np.stack(places, axis=1).ravel()))
+        parameters = np.empty((len(rows), 7))
         for column, end, anchors in ((0, ends[0], "anchor_a"), (2, ends[1], "anchor_b")):
-            steady = np.where(slots.turn[end] < 0, angle[end], 0.0)
+            steady = np.where(layout.turn[end] < 0, angle[end], 0.0)
             cosine, sine, anchor = np.cos(steady), np.sin(steady), spring[anchors][rows]
-            numbers[:, column] = cosine * anchor[:, 0] - sine * anchor[:, 1]
-            numbers[:, column + 1] = sine * anchor[:, 0] + cosine * anchor[:, 1]
+            parameters[:, column] = cosine * anchor[:, 0] - sine * anchor[:, 1]
+            parameters[:, column + 1] = sine * anchor[:, 0] + cosine * anchor[:, 1]
         for column, name in enumerate(("rest_length", "stiffness", "damping"), 4):
-            numbers[:, column] = spring[name][rows]
-        resistance = damper_resistance if self.sees_velocity(world) else None
-        return PackedForce(packed_forces.springs, numbers.ravel(), whole, resistance)
+            parameters[:, column] = spring[name][rows]
+        resistance = damper_resistance if self.sees_velocity(state) else None
+        return PackedForce(packed_forces.springs, parameters.ravel(), indices, resistance)
 
-    def rates(self, world: World) -> NDArray[np.float64]:
+    def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row a bound on its fastest oscillation or decay [rad/s].
 
         Of a body's springs the stiffnesses add up, weighed with the masses at both ends; no eigenvalue of the
         whole lies outside these sums (Gershgorin).
         """
-        spring, bodies = world.table(Spring), world.bodies
+        spring, bodies = state.table(Spring), state.bodies
         stiff, damped = (np.zeros(len(bodies.inverse_mass)) for _ in range(2))
         # What overflows is a rate beyond all bounds, and so is infinity that nothing can be turned by.
         with np.errstate(over="ignore", invalid="ignore"):
@@ -111,30 +94,31 @@ class SpringSystem(ForceSystem):
         share = 0.5 if fixed.all() else 1.0  # no pair of bodies moves against each other
         return np.maximum(np.sqrt(share * stiff), share * damped)
 
-    def strongest_rate(self, world: World) -> float:
+    def strongest_rate(self, state: State) -> float:
         """Return the largest of :meth:`rates`."""
-        return float(self.rates(world).max())
+        return float(self.rates(state).max())
 
-    def may_be_singular(self, world: World) -> bool:
-        """Whether there is energy enough to press a spring together to nothing, where it has no direction.
+    def why_singular(self, state: State) -> str | None:
+        """Say so where energy could press a spring together to nothing, where it has no direction.
 
         Reckoned with a margin of four: what moves, what springs store, and a fall by twice a spring's length.
         """
-        spring, bodies = world.table(Spring), world.bodies
+        spring, bodies = state.table(Spring), state.bodies
         rest, stiffness = spring["rest_length"][self._rows], spring["stiffness"][self._rows]
         rigid = (rest > 0.0) & (stiffness > 0.0)
-        if not rigid.any() or (self._lengths(world)[rigid] < _NOTHING * rest[rigid]).any():
-            return False  # or it is singular already, and no step leads away from there but a fixed one
+        if not rigid.any() or (self._lengths(state)[rigid] < _NOTHING * rest[rigid]).any():
+            return None  # or it is singular already, and no step leads away from there but a fixed one
         free = bodies.inverse_mass > 0.0
-        mass, linear = world.table(Mass)["mass"][free], world.table(Velocity)["linear"][free]
-        available = 0.5 * float(mass @ np.square(linear).sum(axis=1)) + self.potential_energy(world)
-        if world.physics.gravity_mode == "linear":
-            available += 2.0 * float(mass.sum()) * world.physics.gravity.magnitude * float(rest.max())
-        return available > 0.25 * float((0.5 * stiffness * rest * rest)[rigid].min())
+        mass, linear = state.table(Mass)["mass"][free], state.table(Velocity)["linear"][free]
+        available = 0.5 * float(mass @ np.square(linear).sum(axis=1)) + self.potential_energy(state)
+        if state.physics.gravity_mode == "linear":
+            available += 2.0 * float(mass.sum()) * state.physics.gravity.magnitude * float(rest.max())
+        enough = available > 0.25 * float((0.5 * stiffness * rest * rest)[rigid].min())
+        return "a spring may be pressed together to nothing" if enough else None
 
-    def _lengths(self, world: World) -> NDArray[np.float64]:
+    def _lengths(self, state: State) -> NDArray[np.float64]:
         """Return how long every spring is [m]."""
-        spring, transform = world.table(Spring), world.table(Transform)
+        spring, transform = state.table(Spring), state.table(Transform)
         apart = np.zeros((len(self._rows), 2))
         for end, anchors, sign in ((self._a, "anchor_a", -1.0), (self._b, "anchor_b", 1.0)):
             angle, anchor = transform["angle"][end], spring[anchors][self._rows]
@@ -143,23 +127,24 @@ class SpringSystem(ForceSystem):
             apart += sign * (transform["position"][end] + np.stack((x, y), axis=1))
         return np.hypot(apart[:, 0], apart[:, 1])
 
-    def settings(self, world: World) -> bytes:
+    def settings(self, state: State) -> bytes:
         """Return every number of every spring."""
-        spring = world.table(Spring)
+        spring = state.table(Spring)
         columns = ("anchor_a", "anchor_b", "rest_length", "stiffness", "damping")
         return b"".join(spring[column][self._rows].tobytes() for column in columns)
 
-    def couples(self, world: World) -> NDArray[np.int64]:
+    def couples(self, state: State) -> NDArray[np.int64]:
         """Return the bodies at both ends of every spring."""
         return np.stack((self._a, self._b), axis=1)
 
-    def sees_velocity(self, world: World) -> bool:
+    def sees_velocity(self, state: State) -> bool:
         """Whether a spring has a damper."""
-        return bool((world.table(Spring)["damping"][self._rows] > 0.0).any())
+        return bool((state.table(Spring)["damping"][self._rows] > 0.0).any())
 
-    def potential_energy(self, world: World) -> float:
+    def potential_energy(self, state: State) -> float:
         """Return the sum of k (length - rest_length)^2 / 2 [J]."""
-        spring, transform = world.table(Spring), world.table(Transform)
+        spring, transform = state.table(Spring), state.table(Transform)
+        state.compile((springs.spring_potential,))
         return springs.spring_potential(
             transform["position"], transform["angle"], self._rows, self._a, self._b,
             spring["anchor_a"], spring["anchor_b"], spring["rest_length"], spring["stiffness"],

@@ -8,9 +8,9 @@ from physicslab.systems.drag import DragSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
-from physicslab.systems.schedule import System
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.spring import SpringSystem
+from physicslab.systems.system import System
 from physicslab.systems.trail import TrailSystem
 
 __all__ = ["PHYSICS_SYSTEMS", "standard_systems"]

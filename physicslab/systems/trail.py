@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Trail, Transform
-from physicslab.systems.schedule import Stage, System, at
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.state.state import State
+from physicslab.systems.system import Stage, System, at
 
 __all__ = ["TrailSystem"]
 
@@ -43,34 +39,34 @@ class TrailSystem(System):
         self._length = np.zeros(0)
         self._now = 0.0
 
-    def attach(self, world: World) -> None:
+    def attach(self, state: State) -> None:
         """Drop the records of bodies that are gone, and begin those of new ones where they are now."""
-        batch = world.batch(*self.needs)
+        batch = state.batch(*self.needs)
         known = np.isin(batch.entities, self.entities)
         old = np.searchsorted(self.entities, batch.entities[known])
         place, time = np.zeros((len(batch), SAMPLES, 2)), np.full((len(batch), SAMPLES), np.nan)
         head = np.zeros(len(batch), np.int64)
         place[known], time[known], head[known] = self._place[old], self._time[old], self._head[old]
-        place[~known, 0] = world.table(Transform)["position"][batch.rows[~known]]
-        time[~known, 0] = world.time
+        place[~known, 0] = state.table(Transform)["position"][batch.rows[~known]]
+        time[~known, 0] = state.time
         self.entities, self._rows = batch.entities, batch.rows
         self._place, self._time, self._head = place, time, head
-        self._length = world.table(Trail)["length"][batch.rows]
+        self._length = state.table(Trail)["length"][batch.rows]
 
     @at(Stage.FINISH)
-    def record(self, world: World, h: float) -> None:
+    def record(self, state: State, h: float) -> None:
         """Note where the bodies are at the end of the step."""
-        now = world.time + h
+        now = state.time + h
         if now <= self._now:  # the clock was set back: what was recorded lies in the future
             self._time[:] = np.nan
         self._now = now
-        self._length = world.table(Trail)["length"][self._rows]
+        self._length = state.table(Trail)["length"][self._rows]
         every = np.arange(len(self._rows))
         newest, before = self._time[every, self._head], self._time[every, self._head - 1]
         gap = (1.0 - 1e-9) * self._length / (SAMPLES - 2)
         due = (newest - before >= gap) | (np.isfinite(newest) & np.isnan(before))
         self._head[due] = (self._head[due] + 1) % SAMPLES
-        self._place[every, self._head] = world.table(Transform)["position"][self._rows]
+        self._place[every, self._head] = state.table(Transform)["position"][self._rows]
         self._time[every, self._head] = now
 
     def paths(self, every: int = 1) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -10,9 +10,9 @@ import numpy as np
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points
 
-__all__ = ["REACH", "carry_over", "part", "promote", "sort_loose"]
+__all__ = ["ACTIVATION_RATIO", "activate", "carry_over", "partition", "sort_scalar"]
 
-REACH = 1.02
+ACTIVATION_RATIO = 1.02
 """So many times the sum of their radii apart, two discs are near enough to have points."""
 _FREE = -1
 
@@ -36,7 +36,9 @@ def _mask(count: int) -> int:
 @inlined
 def _is_remembered(manifold: Manifold) -> bool:
     """Whether anything is known of a pair but that it is near."""
-    return bool((manifold.count != 0) | (manifold.struck != 0) | (manifold.found != 0) | (manifold.lane >= 0))
+    return bool(
+        (manifold.count != 0) | (manifold.impact_count != 0) | (manifold.found != 0) | (manifold.slot >= 0)
+    )
 
 
 @inlined
@@ -67,10 +69,11 @@ def _note_known(manifolds: Manifolds, count: int, table: Rows) -> None:
 
 
 @allocating_kernel
-def part(
+def partition(
     couples: Couples, found: int, pairs: Pairs, walls: int,
     kind: Rows, radius: Numbers, inverse_mass: Numbers, entities: Rows,
-    manifolds: Manifolds, known: int, stale: bool, table: Rows, idle: Couples, reach: Numbers,
+    manifolds: Manifolds, known: int, stale: bool, table: Rows, proximity: Couples,
+    activation_distance: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
     """Part the pairs that were found: discs of which nothing is remembered lie idle, all others get records.
 
@@ -88,7 +91,7 @@ def part(
             old = manifolds[q]
             if _is_remembered(old):
                 remembered[old.a] = remembered[old.b] = True
-    kept, lying = walls, 0
+    kept, proximity_count = walls, 0
     for k in range(found):
         one, other = np.int64(couples[2 * k]), np.int64(couples[2 * k + 1])
         a, b = min(one, other), max(one, other)
@@ -98,14 +101,14 @@ def part(
             not (remembered[a] & remembered[b])
             or _known(table, mask, manifolds, entities[a], entities[b], -1) < 0
         ):
-            idle[2 * lying], idle[2 * lying + 1] = a, b
-            reach[lying] = REACH * (radius[a] + radius[b])
-            lying += 1
+            proximity[2 * proximity_count], proximity[2 * proximity_count + 1] = a, b
+            activation_distance[proximity_count] = ACTIVATION_RATIO * (radius[a] + radius[b])
+            proximity_count += 1
             continue
         pairs[kept, 0], pairs[kept, 1], pairs[kept, 2] = a, b, -1
         kept += 1
     _sort_pairs(pairs, walls, kept, n)
-    return kept, lying
+    return kept, proximity_count
 
 
 @allocating
@@ -158,7 +161,7 @@ def carry_over(
 def _make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
     """Let a record tell of nothing that was."""
     manifold = manifolds[p]
-    manifold.count, manifold.found, manifold.struck, manifold.lane, manifold.size = 0, 0, 0, -1, 0.0
+    manifold.count, manifold.found, manifold.impact_count, manifold.slot, manifold.size = 0, 0, 0, -1, 0.0
     for j in range(2 * p, 2 * p + 2):
         point = points[j]
         point.feature = 0
@@ -166,45 +169,51 @@ def _make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
         point.approach_speed = point.impact_normal = point.impact_tangent = 0.0
 
 
-@allocating_kernel
-def promote(
-    idle: Couples, reach: Numbers, lying: int, manifolds: Manifolds, points: Points, count: int,
-    loose: Rows, loose_count: int, entities: Rows, position: Vectors, linear: Vectors, h: float, fall: float,
+@allocating
+def activate(
+    proximity: Couples, activation_distance: Numbers, proximity_count: int, manifolds: Manifolds,
+    points: Points, count: int,
+    scalar: Rows, scalar_count: int, entities: Rows, position: Vectors, linear: Vectors, h: float,
+    speculative_margin: float,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Give records to the idle pairs that may touch within ``h`` seconds from now or before.
 
     Returns how many pairs lie idle, have records and are loose. Records come after those that are there, and
-    their numbers into ``loose`` in the order of rows: so it does not matter when a pair got its own.
+    their numbers into ``scalar`` in the order of rows: so it does not matter when a pair got its own.
     """
-    if lying == 0:
-        return lying, count, loose_count
-    near = np.empty(lying, np.int64)
+    if proximity_count == 0:
+        return proximity_count, count, scalar_count
+    near = np.empty(proximity_count, np.int64)
     came = 0
     # Flat, and by numbers without a sign: else every index is multiplied by a stride and looked at.
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)
-    for k in range(lying):
-        xa, xb = 2 * np.uint64(idle[2 * k]), 2 * np.uint64(idle[2 * k + 1])
+    for k in range(proximity_count):
+        xa, xb = 2 * np.uint64(proximity[2 * k]), 2 * np.uint64(proximity[2 * k + 1])
         ya, yb = xa + np.uint64(1), xb + np.uint64(1)
         dx, dy = places[xb] - places[xa], places[yb] - places[ya]
         moved = abs(velocities[xb] - velocities[xa]) + abs(velocities[yb] - velocities[ya])
-        far = reach[k] + moved * h + fall
+        far = activation_distance[k] + moved * h + speculative_margin
         near[came] = k  # kept by counting: which pair comes near cannot be foretold
         came += not (dx * dx + dy * dy > far * far)
     if came == 0:
-        return lying, count, loose_count
+        return proximity_count, count, scalar_count
     for k in range(came):
         p = count + k
         manifold = manifolds[p]
-        a, b = np.int64(idle[2 * near[k]]), np.int64(idle[2 * near[k] + 1])
+        a, b = np.int64(proximity[2 * near[k]]), np.int64(proximity[2 * near[k] + 1])
         _make_blank(manifolds, points, p)
         manifold.a, manifold.b, manifold.wall = a, b, -1
         manifold.entity_a, manifold.entity_b = entities[a], entities[b]
-        loose[loose_count + k] = p
+        scalar[scalar_count + k] = p
     for k in range(came - 1, -1, -1):
-        lying, to = lying - 1, near[k]
-        idle[2 * to], idle[2 * to + 1], reach[to] = idle[2 * lying], idle[2 * lying + 1], reach[lying]
-    _merge_tail(manifolds, loose, loose_count, loose_count + came, len(entities))
-    return lying, count + came, loose_count + came
+        proximity_count, to = proximity_count - 1, near[k]
+        proximity[2 * to], proximity[2 * to + 1], activation_distance[to] = (
+            proximity[2 * proximity_count],
+            proximity[2 * proximity_count + 1],
+            activation_distance[proximity_count],
+        )
+    _merge_tail(manifolds, scalar, scalar_count, scalar_count + came, len(entities))
+    return proximity_count, count + came, scalar_count + came
 
 
 @inlined
@@ -215,12 +224,12 @@ def _rank(manifolds: Manifolds, p: int, rows: int) -> int:
 
 
 @allocating
-def _merge_tail(manifolds: Manifolds, loose: Rows, start: int, count: int, rows: int) -> None:
+def _merge_tail(manifolds: Manifolds, scalar: Rows, start: int, count: int, rows: int) -> None:
     """Put the numbers from ``start`` on in their places among those before, which are in order."""
     many = count - start
     tail, ranks = np.empty(many, np.int64), np.empty(many, np.int64)
     for k in range(many):
-        tail[k] = loose[start + k]
+        tail[k] = scalar[start + k]
         ranks[k] = _rank(manifolds, tail[k], rows)
     gap = many // 2  # Shell's sort: a few as a rule, all pairs of a world at its beginning
     while gap > 0:
@@ -233,18 +242,18 @@ def _merge_tail(manifolds: Manifolds, loose: Rows, start: int, count: int, rows:
         gap = 1 if gap == 2 else (gap * 5) // 11
     before, to = start - 1, count - 1
     for k in range(many - 1, -1, -1):
-        while before >= 0 and _rank(manifolds, loose[before], rows) > ranks[k]:
-            loose[to] = loose[before]
+        while before >= 0 and _rank(manifolds, scalar[before], rows) > ranks[k]:
+            scalar[to] = scalar[before]
             to, before = to - 1, before - 1
-        loose[to] = tail[k]
+        scalar[to] = tail[k]
         to -= 1
 
 
 @kernel
-def sort_loose(manifolds: Manifolds, loose: Rows, count: int, rows: int) -> None:
+def sort_scalar(manifolds: Manifolds, scalar: Rows, count: int, rows: int) -> None:
     """Put loose pairs in the order of rows and walls; as a rule all but the last few are."""
     start = min(count, 1)
-    while start < count and _rank(manifolds, loose[start - 1], rows) < _rank(manifolds, loose[start], rows):
+    while start < count and _rank(manifolds, scalar[start - 1], rows) < _rank(manifolds, scalar[start], rows):
         start += 1
     if start < count:
-        _merge_tail(manifolds, loose, start, count, rows)
+        _merge_tail(manifolds, scalar, start, count, rows)

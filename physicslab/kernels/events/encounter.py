@@ -38,20 +38,20 @@ def _wall_gap(
 
 @inlined
 def meeting_of(
-    manifold: Manifold, flights: Vectors, angle: Numbers, kind: Rows, radius: Numbers,
+    manifold: Manifold, paths: Vectors, angle: Numbers, kind: Rows, radius: Numbers,
     width: Numbers, height: Numbers, bounds: Numbers, now: float, low: float, span: float, quiet: float,
 ) -> tuple[float, int]:  # fmt: skip
     """Return in how many seconds from ``now + low`` a pair meets, and along which normal of two boxes."""
     a, b = manifold.a, manifold.b
     if manifold.wall >= 0:
-        x, x_low, y, y_low = place(flights, b, now, low)
-        vx, vx_low, vy, vy_low = velocity(flights, b, now, low)
+        x, x_low, y, y_low = place(paths, b, now, low)
+        vx, vx_low, vy, vy_low = velocity(paths, b, now, low)
         gap, along_x, sign = _wall_gap(manifold, x, y, angle, kind, radius, width, height, bounds)
         least = _ROUNDING * (abs(vx) + abs(vy)) + quiet
         if along_x:
-            return meet_line(gap + sign * x_low, sign * (vx + vx_low), sign * flights[b, 8], least), 0
-        return meet_line(gap + sign * y_low, sign * (vy + vy_low), sign * flights[b, 9], least), 0
-    dx, dy, ux, uy, wx, wy = seen_from(flights, a, b, now, low)
+            return meet_line(gap + sign * x_low, sign * (vx + vx_low), sign * paths[b, 8], least), 0
+        return meet_line(gap + sign * y_low, sign * (vy + vy_low), sign * paths[b, 9], least), 0
+    dx, dy, ux, uy, wx, wy = seen_from(paths, a, b, now, low)
     half_ax, half_ay, half_bx, half_by = 0.5 * width[a], 0.5 * height[a], 0.5 * width[b], 0.5 * height[b]
     if kind[a] == 1 and kind[b] == 1:
         return meet_circle_circle(dx, dy, ux, uy, wx, wy, radius[a] + radius[b], span, quiet), 0
@@ -72,17 +72,17 @@ def meeting_of(
 
 @inlined
 def gap_of(
-    manifold: Manifold, flights: Vectors, angle: Numbers, kind: Rows, radius: Numbers,
+    manifold: Manifold, paths: Vectors, angle: Numbers, kind: Rows, radius: Numbers,
     width: Numbers, height: Numbers, bounds: Numbers,
 ) -> tuple[float, float]:  # fmt: skip
     """Return how far apart a pair is when it begins to fly, and the size of the smaller body [m]."""
     a, b = manifold.a, manifold.b
     size_b = 2.0 * radius[b] if kind[b] == 1 else min(width[b], height[b])
     if manifold.wall >= 0:
-        x, y = flights[b, 0], flights[b, 2]
+        x, y = paths[b, 0], paths[b, 2]
         return _wall_gap(manifold, x, y, angle, kind, radius, width, height, bounds)[0], size_b
     size = min(size_b, 2.0 * radius[a] if kind[a] == 1 else min(width[a], height[a]))
-    dx, dy = flights[b, 0] - flights[a, 0], flights[b, 2] - flights[a, 2]
+    dx, dy = paths[b, 0] - paths[a, 0], paths[b, 2] - paths[a, 2]
     half_ax, half_ay, half_bx, half_by = 0.5 * width[a], 0.5 * height[a], 0.5 * width[b], 0.5 * height[b]
     ca, sa, cb, sb = math.cos(angle[a]), math.sin(angle[a]), math.cos(angle[b]), math.sin(angle[b])
     if kind[a] == 1 and kind[b] == 1:

@@ -11,30 +11,21 @@ import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.events.encounter import gap_of, meeting_of, touch_pair
-from physicslab.kernels.events.flight import begin, fly_to, place, seen_from
-from physicslab.kernels.events.flight_impact import strike_flights, write_impact
+from physicslab.kernels.events.flight import advance_to, begin, place, seen_from
+from physicslab.kernels.events.flight_impact import resolve_ballistic_impacts
 from physicslab.kernels.narrow.contact import effective_masses, mix
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.records import Impacts, Manifold, Manifolds, Point, Points
+from physicslab.kernels.solver.impact_log import write_impact
 
 __all__ = [
-    "CARRIED",
-    "CROWDED",
-    "DEEP",
-    "DONE",
-    "FIXED",
-    "FLYING",
-    "OVERLAP",
-    "REST",
-    "RESTED",
-    "RESTING",
-    "WOKEN",
-    "fly",
-]
+    "BALLISTIC", "CAME_TO_REST", "DEEP", "DONE", "FIXED", "IN_CONTACT", "KINEMATIC", "OVERLAP", "REST",
+    "TOO_MANY_IMPACTS", "WOKEN", "run_events",
+]  # fmt: skip
 
-FIXED, FLYING, RESTING, CARRIED = 0, 1, 2, 3
+FIXED, BALLISTIC, IN_CONTACT, KINEMATIC = 0, 1, 2, 3
 """What a row does: stays, flies, rests on others (and is not moved here), moves whatever strikes it."""
-DONE, RESTED, WOKEN, OVERLAP, CROWDED = 0, 1, 2, 3, 4
+DONE, CAME_TO_REST, WOKEN, OVERLAP, TOO_MANY_IMPACTS = 0, 1, 2, 3, 4
 """Why the flights ended: the time was over; a body came to rest; one that rested was struck; bodies overlap
 deeply; there were too many impacts within one step."""
 REST = 1e-3
@@ -57,44 +48,44 @@ def _rests(manifold: Manifold, mode: Rows, approach: float, pull: float, slowest
     """Say what a meeting is: DONE for a bounce, else why the flights end; mark who rests or is woken."""
     a, b = manifold.a, manifold.b
     limit = -pull * slowest
-    if mode[a] == RESTING or mode[b] == RESTING:
-        kind = RESTED if pull < 0.0 and approach <= limit else WOKEN
-        if kind == RESTED:
-            _lay_down(mode, a, b)
+    if mode[a] == IN_CONTACT or mode[b] == IN_CONTACT:
+        kind = CAME_TO_REST if pull < 0.0 and approach <= limit else WOKEN
+        if kind == CAME_TO_REST:
+            _mark_in_contact(mode, a, b)
         else:
-            mode[a] = FLYING if mode[a] == RESTING else mode[a]
-            mode[b] = FLYING if mode[b] == RESTING else mode[b]
+            mode[a] = BALLISTIC if mode[a] == IN_CONTACT else mode[a]
+            mode[b] = BALLISTIC if mode[b] == IN_CONTACT else mode[b]
         return kind
     if not (pull < 0.0 and manifold.restitution * approach <= limit):
         return DONE
-    _lay_down(mode, a, b)
-    return RESTED
+    _mark_in_contact(mode, a, b)
+    return CAME_TO_REST
 
 
 @inlined
-def _lay_down(mode: Rows, a: int, b: int) -> None:
+def _mark_in_contact(mode: Rows, a: int, b: int) -> None:
     """Let those of two rows that fly rest."""
     for i in (a, b):
-        if mode[i] == FLYING:
-            mode[i] = RESTING
+        if mode[i] == BALLISTIC:
+            mode[i] = IN_CONTACT
 
 
 @inlined
 def _first(due: Vectors, count: int) -> int:
     """Return the pair that meets first, at equal times the one struck longest ago; -1 if none meets."""
-    best, time, low, struck = -1, math.inf, 0.0, 0.0
+    best, time, low, impact_count = -1, math.inf, 0.0, 0.0
     for p in range(count):
         if due[p, 0] > time or due[p, 0] == math.inf:
             continue
         earlier = due[p, 0] < time or due[p, 1] < low
-        if earlier or (due[p, 1] == low and due[p, 4] < struck):
-            best, time, low, struck = p, due[p, 0], due[p, 1], due[p, 4]
+        if earlier or (due[p, 1] == low and due[p, 4] < impact_count):
+            best, time, low, impact_count = p, due[p, 0], due[p, 1], due[p, 4]
     return best
 
 
 @inlined
 def _begin_all(
-    manifolds: Manifolds, count: int, flights: Vectors, mode: Rows, due: Vectors,
+    manifolds: Manifolds, count: int, paths: Vectors, mode: Rows, due: Vectors,
     position: Vectors, angle: Numbers, linear: Vectors, kind: Rows, radius: Numbers,
     width: Numbers, height: Numbers, restitution: Numbers, friction: Numbers,
     bounds: Numbers, bounds_restitution: float, bounds_friction: float,
@@ -102,63 +93,63 @@ def _begin_all(
     """Let all flights begin; return OVERLAP if some overlap too deeply to fly, and which speed is none."""
     why, fastest = DONE, 0.0
     for i in range(len(mode)):
-        begin(flights, i, position[i, 0], position[i, 1], linear[i, 0], linear[i, 1])
+        begin(paths, i, position[i, 0], position[i, 1], linear[i, 0], linear[i, 1])
         fastest = max(fastest, abs(linear[i, 0]) + abs(linear[i, 1]))
     for p in range(count):
         manifold = manifolds[p]
         a, b = manifold.a, manifold.b
         due[p, 0], due[p, 1], due[p, 2], due[p, 3], due[p, 4] = math.inf, 0.0, -math.inf, 0.0, -1.0
         mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
-        if mode[a] == FLYING or mode[b] == FLYING:
-            gap, size = gap_of(manifold, flights, angle, kind, radius, width, height, bounds)
+        if mode[a] == BALLISTIC or mode[b] == BALLISTIC:
+            gap, size = gap_of(manifold, paths, angle, kind, radius, width, height, bounds)
             if gap < -DEEP * size:
                 why = OVERLAP
-                _lay_down(mode, a, b)
+                _mark_in_contact(mode, a, b)
     return why, _QUIET * fastest
 
 
 @inlined
 def _meet(
-    p: int, manifold: Manifold, one: Point, two: Point, points: Points, flights: Vectors, mode: Rows,
+    p: int, manifold: Manifold, one: Point, two: Point, points: Points, paths: Vectors, mode: Rows,
     face: Rows, due: Vectors, struck_at: Vectors, angle: Numbers, angular: Numbers, kind: Rows,
     radius: Numbers, width: Numbers, height: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
     bounds: Numbers, log: Impacts, number: int, start: float, now: float, low: float, dt: float,
 ) -> tuple[int, int]:  # fmt: skip
     """Do what comes of a meeting; return why flights end, DONE if they go on, and how many impacts it was."""
     a, b = manifold.a, manifold.b
-    dx, dy, ux, uy, wx, wy = seen_from(flights, a, b, now, low)
-    x, _, y, _ = place(flights, b, now, low)
+    dx, dy, ux, uy, wx, wy = seen_from(paths, a, b, now, low)
+    x, _, y, _ = place(paths, b, now, low)
     touch_pair(manifold, one, two, face[p], x, y, dx, dy, angle, kind, radius, width, height, bounds)
     effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
     nx, ny = manifold.normal_x, manifold.normal_y
     approach = -(ux * nx + uy * ny)
-    was_resting = mode[a] == RESTING or mode[b] == RESTING
+    was_resting = mode[a] == IN_CONTACT or mode[b] == IN_CONTACT
     why = _rests(manifold, mode, approach, wx * nx + wy * ny, REST * dt)
     if was_resting:
         manifold.count = 0
         return why, 0
     if mode[a] != FIXED:
-        fly_to(flights, a, angle, angular, now, low)
+        advance_to(paths, a, angle, angular, now, low)
     if mode[b] != FIXED:
-        fly_to(flights, b, angle, angular, now, low)
+        advance_to(paths, b, angle, angular, now, low)
     due[p, 3] = due[p, 3] + 1.0 if now - due[p, 2] <= _SAME * dt else 0.0
     due[p, 2], due[p, 4] = now, float(number)
     e = manifold.restitution
-    if why == RESTED or (e < 1.0 and due[p, 3] > _REPEATS):
+    if why == CAME_TO_REST or (e < 1.0 and due[p, 3] > _REPEATS):
         manifold.restitution = 0.0
     normal, tangent = one.impact_normal + two.impact_normal, one.impact_tangent + two.impact_tangent
-    strike_flights(manifold, one, two, flights, angular, inverse_mass, inverse_inertia)
+    resolve_ballistic_impacts(manifold, one, two, paths, angular, inverse_mass, inverse_inertia)
     manifold.restitution, manifold.count, manifold.found = e, 0, 0
     struck_at[p, 0], struck_at[p, 1] = x, y
     if approach <= 0.0:
         return why, 0
-    write_impact(log, number, manifold, one, two, start + (now + low), x, y, approach, normal, tangent)
+    write_impact(log, number, manifold, one, two, one, start + (now + low), x, y, approach, normal, tangent)
     return why, 1
 
 
 @kernel
-def fly(
-    manifolds: Manifolds, points: Points, count: int, flights: Vectors, mode: Rows, face: Rows, due: Vectors,
+def run_events(
+    manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, due: Vectors,
     struck_at: Vectors, position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers,
     kind: Rows, radius: Numbers, width: Numbers, height: Numbers, restitution: Numbers, friction: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers,
@@ -167,7 +158,7 @@ def fly(
 ) -> tuple[float, int, int, int]:  # fmt: skip
     """Let bodies fly and bounce for ``span`` seconds, or until one comes to rest or is woken.
 
-    ``flights`` (rows, 12) holds the accelerations [m/s^2] in columns 8 and 9, ``mode`` what each row does;
+    ``paths`` (rows, 12) holds the accelerations [m/s^2] in columns 8 and 9, ``mode`` what each row does;
     ``face`` (pairs,) and ``due`` (pairs, 5) are work space; ``struck_at`` (pairs, 2) is told where B was at
     the pair's last impact [m]. Impacts are logged from number ``logged`` on, with times from ``start`` [s]; a
     step has ``dt`` seconds. ``urgent`` is a pair that meets now, before all others, or -1.
@@ -179,15 +170,15 @@ def fly(
     """
     now, low, impacts, window, within, p = 0.0, 0.0, 0, 0.0, 0, -1
     why, quiet = _begin_all(
-        manifolds, count, flights, mode, due, position, angle, linear, kind, radius, width, height,
+        manifolds, count, paths, mode, due, position, angle, linear, kind, radius, width, height,
         restitution, friction, bounds, bounds_restitution, bounds_friction,
     )  # fmt: skip
     if why == OVERLAP:
         return 0.0, 0, why, p
     first, second = -1, -1
     while why == DONE:
-        _ask(
-            manifolds, count, first, second, flights, mode, face, due, angle, kind, radius, width, height,
+        _predict_pair(
+            manifolds, count, first, second, paths, mode, face, due, angle, kind, radius, width, height,
             bounds, now, low, span - now, quiet,
         )  # fmt: skip
         p = _first(due, count)
@@ -200,26 +191,26 @@ def fly(
         within = within + 1 if now < window + dt else 1
         window = window if now < window + dt else now
         if within > _MOST:
-            why = CROWDED
+            why = TOO_MANY_IMPACTS
             break
         first, second = manifolds[p].a, manifolds[p].b
         why, new = _meet(
-            p, manifolds[p], points[2 * p], points[2 * p + 1], points, flights, mode, face, due, struck_at,
+            p, manifolds[p], points[2 * p], points[2 * p + 1], points, paths, mode, face, due, struck_at,
             angle, angular, kind, radius, width, height, inverse_mass, inverse_inertia, bounds,
             log, logged + impacts, start, now, low, dt,
         )  # fmt: skip
         impacts += new
     for i in range(len(mode)):
         if mode[i] != FIXED:
-            fly_to(flights, i, angle, angular, now, low)
-            position[i, 0], position[i, 1] = flights[i, 0], flights[i, 2]
-            linear[i, 0], linear[i, 1] = flights[i, 4], flights[i, 6]
+            advance_to(paths, i, angle, angular, now, low)
+            position[i, 0], position[i, 1] = paths[i, 0], paths[i, 2]
+            linear[i, 0], linear[i, 1] = paths[i, 4], paths[i, 6]
     return now + low, impacts, why, p
 
 
 @inlined
-def _ask(
-    manifolds: Manifolds, count: int, first: int, second: int, flights: Vectors, mode: Rows, face: Rows,
+def _predict_pair(
+    manifolds: Manifolds, count: int, first: int, second: int, paths: Vectors, mode: Rows, face: Rows,
     due: Vectors, angle: Numbers, kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     bounds: Numbers, now: float, low: float, span: float, quiet: float,
 ) -> None:  # fmt: skip
@@ -228,14 +219,16 @@ def _ask(
         manifold = manifolds[p]
         a, b = manifold.a, manifold.b
         # What stays, or moves whatever strikes it, may be struck often: that changes nothing for the others.
-        struck = (mode[a] == FLYING and a in (first, second)) or (mode[b] == FLYING and b in (first, second))
-        if first >= 0 and not struck:
+        impact_count = (mode[a] == BALLISTIC and a in (first, second)) or (
+            mode[b] == BALLISTIC and b in (first, second)
+        )
+        if first >= 0 and not impact_count:
             continue
-        if mode[a] != FLYING and mode[b] != FLYING:
+        if mode[a] != BALLISTIC and mode[b] != BALLISTIC:
             due[p, 0] = math.inf
             continue
         t, face[p] = meeting_of(
-            manifold, flights, angle, kind, radius, width, height, bounds, now, low, span, quiet
+            manifold, paths, angle, kind, radius, width, height, bounds, now, low, span, quiet
         )
         if t < math.inf:
             due[p, 0], due[p, 1] = add(now, low, t)

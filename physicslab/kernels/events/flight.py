@@ -8,7 +8,7 @@ evaluated, and never added up.
 from physicslab.kernels import Numbers, Vectors, inlined
 from physicslab.kernels.ode.compensated import add_pair, multiply
 
-__all__ = ["FIELDS", "begin", "fly_to", "place", "push", "seen_from", "velocity"]
+__all__ = ["FIELDS", "advance_to", "begin", "place", "push", "seen_from", "velocity"]
 
 FIELDS = 12
 """Numbers of a flight."""
@@ -21,71 +21,71 @@ _X, _VX, _A, _T = (
 
 
 @inlined
-def begin(flights: Vectors, i: int, x: float, y: float, vx: float, vy: float) -> None:
+def begin(paths: Vectors, i: int, x: float, y: float, vx: float, vy: float) -> None:
     """Let row i fly from time 0; its acceleration stays."""
-    flights[i, _X], flights[i, _X + 1], flights[i, _X + 2], flights[i, _X + 3] = x, 0.0, y, 0.0
-    flights[i, _VX], flights[i, _VX + 1], flights[i, _VX + 2], flights[i, _VX + 3] = vx, 0.0, vy, 0.0
-    flights[i, _T], flights[i, _T + 1] = 0.0, 0.0
+    paths[i, _X], paths[i, _X + 1], paths[i, _X + 2], paths[i, _X + 3] = x, 0.0, y, 0.0
+    paths[i, _VX], paths[i, _VX + 1], paths[i, _VX + 2], paths[i, _VX + 3] = vx, 0.0, vy, 0.0
+    paths[i, _T], paths[i, _T + 1] = 0.0, 0.0
 
 
 @inlined
-def _flown(flights: Vectors, i: int, now: float, low: float) -> float:
+def _advanced(paths: Vectors, i: int, now: float, low: float) -> float:
     """Return how long row i has flown at the time ``now + low`` [s]."""
-    flown: float = (now - flights[i, _T]) + (low - flights[i, _T + 1])
-    return flown
+    advanced: float = (now - paths[i, _T]) + (low - paths[i, _T + 1])
+    return advanced
 
 
 @inlined
-def place(flights: Vectors, i: int, now: float, low: float) -> tuple[float, float, float, float]:
+def place(paths: Vectors, i: int, now: float, low: float) -> tuple[float, float, float, float]:
     """Return where row i is: x and its remainder, y and its remainder [m]."""
-    s = _flown(flights, i, now, low)
-    dx = s * (flights[i, _VX] + (flights[i, _VX + 1] + 0.5 * s * flights[i, _A]))
-    dy = s * (flights[i, _VX + 2] + (flights[i, _VX + 3] + 0.5 * s * flights[i, _A + 1]))
-    x, x_low = add_pair(flights[i, _X], flights[i, _X + 1], dx, 0.0)
-    y, y_low = add_pair(flights[i, _X + 2], flights[i, _X + 3], dy, 0.0)
+    s = _advanced(paths, i, now, low)
+    dx = s * (paths[i, _VX] + (paths[i, _VX + 1] + 0.5 * s * paths[i, _A]))
+    dy = s * (paths[i, _VX + 2] + (paths[i, _VX + 3] + 0.5 * s * paths[i, _A + 1]))
+    x, x_low = add_pair(paths[i, _X], paths[i, _X + 1], dx, 0.0)
+    y, y_low = add_pair(paths[i, _X + 2], paths[i, _X + 3], dy, 0.0)
     return x, x_low, y, y_low
 
 
 @inlined
-def velocity(flights: Vectors, i: int, now: float, low: float) -> tuple[float, float, float, float]:
+def velocity(paths: Vectors, i: int, now: float, low: float) -> tuple[float, float, float, float]:
     """Return how fast row i is: vx and its remainder, vy and its remainder [m/s]."""
-    s = _flown(flights, i, now, low)
-    vx, vx_low = add_pair(flights[i, _VX], flights[i, _VX + 1], s * flights[i, _A], 0.0)
-    vy, vy_low = add_pair(flights[i, _VX + 2], flights[i, _VX + 3], s * flights[i, _A + 1], 0.0)
+    s = _advanced(paths, i, now, low)
+    vx, vx_low = add_pair(paths[i, _VX], paths[i, _VX + 1], s * paths[i, _A], 0.0)
+    vy, vy_low = add_pair(paths[i, _VX + 2], paths[i, _VX + 3], s * paths[i, _A + 1], 0.0)
     return vx, vx_low, vy, vy_low
 
 
 @inlined
 def seen_from(
-    flights: Vectors, a: int, b: int, now: float, low: float
+    paths: Vectors, a: int, b: int, now: float, low: float
 ) -> tuple[float, float, float, float, float, float]:
     """Return place, velocity and acceleration of row b against row a."""
-    ax, ax_low, ay, ay_low = place(flights, a, now, low)
-    bx, bx_low, by, by_low = place(flights, b, now, low)
-    vax, vax_low, vay, vay_low = velocity(flights, a, now, low)
-    vbx, vbx_low, vby, vby_low = velocity(flights, b, now, low)
+    ax, ax_low, ay, ay_low = place(paths, a, now, low)
+    bx, bx_low, by, by_low = place(paths, b, now, low)
+    vax, vax_low, vay, vay_low = velocity(paths, a, now, low)
+    vbx, vbx_low, vby, vby_low = velocity(paths, b, now, low)
     return (
         (bx - ax) + (bx_low - ax_low), (by - ay) + (by_low - ay_low),
         (vbx - vax) + (vbx_low - vax_low), (vby - vay) + (vby_low - vay_low),
-        flights[b, _A] - flights[a, _A], flights[b, _A + 1] - flights[a, _A + 1],
+        paths[b, _A] - paths[a, _A], paths[b, _A + 1] - paths[a, _A + 1],
     )  # fmt: skip
 
 
 @inlined
-def fly_to(flights: Vectors, i: int, angle: Numbers, angular: Numbers, now: float, low: float) -> None:
+def advance_to(paths: Vectors, i: int, angle: Numbers, angular: Numbers, now: float, low: float) -> None:
     """Begin a new flight of row i where the old one is at the time ``now + low``."""
-    angle[i] += _flown(flights, i, now, low) * angular[i]
-    x, x_low, y, y_low = place(flights, i, now, low)
-    vx, vx_low, vy, vy_low = velocity(flights, i, now, low)
-    flights[i, _X], flights[i, _X + 1], flights[i, _X + 2], flights[i, _X + 3] = x, x_low, y, y_low
-    flights[i, _VX], flights[i, _VX + 1], flights[i, _VX + 2], flights[i, _VX + 3] = vx, vx_low, vy, vy_low
-    flights[i, _T], flights[i, _T + 1] = now, low
+    angle[i] += _advanced(paths, i, now, low) * angular[i]
+    x, x_low, y, y_low = place(paths, i, now, low)
+    vx, vx_low, vy, vy_low = velocity(paths, i, now, low)
+    paths[i, _X], paths[i, _X + 1], paths[i, _X + 2], paths[i, _X + 3] = x, x_low, y, y_low
+    paths[i, _VX], paths[i, _VX + 1], paths[i, _VX + 2], paths[i, _VX + 3] = vx, vx_low, vy, vy_low
+    paths[i, _T], paths[i, _T + 1] = now, low
 
 
 @inlined
-def push(flights: Vectors, i: int, inverse_mass: float, px: float, py: float) -> None:
+def push(paths: Vectors, i: int, inverse_mass: float, px: float, py: float) -> None:
     """Change the velocity with which row i began its flight by an impulse (px, py) [N s]."""
     x, x_low = multiply(inverse_mass, px)
     y, y_low = multiply(inverse_mass, py)
-    flights[i, _VX], flights[i, _VX + 1] = add_pair(flights[i, _VX], flights[i, _VX + 1], x, x_low)
-    flights[i, _VX + 2], flights[i, _VX + 3] = add_pair(flights[i, _VX + 2], flights[i, _VX + 3], y, y_low)
+    paths[i, _VX], paths[i, _VX + 1] = add_pair(paths[i, _VX], paths[i, _VX + 1], x, x_low)
+    paths[i, _VX + 2], paths[i, _VX + 3] = add_pair(paths[i, _VX + 2], paths[i, _VX + 3], y, y_low)

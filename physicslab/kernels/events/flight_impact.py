@@ -3,22 +3,22 @@
 from physicslab.kernels import Numbers, Vectors, inlined
 from physicslab.kernels.events.flight import push
 from physicslab.kernels.ode.compensated import add_pair, multiply
-from physicslab.kernels.records import Impacts, Manifold, Point
-from physicslab.kernels.solver.impact import bounce, rub
+from physicslab.kernels.records import Manifold, Point
+from physicslab.kernels.solver.impact import bounce, friction_impulse
 
-__all__ = ["strike_flights", "write_impact"]
+__all__ = ["resolve_ballistic_impacts"]
 
 
 @inlined
 def _speed_against(
-    flights: Vectors, angular: Numbers, a: int, b: int, point: Point, along_x: float, along_y: float
+    paths: Vectors, angular: Numbers, a: int, b: int, point: Point, along_x: float, along_y: float
 ) -> tuple[float, float]:
     """Return how fast B's contact point moves against A's along a direction, and the remainder.
 
     The flights begin now.
     """
-    vx, x_low = add_pair(flights[b, 4], flights[b, 5], -flights[a, 4], -flights[a, 5])
-    vy, y_low = add_pair(flights[b, 6], flights[b, 7], -flights[a, 6], -flights[a, 7])
+    vx, x_low = add_pair(paths[b, 4], paths[b, 5], -paths[a, 4], -paths[a, 5])
+    vy, y_low = add_pair(paths[b, 6], paths[b, 7], -paths[a, 6], -paths[a, 7])
     vx += angular[a] * point.arm_ay - angular[b] * point.arm_by
     vy += angular[b] * point.arm_bx - angular[a] * point.arm_ax
     return vx * along_x + vy * along_y, x_low * along_x + y_low * along_y
@@ -34,7 +34,7 @@ def _short_of(v: float, v_low: float, before: float, before_low: float, restitut
 
 @inlined
 def _hit(
-    manifold: Manifold, point: Point, j: float, v: float, flights: Vectors, angular: Numbers,
+    manifold: Manifold, point: Point, j: float, v: float, paths: Vectors, angular: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers,
 ) -> None:  # fmt: skip
     """Apply a normal impulse and its friction to the flights of A and B, and note them."""
@@ -42,11 +42,11 @@ def _hit(
     along = 0.0
     if manifold.friction > 0.0:
         # A normal impulse at the arm of a disc, or on what does not turn, leaves the sliding as it is.
-        sliding, low = _speed_against(flights, angular, a, b, point, -ny, nx)
-        along = rub(manifold, point, j, sliding + low)
+        sliding, low = _speed_against(paths, angular, a, b, point, -ny, nx)
+        along = friction_impulse(manifold, point, j, sliding + low)
     px, py = j * nx - along * ny, j * ny + along * nx
-    push(flights, a, -inverse_mass[a], px, py)
-    push(flights, b, inverse_mass[b], px, py)
+    push(paths, a, -inverse_mass[a], px, py)
+    push(paths, b, inverse_mass[b], px, py)
     angular[a] -= inverse_inertia[a] * (point.arm_ax * py - point.arm_ay * px)
     angular[b] += inverse_inertia[b] * (point.arm_bx * py - point.arm_by * px)
     point.approach_speed = max(point.approach_speed, -v)
@@ -55,41 +55,27 @@ def _hit(
 
 
 @inlined
-def strike_flights(
-    manifold: Manifold, one: Point, two: Point, flights: Vectors, angular: Numbers,
+def resolve_ballistic_impacts(
+    manifold: Manifold, one: Point, two: Point, paths: Vectors, angular: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers,
 ) -> None:  # fmt: skip
     """Bounce a pair whose flights begin now and whose points are filled."""
     a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-    v1, low1 = _speed_against(flights, angular, a, b, one, nx, ny)
+    v1, low1 = _speed_against(paths, angular, a, b, one, nx, ny)
     if manifold.count == 2:
-        v2, _ = _speed_against(flights, angular, a, b, two, nx, ny)
+        v2, _ = _speed_against(paths, angular, a, b, two, nx, ny)
         j1, j2 = bounce(manifold, one, two, True, True, v1, v2, inverse_mass, inverse_inertia)
         if j2 > 0.0:
-            _hit(manifold, two, j2, v2, flights, angular, inverse_mass, inverse_inertia)
+            _hit(manifold, two, j2, v2, paths, angular, inverse_mass, inverse_inertia)
     else:
         j1, _ = bounce(manifold, one, two, True, False, v1, 0.0, inverse_mass, inverse_inertia)
     if j1 > 0.0:
-        _hit(manifold, one, j1, v1, flights, angular, inverse_mass, inverse_inertia)
+        _hit(manifold, one, j1, v1, paths, angular, inverse_mass, inverse_inertia)
     if manifold.count == 1 and j1 > 0.0:
         # The rounding of j is the same at every impact of a pair and would add up: what it has left is made
         # good.
-        v, low = _speed_against(flights, angular, a, b, one, nx, ny)
+        v, low = _speed_against(paths, angular, a, b, one, nx, ny)
         left = -_short_of(v, low, v1, low1, manifold.restitution) * one.normal_mass
-        push(flights, a, -inverse_mass[a], left * nx, left * ny)
-        push(flights, b, inverse_mass[b], left * nx, left * ny)
-    manifold.struck += 1
-
-
-@inlined
-def write_impact(
-    log: Impacts, k: int, manifold: Manifold, one: Point, two: Point, time: float, x: float, y: float,
-    speed: float, normal: float, tangent: float,
-) -> None:  # fmt: skip
-    """Write an impact into the log; the points had felt ``normal`` and ``tangent`` before."""
-    record = log[k % len(log)]
-    record.time, record.entity_a, record.entity_b = time, manifold.entity_a, manifold.entity_b
-    record.wall, record.normal_x, record.normal_y = manifold.wall, manifold.normal_x, manifold.normal_y
-    record.x, record.y, record.approach_speed = x + one.arm_bx, y + one.arm_by, speed
-    record.normal_impulse = one.impact_normal + two.impact_normal - normal
-    record.tangent_impulse = one.impact_tangent + two.impact_tangent - tangent
+        push(paths, a, -inverse_mass[a], left * nx, left * ny)
+        push(paths, b, inverse_mass[b], left * nx, left * ny)
+    manifold.impact_count += 1

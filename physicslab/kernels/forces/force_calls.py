@@ -24,9 +24,9 @@ from numba.core import types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from physicslab.kernels import KERNELS, Numbers, cached, inlined
+from physicslab.kernels import KERNELS, Numbers, cached, inlined, kernel
 
-__all__ = ["Calls", "ForceKernel", "accelerate", "accelerate_over", "force_kernel"]
+__all__ = ["Calls", "ForceKernel", "accelerate", "accelerate_over", "add_forces", "force_kernel"]
 
 Calls = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, 3): of each force the address, and those of its numbers and of its whole numbers."""
@@ -36,7 +36,7 @@ _SIGNATURE = void(_REAL, _REAL, float64, _REAL, _REAL, _WHOLE)
 
 
 class ForceKernel:
-    """A force ``f(q, v, span, force, numbers, whole)``: a C function, compiled when its address is asked for.
+    """A force ``f(q, v, span, force, parameters, indices)``: a C function, compiled for its address.
 
     All but the span [s] are pointers, to float64 and (the last) int64.
     """
@@ -83,7 +83,7 @@ def force_kernel(function: Callable[..., None]) -> ForceKernel:
 
 
 def _call_type(
-    context: Any, address: Any, q: Any, v: Any, span: Any, force: Any, numbers: Any, whole: Any
+    context: Any, address: Any, q: Any, v: Any, span: Any, force: Any, parameters: Any, indices: Any
 ) -> tuple[Any, Callable[..., Any]]:
     """Call the C function at an address with the data of three arrays and two addresses."""
 
@@ -104,6 +104,13 @@ def _call_type(
 
 
 _call: Any = intrinsic(_call_type)
+
+
+@kernel
+def add_forces(q: Numbers, v: Numbers, force: Numbers, calls: Calls) -> None:
+    """Add forces at an instant to those that are there."""
+    for k in range(len(calls)):
+        _call(calls[k, 0], q, v, 0.0, force, calls[k, 1], calls[k, 2])
 
 
 @inlined

@@ -15,50 +15,50 @@ __all__ = ["drag", "planet_gravity", "springs", "uniform_gravity"]
 
 
 @force_kernel
-def uniform_gravity(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
-    """Add m g. ``numbers``: gx, gy, then the masses; ``whole``: how many, then where x of each is."""
-    for p in range(whole[0]):
-        i = whole[1 + p]
-        force[i] += numbers[2 + p] * numbers[0]
-        force[i + 1] += numbers[2 + p] * numbers[1]
+def uniform_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
+    """Add m g. ``parameters``: gx, gy, then the masses; ``indices``: how many, then where x of each is."""
+    for p in range(indices[0]):
+        i = indices[1 + p]
+        force[i] += parameters[2 + p] * parameters[0]
+        force[i + 1] += parameters[2 + p] * parameters[1]
 
 
 @allocating
-def _attract_packed(q, force, numbers, whole):  # type: ignore[no-untyped-def]
+def _attract_packed(q, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add the attraction of more than a few, as :func:`planet_gravity` has it, by columns of them."""
-    n = whole[0]
+    n = indices[0]
     x, y, mass, ax, ay = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     for p in range(n):
-        i = whole[2 + p]
-        x[p], y[p], mass[p] = q[i], q[i + 1], numbers[2 + p]
-    attract(x, y, mass, numbers[1], whole[1] != 0, ax, ay)
+        i = indices[2 + p]
+        x[p], y[p], mass[p] = q[i], q[i + 1], parameters[2 + p]
+    attract(x, y, mass, parameters[1], indices[1] != 0, ax, ay)
     for p in range(n):
-        i = whole[2 + p]
-        force[i] += numbers[0] * mass[p] * ax[p]
-        force[i + 1] += numbers[0] * mass[p] * ay[p]
+        i = indices[2 + p]
+        force[i] += parameters[0] * mass[p] * ax[p]
+        force[i + 1] += parameters[0] * mass[p] * ay[p]
 
 
 @force_kernel
-def planet_gravity(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
+def planet_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add the attraction of every pair.
 
-    ``numbers``: G, softening, then the masses; ``whole``: how many, whether Plummer's law holds, then where
-    x of each is.
+    ``parameters``: G, softening, then the masses; ``indices``: how many, whether Plummer's law holds, then
+    where x of each is.
     """
-    n, plummer = whole[0], whole[1] != 0
-    G, softening = numbers[0], numbers[1]
+    n, plummer = indices[0], indices[1] != 0
+    G, softening = parameters[0], parameters[1]
     if n > FEW:
-        _attract_packed(q, force, numbers, whole)  # type: ignore[no-untyped-call]
+        _attract_packed(q, force, parameters, indices)  # type: ignore[no-untyped-call]
         return
     softening2 = softening * softening
     for p in range(n):
-        i = whole[2 + p]
-        x, y, weight = q[i], q[i + 1], G * numbers[2 + p]
+        i = indices[2 + p]
+        x, y, weight = q[i], q[i + 1], G * parameters[2 + p]
         fx, fy = 0.0, 0.0
         for other in range(p + 1, n):
-            j = whole[2 + other]
+            j = indices[2 + other]
             dx, dy = q[j] - x, q[j + 1] - y
-            f = weight * numbers[2 + other] * inverse_cube(dx * dx + dy * dy, softening2, plummer)
+            f = weight * parameters[2 + other] * inverse_cube(dx * dx + dy * dy, softening2, plummer)
             fx += f * dx
             fy += f * dy
             force[j] -= f * dx
@@ -68,18 +68,18 @@ def planet_gravity(q, v, span, force, numbers, whole):  # type: ignore[no-untype
 
 
 @force_kernel
-def springs(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
+def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add the pull of springs and dampers to both ends.
 
-    ``whole``: how many, then four a spring: where x and the angle are at A, and at B; an angle of -1 is one
-    that never changes. ``numbers``: seven a spring: the anchors at A and B in the body's own directions, or
-    in the world's where the angle never changes [m], rest length, stiffness, damping. Over a span, what the
-    springs store changes by just the work done, of the turning ends as well.
+    ``indices``: how many, then four a spring: where x and the angle are at A, and at B; an angle of -1 is one
+    that never changes. ``parameters``: seven a spring: the anchors at A and B in the body's own directions,
+    or in the world's where the angle never changes [m], rest length, stiffness, damping. Over a span, what
+    the springs store changes by just the work done, of the turning ends as well.
     """
-    for s in range(whole[0]):
+    for s in range(indices[0]):
         w, p = 1 + 4 * s, 7 * s
-        a, turn_a, b, turn_b = whole[w], whole[w + 1], whole[w + 2], whole[w + 3]
-        ax, ay, bx, by = numbers[p], numbers[p + 1], numbers[p + 2], numbers[p + 3]
+        a, turn_a, b, turn_b = indices[w], indices[w + 1], indices[w + 2], indices[w + 3]
+        ax, ay, bx, by = parameters[p], parameters[p + 1], parameters[p + 2], parameters[p + 3]
         spin_a, spin_b, near_a, near_b, give_a, give_b = 0.0, 0.0, 1.0, 1.0, 1.0, 1.0
         if turn_a >= 0:
             ax, ay = turned(q[turn_a], ax, ay)
@@ -94,9 +94,11 @@ def springs(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
         vx = v[b] - spin_b * by - v[a] + spin_a * ay
         vy = v[b + 1] + spin_b * bx - v[a + 1] - spin_a * ax
         if span == 0.0:
-            fx, fy = spring_pull(dx, dy, vx, vy, numbers[p + 4], numbers[p + 5], numbers[p + 6])
+            fx, fy = spring_pull(dx, dy, vx, vy, parameters[p + 4], parameters[p + 5], parameters[p + 6])
         else:
-            fx, fy = mean_spring_pull(dx, dy, vx, vy, span, numbers[p + 4], numbers[p + 5], numbers[p + 6])
+            fx, fy = mean_spring_pull(
+                dx, dy, vx, vy, span, parameters[p + 4], parameters[p + 5], parameters[p + 6]
+            )
         force[a] += fx
         force[a + 1] += fy
         force[b] -= fx
@@ -108,10 +110,10 @@ def springs(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
 
 
 @force_kernel
-def drag(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
-    """Add -(c + k |v|) v. ``whole``: how many, then where x of each is; ``numbers``: c and k of each."""
-    for p in range(whole[0]):
-        i = whole[1 + p]
-        f = drag_factor(v[i], v[i + 1], numbers[2 * p], numbers[2 * p + 1])
+def drag(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
+    """Add -(c + k |v|) v. ``indices``: how many, then where x of each is; ``parameters``: c and k of each."""
+    for p in range(indices[0]):
+        i = indices[1 + p]
+        f = drag_factor(v[i], v[i + 1], parameters[2 * p], parameters[2 * p + 1])
         force[i] -= f * v[i]
         force[i + 1] -= f * v[i + 1]

@@ -15,19 +15,19 @@ __all__ = ["damper_resistance", "drag_resistance"]
 
 
 @force_kernel
-def drag_resistance(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
+def drag_resistance(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add -(c + 2 k |u|) y: the slope of quadratic drag along the velocity, where it is steepest."""
-    n = whole[0]
-    for p in range(whole[1]):
-        i = whole[2 + p]
+    n = indices[0]
+    for p in range(indices[1]):
+        i = indices[2 + p]
         x, y = v[n + i], v[n + i + 1]
-        f = numbers[2 * p] + 2.0 * numbers[2 * p + 1] * math.sqrt(x * x + y * y)
+        f = parameters[2 * p] + 2.0 * parameters[2 * p + 1] * math.sqrt(x * x + y * y)
         force[i] -= f * v[i]
         force[i + 1] -= f * v[i + 1]
 
 
 @force_kernel
-def damper_resistance(q, v, span, force, numbers, whole):  # type: ignore[no-untyped-def]
+def damper_resistance(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add the pull of every damper, were y the velocity, less what is owed to the damper's turning.
 
     The velocity of what goes round at the end of a damper changes along it, though its length stays: by
@@ -35,15 +35,15 @@ def damper_resistance(q, v, span, force, numbers, whole):  # type: ignore[no-unt
     directions at the start and at the end. Half of that is taken off, so that a rod that only turns is left
     to the midpoint rule: with the end's velocity along the mean direction it would lose speed.
     """
-    n = whole[0]
-    for s in range(whole[1]):
+    n = indices[0]
+    for s in range(indices[1]):
         w, p = 2 + 4 * s, 7 * s
-        damping = numbers[p + 6]
+        damping = parameters[p + 6]
         if damping == 0.0:
             continue
-        a, turn_a, b, turn_b = whole[w], whole[w + 1], whole[w + 2], whole[w + 3]
-        ax, ay = numbers[p], numbers[p + 1]
-        bx, by = numbers[p + 2], numbers[p + 3]
+        a, turn_a, b, turn_b = indices[w], indices[w + 1], indices[w + 2], indices[w + 3]
+        ax, ay = parameters[p], parameters[p + 1]
+        bx, by = parameters[p + 2], parameters[p + 3]
         near_a, give_a, near_b, give_b, half_a, half_b = 1.0, 1.0, 1.0, 1.0, 0.0, 0.0
         spin_a, spin_b = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)  # of y, at the start, at the end
         if turn_a >= 0:

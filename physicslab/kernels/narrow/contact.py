@@ -3,15 +3,15 @@
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.broad.near_pairs import REACH
-from physicslab.kernels.narrow.pair import NEAR, touch_boxes, touch_wall, touch_with_circle
+from physicslab.kernels.broad.near_pairs import ACTIVATION_RATIO
+from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
-__all__ = ["KEEP", "KEEP_TURN", "effective_masses", "find_contacts", "mix"]
+__all__ = ["CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "mix"]
 
-KEEP = 0.004
+CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found anew."""
-KEEP_TURN = 0.002
+CACHE_TURN_TOLERANCE = 0.002
 """How far [rad] either may turn."""
 
 
@@ -54,7 +54,7 @@ def effective_masses(
 def find_contacts(
     manifolds: Manifolds,
     points: Points,
-    loose: Rows,
+    scalar: Rows,
     count: int,
     touching: Rows,
     position: Vectors,
@@ -75,27 +75,27 @@ def find_contacts(
     first: bool,
     h: float,
     start: float,
-    fall: float,
+    speculative_margin: float,
 ) -> int:
-    """Find or refresh the contact points of the near pairs that are ``loose``; return how many have any.
+    """Find or refresh the contact points of the near pairs that are ``scalar``; return how many have any.
 
     Their numbers are written to ``touching``, in order. A pair of boxes that has hardly moved keeps its
     points. The substep spans ``h`` seconds from ``start`` h before or after now: a pair that meets within it
     has points with the normal of that moment and the separation, along it, of now. Pairs whose count is
     negative are somebody else's, and passed over. ``first`` marks the first substep of a step, in which
-    records of impacts begin anew; ``fall`` is how far [m] the forces may bring two bodies together within the
-    substep.
+    records of impacts begin anew; ``speculative_margin`` is how far [m] the forces may bring two bodies
+    together within the substep.
     """
     found, held = 0, count
     for number in range(count):
-        p = loose[number]
+        p = scalar[number]
         manifold = manifolds[p]
         if manifold.count < 0:
             continue
         a, b = manifold.a, manifold.b
         one, two = points[2 * p], points[2 * p + 1]
-        if first and manifold.struck > 0:
-            manifold.struck = 0
+        if first and manifold.impact_count > 0:
+            manifold.impact_count = 0
             one.approach_speed = one.impact_normal = one.impact_tangent = 0.0
             two.approach_speed = two.impact_normal = two.impact_tangent = 0.0
         dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
@@ -104,14 +104,14 @@ def find_contacts(
         had_points = manifold.count > 0
         if not (a_box or b_box or had_points or manifold.wall >= 0):
             # Most near circles are too far apart for this substep: settle those without a call.
-            reach = REACH * (radius[a] + radius[b]) + abs(ux) + abs(uy) + fall
+            reach = ACTIVATION_RATIO * (radius[a] + radius[b]) + abs(ux) + abs(uy) + speculative_margin
             if dx * dx + dy * dy > reach * reach:
                 continue
         elif manifold.wall >= 0 and not (b_box or had_points):
             # So it is with circles near the bounds.
             away = position[b, manifold.wall % 2] - bounds[manifold.wall]
             clear = (away if manifold.wall < 2 else -away) - radius[b]
-            if clear > REACH * NEAR * radius[b] + abs(ux) + abs(uy) + fall:
+            if clear > ACTIVATION_RATIO * CONTACT_MARGIN * radius[b] + abs(ux) + abs(uy) + speculative_margin:
                 continue
         manifold.offset_x, manifold.offset_y = dx, dy
         if (a_box and b_box) or (manifold.wall >= 0 and b_box):
@@ -128,15 +128,15 @@ def find_contacts(
                 # Whatever they have done since, they cannot have come nearer than this.
                 turned = abs(turn_a) * (width[a] + height[a]) + abs(turn_b) * (width[b] + height[b])
                 nearest = manifold.gap - abs(moved_x) - abs(moved_y) - 0.5 * turned - 0.0025 * size
-                if nearest > NEAR * size + travel + fall:
+                if nearest > CONTACT_MARGIN * size + travel + speculative_margin:
                     continue
             if (
                 known
                 and had_points
-                and abs(moved_x) + abs(moved_y) <= KEEP * size
-                and abs(turn_a) <= KEEP_TURN
-                and abs(turn_b) <= KEEP_TURN
-                and travel <= 0.5 * NEAR * size
+                and abs(moved_x) + abs(moved_y) <= CACHE_TOLERANCE * size
+                and abs(turn_a) <= CACHE_TURN_TOLERANCE
+                and abs(turn_b) <= CACHE_TURN_TOLERANCE
+                and travel <= 0.5 * CONTACT_MARGIN * size
             ):
                 _refresh(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
                 if inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0:
@@ -152,13 +152,14 @@ def find_contacts(
             manifold.base_x, manifold.base_y = dx, dy
             manifold.base_angle_a, manifold.base_angle_b = angle[a], angle[b]
             manifold.base_sizes = sizes
-            manifold.found = 2 if travel <= 0.5 * NEAR * size else 1
+            manifold.found = 2 if travel <= 0.5 * CONTACT_MARGIN * size else 1
         cb, sb = (math.cos(angle[b]), math.sin(angle[b])) if b_box else (1.0, 0.0)
         half_bx, half_by = 0.5 * width[b], 0.5 * height[b]
         if manifold.wall >= 0:
             spin = abs(angular[b]) * h * math.sqrt(half_bx * half_bx + half_by * half_by)
             touch_wall(
-                manifold, one, two, position[b, 0], position[b, 1], ux, uy, spin, fall, b_box, cb, sb,
+                manifold, one, two, position[b, 0], position[b, 1], ux, uy, spin, speculative_margin, b_box,
+                cb, sb,
                 half_bx, half_by, radius[b], bounds,
             )  # fmt: skip
         else:
@@ -174,7 +175,7 @@ def find_contacts(
                     ux,
                     uy,
                     start,
-                    fall,
+                    speculative_margin,
                     ca,
                     sa,
                     half_ax,
@@ -186,7 +187,8 @@ def find_contacts(
                 )
             else:
                 touch_with_circle(
-                    manifold, one, dx, dy, ux, uy, start, fall, a_box, ca, sa, half_ax, half_ay, radius[a],
+                    manifold, one, dx, dy, ux, uy, start, speculative_margin, a_box, ca, sa, half_ax,
+                    half_ay, radius[a],
                     b_box, cb, sb, half_bx, half_by, radius[b],
                 )  # fmt: skip
         if manifold.count > 0:
@@ -203,12 +205,12 @@ def find_contacts(
             one.feature = two.feature = 0
             one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
     # Those of bodies that nothing moves stand at the end, the last first.
-    resting = count - held
-    for k in range(resting // 2):
+    sleeping = count - held
+    for k in range(sleeping // 2):
         touching[held + k], touching[count - 1 - k] = touching[count - 1 - k], touching[held + k]
-    for k in range(resting):
+    for k in range(sleeping):
         touching[found + k] = touching[held + k]
-    return found + resting
+    return found + sleeping
 
 
 @inlined

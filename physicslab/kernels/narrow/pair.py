@@ -7,14 +7,14 @@ from physicslab.kernels.narrow.manifold import box_box, circle_box, circle_circl
 from physicslab.kernels.narrow.sweep import MISS, sweep_box_box, sweep_circle_box, sweep_circle_circle
 from physicslab.kernels.records import Manifold, Point
 
-__all__ = ["NEAR", "STILL", "touch_boxes", "touch_wall", "touch_with_circle"]
+__all__ = ["CONTACT_MARGIN", "SWEEP_THRESHOLD", "touch_boxes", "touch_wall", "touch_with_circle"]
 
-NEAR = 0.02
+CONTACT_MARGIN = 0.02
 """Share of the smaller body's size within which a pair counts as near: its points are kept though they do
 not touch."""
 _ROUNDING = 1e-6
 """Share of the size within which two surfaces count as just meeting."""
-STILL = 0.002
+SWEEP_THRESHOLD = 0.002
 """Share of the smaller body's size below which a substep's motion is not swept at all."""
 _FAST = 0.25
 """Share of the smaller box's size beyond which a substep's motion of boxes is swept."""
@@ -87,7 +87,7 @@ def touch_with_circle(
     ux: float,
     uy: float,
     start: float,
-    fall: float,
+    speculative_margin: float,
     a_box: bool,
     ca: float,
     sa: float,
@@ -112,10 +112,10 @@ def touch_with_circle(
     )
     reach = math.sqrt(ux * ux + uy * uy)
     manifold.count, manifold.swept, manifold.size = 0, 0, 2.0 * size
-    near = NEAR * size + fall
+    near = CONTACT_MARGIN * size + speculative_margin
     if separation > max(reach, near):
         return
-    if reach > STILL * size:
+    if reach > SWEEP_THRESHOLD * size:
         # The normal is that of the moment of contact, if there is one in this substep.
         x, y = dx + start * ux, dy + start * uy
         if a_box:
@@ -157,7 +157,7 @@ def touch_boxes(
     ux: float,
     uy: float,
     start: float,
-    fall: float,
+    speculative_margin: float,
     ca: float,
     sa: float,
     ax: float,
@@ -169,14 +169,14 @@ def touch_boxes(
 ) -> None:
     """Find the points of two boxes: as they are now, or where they meet if they are fast for their size.
 
-    ``fall`` is how far the forces may bring them together within the substep.
+    ``speculative_margin`` is how far the forces may bring them together within the substep.
     """
     size = 2.0 * min(min(ax, ay), min(bx, by))
     travel = math.sqrt(ux * ux + uy * uy)
-    x, y, lead_x, lead_y, margin = dx, dy, 0.0, 0.0, NEAR * size + travel + fall
+    x, y, lead_x, lead_y, margin = dx, dy, 0.0, 0.0, CONTACT_MARGIN * size + travel + speculative_margin
     manifold.swept, manifold.size, manifold.gap = 0, size, -math.inf
     if travel > _FAST * size:
-        margin = NEAR * size + fall
+        margin = CONTACT_MARGIN * size + speculative_margin
         x, y = dx + start * ux, dy + start * uy
         t = 0.0
         if box_box(x, y, ca, sa, cb, sb, ax, ay, bx, by, -math.inf)[0] > 0.0:
@@ -211,7 +211,7 @@ def touch_wall(
     ux: float,
     uy: float,
     spin: float,
-    fall: float,
+    speculative_margin: float,
     box: bool,
     c: float,
     s: float,
@@ -225,7 +225,7 @@ def touch_wall(
     nx = 1.0 if wall == 0 else (-1.0 if wall == 2 else 0.0)
     ny = 1.0 if wall == 1 else (-1.0 if wall == 3 else 0.0)
     height = (x - bounds[wall]) * nx if wall == 0 or wall == 2 else (y - bounds[wall]) * ny
-    travel = max(-(ux * nx + uy * ny), 0.0) + spin + fall
+    travel = max(-(ux * nx + uy * ny), 0.0) + spin + speculative_margin
     manifold.gap = -math.inf
     manifold.normal_x, manifold.normal_y = nx, ny
     f1, n1, t1 = one.feature, one.normal_impulse, one.tangent_impulse
@@ -234,7 +234,7 @@ def touch_wall(
     manifold.size = 2.0 * (min(half_x, half_y) if box else radius)
     if not box:
         separation = height - radius
-        if separation <= NEAR * radius + travel:
+        if separation <= CONTACT_MARGIN * radius + travel:
             manifold.count = 1
             arm_x, arm_y = -radius * nx, -radius * ny
             _put(one, 1, x + arm_x, y + arm_y, arm_x, arm_y, separation, f1, n1, t1, f2, n2, t2)
@@ -248,7 +248,7 @@ def touch_wall(
             best, second, low, next_low = k, best, separation, low
         elif separation < next_low:
             second, next_low = k, separation
-    margin = NEAR * min(half_x, half_y) + travel
+    margin = CONTACT_MARGIN * min(half_x, half_y) + travel
     if low <= margin:
         manifold.count = 1
         arm_x, arm_y = wall_corner(best, c, s, half_x, half_y)

@@ -10,16 +10,9 @@ from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.ode.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, LAST_LOW, WEIGHTS
 
 __all__ = [
-    "EXHAUSTED",
-    "NOT_FINITE",
-    "TOO_SHORT",
-    "dop853",
-    "first_step",
-    "largest",
-    "make_stages",
-    "step_error",
-    "total",
-]
+    "EXHAUSTED", "NOT_FINITE", "TOO_SHORT", "dop853", "first_step", "largest", "make_stages",
+    "step_error", "total",
+]  # fmt: skip
 
 TOO_SHORT = -1
 """What is returned where no step is short enough."""
@@ -74,10 +67,12 @@ def make_stages(
 @inlined
 def total(values: Numbers) -> tuple[float, float]:
     """Return the weighted sum of the stages, and what rounding leaves out of it."""
-    whole, low = 0.0, 0.0
+    indices, low = 0.0, 0.0
     for stage in range(LAST):
-        whole, low = add(whole, low + LAST_LOW[stage] * values[stage], WEIGHTS[LAST, stage] * values[stage])
-    return whole, low
+        indices, low = add(
+            indices, low + LAST_LOW[stage] * values[stage], WEIGHTS[LAST, stage] * values[stage]
+        )
+    return indices, low
 
 
 @inlined

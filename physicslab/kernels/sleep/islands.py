@@ -7,7 +7,7 @@ import numpy as np
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
 from physicslab.kernels.records import Manifolds, Points
 
-__all__ = ["READY", "REST", "SLOW", "count_rest", "find_held", "find_touched", "join_marked", "list_resting"]
+__all__ = ["READY", "REST", "SLOW", "count_rest", "find_held", "find_touched", "join_marked", "list_sleeping"]
 
 REST = 0.5
 """How long [s] a body must have been slow before it may sleep."""
@@ -26,7 +26,7 @@ READY = REST - _ROUNDING
 @kernel
 def count_rest(
     linear: Vectors, angular: Numbers, kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
-    inverse_mass: Numbers, tethered: Flags, asleep: Flags, rest: Numbers, slowest: Numbers, h: float,
+    inverse_mass: Numbers, sub_integrated: Flags, asleep: Flags, rest: Numbers, slowest: Numbers, h: float,
 ) -> bool:  # fmt: skip
     """Count for a step of h how long each body has been slow; return whether islands are to be looked at.
 
@@ -37,7 +37,7 @@ def count_rest(
     for i in range(len(rest)):
         if asleep[i]:
             continue
-        if kind[i] == 0 or inverse_mass[i] == 0.0 or tethered[i]:
+        if kind[i] == 0 or inverse_mass[i] == 0.0 or sub_integrated[i]:
             rest[i] = slowest[i] = 0.0
             continue
         reach = radius[i] if kind[i] == 1 else 0.5 * math.sqrt(width[i] * width[i] + height[i] * height[i])
@@ -99,7 +99,7 @@ def find_held(
         if inverse_mass[body] == 0.0:
             continue
         island = _root(parent, body)
-        if manifold.struck > 0:
+        if manifold.impact_count > 0:
             restless[island] = True
         if inverse_mass[other] > 0.0:
             continue
@@ -167,11 +167,11 @@ def join_marked(a: Rows, b: Rows, count: Rows, asleep: Flags, marked: Flags) -> 
 
 
 @kernel
-def list_resting(manifolds: Manifolds, pairs: int, quiet: Flags, resting: Rows) -> int:
+def list_sleeping(manifolds: Manifolds, pairs: int, inactive: Flags, sleeping: Rows) -> int:
     """Write the pairs of which both bodies are quiet, whether they touch or not; return how many."""
     found = 0
     for p in range(pairs):
-        if quiet[manifolds[p].a] and quiet[manifolds[p].b]:
-            resting[found] = p
+        if inactive[manifolds[p].a] and inactive[manifolds[p].b]:
+            sleeping[found] = p
             found += 1
     return found

@@ -2,11 +2,12 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.records import Manifold, Manifolds, Point, Points
+from physicslab.kernels import Numbers, Rows, Vectors, inlined
+from physicslab.kernels.records import Impacts, Manifold, Manifolds, Point, Points
+from physicslab.kernels.solver.impact_log import write_impact
 from physicslab.kernels.solver.impulse import apply_impulse, follow_drift, relative_velocity
 
-__all__ = ["bounce", "rub", "strike"]
+__all__ = ["bounce", "friction_impulse", "resolve_impacts"]
 
 _SWEEPS = 32
 """How often the impacts of a substep are gone through before what is left is treated as inelastic."""
@@ -113,7 +114,7 @@ def bounce(
 
 
 @inlined
-def rub(manifold: Manifold, point: Point, j: float, sliding: float) -> float:
+def friction_impulse(manifold: Manifold, point: Point, j: float, sliding: float) -> float:
     """Return the impulse that stops the sliding, mu times the normal impulse j at the most [N s]."""
     limit = manifold.friction * j
     along: float = min(max(-point.tangent_mass * sliding, -limit), limit)
@@ -138,13 +139,13 @@ def _hit(
     point.impact_normal += j
     if manifold.friction > 0.0:
         vx, vy = relative_velocity(point, a, b, linear, angular)
-        along = rub(manifold, point, j, vy * nx - vx * ny)
+        along = friction_impulse(manifold, point, j, vy * nx - vx * ny)
         apply_impulse(point, -along * ny, along * nx, a, b, linear, angular, inverse_mass, inverse_inertia)
         point.impact_tangent += along
 
 
 @inlined
-def _strike_pair(
+def _resolve_pair(
     manifold: Manifold,
     one: Point,
     two: Point,
@@ -161,6 +162,9 @@ def _strike_pair(
     start: float,
     end: float,
     earliest: float,
+    log: Impacts,
+    number: int,
+    time: float,
 ) -> bool:
     """Bounce one pair if it meets between ``start`` and ``end`` from now; return whether it did."""
     a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
@@ -186,11 +190,16 @@ def _strike_pair(
     # The speeds at the time of contact, not those of now.
     v1, v2 = v1 + pull * t, v2 + pull * t
     before = (linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
+    felt = one.impact_normal + two.impact_normal, one.impact_tangent + two.impact_tangent
     j1, j2 = bounce(manifold, one, two, meets_1, meets_2, v1, v2, inverse_mass, inverse_inertia)
     if j1 > 0.0:
         _hit(manifold, one, j1, v1, linear, angular, inverse_mass, inverse_inertia)
     if j2 > 0.0:
         _hit(manifold, two, j2, v2, linear, angular, inverse_mass, inverse_inertia)
+    if j1 > 0.0 or j2 > 0.0:
+        where, approach = (one, v1) if j1 >= j2 else (two, v2)
+        x, y = position[b, 0] + t * before[3], position[b, 1] + t * before[4]
+        write_impact(log, number, manifold, one, two, where, time + t, x, y, -approach, felt[0], felt[1])
     _shift(a, b, before, position, angle, linear, angular, t)
     if (
         manifold.swept == 1 and manifold.restitution > 0.0
@@ -222,8 +231,8 @@ def _forced(
     return (bx - ax) * nx + (by - ay) * ny, 1e-9 * speed + 2.0 * h * strongest
 
 
-@kernel
-def strike(
+@inlined
+def resolve_impacts(
     manifolds: Manifolds,
     points: Points,
     touching: Rows,
@@ -239,6 +248,9 @@ def strike(
     h: float,
     start: float,
     end: float,
+    log: Impacts,
+    logged: int,
+    time: float,
 ) -> tuple[int, int]:
     """Bounce the pairs that meet in this substep, each at its own time.
 
@@ -250,6 +262,8 @@ def strike(
     A pair approaches if it is faster than what the forces can bring about in two substeps: less than that is
     resting contact, which the solver handles. Pairs are taken one after the other, in order, until none is
     left that meets; inelastic ones only once, for what is left of their approach the solver takes away.
+
+    Impacts go into ``log`` from number ``logged`` on, with times from ``time`` [s], which is now.
     """
     impacts, left = 0, count
     earliest = start - 2.0 * (end - start) if has_forces else -math.inf  # without forces, nothing piles up
@@ -281,12 +295,12 @@ def strike(
                 continue
             if start >= 0.0:  # in symplectic Euler the forces have acted already
                 pull = 0.0
-            if _strike_pair(
+            if _resolve_pair(
                 manifold, one, two, position, angle, linear, angular, inverse_mass, inverse_inertia,
-                v1, v2, pull, resting_speed, start, end, earliest,
+                v1, v2, pull, resting_speed, start, end, earliest, log, logged + impacts + bounced, time,
             ):  # fmt: skip
                 bounced += 1
-                manifold.struck += 1
+                manifold.impact_count += 1
             left += 1 - one.ahead
         impacts += bounced
         if bounced == 0:

@@ -2,21 +2,21 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
 from physicslab.kernels.records import Manifolds, Point, Points
-from physicslab.kernels.wide.solve import pressed, start_lanes, sweep_lanes
+from physicslab.kernels.wide.solve import soft_normal_impulse, sweep_wide, warm_start_wide
 
 __all__ = [
-    "MOST_PARTS", "UNEQUAL", "apply_impulse", "deepest", "follow_drift", "heaviest_load", "relative_velocity",
-    "relax", "separate", "solve",
+    "HEAVY_RATIO", "MAX_SUBSTEP_FACTOR", "apply_impulse", "deepest", "follow_drift", "relative_velocity",
+    "relax", "separate", "solve", "worst_load_ratio",
 ]  # fmt: skip
 
 
 _DEEP = 0.1
 """Share beyond which overlap is taken away by moving."""
-UNEQUAL = 10.0
+HEAVY_RATIO = 10.0
 """From such a ratio of masses on, the lighter body of a pair may have to carry many times its weight."""
-MOST_PARTS = 16
+MAX_SUBSTEP_FACTOR = 16
 """So many times more substeps than asked for are made, at the most, where one does."""
 
 
@@ -64,7 +64,7 @@ def _sweep(
     mass_scale: float,
     impulse_scale: float,
     slop: float,
-    heaviest: float,
+    force_cap: float,
 ) -> None:
     """Go once through all contacts; friction goes by the newest normal impulse."""
     for k in range(count):
@@ -81,9 +81,9 @@ def _sweep(
             if point.ahead:
                 continue
             vn = nx * (vbx - wb * rby - vax + wa * ray) + ny * (vby + wb * rbx - vay - wa * rax)
-            total = pressed(
+            total = soft_normal_impulse(
                 point.normal_impulse, point.normal_mass, vn, point.separation, manifold.size, inverse_h,
-                push_rate, mass_scale, impulse_scale, slop, heaviest,
+                push_rate, mass_scale, impulse_scale, slop, force_cap,
             )  # fmt: skip
             change = total - point.normal_impulse
             point.normal_impulse = total
@@ -106,7 +106,7 @@ def _sweep(
         linear[b, 0], linear[b, 1], angular[b] = vbx, vby, wb
 
 
-@kernel
+@inlined
 def solve(
     manifolds: Manifolds,
     points: Points,
@@ -129,7 +129,7 @@ def solve(
     force: Vectors,
     has_forces: bool,
     h: float,
-    carried: float,
+    warm_start_scale: float,
     iterations: int,
     hertz: float,
     damping_ratio: float,
@@ -137,8 +137,8 @@ def solve(
 ) -> None:
     """Start from the last substep's impulses, then go through all contacts, correcting overlap.
 
-    ``carried`` is how many times as long this substep is as the last one was: so many times the impulses of
-    what rests.
+    ``warm_start_scale`` is how many times as long this substep is as the last one was: so many times the
+    impulses of what rests.
 
     The contact spring of frequency ``hertz`` is integrated implicitly over h (Catto, Soft Constraints, GDC
     2011): with omega = 2 pi hertz and q = 2 zeta + h omega, it takes omega / q of the overlap a second.
@@ -152,30 +152,30 @@ def solve(
             if point.ahead:
                 point.normal_impulse = point.tangent_impulse = 0.0
                 continue
-            point.normal_impulse *= carried
-            point.tangent_impulse *= carried
+            point.normal_impulse *= warm_start_scale
+            point.tangent_impulse *= warm_start_scale
             px = point.normal_impulse * nx - point.tangent_impulse * ny
             py = point.normal_impulse * ny + point.tangent_impulse * nx
             apply_impulse(
                 point, px, py, manifold.a, manifold.b, linear, angular, inverse_mass, inverse_inertia
             )
-    lanes = discs, disc_blocks, disc_order, disc_a, disc_b, boxes, box_blocks, box_order, box_a, box_b
-    start_lanes(*lanes, linear, angular, carried)
-    heaviest = 0.0
+    constraints = discs, disc_blocks, disc_order, disc_a, disc_b, boxes, box_blocks, box_order, box_a, box_b
+    warm_start_wide(*constraints, linear, angular, warm_start_scale)
+    force_cap = 0.0
     if has_forces:
         for i in range(len(inverse_mass)):
-            heaviest += h * math.sqrt(force[i, 0] * force[i, 0] + force[i, 1] * force[i, 1])
+            force_cap += h * math.sqrt(force[i, 0] * force[i, 0] + force[i, 1] * force[i, 1])
     omega = 2.0 * math.pi * min(hertz, 0.25 / h)
     q = 2.0 * damping_ratio + h * omega
     stiffness = h * omega * q
     for _ in range(iterations):
         _sweep(
             manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
-            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, heaviest,
+            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, force_cap,
         )  # fmt: skip
-        sweep_lanes(
-            *lanes, linear, angular, 0.0,
-            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, heaviest,
+        sweep_wide(
+            *constraints, linear, angular, 0.0,
+            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, force_cap,
         )  # fmt: skip
 
 
@@ -199,7 +199,7 @@ def follow_drift(
             point.separation += h * (vx * manifold.normal_x + vy * manifold.normal_y)
 
 
-@kernel
+@inlined
 def relax(
     manifolds: Manifolds,
     points: Points,
@@ -227,18 +227,18 @@ def relax(
     ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call.
     """
     follow_drift(manifolds, points, touching, count, linear, angular, h)
-    lanes = discs, disc_blocks, disc_order, disc_a, disc_b, boxes, box_blocks, box_order, box_a, box_b
+    constraints = discs, disc_blocks, disc_order, disc_a, disc_b, boxes, box_blocks, box_order, box_a, box_b
     drift = h
     for _ in range(iterations):
         _sweep(
             manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
             1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0,
         )  # fmt: skip
-        sweep_lanes(*lanes, linear, angular, drift, 1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0)
+        sweep_wide(*constraints, linear, angular, drift, 1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0)
         drift = 0.0
 
 
-@allocating_kernel
+@allocating
 def separate(
     manifolds: Manifolds,
     points: Points,
@@ -315,26 +315,26 @@ def deepest(manifolds: Manifolds, points: Points, touching: Rows, count: int) ->
 
 
 @kernel
-def heaviest_load(manifolds: Manifolds, pairs: int, force: Vectors, inverse_mass: Numbers) -> float:
+def worst_load_ratio(manifolds: Manifolds, pairs: int, force: Vectors, inverse_mass: Numbers) -> float:
     """Return how many times its own weight a body carries, at the most, of one that is far heavier.
 
     By the forces that act on both, as they stand: whatever lies beside or below presses nothing.
     """
-    heaviest = 0.0
+    force_cap = 0.0
     for p in range(pairs):
         manifold = manifolds[p]
         if manifold.count <= 0:
             continue
         a, b = manifold.a, manifold.b
         ma, mb = inverse_mass[a], inverse_mass[b]
-        if UNEQUAL * ma < mb and ma > 0.0:
+        if HEAVY_RATIO * ma < mb and ma > 0.0:
             heavy, light, sign = a, b, 1.0
-        elif UNEQUAL * mb < ma and mb > 0.0:
+        elif HEAVY_RATIO * mb < ma and mb > 0.0:
             heavy, light, sign = b, a, -1.0
         else:
             continue
         press = sign * (force[heavy, 0] * manifold.normal_x + force[heavy, 1] * manifold.normal_y)
         x, y = force[light, 0], force[light, 1]
         if press > 0.0:
-            heaviest = max(heaviest, press / math.sqrt(x * x + y * y))
-    return heaviest
+            force_cap = max(force_cap, press / math.sqrt(x * x + y * y))
+    return force_cap

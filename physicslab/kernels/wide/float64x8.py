@@ -225,7 +225,7 @@ def _rows(context: Any, build: Any, signature: Any, arguments: Any) -> list[Any]
     """Read the eight row numbers of the arguments (array, rows, first row number)."""
     rows = _data(context, build, signature.args[1], arguments[1])
     first = build.gep(rows, [arguments[2]])
-    return [build.load(build.gep(first, [ir.IntType(64)(lane)])) for lane in range(WIDE)]
+    return [build.load(build.gep(first, [ir.IntType(64)(slot)])) for slot in range(WIDE)]
 
 
 def _take_numbers_type(context: Any, numbers: Any, rows: Any, first: Any) -> Any:
@@ -234,8 +234,8 @@ def _take_numbers_type(context: Any, numbers: Any, rows: Any, first: Any) -> Any
     def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
         data = _data(context, build, signature.args[0], arguments[0])
         gathered = ir.Constant(_DOUBLES, ir.Undefined)
-        for lane, row in enumerate(_rows(context, build, signature, arguments)):
-            gathered = build.insert_element(gathered, build.load(build.gep(data, [row])), _PLACE(lane))
+        for slot, row in enumerate(_rows(context, build, signature, arguments)):
+            gathered = build.insert_element(gathered, build.load(build.gep(data, [row])), _PLACE(slot))
         return gathered
 
     return _wide(numbers, rows, first), generate
@@ -246,8 +246,8 @@ def _put_numbers_type(context: Any, numbers: Any, rows: Any, first: Any, value: 
 
     def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
         data = _data(context, build, signature.args[0], arguments[0])
-        for lane, row in enumerate(_rows(context, build, signature, arguments)):
-            build.store(build.extract_element(arguments[3], _PLACE(lane)), build.gep(data, [row]))
+        for slot, row in enumerate(_rows(context, build, signature, arguments)):
+            build.store(build.extract_element(arguments[3], _PLACE(slot)), build.gep(data, [row]))
         return context.get_dummy_value()
 
     return types.void(numbers, rows, first, value), generate
@@ -289,8 +289,8 @@ def _put_vectors_type(context: Any, vectors: Any, rows: Any, first: Any, x: Any,
     def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
         data = _data(context, build, signature.args[0], arguments[0])
         x, y = arguments[3], arguments[4]
-        for lane, row in enumerate(_rows(context, build, signature, arguments)):
-            build.store(_shuffled(build, x, y, [lane, WIDE + lane]), _vector_at(build, data, row), align=8)
+        for slot, row in enumerate(_rows(context, build, signature, arguments)):
+            build.store(_shuffled(build, x, y, [slot, WIDE + slot]), _vector_at(build, data, row), align=8)
         return context.get_dummy_value()
 
     return types.void(vectors, rows, first, x, y), generate

@@ -3,8 +3,8 @@
 import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.broad.near_pairs import sort_loose
-from physicslab.kernels.narrow.pair import NEAR, STILL
+from physicslab.kernels.broad.near_pairs import sort_scalar
+from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 from physicslab.kernels.wide.layout import (
     BOX,
@@ -13,28 +13,28 @@ from physicslab.kernels.wide.layout import (
     DISC_ROWS,
     WIDE,
 )  # fmt: skip
-from physicslab.kernels.wide.restore_slots import seat
+from physicslab.kernels.wide.restore_slots import fill_slot
 from physicslab.kernels.wide.slots import (
     ACTIVE,
     BOX_BLOCKS,
     COLOURS,
     DISC_BLOCKS,
-    LANES,
-    LOOSE,
     RECORDED,
-    RESTING,
+    SCALAR,
+    SLEEPING,
     UNORDERED,
+    WIDE_COUNT,
     Masks,
-    Seats,
-    empty_lane,
-    list_loose,
+    Slots,
+    clear_slot,
+    list_scalar,
 )
 
-__all__ = ["FEW", "FULL", "SETTLED", "SPARSE", "settle", "sort_blocks"]
+__all__ = ["ADDED", "FEW", "FULL", "SPARSE", "add_constraints", "sort_blocks"]
 
 FEW = 64
 """So many contacts, at the least, are worth a block: fewer are done by the time that they are sorted."""
-SETTLED, SPARSE, FULL = range(3)
+ADDED, SPARSE, FULL = range(3)
 """What came of settling: all that has settled has lanes; blocks are to be sorted anew; or made room for."""
 _SPARSE = 0.5
 """Blocks less full than that are sorted anew."""
@@ -46,11 +46,11 @@ _OF_FIXED = 48
 
 
 @inlined
-def _is_settled(
+def _is_steady(
     manifold: Manifold, one: Point, two: Point, linear: Vectors, h: float, still: float, near: float
 ) -> bool:
     """Whether a contact may lie in a block: it is slow for its size, and overlaps little."""
-    if manifold.swept != 0 or manifold.struck != 0 or one.ahead != 0:
+    if manifold.swept != 0 or manifold.impact_count != 0 or one.ahead != 0:
         return False
     a, b, deep = manifold.a, manifold.b, -0.1 * manifold.size
     if one.separation < deep or (manifold.count == 2 and (two.separation < deep or two.ahead != 0)):
@@ -71,8 +71,8 @@ def _survey(blocks: int, pair: Rows, colour: Rows, opened: Rows) -> tuple[int, i
     first_empty = -1
     for k in range(blocks):
         free = 0
-        for lane in range(k * WIDE, (k + 1) * WIDE):
-            free += 1 if pair[lane] < 0 else 0
+        for slot in range(k * WIDE, (k + 1) * WIDE):
+            free += 1 if pair[slot] < 0 else 0
         if free == WIDE:
             colour[k] = -1
             if first_empty < 0:
@@ -85,18 +85,18 @@ def _survey(blocks: int, pair: Rows, colour: Rows, opened: Rows) -> tuple[int, i
 
 
 @inlined
-def _free_lane(home: int, blocks: int, c: int, pair: Rows, colour: Rows) -> int:
+def _free_slot(home: int, blocks: int, c: int, pair: Rows, colour: Rows) -> int:
     """Return the first free lane of the blocks of a colour from ``home`` on, or -1."""
     for k in range(home, blocks):
         if colour[k] == c:
-            for lane in range(k * WIDE, (k + 1) * WIDE):
-                if pair[lane] < 0:
-                    return lane
+            for slot in range(k * WIDE, (k + 1) * WIDE):
+                if pair[slot] < 0:
+                    return slot
     return -1
 
 
 @inlined
-def _admit(
+def _assign_colour(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     opened: Rows, manifolds: Manifolds, points: Points, touching: Rows, count: int,
     shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
@@ -121,7 +121,7 @@ def _admit(
             continue
         if asleep[i] or asleep[j]:
             continue
-        if not _is_settled(manifold, points[2 * p], points[2 * p + 1], linear, h, still, near):
+        if not _is_steady(manifold, points[2 * p], points[2 * p + 1], linear, h, still, near):
             continue
         taken = used[i] if inverse_mass[i] > 0.0 else np.uint64(0)
         if inverse_mass[j] > 0.0:
@@ -131,21 +131,21 @@ def _admit(
             c += 1
         if c == COLOURS:
             continue
-        lane = _free_lane(opened[c], blocks, c, pair, colour) if opened[c] >= 0 else -1
-        if lane < 0:
+        slot = _free_slot(opened[c], blocks, c, pair, colour) if opened[c] >= 0 else -1
+        if slot < 0:
             home = empty
             if (home + 1) * rows > len(data):
                 continue
             for free in range(WIDE):
-                empty_lane(data, rows, home, free, a, b, pair)
-            colour[home], lane = c, home * WIDE
+                clear_slot(data, rows, home, free, a, b, pair)
+            colour[home], slot = c, home * WIDE
             blocks = max(blocks, home + 1)
             empty += 1
             while empty < blocks and colour[empty] >= 0:
                 empty += 1
-        opened[c] = lane // WIDE
-        seat(
-            kind, data, lane, a, b, pair, used, c, manifolds, points, p, radius, restitution, friction,
+        opened[c] = slot // WIDE
+        fill_slot(
+            kind, data, slot, a, b, pair, used, c, manifolds, points, p, radius, restitution, friction,
             inverse_mass, inverse_inertia,
         )  # fmt: skip
         came += 1
@@ -167,12 +167,12 @@ def sort_blocks(blocks: int, colour: Rows, order: Rows) -> None:
 
 
 @inlined
-def _keep_loose(manifolds: Manifolds, touching: Rows, count: int) -> int:
+def _keep_scalar(manifolds: Manifolds, touching: Rows, count: int) -> int:
     """Take the pairs that have lanes out of the list of those that touch; return how many are left."""
     kept = 0
     for k in range(count):
         p = touching[k]
-        if manifolds[p].lane < 0:
+        if manifolds[p].slot < 0:
             touching[kept] = p
             kept += 1
     return kept
@@ -182,30 +182,30 @@ def _keep_loose(manifolds: Manifolds, touching: Rows, count: int) -> int:
 def _trimmed(blocks: int, pair: Rows) -> int:
     """Return how many blocks there are without the empty ones at the end."""
     while blocks > 0:
-        for lane in range((blocks - 1) * WIDE, blocks * WIDE):
-            if pair[lane] >= 0:
+        for slot in range((blocks - 1) * WIDE, blocks * WIDE):
+            if pair[slot] >= 0:
                 return blocks
         blocks -= 1
     return blocks
 
 
 @inlined
-def _has_room(seats: Seats, blocks: int, active: int) -> bool:
+def _has_room(slots: Slots, blocks: int, active: int) -> bool:
     """Whether so many contacts find room, whatever colours they get."""
-    return blocks + active // WIDE + COLOURS <= len(seats[4])
+    return blocks + active // WIDE + COLOURS <= len(slots[4])
 
 
 @kernel
-def settle(
-    counts: Rows, discs: Seats, boxes: Seats, opened: Rows,
-    manifolds: Manifolds, points: Points, loose: Rows, resting: Rows, touching: Rows, quiet: Flags,
+def add_constraints(
+    counts: Rows, discs: Slots, boxes: Slots, opened: Rows,
+    manifolds: Manifolds, points: Points, scalar: Rows, sleeping: Rows, touching: Rows, inactive: Flags,
     asleep: Flags,
     shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
     inverse_mass: Numbers, inverse_inertia: Numbers, h: float,
 ) -> int:  # fmt: skip
     """Take what has settled into blocks, and say what must be done first if that cannot be.
 
-    ``counts`` are those of :mod:`physicslab.kernels.wide.slots`. Returns ``SETTLED``, or ``SPARSE`` where
+    ``counts`` are those of :mod:`physicslab.kernels.wide.slots`. Returns ``ADDED``, or ``SPARSE`` where
     too many lanes stand empty, or ``FULL`` where there is no room for those that may come. Empty blocks at
     the end are dropped in any case: what was there once makes no difference.
     """
@@ -213,10 +213,10 @@ def settle(
     counts[DISC_BLOCKS] = _trimmed(counts[DISC_BLOCKS], discs[3])
     counts[BOX_BLOCKS] = _trimmed(counts[BOX_BLOCKS], boxes[3])
     active, room = counts[ACTIVE], WIDE * (counts[DISC_BLOCKS] + counts[BOX_BLOCKS])
-    if room > 2 * COLOURS * WIDE and counts[LANES] < _SPARSE * room:
+    if room > 2 * COLOURS * WIDE and counts[WIDE_COUNT] < _SPARSE * room:
         return SPARSE
     came = 0
-    if active > 0 and (counts[LANES] > 0 or active >= FEW):
+    if active > 0 and (counts[WIDE_COUNT] > 0 or active >= FEW):
         if not (
             _has_room(discs, counts[DISC_BLOCKS], active) and _has_room(boxes, counts[BOX_BLOCKS], active)
         ):
@@ -224,10 +224,10 @@ def settle(
         for kind in (DISC, BOX):
             data, a, b, pair, colour, used, _ = discs if kind == DISC else boxes
             which = DISC_BLOCKS if kind == DISC else BOX_BLOCKS
-            counts[which], more = _admit(
+            counts[which], more = _assign_colour(
                 kind, data, counts[which], a, b, pair, colour, used, opened, manifolds, points, touching,
                 active, shape, radius, restitution, friction, linear, inverse_mass, inverse_inertia,
-                asleep, h, _ENTRY * STILL, _ENTRY * NEAR,
+                asleep, h, _ENTRY * SWEEP_THRESHOLD, _ENTRY * CONTACT_MARGIN,
             )  # fmt: skip
             came += more
     if came > 0 or counts[DISC_BLOCKS] != before[0]:
@@ -235,9 +235,11 @@ def settle(
     if came > 0 or counts[BOX_BLOCKS] != before[1]:
         sort_blocks(counts[BOX_BLOCKS], boxes[4], boxes[6])
     if came > 0:
-        counts[LANES] += came
-        counts[ACTIVE] = _keep_loose(manifolds, touching, active)
-        counts[LOOSE], counts[RESTING] = list_loose(manifolds, counts[RECORDED], quiet, loose, resting)
-        sort_loose(manifolds, loose, counts[LOOSE], len(shape))
+        counts[WIDE_COUNT] += came
+        counts[ACTIVE] = _keep_scalar(manifolds, touching, active)
+        counts[SCALAR], counts[SLEEPING] = list_scalar(
+            manifolds, counts[RECORDED], inactive, scalar, sleeping
+        )
+        sort_scalar(manifolds, scalar, counts[SCALAR], len(shape))
         counts[UNORDERED] = 0
-    return SETTLED
+    return ADDED

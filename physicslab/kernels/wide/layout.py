@@ -7,9 +7,9 @@ they do not overlap, and not vectorise the loops over its lanes.
 
 __all__ = [
     "ANGLE_A", "ANGLE_B", "ARM_AX", "ARM_AY", "ARM_BX", "ARM_BY", "BASE_X", "BASE_Y", "BOX", "BOX_ROWS",
-    "DISC", "DISC_ROWS", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS", "MASS_A", "MASS_B",
-    "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "RUB", "RUB_MASS", "SEPARATION", "SIZE", "TWO",
-    "WIDE",
+    "DISC", "DISC_ROWS", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS", "MASS_A",
+    "MASS_B", "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "SEPARATION", "SIZE",
+    "TANGENT_IMPULSE", "TANGENT_MASS", "TWO", "WIDE",
 ]  # fmt: skip
 
 WIDE = 8
@@ -22,7 +22,7 @@ DISC, BOX = 0, 1
 NORMAL_X, NORMAL_Y, FRICTION, MASS_A, MASS_B, INERTIA_A, INERTIA_B, SIZE = (WIDE * i for i in range(8))
 
 # Of a point: impulses along the normal and across, effective masses, the separation; and its arms.
-IMPULSE, RUB, MASS, RUB_MASS, SEPARATION = (WIDE * i for i in range(5))
+IMPULSE, TANGENT_IMPULSE, MASS, TANGENT_MASS, SEPARATION = (WIDE * i for i in range(5))
 ARM_AX, ARM_AY, ARM_BX, ARM_BY, FOUND = (WIDE * i for i in range(5, 10))
 ONE = 8 * WIDE
 """Where the first point stands."""

@@ -37,9 +37,9 @@ from physicslab.kernels.wide.layout import (
     TWO,
     WIDE,
 )  # fmt: skip
-from physicslab.kernels.wide.slots import Masks, give_up, store_lane
+from physicslab.kernels.wide.slots import Masks, give_up, store_slot
 
-__all__ = ["deepest_lane", "refresh"]
+__all__ = ["deepest_wide", "refresh"]
 
 _DEEP = 0.1
 """Share of the smaller size: what overlaps more is taken apart by moving, which lanes know nothing of."""
@@ -49,22 +49,29 @@ _ONE_SPOT = 1e-300
 
 @fused
 def _restless(
-    data: Numbers, at: int, a: Rows, b: Rows, lane: int, linear: Vectors, still: float, h: float
+    data: Numbers, at: int, a: Rows, b: Rows, slot: int, linear: Vectors, still: float, h: float
 ) -> int:
     """Return which lanes' bodies move too fast for their size, ``still`` of it a substep, bit by bit."""
-    vax, vay = take_vectors(linear, a, lane)
-    vbx, vby = take_vectors(linear, b, lane)
+    vax, vay = take_vectors(linear, a, slot)
+    vbx, vby = take_vectors(linear, b, slot)
     ux, uy, limit = (vbx - vax) * h, (vby - vay) * h, still * take(data, at + SIZE)
     return true_lanes(ux * ux + uy * uy > limit * limit)
 
 
 @fused
 def _refresh_discs(
-    data: Numbers, at: int, a: Rows, b: Rows, lane: int, position: Vectors, near: float, fall: float
+    data: Numbers,
+    at: int,
+    a: Rows,
+    b: Rows,
+    slot: int,
+    position: Vectors,
+    near: float,
+    speculative_margin: float,
 ) -> int:
     """Find normals and separations of a block of discs; return which are apart or overlap much."""
-    xa, ya = take_vectors(position, a, lane)
-    xb, yb = take_vectors(position, b, lane)
+    xa, ya = take_vectors(position, a, slot)
+    xb, yb = take_vectors(position, b, slot)
     dx, dy = xb - xa, yb - ya
     distance = root(dx * dx + dy * dy)
     size, ra, rb = take(data, at + SIZE), take(data, at + RADIUS_A), take(data, at + RADIUS_B)
@@ -73,7 +80,7 @@ def _refresh_discs(
     put(data, at + NORMAL_X, dx * scale)
     put(data, at + NORMAL_Y, dy * scale)
     put(data, at + ONE + SEPARATION, separation)
-    apart, on_one_spot = separation > 0.5 * near * size + fall, distance < _ONE_SPOT
+    apart, on_one_spot = separation > 0.5 * near * size + speculative_margin, distance < _ONE_SPOT
     return true_lanes((apart | on_one_spot | (separation < -_DEEP * size)) & (ra > 0.0))
 
 
@@ -93,16 +100,16 @@ def _separation(
 
 @fused
 def _refresh_boxes(
-    data: Numbers, at: int, a: Rows, b: Rows, lane: int, position: Vectors, angle: Numbers,
+    data: Numbers, at: int, a: Rows, b: Rows, slot: int, position: Vectors, angle: Numbers,
     keep: float, keep_turn: float,
 ) -> int:  # fmt: skip
     """Update the separations of a block of boxes; return which points must be found anew."""
-    xa, ya = take_vectors(position, a, lane)
-    xb, yb = take_vectors(position, b, lane)
+    xa, ya = take_vectors(position, a, slot)
+    xb, yb = take_vectors(position, b, slot)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     x, y = xb - xa - take(data, at + BASE_X), yb - ya - take(data, at + BASE_Y)
-    turn_a = take_numbers(angle, a, lane) - take(data, at + ANGLE_A)
-    turn_b = take_numbers(angle, b, lane) - take(data, at + ANGLE_B)
+    turn_a = take_numbers(angle, a, slot) - take(data, at + ANGLE_A)
+    turn_b = take_numbers(angle, b, slot) - take(data, at + ANGLE_B)
     one = _separation(data, at + ONE, x, y, nx, ny, turn_a, turn_b)
     two = _separation(data, at + TWO, x, y, nx, ny, turn_a, turn_b)
     size = take(data, at + SIZE)
@@ -115,58 +122,59 @@ def _refresh_boxes(
     return true_lanes(moved | (one < deep) | (two < deep))
 
 
-@kernel
+@inlined
 def refresh(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    manifolds: Manifolds, points: Points, loose: Rows, loose_count: int,
+    manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int,
     position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers,
-    first: bool, h: float, still: float, near: float, fall: float, keep: float, keep_turn: float,
+    first: bool, h: float, still: float, near: float, speculative_margin: float, keep: float,
+    keep_turn: float,
 ) -> int:  # fmt: skip
     """Find where the contacts of all blocks of a kind touch now; return how many pairs are loose.
 
     What is too fast (looked at in the ``first`` substep of a step), has come apart, overlaps deeply, or whose
-    points must be found anew is written to its records and added to ``loose``.
+    points must be found anew is written to its records and added to ``scalar``.
     """
     rows = DISC_ROWS if kind == DISC else BOX_ROWS
     slow = 0.5 * still if kind == DISC else 0.5 * near
     for k in range(blocks):
-        at, lane = k * rows, k * WIDE
-        lost = _restless(data, at, a, b, lane, linear, slow, h) if first else 0
+        at, slot = k * rows, k * WIDE
+        lost = _restless(data, at, a, b, slot, linear, slow, h) if first else 0
         if kind == DISC:
-            lost |= _refresh_discs(data, at, a, b, lane, position, near, fall)
+            lost |= _refresh_discs(data, at, a, b, slot, position, near, speculative_margin)
         else:
-            lost |= _refresh_boxes(data, at, a, b, lane, position, angle, keep, keep_turn)
+            lost |= _refresh_boxes(data, at, a, b, slot, position, angle, keep, keep_turn)
         if lost != 0:
-            loose_count = _set_loose(
-                data, rows, k, lost, a, b, pair, colour, used, manifolds, points, loose, loose_count
+            scalar_count = _set_scalar(
+                data, rows, k, lost, a, b, pair, colour, used, manifolds, points, scalar, scalar_count
             )
-    return loose_count
+    return scalar_count
 
 
 @inlined
-def _set_loose(
+def _set_scalar(
     data: Numbers, rows: int, k: int, lost: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    manifolds: Manifolds, points: Points, loose: Rows, loose_count: int,
+    manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int,
 ) -> int:  # fmt: skip
     """Give the lanes of a block that are ``lost`` back to their records; return how many pairs are loose."""
-    for lane in range(WIDE):
-        p = pair[k * WIDE + lane]
-        if p >= 0 and (lost >> lane) & 1:
-            store_lane(data, rows, k * WIDE + lane, p, manifolds, points)
-            manifolds[p].lane = -1
-            loose[loose_count] = p
-            loose_count += 1
-            give_up(data, rows, k * WIDE + lane, a, b, pair, colour, used)
-    return loose_count
+    for slot in range(WIDE):
+        p = pair[k * WIDE + slot]
+        if p >= 0 and (lost >> slot) & 1:
+            store_slot(data, rows, k * WIDE + slot, p, manifolds, points)
+            manifolds[p].slot = -1
+            scalar[scalar_count] = p
+            scalar_count += 1
+            give_up(data, rows, k * WIDE + slot, a, b, pair, colour, used)
+    return scalar_count
 
 
 @kernel
-def deepest_lane(kind: int, data: Numbers, blocks: int) -> float:
+def deepest_wide(kind: int, data: Numbers, blocks: int) -> float:
     """Return the deepest overlap in all blocks of a kind [m]."""
     rows, depth = (DISC_ROWS if kind == DISC else BOX_ROWS), 0.0
     for k in range(blocks):
-        for lane in range(WIDE):
-            depth = max(depth, -data[k * rows + ONE + SEPARATION + lane])
+        for slot in range(WIDE):
+            depth = max(depth, -data[k * rows + ONE + SEPARATION + slot])
             if kind == BOX:
-                depth = max(depth, -data[k * rows + TWO + SEPARATION + lane])
+                depth = max(depth, -data[k * rows + TWO + SEPARATION + slot])
     return depth

@@ -32,16 +32,16 @@ from physicslab.kernels.wide.layout import (
     ONE,
     RADIUS_A,
     RADIUS_B,
-    RUB,
-    RUB_MASS,
     SEPARATION,
     SIZE,
+    TANGENT_IMPULSE,
+    TANGENT_MASS,
     TWO,
     WIDE,
 )  # fmt: skip
-from physicslab.kernels.wide.slots import Masks, empty_lane
+from physicslab.kernels.wide.slots import Masks, clear_slot
 
-__all__ = ["outdated", "remember", "seat", "seat_again"]
+__all__ = ["fill_slot", "outdated", "remember", "restore_slots"]
 
 
 @inlined
@@ -57,8 +57,8 @@ def _fill_common(
 
 @inlined
 def _fill_point(data: Numbers, at: int, point: Point) -> None:
-    data[at + IMPULSE], data[at + RUB] = point.normal_impulse, point.tangent_impulse
-    data[at + MASS], data[at + RUB_MASS] = point.normal_mass, point.tangent_mass
+    data[at + IMPULSE], data[at + TANGENT_IMPULSE] = point.normal_impulse, point.tangent_impulse
+    data[at + MASS], data[at + TANGENT_MASS] = point.normal_mass, point.tangent_mass
     data[at + SEPARATION] = point.separation
 
 
@@ -70,15 +70,15 @@ def _fill_arms(data: Numbers, at: int, point: Point) -> None:
 
 
 @inlined
-def seat(
-    kind: int, data: Numbers, lane: int, a: Rows, b: Rows, pair: Rows, used: Masks, colour: int,
+def fill_slot(
+    kind: int, data: Numbers, slot: int, a: Rows, b: Rows, pair: Rows, used: Masks, colour: int,
     manifolds: Manifolds, points: Points, p: int,
     radius: Numbers, restitution: Numbers, friction: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers,
 ) -> None:  # fmt: skip
     """Put a pair into a free lane of a block of that colour."""
     rows = DISC_ROWS if kind == DISC else BOX_ROWS
-    at = lane // WIDE * rows + lane % WIDE
+    at = slot // WIDE * rows + slot % WIDE
     manifold, one, two = manifolds[p], points[2 * p], points[2 * p + 1]
     i, j = manifold.a, manifold.b
     manifold.restitution = min(restitution[i], restitution[j])
@@ -93,7 +93,7 @@ def seat(
         ra, rb, linear = radius[i], radius[j], inverse_mass[i] + inverse_mass[j]
         data[at + RADIUS_A], data[at + RADIUS_B] = ra, rb
         data[at + ONE + MASS] = 1.0 / linear
-        data[at + ONE + RUB_MASS] = 1.0 / (
+        data[at + ONE + TANGENT_MASS] = 1.0 / (
             linear + inverse_inertia[i] * ra * ra + inverse_inertia[j] * rb * rb
         )
     else:
@@ -103,15 +103,15 @@ def seat(
         if manifold.count == 2:
             _fill_point(data, at + TWO, two)
             _fill_arms(data, at + TWO, two)
-    a[lane], b[lane], pair[lane] = i, j, p
+    a[slot], b[slot], pair[slot] = i, j, p
     bit = np.uint64(1) << np.uint64(colour)
     used[i] |= bit
     used[j] |= bit
-    manifold.lane = 2 * lane + kind
+    manifold.slot = 2 * slot + kind
 
 
 @kernel
-def seat_again(
+def restore_slots(
     kind: int, data: Numbers, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, points: Points, pairs: int,
     shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers,
@@ -121,33 +121,33 @@ def seat_again(
 
     What has no business there, as a file may say that was written by hand, stays loose.
     """
-    rows, blocks, seated = (DISC_ROWS if kind == DISC else BOX_ROWS), 0, 0
+    rows, blocks, restored = (DISC_ROWS if kind == DISC else BOX_ROWS), 0, 0
     for p in range(pairs):
-        if manifolds[p].lane >= 0 and manifolds[p].lane % 2 == kind:
-            blocks = max(blocks, manifolds[p].lane // 2 // WIDE + 1)
+        if manifolds[p].slot >= 0 and manifolds[p].slot % 2 == kind:
+            blocks = max(blocks, manifolds[p].slot // 2 // WIDE + 1)
     for k in range(blocks):
-        for lane in range(WIDE):
-            empty_lane(data, rows, k, lane, a, b, pair)
+        for slot in range(WIDE):
+            clear_slot(data, rows, k, slot, a, b, pair)
     for p in range(pairs):
-        named = manifolds[p].lane
+        named = manifolds[p].slot
         if named >= 0 and named % 2 == kind:
-            lane, manifold = named // 2, manifolds[p]
+            slot, manifold = named // 2, manifolds[p]
             i, j, wanted = manifold.a, manifold.b, 1 if kind == DISC else 2
-            bit = np.uint64(1) << np.uint64(colour[lane // WIDE])
+            bit = np.uint64(1) << np.uint64(colour[slot // WIDE])
             taken = (used[i] if inverse_mass[i] > 0.0 else np.uint64(0)) | (
                 used[j] if inverse_mass[j] > 0.0 else np.uint64(0)
             )
-            fits = pair[lane] < 0 and taken & bit == np.uint64(0) and manifold.wall < 0
+            fits = pair[slot] < 0 and taken & bit == np.uint64(0) and manifold.wall < 0
             fits = fits and shape[i] == wanted and shape[j] == wanted and manifold.count > 0
             if not fits or inverse_mass[i] + inverse_mass[j] == 0.0:
-                manifold.lane = -1
+                manifold.slot = -1
                 continue
-            seat(
-                kind, data, lane, a, b, pair, used, colour[lane // WIDE], manifolds, points, p,
+            fill_slot(
+                kind, data, slot, a, b, pair, used, colour[slot // WIDE], manifolds, points, p,
                 radius, restitution, friction, inverse_mass, inverse_inertia,
             )  # fmt: skip
-            seated += 1
-    return blocks, seated
+            restored += 1
+    return blocks, restored
 
 
 @kernel

@@ -7,7 +7,7 @@ import numpy as np
 from numba import uint64
 from numpy.typing import NDArray
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.wide.layout import (
     ARM_AX,
@@ -24,56 +24,59 @@ from physicslab.kernels.wide.layout import (
     ONE,
     RADIUS_A,
     RADIUS_B,
-    RUB,
     SEPARATION,
     SIZE,
+    TANGENT_IMPULSE,
     TWO,
     WIDE,
 )  # fmt: skip
 
 __all__ = [
-    "ACTIVE", "BOX_BLOCKS", "COLOURS", "COUNTED", "DISC_BLOCKS", "LANES", "LEFT", "LOOSE", "LYING",
-    "RECORDED", "RESTING", "UNORDERED", "Masks", "Seats",
-    "empty_lane", "follow_pairs", "give_up", "list_loose", "release", "store", "store_lane", "wake",
+    "ACTIVE", "BOX_BLOCKS", "COLOURS", "COUNTED", "DISC_BLOCKS", "LEFT", "LOGGED", "PROXIMITY", "RECORDED",
+    "SCALAR", "SLEEPING", "UNORDERED", "WIDE_COUNT", "Masks", "Slots", "clear_slot", "follow_pairs",
+    "give_up", "list_scalar", "release", "store", "store_slot", "wake",
 ]  # fmt: skip
 
 COLOURS = 64
 """So many blocks, at the most, may move one body; what is left over stays loose."""
 Masks = Annotated[NDArray[np.uint64], uint64[::1]]
 """A uint64 array (n,), bit by bit."""
-Seats = tuple[Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
+Slots = tuple[Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
 """The blocks of a kind: data, rows of A and B, pairs, colours, the colours of each body, their order."""
-COUNTED = 10
-LYING, RECORDED, LOOSE, RESTING, ACTIVE, LEFT, LANES, DISC_BLOCKS, BOX_BLOCKS, UNORDERED = range(COUNTED)
-"""What kernels count that change it: near pairs that lie idle, those that have records, those of these that
-are loose, that rest with sleepers, that touch, that impacts have left to the solver; lanes in use, blocks;
-and whether loose pairs are out of order."""
+COUNTED = 11
+(
+    PROXIMITY, RECORDED, SCALAR, SLEEPING, ACTIVE, LEFT, WIDE_COUNT, DISC_BLOCKS, BOX_BLOCKS, UNORDERED,
+    LOGGED,
+) = range(COUNTED)  # fmt: skip
+"""What kernels count that change it: near pairs without records; those with records; of these the scalar
+ones, those that sleep, those that touch, those that impacts have left to the solver; slots in use; blocks of
+discs and of boxes; whether scalar pairs are out of order; and impacts ever logged."""
 
 
 @inlined
-def empty_lane(data: Numbers, rows: int, k: int, lane: int, a: Rows, b: Rows, pair: Rows) -> None:
-    """Let lane number ``lane`` of block k stand for nothing: it moves nobody, and is never of interest."""
+def clear_slot(data: Numbers, rows: int, k: int, slot: int, a: Rows, b: Rows, pair: Rows) -> None:
+    """Let lane number ``slot`` of block k stand for nothing: it moves nobody, and is never of interest."""
     block = data[k * rows : (k + 1) * rows]
     for row in range(0, rows, WIDE):
-        block[row + lane] = 0.0
-    block[SIZE + lane] = block[NORMAL_X + lane] = block[ONE + SEPARATION + lane] = 1.0
+        block[row + slot] = 0.0
+    block[SIZE + slot] = block[NORMAL_X + slot] = block[ONE + SEPARATION + slot] = 1.0
     if rows == DISC_ROWS:
-        block[RADIUS_A + lane] = block[RADIUS_B + lane] = -0.5
+        block[RADIUS_A + slot] = block[RADIUS_B + slot] = -0.5
     else:
-        block[TWO + SEPARATION + lane] = block[ONE + FOUND + lane] = block[TWO + FOUND + lane] = 1.0
-    a[k * WIDE + lane] = b[k * WIDE + lane] = 0
-    pair[k * WIDE + lane] = -1
+        block[TWO + SEPARATION + slot] = block[ONE + FOUND + slot] = block[TWO + FOUND + slot] = 1.0
+    a[k * WIDE + slot] = b[k * WIDE + slot] = 0
+    pair[k * WIDE + slot] = -1
 
 
 @inlined
-def store_lane(data: Numbers, rows: int, lane: int, p: int, manifolds: Manifolds, points: Points) -> None:
+def store_slot(data: Numbers, rows: int, slot: int, p: int, manifolds: Manifolds, points: Points) -> None:
     """Write what the lane holds, impulses above all, into the records of its pair."""
-    at = lane // WIDE * rows + lane % WIDE
+    at = slot // WIDE * rows + slot % WIDE
     manifold = manifolds[p]
     for j in range(manifold.count):
         point = points[2 * p + j]
         base = at + (ONE if j == 0 else TWO)
-        point.normal_impulse, point.tangent_impulse = data[base + IMPULSE], data[base + RUB]
+        point.normal_impulse, point.tangent_impulse = data[base + IMPULSE], data[base + TANGENT_IMPULSE]
         point.separation = data[base + SEPARATION]
     if rows == DISC_ROWS:
         nx, ny, point = data[at + NORMAL_X], data[at + NORMAL_Y], points[2 * p]
@@ -85,28 +88,30 @@ def store_lane(data: Numbers, rows: int, lane: int, p: int, manifolds: Manifolds
 @kernel
 def store(data: Numbers, rows: int, blocks: int, pair: Rows, manifolds: Manifolds, points: Points) -> None:
     """Write what every lane holds into the records of its pair; the lanes stay."""
-    for lane in range(blocks * WIDE):
-        if pair[lane] >= 0:
-            store_lane(data, rows, lane, pair[lane], manifolds, points)
+    for slot in range(blocks * WIDE):
+        if pair[slot] >= 0:
+            store_slot(data, rows, slot, pair[slot], manifolds, points)
 
 
 @kernel
-def list_loose(manifolds: Manifolds, pairs: int, quiet: Flags, loose: Rows, resting: Rows) -> tuple[int, int]:
+def list_scalar(
+    manifolds: Manifolds, pairs: int, inactive: Flags, scalar: Rows, sleeping: Rows
+) -> tuple[int, int]:
     """Write the pairs that have no lane, in the order of their records; return how many there are.
 
-    Where both bodies are ``quiet`` (rows,), none of which there may be, nothing is to be found out: of such
-    pairs those with points are written to ``resting``; how many is returned as well.
+    Where both bodies are ``inactive`` (rows,), none of which there may be, nothing is to be found out: of
+    such pairs those with points are written to ``sleeping``; how many is returned as well.
     """
     found, rest = 0, 0
     for p in range(pairs):
-        if manifolds[p].lane >= 0:
+        if manifolds[p].slot >= 0:
             continue
-        if len(quiet) > 0 and quiet[manifolds[p].a] and quiet[manifolds[p].b]:
+        if len(inactive) > 0 and inactive[manifolds[p].a] and inactive[manifolds[p].b]:
             if manifolds[p].count > 0:
-                resting[rest] = p
+                sleeping[rest] = p
                 rest += 1
             continue
-        loose[found] = p
+        scalar[found] = p
         found += 1
     return found, rest
 
@@ -118,12 +123,12 @@ def release(
 ) -> int:  # fmt: skip
     """Give the contacts of sleepers back to their records; return how many."""
     rows, released = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
-    for lane in range(blocks * WIDE):
-        p = pair[lane]
-        if p >= 0 and (asleep[a[lane]] or asleep[b[lane]]):
-            store_lane(data, rows, lane, p, manifolds, points)
-            manifolds[p].lane = -1
-            give_up(data, rows, lane, a, b, pair, colour, used)
+    for slot in range(blocks * WIDE):
+        p = pair[slot]
+        if p >= 0 and (asleep[a[slot]] or asleep[b[slot]]):
+            store_slot(data, rows, slot, p, manifolds, points)
+            manifolds[p].slot = -1
+            give_up(data, rows, slot, a, b, pair, colour, used)
             released += 1
     return released
 
@@ -139,29 +144,29 @@ def follow_pairs(
     """
     rows, kept = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
     before = pair[: blocks * WIDE].copy()
-    for lane in range(blocks * WIDE):
-        pair[lane] = -1
+    for slot in range(blocks * WIDE):
+        pair[slot] = -1
     for p in range(pairs):
-        lane = manifolds[p].lane
-        if lane >= 0 and lane % 2 == kind:
-            pair[lane // 2] = p
+        slot = manifolds[p].slot
+        if slot >= 0 and slot % 2 == kind:
+            pair[slot // 2] = p
             kept += 1
-    for lane in range(blocks * WIDE):
-        if before[lane] >= 0 and pair[lane] < 0:
-            give_up(data, rows, lane, a, b, pair, colour, used)
+    for slot in range(blocks * WIDE):
+        if before[slot] >= 0 and pair[slot] < 0:
+            give_up(data, rows, slot, a, b, pair, colour, used)
     return kept
 
 
 @inlined
 def give_up(
-    data: Numbers, rows: int, lane: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks
+    data: Numbers, rows: int, slot: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks
 ) -> None:
     """Empty a lane, for others to use."""
-    k = lane // WIDE
+    k = slot // WIDE
     bit = np.uint64(1) << np.uint64(colour[k])
-    used[a[lane]] &= ~bit
-    used[b[lane]] &= ~bit
-    empty_lane(data, rows, k, lane % WIDE, a, b, pair)
+    used[a[slot]] &= ~bit
+    used[b[slot]] &= ~bit
+    clear_slot(data, rows, k, slot % WIDE, a, b, pair)
 
 
 @inlined
@@ -170,14 +175,14 @@ def _resting_speed(a: int, b: int, linear: Vectors, force: Vectors, inverse_mass
     speed = abs(linear[a, 0]) + abs(linear[a, 1]) + abs(linear[b, 0]) + abs(linear[b, 1])
     pull_a = math.sqrt(force[a, 0] * force[a, 0] + force[a, 1] * force[a, 1]) * inverse_mass[a]
     pull_b = math.sqrt(force[b, 0] * force[b, 0] + force[b, 1] * force[b, 1]) * inverse_mass[b]
-    resting: float = 1e-9 * speed + 2.0 * h * max(pull_a, pull_b)
-    return resting
+    sleeping: float = 1e-9 * speed + 2.0 * h * max(pull_a, pull_b)
+    return sleeping
 
 
-@allocating_kernel
+@allocating
 def wake(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    manifolds: Manifolds, points: Points, loose: Rows, loose_count: int, touching: Rows, count: int,
+    manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int, touching: Rows, count: int,
     linear: Vectors, angular: Numbers, force: Vectors, inverse_mass: Numbers, h: float,
 ) -> tuple[int, int]:  # fmt: skip
     """Set loose what touches a struck body, may bounce, and approaches faster than rest.
@@ -185,16 +190,16 @@ def wake(
     Returns how many pairs are loose, and how many of them touch.
     """
     rows = DISC_ROWS if kind == DISC else BOX_ROWS
-    struck = np.zeros(len(angular), np.bool_)
+    impact_count = np.zeros(len(angular), np.bool_)
     for k in range(count):
         manifold = manifolds[touching[k]]
-        if manifold.struck > 0:
-            struck[manifold.a] = struck[manifold.b] = True
-    for lane in range(blocks * WIDE):
-        p = pair[lane]
-        if p < 0 or not (struck[a[lane]] | struck[b[lane]]) or manifolds[p].restitution == 0.0:
+        if manifold.impact_count > 0:
+            impact_count[manifold.a] = impact_count[manifold.b] = True
+    for slot in range(blocks * WIDE):
+        p = pair[slot]
+        if p < 0 or not (impact_count[a[slot]] | impact_count[b[slot]]) or manifolds[p].restitution == 0.0:
             continue
-        at, i, j = lane // WIDE * rows + lane % WIDE, a[lane], b[lane]
+        at, i, j = slot // WIDE * rows + slot % WIDE, a[slot], b[slot]
         nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
         lowest = 0.0
         for k in range(manifolds[p].count):
@@ -209,9 +214,9 @@ def wake(
             vy = linear[j, 1] + angular[j] * rbx - linear[i, 1] - angular[i] * rax
             lowest = min(lowest, vx * nx + vy * ny)
         if lowest < 0.0 and lowest < -_resting_speed(i, j, linear, force, inverse_mass, h):
-            store_lane(data, rows, lane, p, manifolds, points)
-            manifolds[p].lane = -1
-            loose[loose_count], touching[count] = p, p
-            loose_count, count = loose_count + 1, count + 1
-            give_up(data, rows, lane, a, b, pair, colour, used)
-    return loose_count, count
+            store_slot(data, rows, slot, p, manifolds, points)
+            manifolds[p].slot = -1
+            scalar[scalar_count], touching[count] = p, p
+            scalar_count, count = scalar_count + 1, count + 1
+            give_up(data, rows, slot, a, b, pair, colour, used)
+    return scalar_count, count

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.contacts.report import list_contacts
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.figures import number
 from physicslab.lab.accuracy.problem import Ladder, Problem, empty_world
@@ -101,7 +102,7 @@ def _forces_error(world: World, i: int) -> float:
     h = world.simulation.dt / world.simulation.substeps
     boxes = [world.entity(f"box {n}") for n in range(10)]
     felt = dict.fromkeys(range(10), 0.0)
-    for contact in world.contacts.listed(world):
+    for contact in list_contacts(world):
         above = max(boxes.index(end) for end in (contact.a, contact.b) if end in boxes)
         felt[above] += sum(point.normal_impulse for point in contact.points) / h
     true = [number("stack10", "force_k", str(n)) for n in range(10)]

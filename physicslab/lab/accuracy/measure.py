@@ -12,7 +12,7 @@ import numpy as np
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
 from physicslab.lab.accuracy.watch import Watched, watch
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.world import World
 
 __all__ = ["Measurement", "finish", "measure"]
@@ -64,7 +64,7 @@ def measure(problem: Problem, setting: Setting) -> Measurement:
     if not failure and cpu_s < _SHORT_S:
         again = (problem.build(setting.simulation(problem)) for _ in range(3))
         cpu_s = statistics.median(_timed(problem, setting, other)[0] for other in again)
-    method = world.method
+    method = world.plan
     if method.integrator.chooses_steps:
         cost = method.integrator.evaluations
         dt, steps = None, (world.force_evaluations // cost if cost else len(problem.times))
@@ -89,7 +89,7 @@ def finish(problem: Problem, world: World) -> float:
 def _timed(problem: Problem, setting: Setting, world: World) -> tuple[float, float | None, str]:
     """Return the process time [s], the error, and what went wrong."""
     world.synchronise()
-    compiled, start = world.schedule.compile_s, time.process_time()
+    compiled, start = world.compile_s, time.process_time()
     error: float | None = None
     failure = ""
     try:
@@ -101,8 +101,8 @@ def _timed(problem: Problem, setting: Setting, world: World) -> tuple[float, flo
     except (Diverged, ArithmeticError) as problem_met:
         failure = str(problem_met)
     cpu_s = time.process_time() - start
-    if world.schedule.compile_s > compiled:  # kernels were loaded: what that took is no part of the method
-        cpu_s = max(0.0, cpu_s - (world.schedule.compile_s - compiled))
+    if world.compile_s > compiled:  # kernels were loaded: what that took is no part of the method
+        cpu_s = max(0.0, cpu_s - (world.compile_s - compiled))
     if error is not None and not math.isfinite(error):
         error, failure = None, "the state is no longer finite"
     return cpu_s, error, failure

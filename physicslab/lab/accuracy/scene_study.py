@@ -16,7 +16,7 @@ from physicslab.diagnostics.energy import Drift
 from physicslab.ecs.config import SimulationConfig
 from physicslab.integrators import INTEGRATORS
 from physicslab.lab.accuracy.document import finite
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.world import World
 
 __all__ = ["ESTIMATE", "SceneRow", "SceneStudy", "scene_document", "scene_text", "study_scene"]
@@ -133,7 +133,7 @@ def _takes(load: Callable[[], World], plain: SimulationConfig, method: str) -> b
     world = load()
     world.simulation = dataclasses.replace(plain, integrator=method)
     world.synchronise()
-    return not world.method.refused
+    return not world.plan.refused
 
 
 def _tightest(load: Callable[[], World], plain: SimulationConfig) -> tuple[NDArray[np.float64] | None, str]:
@@ -159,7 +159,7 @@ def _row(
     world = load()
     world.simulation = simulation
     world.synchronise()
-    method = world.method
+    method = world.plan
     parts = 1 if method.integrator.chooses_steps else method.substeps
     step = f"{simulation.dt / parts:.3g} s"
     if method.integrator.chooses_steps:
@@ -180,9 +180,9 @@ def _row(
         row.evaluations = world.force_evaluations
         drift.sample(world)
         row.energy = drift.relative
-        finer = load()
-        finer.simulation = _other_step(simulation)
-        row.half_step = _apart(places, _end(finer))
+        substep_factor = load()
+        substep_factor.simulation = _other_step(simulation)
+        row.half_step = _apart(places, _end(substep_factor))
         if best is not None:
             row.tightest = _apart(places, best)
     except (Diverged, ArithmeticError) as error:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from physicslab.ecs.config import SimulationConfig
 from physicslab.integrators import Integrator
 from physicslab.lab.accuracy.problem import Problem
-from physicslab.systems.schedule import ForceSystem
+from physicslab.systems.system import ForceSystem
 
 __all__ = ["Setting", "ladder", "refusal", "sees_velocity"]
 
@@ -61,8 +61,8 @@ def refusal(problem: Problem, method: Integrator) -> str:
         return problem.not_asked[method.name]
     world = problem.build(SimulationConfig(dt=problem.dt, integrator=method.name))
     world.synchronise()
-    if world.method.refused:
-        return world.method.refused
+    if world.plan.refused:
+        return world.plan.refused
     if method.chooses_steps and method.evaluations:
         rate = max((system.strongest_rate(world) for system in world.schedule.running
                     if isinstance(system, ForceSystem)), default=0.0)  # fmt: skip

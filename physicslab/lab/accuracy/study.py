@@ -14,7 +14,7 @@ from physicslab.lab.accuracy.measure import Measurement, finish, measure
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting, ladder, refusal, sees_velocity
 from physicslab.lab.accuracy.verdict import Verdict, measured_order, verdict
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 
 __all__ = ["Curve", "Row", "Study", "rounding_floor", "study"]
 

@@ -86,10 +86,10 @@ def _short(number: float | None, form: str) -> str:
 
 def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
     """Return rows as lines; columns that say nothing are left out, numbers stand to the right."""
-    told = [i for i in range(len(rows[0])) if any(row[i] not in ("", "-") for row in rows[1:])]
-    widths = {i: max(len(row[i]) for row in rows) for i in told}
-    sides = {i: "<" if i in (0, len(rows[0]) - 1) else ">" for i in told}
-    return ["  " + "  ".join(f"{row[i]:{sides[i]}{widths[i]}}" for i in told).rstrip() for row in rows]
+    reported = [i for i in range(len(rows[0])) if any(row[i] not in ("", "-") for row in rows[1:])]
+    widths = {i: max(len(row[i]) for row in rows) for i in reported}
+    sides = {i: "<" if i in (0, len(rows[0]) - 1) else ">" for i in reported}
+    return ["  " + "  ".join(f"{row[i]:{sides[i]}{widths[i]}}" for i in reported).rstrip() for row in rows]
 
 
 def summary_text(studies: Sequence[Study]) -> str:

@@ -11,7 +11,7 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
-from physicslab.systems.schedule import ForceSystem
+from physicslab.systems.system import ForceSystem
 from physicslab.world import World
 
 __all__ = ["Watched", "watch"]
@@ -69,7 +69,7 @@ def watch(problem: Problem, setting: Setting) -> Watched:
         watched.energy = seen.share(energy)
     watched.momentum = momentum if "momentum" in problem.keeps else None
     watched.angular_momentum = spin if "angular_momentum" in problem.keeps else None
-    method = world.method
+    method = world.plan
     if not method.integrator.chooses_steps and rate > 0.0:
         watched.rate_dt = rate * world.simulation.dt / method.substeps
     if problem.touches:
@@ -82,7 +82,7 @@ def watch(problem: Problem, setting: Setting) -> Watched:
 def _moments(world: World, problem: Problem) -> Iterator[bool]:
     """Advance to the end, yielding after each stretch whether it is one of the random moments."""
     random = np.random.default_rng(_SEED)
-    if world.method.integrator.chooses_steps:
+    if world.plan.integrator.chooses_steps:
         for t in (*np.sort(random.uniform(0.0, problem.seconds, _SAMPLES)).tolist(), problem.seconds):
             if t > world.time:
                 world.run(seconds=t - world.time)

@@ -14,8 +14,8 @@ from physicslab.files.scene import load_scene
 from physicslab.lab.bench.quality import energy_change, overlap, sideways, sink
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.prefabs import box, container, gas, pile, pyramid
-from physicslab.systems.schedule import System
 from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import System
 from physicslab.world import World
 
 __all__ = ["MOST_BESIDE", "SCENES", "SIZES", "circles", "discs", "groups", "names", "opened", "select"]

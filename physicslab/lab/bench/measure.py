@@ -13,7 +13,7 @@ from physicslab.lab.bench.quality import Start
 from physicslab.lab.bench.result import EngineResult, SceneResult
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.peers.peer import CannotBuild, Peer
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.world import World
 
 __all__ = ["measure_scene"]

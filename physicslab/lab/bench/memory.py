@@ -62,5 +62,7 @@ def _held(count: int, steps: int) -> tuple[int, int, int]:
 def _columns(world: World) -> int:
     """Return the bytes of the rows in use."""
     return sum(
-        table[spec.name].nbytes for table in world.roster.tables.values() for spec in table.component.FIELDS
+        table[spec.name].nbytes
+        for table in world.entity_index.tables.values()
+        for spec in table.component.FIELDS
     )

@@ -17,8 +17,8 @@ from physicslab.systems.contact import ContactSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
-from physicslab.systems.schedule import System
 from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import System
 from physicslab.world import World
 
 __all__ = ["UNUSED", "Unused", "UnusedCase", "measure_unused"]

@@ -12,8 +12,8 @@ import numpy as np
 
 from physicslab.components import Drag, Shape, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
-from physicslab.state.bodies import Diverged
-from physicslab.systems.schedule import Stage
+from physicslab.state.masses import Diverged
+from physicslab.systems.system import Stage
 from physicslab.world import World
 
 __all__ = ["CannotBuild", "Peer", "find_contacts"]

@@ -13,7 +13,7 @@ from physicslab.ecs.config import PhysicsConfig
 from physicslab.lab.stability.case import Case
 from physicslab.lab.stability.worlds import open_space, spawn_point
 from physicslab.prefabs import binary
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 from physicslab.world import World
 
 __all__ = ["ATTRACTION"]

@@ -10,7 +10,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from physicslab.state.bodies import Diverged
+from physicslab.state.masses import Diverged
 
 __all__ = ["Case", "Outcome", "Verdict", "run_case"]
 

@@ -57,7 +57,7 @@ def _energy(stiffness: float, touches: bool) -> float:
     """Return what energy changed by; nothing where the engine says that it does not follow the motion."""
     world, _ = _hung(stiffness, _STRETCH, gravity=None, touches=touches)
     changed = energy_change(world, _STEPS)
-    return 0.0 if "too fast to be followed" in world.method.reason else changed
+    return 0.0 if "too fast to be followed" in world.plan.reason else changed
 
 
 def _past_limit(damping: float, kind: str, touches: bool) -> float:

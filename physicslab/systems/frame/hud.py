@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from physicslab.diagnostics.warnings import Advice, advise
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.overlay.edge_arrows import draw_edge_arrows
@@ -15,7 +15,7 @@ from physicslab.view.panels.help import Help
 from physicslab.view.panels.hint import Hint
 from physicslab.view.panels.panels import Line, Panel, broken, draw_pill, lay_out, text_size
 from physicslab.view.panels.readings import cost_lines, figure_lines, left_out_lines, method_lines
-from physicslab.view.panels.refresh_timer import Rota
+from physicslab.view.panels.refresh_timer import RefreshTimer
 from physicslab.view.panels.scale_bar import draw_scale_bar, scale_bar_height
 from physicslab.view.panels.warnings import draw_advice
 from physicslab.view.panels.work_precision import draw_work_precision
@@ -61,7 +61,7 @@ class HudSystem(System):
         self._toolbar = toolbar
         self._meter = FrameMeter()
         self._watch = EnergyWatch()
-        self._rota = Rota(_PERIODS)
+        self._refresh_timer = RefreshTimer(_PERIODS)
         self._lines: dict[str, tuple[list[Line], ...]] = {}
         self._placed: dict[str, Panel] = {}
         self._laid_out: tuple[tuple[int, int], Theme] | None = None
@@ -87,10 +87,10 @@ class HudSystem(System):
         overlays = window.overlays.arrows, window.overlays.impulses, window.figures
         if world is not self._world or overlays != self._overlays:
             self._world, self._overlays = world, overlays
-            self._rota.all_done(window.now)
+            self._refresh_timer.all_done(window.now)
             for reading in _PERIODS:
                 self._read(reading, world)
-        elif (due := self._rota.due(window.now)) is not None:
+        elif (due := self._refresh_timer.due(window.now)) is not None:
             self._read(due, world)
         if window.error_study.poll():
             self._announce(window.error_study.failure)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pygame
 
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.view.controls import actions
 from physicslab.view.controls.controls import KEYS, RELEASES
 from physicslab.view.controls.spawning import spawn_box

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from physicslab.systems.schedule import Stage, System, at
+from physicslab.systems.system import Stage, System, at
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.panels.panels import text_size

@@ -11,13 +11,13 @@ from physicslab.view.canvas.canvas import Align, Rect, TextStyle
 from physicslab.view.canvas.theme import NOTHING, Colour
 
 if TYPE_CHECKING:
-    from physicslab.view.canvas.canvas import Paper
+    from physicslab.view.canvas.canvas import TextSurface
     from physicslab.view.canvas.pygame_canvas import PygameCanvas
 
-__all__ = ["Sheet"]
+__all__ = ["CachedLayer"]
 
 
-class Sheet:
+class CachedLayer:
     """A part of the picture that is drawn anew only when it is another.
 
     A panel of figures is some fifty words: put down one by one they take most of the HUD's time.
@@ -34,7 +34,7 @@ class Sheet:
         self._surface = pygame.Surface((1, 1), pygame.SRCALPHA, 32)
         self._corner = (0, 0)
 
-    def put(self, rect: Rect, version: object, draw: Callable[[Paper], None]) -> None:
+    def put(self, rect: Rect, version: object, draw: Callable[[TextSurface], None]) -> None:
         """Put it down at ``rect`` [px], drawn anew where size or version are not those of the last time."""
         size = (max(rect[2], 1), max(rect[3], 1))
         if size != self._surface.get_size() or version != self._version:

@@ -15,17 +15,9 @@ if TYPE_CHECKING:
     import pygame
 
 __all__ = [
-    "Align",
-    "Canvas",
-    "Look",
-    "Numbers",
-    "Painter",
-    "Paper",
-    "Points",
-    "RecordingCanvas",
-    "Rect",
-    "TextStyle",
-]
+    "Align", "Canvas", "Look", "Numbers", "Painter", "Points", "RecordingCanvas", "Rect", "TextStyle",
+    "TextSurface",
+]  # fmt: skip
 
 type Numbers = NDArray[np.float64]
 """A float64 array (n,)."""
@@ -70,7 +62,7 @@ class TextStyle:
     bold: bool = False
 
 
-class Paper(Protocol):
+class TextSurface(Protocol):
     """What words and panels can be put on: a canvas, or a part of it that is kept."""
 
     def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
@@ -83,7 +75,7 @@ class Paper(Protocol):
         """Return the width and height of one line [px]."""
 
 
-class Canvas(Paper, Protocol):
+class Canvas(TextSurface, Protocol):
     """A picture in the making. All lengths are pixels, y points down, and what comes later lies on top.
 
     Angles are counter-clockwise as seen on the screen [rad]. What lies outside the picture is cut off, and
@@ -111,7 +103,7 @@ class Canvas(Paper, Protocol):
     def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
         """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
 
-    def sheet(self, name: str, rect: Rect, version: object, draw: Callable[[Paper], None]) -> None:
+    def layer(self, name: str, rect: Rect, version: object, draw: Callable[[TextSurface], None]) -> None:
         """Draw words and panels that lie within ``rect`` [px] and stay for as long as ``version`` does.
 
         What was drawn under the same ``name`` before may be put down once more in place of calling ``draw``;
@@ -191,7 +183,7 @@ class RecordingCanvas:
         """Return a guess: letters a little over half as wide as high."""
         return round(0.55 * style.size * len(words)), round(1.36 * style.size)
 
-    def sheet(self, name: str, rect: Rect, version: object, draw: Callable[[Paper], None]) -> None:
+    def layer(self, name: str, rect: Rect, version: object, draw: Callable[[TextSurface], None]) -> None:
         """Note each thing on it."""
         draw(self)
 

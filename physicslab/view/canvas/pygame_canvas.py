@@ -13,8 +13,8 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.cached_layer import Sheet
-from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Paper, Points, Rect, TextStyle
+from physicslab.view.canvas.cached_layer import CachedLayer
+from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle, TextSurface
 from physicslab.view.canvas.rounded import rounded
 from physicslab.view.canvas.theme import Colour
 
@@ -58,7 +58,7 @@ class PygameCanvas:
         self._kept: OrderedDict[tuple[object, ...], pygame.Surface] = OrderedDict()
         self._fonts: dict[tuple[int, bool], pygame.font.Font] = {}
         self._colours: dict[Colour, int] = {}
-        self._sheets: dict[str, Sheet] = {}
+        self._sheets: dict[str, CachedLayer] = {}
         self._sizes: dict[tuple[str, TextStyle], tuple[int, int]] = {}
 
     @property
@@ -157,11 +157,11 @@ class PygameCanvas:
             size = self._sizes[key] = self._font(style).size(words)
         return size
 
-    def sheet(self, name: str, rect: Rect, version: object, draw: Callable[[Paper], None]) -> None:
+    def layer(self, name: str, rect: Rect, version: object, draw: Callable[[TextSurface], None]) -> None:
         """Draw words and panels that lie within ``rect`` [px] and stay for as long as ``version`` does."""
         kept = self._sheets.get(name)
         if kept is None:
-            kept = self._sheets[name] = Sheet(self)
+            kept = self._sheets[name] = CachedLayer(self)
         kept.put(rect, version, draw)
 
     def paint(self, painter: Painter) -> None:

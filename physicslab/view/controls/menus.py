@@ -14,11 +14,11 @@ from physicslab.view.controls.tools import SPAWN_TOOLS, Tool
 from physicslab.view.window import Window
 from physicslab.world import World
 
-__all__ = ["MENUS", "Choice"]
+__all__ = ["MENUS", "StepPlan"]
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class StepPlan:
     """A line of a menu.
 
     Attributes
@@ -36,17 +36,17 @@ class Choice:
     on: bool = False
 
 
-def _things(world: World, window: Window) -> list[Choice]:
-    def choice(tool: Tool) -> Choice:
-        return Choice(tool.title, lambda _, window: actions.choose_tool(window, tool), window.tool is tool)
+def _things(world: World, window: Window) -> list[StepPlan]:
+    def choice(tool: Tool) -> StepPlan:
+        return StepPlan(tool.title, lambda _, window: actions.choose_tool(window, tool), window.tool is tool)
 
-    return [Choice("Spawn with a click"), *map(choice, SPAWN_TOOLS)]
+    return [StepPlan("Spawn with a click"), *map(choice, SPAWN_TOOLS)]
 
 
-def _scenes(world: World, window: Window) -> list[Choice]:
-    def choice(title: str, source: str | Path) -> Choice:
+def _scenes(world: World, window: Window) -> list[StepPlan]:
+    def choice(title: str, source: str | Path) -> StepPlan:
         shown = (world.title or world.name) == title
-        return Choice(title, lambda _, window: actions.open_scene(window, source), shown)
+        return StepPlan(title, lambda _, window: actions.open_scene(window, source), shown)
 
     try:
         files = scene_files(Path.cwd())
@@ -54,12 +54,10 @@ def _scenes(world: World, window: Window) -> list[Choice]:
         window.notify(f"Files could not be listed: {error}", failed=True)
         files = []
     built_in = [choice(scene.title, name) for name, scene in SCENES.items()]
-    saved = [
-        Choice("Files in the working directory"),
-        *(choice(printable(path.name), path) for path in files),
-    ]
-    return [Choice("Built-in scenes"), *built_in, *(saved if files else [])]
+    found = (choice(printable(path.name), path) for path in files)
+    saved = [StepPlan("Files in the working directory"), *found]
+    return [StepPlan("Built-in scenes"), *built_in, *(saved if files else [])]
 
 
-MENUS: dict[str, Callable[[World, Window], list[Choice]]] = {"spawn": _things, "scenes": _scenes}
+MENUS: dict[str, Callable[[World, Window], list[StepPlan]]] = {"spawn": _things, "scenes": _scenes}
 """What each menu offers, by the name that a control opens it by."""

@@ -26,7 +26,7 @@ def body_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | N
     Where there is none, the nearest whose middle is within a few pixels is taken.
     """
     place, rows = camera.to_world(pixel), body_rows(world)
-    entities = world.roster.entities
+    entities = world.entity_index.entities
     point_gap = _distance(world, rows.points, place) - POINT_RADIUS / camera.scale
     disc_gap = _distance(world, rows.discs, place) - world.table(Shape)["radius"][rows.discs]
     box_gap = _box_gap(world, rows.boxes, place)

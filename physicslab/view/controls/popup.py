@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.controls.menus import Choice
+from physicslab.view.controls.menus import StepPlan
 from physicslab.view.controls.widgets import Button, Widgets
 
 __all__ = ["Popup"]
@@ -27,12 +27,12 @@ class Popup:
         What is called with the choice that is clicked.
     """
 
-    def __init__(self, widgets: Widgets, choose: Callable[[Choice], None]) -> None:
+    def __init__(self, widgets: Widgets, choose: Callable[[StepPlan], None]) -> None:
         self._widgets = widgets
         self._choose = choose
         self._plate = widgets.plate(menu=True)
         self._rows: list[Button] = []
-        self._shown: list[Choice] = []
+        self._shown: list[StepPlan] = []
         self._page = 0
         self._pages = 1
 
@@ -57,7 +57,7 @@ class Popup:
         self._page = (self._page + pages) % self._pages
 
     def open(
-        self, choices: Sequence[Choice], anchor: Rect, room: Rect, size: int, canvas: Canvas, theme: Theme
+        self, choices: Sequence[StepPlan], anchor: Rect, room: Rect, size: int, canvas: Canvas, theme: Theme
     ) -> None:
         """Show choices at a button, within a part of the window.
 
@@ -93,16 +93,16 @@ class Popup:
             row.allow(shown[n].choose is not None or shown[n] is self._turning)
             row.mark(shown[n].on)
 
-    def _paged(self, choices: list[Choice], room: int) -> list[Choice]:
+    def _paged(self, choices: list[StepPlan], room: int) -> list[StepPlan]:
         """Return what is shown of the choices where there is room for so many lines."""
-        self._turning: Choice | None = None
+        self._turning: StepPlan | None = None
         self._pages = 1
         if len(choices) <= room:
             return choices
         each = max(room - 1, 1)
         self._pages = math.ceil(len(choices) / each)
         self._page %= self._pages
-        self._turning = Choice(f"More ({self._page + 1} of {self._pages})")
+        self._turning = StepPlan(f"More ({self._page + 1} of {self._pages})")
         return [*choices[self._page * each : (self._page + 1) * each], self._turning]
 
     def _row(self, number: int) -> Button:

@@ -9,7 +9,7 @@ import pygame
 
 from physicslab.view.canvas.canvas import Rect, TextStyle
 from physicslab.view.controls.controls import CONTROLS, Control
-from physicslab.view.controls.menus import MENUS, Choice
+from physicslab.view.controls.menus import MENUS, StepPlan
 from physicslab.view.controls.popup import Popup
 from physicslab.view.controls.widgets import Button, Widgets
 from physicslab.view.panels.panels import text_size
@@ -48,7 +48,7 @@ class Toolbar:
         self._text_size = text_size(window.canvas)
         self._sized = (window.canvas.size, window.now)
         self._widgets = Widgets(window.canvas.size, window.theme, self._text_size)
-        self._asked: list[Control | Choice] = []
+        self._asked: list[Control | StepPlan] = []
         self._plate = self._widgets.plate()
         self._buttons: dict[Control, Button] = {
             control: self._button(control) for control in (*CONTROLS, _MORE) if control.icon
@@ -66,7 +66,7 @@ class Toolbar:
     def _button(self, control: Control) -> Button:
         return self._widgets.button(lambda: self._asked.append(control), icon=control.icon)
 
-    def _asked_for(self, choice: Choice) -> None:
+    def _asked_for(self, choice: StepPlan) -> None:
         self._asked.append(choice)
 
     @property
@@ -172,7 +172,7 @@ class Toolbar:
         """Do what was clicked."""
         window, asked, self._asked = self._window, self._asked, []
         for wish in asked:
-            if isinstance(wish, Choice):
+            if isinstance(wish, StepPlan):
                 window.menu = ""
                 if wish.choose is not None:
                     wish.choose(world, window)
@@ -243,5 +243,5 @@ class Toolbar:
         canvas.text(control.label, (left + 3 * pad + room[0], top + pad // 2 + drop), cap)
 
 
-def _choice(control: Control, world: World, window: Window) -> Choice:
-    return Choice(f"{control.tip}  ({control.label})", control.pressed, control.on(world, window))
+def _choice(control: Control, world: World, window: Window) -> StepPlan:
+    return StepPlan(f"{control.tip}  ({control.label})", control.pressed, control.on(world, window))

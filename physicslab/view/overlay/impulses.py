@@ -12,10 +12,10 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points, Rect
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.arrows import FRICTION_IMPULSE, NORMAL_IMPULSE, dashes, draw_arrows, longest
+from physicslab.view.overlay.contact_samples import ContactSamples, resting_of, sliding
 from physicslab.view.overlay.impacts import Impacts
 from physicslab.view.overlay.labels import Key, Label
 from physicslab.view.overlay.overlays import Overlays
-from physicslab.view.overlay.touches import Touches, resting_of, sliding
 from physicslab.view.panels.gauge import Gauge
 from physicslab.view.panels.quantities import quantity
 from physicslab.world import World
@@ -52,7 +52,7 @@ def draw_impulses(
     ]
     worth_saying.sort(key=lambda one: -one.weight * (_LOYALTY if overlays.labels.known(one.key) else 1.0))
     chosen = [one for one in worth_saying if not _under(one.at, overlays.covered)][:LABELLED]
-    labels = [Label(one.key, one.at, said_of(one.touch, one.struck, one.slips)) for one in chosen]
+    labels = [Label(one.key, one.at, said_of(one.touch, one.impact_count, one.slips)) for one in chosen]
     overlays.labels.draw(labels, overlays.covered, text_size, canvas, theme)
 
 
@@ -61,15 +61,15 @@ def _under(at: tuple[float, float], covered: Sequence[Rect]) -> bool:
     return any(x <= at[0] < x + width and y <= at[1] < y + height for x, y, width, height in covered)
 
 
-def _without(touches: Touches, others: Touches) -> Touches:
+def _without(touches: ContactSamples, others: ContactSamples) -> ContactSamples:
     """Return the touches at other points than ``others``."""
     place = ["a", "b", "point"]
-    kept: Touches = touches[~np.isin(touches[place], others[place])] if len(others) else touches
+    kept: ContactSamples = touches[~np.isin(touches[place], others[place])] if len(others) else touches
     return kept
 
 
 def _draw_touches(
-    touches: Touches,
+    touches: ContactSamples,
     gauge: Gauge,
     width: float,
     opacity: float | Numbers,
@@ -85,8 +85,8 @@ def _draw_touches(
     tangent = np.stack((normal[:, 1], -normal[:, 0]), axis=1)  # counter-clockwise, as seen
     scale = camera.scale / gauge.per_metre
     _draw_cones(start, normal, tangent, touches, scale, opacity, theme, canvas)
-    rub = tangent * (touches["tangent"] * scale)[:, None]
-    draw_arrows(start, rub, FRICTION_IMPULSE, canvas, theme, opacity=opacity, width=width)
+    friction_impulse = tangent * (touches["tangent"] * scale)[:, None]
+    draw_arrows(start, friction_impulse, FRICTION_IMPULSE, canvas, theme, opacity=opacity, width=width)
     push = normal * (touches["normal"] * scale)[:, None]
     draw_arrows(start, push, NORMAL_IMPULSE, canvas, theme, opacity=opacity, width=width)
 
@@ -95,7 +95,7 @@ def _draw_cones(
     start: Points,
     normal: Points,
     tangent: Points,
-    touches: Touches,
+    touches: ContactSamples,
     scale: float,
     opacity: float | Numbers,
     theme: Theme,
@@ -129,12 +129,12 @@ class _Candidate:
     key: Key
     at: tuple[float, float]
     touch: np.void
-    struck: bool
+    impact_count: bool
     slips: bool
 
 
 def _strongest(
-    touches: Touches, fresh: NDArray[np.float64], gauge: Gauge, struck: bool, camera: Camera
+    touches: ContactSamples, fresh: NDArray[np.float64], gauge: Gauge, impact_count: bool, camera: Camera
 ) -> list[_Candidate]:
     """Return the touches in the picture that stand out most."""
     if not len(touches):
@@ -149,17 +149,19 @@ def _strongest(
     keys = zip(touches["a"].tolist(), touches["b"].tolist(), touches["point"].tolist(), strict=True)
     places = ((x, y) for x, y in at[chosen].tolist())
     every = zip(weight[chosen].tolist(), keys, places, touches, slips, strict=True)
-    return [_Candidate(much, key, place, touch, struck, slip) for much, key, place, touch, slip in every]
+    return [
+        _Candidate(much, key, place, touch, impact_count, slip) for much, key, place, touch, slip in every
+    ]
 
 
-def said_of(touch: np.void, struck: bool, slips: bool) -> list[str]:
+def said_of(touch: np.void, impact_count: bool, slips: bool) -> list[str]:
     """Return the numbers of a touch in SI units, a line each."""
-    lines = [f"impact at {quantity(float(touch['speed']), 'm/s')}"] if struck else []
+    lines = [f"impact at {quantity(float(touch['speed']), 'm/s')}"] if impact_count else []
     lines.append(f"normal {quantity(float(touch['normal']), 'N s')}")
     if touch["friction"] > 0.0:
-        rub = abs(float(touch["tangent"]))
-        rub = rub if rub > _ROUNDING * touch["normal"] else 0.0
-        lines.append(f"friction {quantity(rub, 'N s')}")
+        friction_impulse = abs(float(touch["tangent"]))
+        friction_impulse = friction_impulse if friction_impulse > _ROUNDING * touch["normal"] else 0.0
+        lines.append(f"friction {quantity(friction_impulse, 'N s')}")
         lines.append(f"{'slips' if slips else 'sticks'}, μ = {float(touch['friction']):.3g}")
     else:
         lines.append("μ = 0")

@@ -118,9 +118,9 @@ def legend_of(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: 
         texts.append((scale, (width - pad, y), value, "right"))
         samples.append((sample, (float(pad), y + 0.5 * row_height), sample_length))
         y += row_height
-    told = lay_out(_remarks(remarks), 0, y - pad // 2, width, size, canvas, theme)
-    texts += told.texts
-    return Legend(Panel((0, 0, width, y - pad // 2 + told.rect[3]), tuple(texts)), tuple(samples))
+    reported = lay_out(_remarks(remarks), 0, y - pad // 2, width, size, canvas, theme)
+    texts += reported.texts
+    return Legend(Panel((0, 0, width, y - pad // 2 + reported.rect[3]), tuple(texts)), tuple(samples))
 
 
 def _remarks(words: Sequence[str]) -> list[Line]:

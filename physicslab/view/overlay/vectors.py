@@ -9,8 +9,8 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.arrows import CONTACT_NORMAL, FORCE, SHORTEST, VELOCITY, draw_arrows
+from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.view.overlay.overlays import Overlays
-from physicslab.view.overlay.touches import resting_of
 from physicslab.world import World
 
 __all__ = ["NORMAL_LENGTH", "draw_vectors"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from physicslab.view.canvas.canvas import Canvas, Paper, TextStyle
+from physicslab.view.canvas.canvas import Canvas, TextStyle, TextSurface
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.controls.controls import Control
 
@@ -74,9 +74,9 @@ class Hint:
 
     def draw(self, canvas: Canvas) -> None:
         """Draw it, each row in the middle."""
-        canvas.sheet("hint", self.rect, self, self._draw_on)
+        canvas.layer("hint", self.rect, self, self._draw_on)
 
-    def _draw_on(self, canvas: Paper) -> None:
+    def _draw_on(self, canvas: TextSurface) -> None:
         theme, pad = self._theme, self._pad
         canvas.panel(self.rect, theme.panel, theme.outline, theme.panel_opacity)
         height = self._row - pad // 2

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from physicslab.view.canvas.canvas import Canvas, Paper, Rect, TextStyle
+from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle, TextSurface
 from physicslab.view.canvas.theme import Colour, Theme
 
 __all__ = ["Line", "Panel", "broken", "draw_pill", "lay_out", "text_size"]
@@ -47,7 +47,7 @@ class Panel:
     rect: Rect
     texts: tuple[tuple[str, tuple[int, int], TextStyle, Literal["left", "right"]], ...]
 
-    def draw(self, canvas: Paper, theme: Theme) -> None:
+    def draw(self, canvas: TextSurface, theme: Theme) -> None:
         """Draw the panel with its text."""
         canvas.panel(self.rect, theme.panel, theme.outline, theme.panel_opacity)
         for words, place, style, side in self.texts:
@@ -55,7 +55,7 @@ class Panel:
 
     def show(self, name: str, canvas: Canvas, theme: Theme) -> None:
         """Draw it as a picture that is kept under a name."""
-        canvas.sheet(name, self.rect, (self, theme), lambda paper: self.draw(paper, theme))
+        canvas.layer(name, self.rect, (self, theme), lambda paper: self.draw(paper, theme))
 
 
 def text_size(canvas: Canvas) -> int:

@@ -81,8 +81,8 @@ def method_lines(world: World) -> list[Line]:
     return [
         Line(kind="gap"),
         Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
-        Line(world.method.integrator.title, kind="remark"),
-        Line(f"because: {world.method.reason}", kind="remark"),
+        Line(world.plan.integrator.title, kind="remark"),
+        Line(f"because: {world.plan.reason}", kind="remark"),
         *_division_lines(world),
         *(Line(f"{_plain(name)} is computed by Python: slower", kind="remark") for name in world.interpreted),
         *_collision_lines(world),
@@ -90,13 +90,13 @@ def method_lines(world: World) -> list[Line]:
 
 
 def _division_lines(world: World) -> list[Line]:
-    if world.divided <= 1:
+    if world.step_divisions <= 1:
         return []
-    return [Line(f"the last step was divided into {world.divided}", kind="remark")]
+    return [Line(f"the last step was divided into {world.step_divisions}", kind="remark")]
 
 
 def _collision_lines(world: World) -> list[Line]:
-    method = world.method
+    method = world.plan
     if method.collisions == "none":
         return []
     words = {"exact": "Impacts at their exact times", "step": "Contacts found within steps"}

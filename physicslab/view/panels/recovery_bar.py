@@ -8,7 +8,7 @@ from functools import partial
 from physicslab.ecs.fields import InvalidValue
 from physicslab.files.scene import SceneError
 from physicslab.view.canvas.canvas import TextStyle
-from physicslab.view.controls.menus import Choice
+from physicslab.view.controls.menus import StepPlan
 from physicslab.view.controls.widgets import Widgets
 from physicslab.view.panels.panels import broken
 from physicslab.view.window import Window
@@ -35,10 +35,10 @@ class RecoveryBar:
         What it takes up [px]; 0 where nothing is on offer.
     """
 
-    def __init__(self, widgets: Widgets, window: Window, ask: Callable[[Choice], None]) -> None:
+    def __init__(self, widgets: Widgets, window: Window, ask: Callable[[StepPlan], None]) -> None:
         self._window = window
         self._plate = widgets.plate()
-        choices = (Choice("Restore it", restore_session), Choice("Discard", discard_session))
+        choices = (StepPlan("Restore it", restore_session), StepPlan("Discard", discard_session))
         # No lambda with a default: the widgets would take that for a parameter, and pass it what happened.
         self._buttons = [(choice, widgets.button(partial(ask, choice))) for choice in choices]
         self._top = self._room = 0

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-__all__ = ["Rota"]
+__all__ = ["RefreshTimer"]
 
 
-class Rota:
+class RefreshTimer:
     """Says which job is due, one at a call at the most: two that fall together would make a slow frame.
 
     Parameters

@@ -65,7 +65,7 @@ _STATIC, _KINEMATIC, _HELD, _OWN = range(4)
 
 def own_colour(world: World, theme: Theme, rows: Rows) -> Rows:
     """Return which of ``theme.bodies`` each body has."""
-    return world.roster.entities[rows] % len(theme.bodies)
+    return world.entity_index.entities[rows] % len(theme.bodies)
 
 
 def _look(world: World, theme: Theme, rows: Rows) -> Look:

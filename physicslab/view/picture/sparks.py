@@ -70,19 +70,19 @@ class Sparks:
             self.velocity *= np.exp(-_DRAG * h)
             self.age += h
             self._keep(self.age < self.life)
-        self._strike(world, scale)
+        self._resolve_impacts(world, scale)
 
     def _keep(self, kept: NDArray[np.bool_] | slice) -> None:
         self.place, self.velocity = self.place[kept], self.velocity[kept]
         self.age, self.life, self.strength = self.age[kept], self.life[kept], self.strength[kept]
 
-    def _strike(self, world: World, scale: float) -> None:
+    def _resolve_impacts(self, world: World, scale: float) -> None:
         contacts = world.contacts
         near = contacts.manifolds[: contacts.recorded]
-        struck = np.flatnonzero(near["struck"] > 0)
-        if not len(struck):
+        impact_count = np.flatnonzero(near["struck"] > 0)
+        if not len(impact_count):
             return
-        point = (2 * struck[:, None] + (0, 1)).ravel()
+        point = (2 * impact_count[:, None] + (0, 1)).ravel()
         points = contacts.points[point]
         point = point[(points["impact_normal"] > 0.0) & (points["approach_speed"] * scale > _WEAK)]
         points, pairs = contacts.points[point], near[point // 2]

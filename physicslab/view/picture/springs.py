@@ -34,7 +34,7 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
     rows = world.batch(Spring).rows
     if not len(rows):
         return
-    spring, lookup = world.table(Spring), world.roster.lookup
+    spring, lookup = world.table(Spring), world.entity_index.lookup
     own, a, b = world.batch(Spring).entities, spring["a"][rows], spring["b"][rows]
     start = _end(world, lookup[np.where(a == 0, own, a)], spring["anchor_a"][rows])
     end = _end(world, lookup[b], spring["anchor_b"][rows])

@@ -96,7 +96,7 @@ def draw_trails(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> N
     shade = np.clip(_SHADES * 0.5 * (age[first] + age[second]), 0, _SHADES - 1).astype(np.int8)
     order = np.argsort(-shade, kind="stable")  # oldest first, so that what is brighter lies on top
     first, second, shade = first[order], second[order], shade[order]
-    colour = own_colour(world, theme, world.roster.rows_of(system.entities))[first // ages.shape[1]]
+    colour = own_colour(world, theme, world.entity_index.rows_of(system.entities))[first // ages.shape[1]]
     young = 1.0 - (shade + 0.5) / _SHADES
     room = _INK * camera.size[0] * camera.size[1] / max(total, 1.0)
     width = np.maximum(_NARROWEST + (_WIDEST - _NARROWEST) * young * min(room, 1.0), _NARROWEST)

@@ -9,9 +9,9 @@ from physicslab.ecs import config
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.integrators import INTEGRATORS
 from physicslab.systems.integrate import IntegrateSystem
-from physicslab.systems.schedule import ForceSystem, Stage, at
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import ForceSystem, Stage, at
 from physicslab.world import World
 
 
@@ -53,21 +53,21 @@ def planets(count: int, softening: float) -> World:
     ],
 )
 def test_auto_chooses_by_what_there_is_and_says_why(world: World, name: str, reason: str) -> None:
-    assert world.method.integrator.name == name
-    assert reason in world.method.reason
+    assert world.plan.integrator.name == name
+    assert reason in world.plan.reason
 
 
 def test_auto_thinks_again_when_the_content_changes() -> None:
     world = world_of(ball())
     spring = world.spawn(*ball(2, Spring(rest_length=2.2, stiffness=1e4)))
     world.synchronise()
-    assert world.method.integrator.name == "blanes_moan"
+    assert world.plan.integrator.name == "blanes_moan"
     world.component(spring, Spring).damping = 1.0
     world.step()
-    assert world.method.integrator.name == "dop853"
+    assert world.plan.integrator.name == "dop853"
     world.remove(spring)
     world.synchronise()
-    assert world.method.integrator.name == "exact"
+    assert world.plan.integrator.name == "exact"
 
 
 @pytest.mark.parametrize("name", ["leapfrog", "rk4", "dop853", "auto"])
@@ -103,11 +103,11 @@ def test_strong_drag_on_a_body_at_rest_at_the_origin_is_no_trap() -> None:
 
 def test_what_was_asked_for_and_cannot_be_is_refused_in_words() -> None:
     touching = world_of(ball(0, Shape.circle(1)), ball(9, Shape.circle(1)), integrator="rk4")
-    assert touching.method.integrator.name == "leapfrog"
-    assert touching.method.refused == touching.method.reason
-    assert "rk4 was asked for" in touching.method.reason
+    assert touching.plan.integrator.name == "leapfrog"
+    assert touching.plan.refused == touching.plan.reason
+    assert "rk4 was asked for" in touching.plan.reason
     planets = world_of(ball(0), ball(1), integrator="exact", gravity_mode="planet")
-    assert "planets attract each other" in planets.method.refused
+    assert "planets attract each other" in planets.plan.refused
 
 
 def test_every_name_of_the_contract_is_a_method() -> None:
@@ -140,7 +140,7 @@ def test_auto_keeps_to_one_evaluation_where_a_force_is_written_in_python() -> No
     world = World(Wind(), IntegrateSystem())
     world.spawn(Transform(), Velocity(), Mass())
     world.step()
-    assert world.method.reason == "the force of Wind is written in Python"
+    assert world.plan.reason == "the force of Wind is written in Python"
 
 
 def test_what_a_force_raises_reaches_the_caller() -> None:

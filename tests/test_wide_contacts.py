@@ -5,6 +5,7 @@ import pytest
 from desk import bits
 
 from physicslab.components import Mass, Transform, Velocity
+from physicslab.contacts.memory import export_contacts, restore_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import compile_kernels
@@ -31,45 +32,45 @@ def settled_discs() -> World:
     return world
 
 
-SETTLED = {"boxes": settled_boxes, "discs": settled_discs}
+ADDED = {"boxes": settled_boxes, "discs": settled_discs}
 
 
-@pytest.mark.parametrize("name", SETTLED)
+@pytest.mark.parametrize("name", ADDED)
 def test_what_has_settled_lies_in_blocks(name: str) -> None:
-    world = SETTLED[name]()
-    assert world.contacts.blocks.lanes > 0.7 * world.contacts.count
-    assert world.contacts.count == world.contacts.active + world.contacts.blocks.lanes
+    world = ADDED[name]()
+    assert world.contacts.wide.filled > 0.7 * world.contacts.count
+    assert world.contacts.count == world.contacts.active + world.contacts.wide.filled
 
 
-@pytest.mark.parametrize("name", SETTLED)
+@pytest.mark.parametrize("name", ADDED)
 def test_no_block_moves_a_body_twice(name: str) -> None:
-    world = SETTLED[name]()
-    for lanes in world.contacts.blocks.kinds:
-        for k in range(lanes.count):
+    world = ADDED[name]()
+    for constraints in world.contacts.wide.kinds:
+        for k in range(constraints.count):
             span = slice(k * WIDE, (k + 1) * WIDE)
-            taken = lanes.pair[span] >= 0
-            rows = np.concatenate((lanes.a[span][taken], lanes.b[span][taken]))
+            taken = constraints.pair[span] >= 0
+            rows = np.concatenate((constraints.a[span][taken], constraints.b[span][taken]))
             rows = rows[world.bodies.inverse_mass[rows] > 0.0]
             assert len(np.unique(rows)) == len(rows)
 
 
-@pytest.mark.parametrize("name", SETTLED)
+@pytest.mark.parametrize("name", ADDED)
 def test_every_pair_has_one_lane_or_is_loose(name: str) -> None:
-    contacts = SETTLED[name]().contacts
-    seated = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.blocks.kinds])
-    seated = seated[seated >= 0]
-    everyone = np.sort(np.concatenate((seated, contacts.loose[: contacts.loose_count])))
+    contacts = ADDED[name]().contacts
+    restored = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.wide.kinds])
+    restored = restored[restored >= 0]
+    everyone = np.sort(np.concatenate((restored, contacts.scalar[: contacts.scalar_count])))
     assert np.array_equal(everyone, np.arange(contacts.recorded))
 
 
-@pytest.mark.parametrize("name", SETTLED)
+@pytest.mark.parametrize("name", ADDED)
 def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
     """Both solvers, from the same state and in the same order, agree to rounding."""
-    world = SETTLED[name]()
+    world = ADDED[name]()
     world.step()
     contacts, bodies, velocity = world.contacts, world.bodies, world.table(Velocity)
     contacts.sync()
-    blocks = contacts.blocks
+    blocks = contacts.wide
     order = [
         int(p)
         for kind in blocks.kinds
@@ -84,12 +85,13 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         linear, angular = velocity["linear"].copy(), velocity["angular"].copy()
         linear[bodies.inverse_mass > 0.0] -= (0.0, 9.81 * h)
         points, touching = contacts.points.copy(), np.array(order, np.int64)
-        lanes = [
+        constraints = [
             (kind.data.copy(), kind.count if in_blocks else 0, kind.order, kind.a, kind.b)
             for kind in blocks.kinds
         ]
         common = (
-            contacts.manifolds, points, touching, 0 if in_blocks else len(order), *lanes[0], *lanes[1],
+            contacts.manifolds, points, touching, 0 if in_blocks else len(order), *constraints[0],
+            *constraints[1],
             linear, angular, bodies.inverse_mass, bodies.inverse_inertia,
         )  # fmt: skip
         impulse.solve(*common, bodies.force, True, h, 1.0, 1, 45.0, 2.0, 0.0005)
@@ -104,7 +106,7 @@ def test_few_contacts_stay_loose() -> None:
     for i in range(5):
         box(world, (0.0, 0.5 + i), width=1.0, height=1.0)
     world.run(seconds=2.0)
-    assert world.contacts.blocks.lanes == 0
+    assert world.contacts.wide.filled == 0
 
 
 def test_a_settled_pile_rests_and_keeps_its_momentum() -> None:
@@ -119,7 +121,7 @@ def test_a_blow_goes_through_a_settled_row_of_elastic_balls() -> None:
     world = open_space(gravity=None, collisions="step")
     balls = [circle(world, (0.2 * i, 0.0), radius=0.1, restitution=1.0, friction=0.0) for i in range(80)]
     world.run(steps=5)
-    assert world.contacts.blocks.lanes > 60
+    assert world.contacts.wide.filled > 60
     circle(world, (-1.0, 0.0), radius=0.1, restitution=1.0, friction=0.0, velocity=(2.0, 0.0))
     world.run(seconds=1.0)
     speeds = [world.component(ball, Velocity).linear.x for ball in balls]
@@ -162,23 +164,23 @@ def test_lanes_that_a_file_makes_up_stay_loose() -> None:
     """Two contacts in one lane, boxes in a lane of discs, a body twice in a block, a lane far out."""
     for spoiled in ("one lane", "wrong kind", "one block", "far out"):
         world = settled_boxes()
-        rows = [row for row in world.contacts.export() if len(row) > 20]
+        rows = [row for row in export_contacts(world.contacts) if len(row) > 20]
         world.contacts.clear()
-        seats: dict[str, list[tuple[float, float]]] = {
+        slots: dict[str, list[tuple[float, float]]] = {
             "one lane": [(1, 0) for _ in rows],
             "wrong kind": [(row[-2] - 1, row[-1]) for row in rows],
             "one block": [(2 * n + 1, 0) for n in range(len(rows))],
             "far out": [(10**15 + 1, 0) for _ in rows],
         }
-        changed = [[*row[:-2], *seat] for row, seat in zip(rows, seats[spoiled], strict=True)]
-        world.contacts.restore(world, changed)
+        changed = [[*row[:-2], *fill_slot] for row, fill_slot in zip(rows, slots[spoiled], strict=True)]
+        restore_contacts(world.contacts, changed)
         world.run(steps=30)
         contacts = world.contacts
-        seated = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.blocks.kinds])
-        seated = seated[seated >= 0]
-        everyone = np.sort(np.concatenate((seated, contacts.loose[: contacts.loose_count])))
+        restored = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.wide.kinds])
+        restored = restored[restored >= 0]
+        everyone = np.sort(np.concatenate((restored, contacts.scalar[: contacts.scalar_count])))
         assert np.array_equal(everyone, np.arange(contacts.recorded))
-        assert len(seated) == contacts.blocks.lanes
+        assert len(restored) == contacts.wide.filled
         assert contacts.max_penetration < 0.02
 
 
@@ -190,33 +192,35 @@ def test_all_lanes_of_a_settled_pile_go_on_from_a_file() -> None:
         world.step()
         again.step()
         assert bits(again) == bits(world)
-    assert again.contacts.blocks.lanes == world.contacts.blocks.lanes > 100
+    assert again.contacts.wide.filled == world.contacts.wide.filled > 100
 
 
-@pytest.mark.parametrize("name", SETTLED)
+@pytest.mark.parametrize("name", ADDED)
 def test_every_block_is_solved_once_while_contacts_come_and_go(name: str) -> None:
-    world = SETTLED[name]()
+    world = ADDED[name]()
     bodies = [entity for entity in world.entities() if world.has(entity, Mass)]
     for entity in bodies[::-7]:
         world.remove(entity)
         for _ in range(3):
             world.step()
-            for lanes in world.contacts.blocks.kinds:
-                assert sorted(lanes.order[: lanes.count].tolist()) == list(range(lanes.count))
+            for constraints in world.contacts.wide.kinds:
+                assert sorted(constraints.order[: constraints.count].tolist()) == list(
+                    range(constraints.count)
+                )
 
 
-@pytest.mark.parametrize("name", SETTLED)
+@pytest.mark.parametrize("name", ADDED)
 def test_a_heavier_body_keeps_its_lanes_which_know_of_it(name: str) -> None:
-    world = SETTLED[name]()
-    before = world.contacts.blocks.lanes
+    world = ADDED[name]()
+    before = world.contacts.wide.filled
     body = [entity for entity in world.entities() if world.has(entity, Mass)][40]
     world.component(body, Mass).mass *= 1.1
     world.step()
-    assert world.contacts.blocks.lanes > before - 12
-    row, inverse = world.roster.row_of[body], world.bodies.inverse_mass
-    for lanes in world.contacts.blocks.kinds:
-        for lane in np.flatnonzero(lanes.pair[: lanes.count * WIDE] >= 0):
-            block = lanes.data[lane // WIDE * lanes.rows :]
-            for rows, at in ((lanes.a, MASS_A), (lanes.b, MASS_B)):
-                if rows[lane] == row:
-                    assert block[at + lane % WIDE] == inverse[row]
+    assert world.contacts.wide.filled > before - 12
+    row, inverse = world.entity_index.row_of[body], world.bodies.inverse_mass
+    for constraints in world.contacts.wide.kinds:
+        for slot in np.flatnonzero(constraints.pair[: constraints.count * WIDE] >= 0):
+            block = constraints.data[slot // WIDE * constraints.rows :]
+            for rows, at in ((constraints.a, MASS_A), (constraints.b, MASS_B)):
+                if rows[slot] == row:
+                    assert block[at + slot % WIDE] == inverse[row]

@@ -7,10 +7,10 @@ import pygame
 import pytest
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.canvas import Paper, RecordingCanvas, Rect, TextStyle
+from physicslab.view.canvas.canvas import RecordingCanvas, Rect, TextStyle, TextSurface
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.rounded import rounded
-from physicslab.view.panels.refresh_timer import Rota
+from physicslab.view.panels.refresh_timer import RefreshTimer
 
 RECT = (20, 10, 120, 60)
 INK = TextStyle(14, (230, 230, 230))
@@ -22,7 +22,7 @@ def canvas() -> PygameCanvas:
     return made
 
 
-def write(paper: Paper, rect: Rect = RECT, words: str = "Contacts 42") -> None:
+def write(paper: TextSurface, rect: Rect = RECT, words: str = "Contacts 42") -> None:
     paper.panel(rect, (20, 24, 32), (90, 96, 110), 0.8)
     paper.text(words, (rect[0] + 8, rect[1] + 6), INK)
     paper.text("right", (rect[0] + rect[2] - 8, rect[1] + 30), INK, "right")
@@ -35,14 +35,14 @@ def colours(made: PygameCanvas) -> NDArray[np.int64]:
 def test_a_sheet_looks_like_what_is_drawn_at_once() -> None:
     at_once, kept = canvas(), canvas()
     write(at_once)
-    kept.sheet("panel", RECT, 1, write)
+    kept.layer("panel", RECT, 1, write)
     assert np.abs(colours(at_once) - colours(kept)).max() <= 3, "blended in another order, rounding apart"
 
 
 def test_a_sheet_is_drawn_only_when_its_version_or_its_size_changes() -> None:
     made, drawn = canvas(), []
 
-    def draw(paper: Paper) -> None:
+    def draw(paper: TextSurface) -> None:
         drawn.append(paper)
         write(paper)
 
@@ -53,22 +53,22 @@ def test_a_sheet_is_drawn_only_when_its_version_or_its_size_changes() -> None:
         (2, (*RECT[:2], 130, 60)),
         (2, (*RECT[:2], 130, 60)),
     ):
-        made.sheet("panel", rect, version, draw)
+        made.layer("panel", rect, version, draw)
     assert len(drawn) == 3
 
 
 def test_what_a_sheet_showed_before_is_gone() -> None:
     made, fresh = canvas(), canvas()
-    made.sheet("panel", RECT, 1, lambda paper: write(paper, words="MMMMMMMM"))
+    made.layer("panel", RECT, 1, lambda paper: write(paper, words="MMMMMMMM"))
     made.clear((10, 40, 90))
-    made.sheet("panel", RECT, 2, lambda paper: write(paper, words="i"))
-    fresh.sheet("panel", RECT, 2, lambda paper: write(paper, words="i"))
+    made.layer("panel", RECT, 2, lambda paper: write(paper, words="i"))
+    fresh.layer("panel", RECT, 2, lambda paper: write(paper, words="i"))
     assert np.array_equal(colours(made), colours(fresh))
 
 
 def test_a_recording_canvas_notes_what_is_on_a_sheet() -> None:
     noted = RecordingCanvas((200, 100))
-    noted.sheet("panel", RECT, 1, write)
+    noted.layer("panel", RECT, 1, write)
     assert noted.words == ["Contacts 42", "right"]
     assert noted.called("panel")[0]["rect"] == RECT
 
@@ -85,14 +85,14 @@ def test_rounded_rectangles_of_any_size_are_the_same_both_ways(size: tuple[int, 
 
 
 def test_one_job_is_due_at_a_time_and_none_is_forgotten() -> None:
-    rota = Rota({"figures": 0.1, "costs": 0.1, "advice": 0.25})
-    done = [rota.due(n / 60) for n in range(61)]
+    refresh_timer = RefreshTimer({"figures": 0.1, "costs": 0.1, "advice": 0.25})
+    done = [refresh_timer.due(n / 60) for n in range(61)]
     counts = {name: done.count(name) for name in ("figures", "costs", "advice")}
     assert counts["figures"] in (9, 10, 11) and counts["costs"] in (9, 10, 11) and counts["advice"] in (4, 5)
 
 
 def test_after_all_was_done_nothing_is_due() -> None:
-    rota = Rota({"figures": 0.1, "costs": 0.2})
-    rota.all_done(5.0)
-    assert rota.due(5.05) is None
-    assert [rota.due(5.11), rota.due(5.12)] == ["figures", None]
+    refresh_timer = RefreshTimer({"figures": 0.1, "costs": 0.2})
+    refresh_timer.all_done(5.0)
+    assert refresh_timer.due(5.05) is None
+    assert [refresh_timer.due(5.11), refresh_timer.due(5.12)] == ["figures", None]

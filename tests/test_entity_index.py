@@ -16,16 +16,16 @@ def rows_and_handles_agree(world: World) -> None:
     world.synchronise()
     with world.active():
         living = set(esper.get_entities())
-        used = world.roster.entities[world.roster.entities > 0]
+        used = world.entity_index.entities[world.entity_index.entities > 0]
         assert used.tolist() == sorted(living)
-        assert world.roster.row_of == {int(e): int(world.roster.lookup[e]) for e in used}
+        assert world.entity_index.row_of == {int(e): int(world.entity_index.lookup[e]) for e in used}
         for component in (Transform, Velocity, Mass, Held):
             table, holders = world.table(component), dict(esper.get_component(component))
             assert table.handles == holders
-            assert world.roster.entities[table.present].tolist() == sorted(holders)
+            assert world.entity_index.entities[table.present].tolist() == sorted(holders)
             assert world.batch(component).entities.tolist() == sorted(holders)
             for column in (table[spec.name] for spec in table.component.FIELDS):
-                assert len(column) == len(world.roster)
+                assert len(column) == len(world.entity_index)
                 assert not column[~table.present].any()
 
 
@@ -51,7 +51,7 @@ def test_many_removals_close_up_and_keep_values() -> None:
     for entity in entities[:90]:
         world.remove(entity)
     rows_and_handles_agree(world)
-    assert len(world.roster) == 1 + len(kept)
+    assert len(world.entity_index) == 1 + len(kept)
     for entity in kept:
         assert handles[entity].position == Vector2(entity - 1, 1 - entity)
         assert world.component(entity, Velocity).linear.x == entity - 1
@@ -63,14 +63,14 @@ def test_nothing_is_done_while_nothing_changed() -> None:
     world = World()
     entity = world.spawn(Transform(), Velocity())
     with world.active():
-        assert world.roster.synchronise()
-        assert not world.roster.synchronise()
+        assert world.entity_index.synchronise()
+        assert not world.entity_index.synchronise()
         world.component(entity, Transform).position = (1, 2)
-        assert not world.roster.synchronise()
+        assert not world.entity_index.synchronise()
         esper.add_component(entity, Mass())
-        assert world.roster.synchronise()
+        assert world.entity_index.synchronise()
         esper.add_component(entity, Name("ball"))
-        assert world.roster.synchronise()
+        assert world.entity_index.synchronise()
 
 
 # ---- plain esper calls -------------------------------------------------------------------------------------
@@ -82,7 +82,7 @@ def test_created_with_esper() -> None:
     entity = esper.create_entity(transform, Mass(2))
     rows_and_handles_agree(world)
     transform.position = (3, 4)
-    assert world.table(Transform)["position"][world.roster.row_of[entity]].tolist() == [3, 4]
+    assert world.table(Transform)["position"][world.entity_index.row_of[entity]].tolist() == [3, 4]
 
 
 def test_replaced_with_esper() -> None:
@@ -140,7 +140,7 @@ def test_clear_database() -> None:
     world.synchronise()
     esper.clear_database()
     rows_and_handles_agree(world)
-    assert len(world.roster) == 1 and old.position == Vector2(5, 5)
+    assert len(world.entity_index) == 1 and old.position == Vector2(5, 5)
 
     again = esper.create_entity(Transform((7, 7)))
     assert again == 1
@@ -233,6 +233,9 @@ def test_rows_of() -> None:
     world.remove(entities[1])
     world.synchronise()
     asked = np.array([0, entities[0], entities[1], entities[2], 99])
-    assert world.roster.rows_of(asked).tolist()[::4] == [0, -1]
-    assert world.roster.entities[world.roster.rows_of(asked)[[1, 3]]].tolist() == [entities[0], entities[2]]
-    assert world.roster.rows_of(asked)[2] == -1
+    assert world.entity_index.rows_of(asked).tolist()[::4] == [0, -1]
+    assert world.entity_index.entities[world.entity_index.rows_of(asked)[[1, 3]]].tolist() == [
+        entities[0],
+        entities[2],
+    ]
+    assert world.entity_index.rows_of(asked)[2] == -1

@@ -37,16 +37,16 @@ def hung(stiffness: float, damping: float = 0.0) -> tuple[World, int]:
 def test_the_method_goes_by_the_stiffness_and_the_reason_says_so(stiffness: float, method: object) -> None:
     world, _ = hung(stiffness)
     world.synchronise()
-    assert world.method.tethers is not None
-    assert world.method.tethers is method
-    assert "between contacts what springs or drag act on goes by" in world.method.reason
-    assert ("too fast to be followed" in world.method.reason) == (method is IMPLICIT_MIDPOINT)
+    assert world.plan.split_forces is not None
+    assert world.plan.split_forces is method
+    assert "between contacts what springs or drag act on goes by" in world.plan.reason
+    assert ("too fast to be followed" in world.plan.reason) == (method is IMPLICIT_MIDPOINT)
 
 
 def test_dampers_are_followed_by_an_adaptive_method() -> None:
     world, _ = hung(50.0, damping=1.0)
     world.synchronise()
-    assert world.method.tethers is DOP853
+    assert world.plan.split_forces is DOP853
 
 
 def test_a_method_asked_for_by_name_is_used() -> None:
@@ -54,16 +54,16 @@ def test_a_method_asked_for_by_name_is_used() -> None:
     circle(world, (0.0, 0.0), radius=0.1)
     world.spawn(Spring(2, None, stiffness=10.0))
     world.synchronise()
-    assert world.method.tethers is None
-    assert not world.bodies.tethered.any()
+    assert world.plan.split_forces is None
+    assert not world.bodies.sub_integrated.any()
 
 
 def test_what_no_spring_holds_is_not_tethered() -> None:
     world, bob = hung(50.0)
     free = circle(world, (5.0, 0.0), radius=0.1)
     world.synchronise()
-    assert world.bodies.tethered[world.roster.row_of[bob]]
-    assert not world.bodies.tethered[world.roster.row_of[free]]
+    assert world.bodies.sub_integrated[world.entity_index.row_of[bob]]
+    assert not world.bodies.sub_integrated[world.entity_index.row_of[free]]
 
 
 @given(rate=st.floats(0.1, 6000.0), start=st.floats(0.001, 0.4))
@@ -77,10 +77,10 @@ def test_an_oscillation_is_that_of_the_formula(rate: float, start: float) -> Non
 
 
 def test_the_scene_beside_it_moves_as_it_would_without() -> None:
-    def fallen(tethered: bool) -> float:
+    def fallen(sub_integrated: bool) -> float:
         world = far_floor(open_space())
         ball = circle(world, (0.0, 0.0), radius=0.1)
-        if tethered:
+        if sub_integrated:
             circle(world, (5.0, 0.0), radius=0.1)
             world.spawn(Spring(3, None, anchor_b=(5.0, 1.0), rest_length=1.0, stiffness=1e4))
         world.run(seconds=1.0)
@@ -157,7 +157,7 @@ def test_a_spring_changed_by_hand_is_followed_from_the_next_step() -> None:
     world.run(steps=2)
     world.component(bob, Spring).stiffness = 1e12
     world.step()
-    assert world.method.tethers is IMPLICIT_MIDPOINT
+    assert world.plan.split_forces is IMPLICIT_MIDPOINT
 
 
 def test_planets_on_springs_beside_contacts_are_all_followed() -> None:
@@ -168,7 +168,7 @@ def test_planets_on_springs_beside_contacts_are_all_followed() -> None:
     world.spawn(Spring(a, b, rest_length=1.8, stiffness=100.0))
     before = measure_energy(world).total
     world.run(seconds=2.0)
-    assert world.bodies.tethered[1:4].all()
+    assert world.bodies.sub_integrated[1:4].all()
     assert measure_energy(world).total == pytest.approx(before, rel=1e-9)
 
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from physicslab.components import Transform
 from physicslab.world import World
 
-__all__ = ["TOUCH", "Touches", "impacts_of", "resting_of", "sliding"]
+__all__ = ["TOUCH", "ContactSamples", "impacts_of", "resting_of", "sliding"]
 
-type Touches = NDArray[Any]
+type ContactSamples = NDArray[Any]
 """An array of TOUCH (n,)."""
 
 TOUCH = np.dtype(
@@ -32,10 +32,10 @@ TOUCH = np.dtype(
 """What one point of a contact has felt."""
 
 
-def _touches(world: World, chosen: NDArray[np.int64], normal: str, tangent: str) -> Touches:
+def _touches(world: World, chosen: NDArray[np.int64], normal: str, tangent: str) -> ContactSamples:
     """Return the points of these numbers, with the impulses of two columns."""
     pair, manifolds, points = chosen // 2, world.contacts.manifolds, world.contacts.points
-    touches: Touches = np.zeros(len(chosen), TOUCH)
+    touches: ContactSamples = np.zeros(len(chosen), TOUCH)
     # A column at a time: what else there is of a contact is several times as much.
     touches["a"], touches["b"], touches["point"] = (
         manifolds["entity_a"][pair], manifolds["entity_b"][pair], chosen % 2,
@@ -56,7 +56,7 @@ def _touches(world: World, chosen: NDArray[np.int64], normal: str, tangent: str)
     return touches
 
 
-def resting_of(world: World) -> Touches:
+def resting_of(world: World) -> ContactSamples:
     """Return where bodies touch, with the impulses of the last substep that held them apart."""
     contacts = world.contacts
     contacts.sync()
@@ -67,7 +67,7 @@ def resting_of(world: World) -> Touches:
     return _touches(world, chosen, "normal_impulse", "tangent_impulse")
 
 
-def impacts_of(world: World) -> Touches:
+def impacts_of(world: World) -> ContactSamples:
     """Return the impacts of the step so far."""
     contacts = world.contacts
     pairs = np.flatnonzero(contacts.manifolds["struck"][: contacts.recorded] > 0)
@@ -77,7 +77,7 @@ def impacts_of(world: World) -> Touches:
     )
 
 
-def sliding(touches: Touches) -> NDArray[np.bool_]:
+def sliding(touches: ContactSamples) -> NDArray[np.bool_]:
     """Whether friction is at its limit mu times the normal impulse (Coulomb), so that the contact slips."""
     limit = touches["friction"] * touches["normal"]
     slips: NDArray[np.bool_] = (limit > 0.0) & (np.abs(touches["tangent"]) >= limit * (1.0 - 1e-9))

@@ -108,7 +108,7 @@ def test_a_divided_step_is_said() -> None:
     stack(world, 2)
     world.step(0.05)
     found = only(world, "divided")
-    assert (found.value, found.limit, world.divided) == (3.0, 1.0, 3)
+    assert (found.value, found.limit, world.step_divisions) == (3.0, 1.0, 3)
     world.step()
     assert advise(world) == ()
 

@@ -1,0 +1,1 @@
+"""What is done with contacts: pairs listed, constraints made wide, sleepers woken, figures reported."""

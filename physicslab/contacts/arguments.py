@@ -1,0 +1,65 @@
+"""What the kernels of the contact stages work on, taken from a state."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.kernels.solver.arguments import Acting, Bounds, Inverse, Materials, Motion, Near, Sizes
+from physicslab.state.state import State
+
+__all__ = [
+    "acting_in", "bounds_of", "inverse_in", "materials_of", "motion_of", "near_in", "sizes_of",
+    "speculative_margin",
+]  # fmt: skip
+
+
+def motion_of(state: State) -> Motion:
+    """Return positions, angles and velocities."""
+    transform, velocity = state.table(Transform), state.table(Velocity)
+    return Motion(transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
+
+
+def sizes_of(state: State) -> Sizes:
+    """Return kinds and sizes of shapes."""
+    shape = state.table(Shape)
+    return Sizes(shape["kind"], shape["radius"], shape["width"], shape["height"])
+
+
+def materials_of(state: State) -> Materials:
+    """Return restitutions and frictions."""
+    material = state.table(Material)
+    return Materials(material["restitution"], material["friction"])
+
+
+def inverse_in(state: State) -> Inverse:
+    """Return the inverse masses that are simulated: those of sleepers are zero."""
+    return Inverse(state.bodies.awake_inverse_mass, state.bodies.awake_inverse_inertia)
+
+
+def acting_in(state: State) -> Acting:
+    """Return the forces of this substep."""
+    return Acting(state.bodies.force, state.bodies.torque, state.has_forces)
+
+
+def bounds_of(state: State) -> Bounds:
+    """Return the bounds of the world; all zero where there are none, which then have no pairs."""
+    physics = state.physics
+    walls = np.array(physics.bounds or (0.0, 0.0, 0.0, 0.0))
+    return Bounds(walls, physics.bounds_restitution, physics.bounds_friction)
+
+
+def near_in(state: State) -> Near:
+    """Return the near pairs."""
+    contacts = state.contacts
+    return Near(
+        contacts.counts, contacts.manifolds, contacts.points, contacts.scalar, contacts.touching,
+        contacts.wide.discs.slots, contacts.wide.boxes.slots,
+        contacts.proximity, contacts.activation_distance, state.entity_index.entities,
+    )  # fmt: skip
+
+
+def speculative_margin(state: State, h: float) -> float:
+    """Return how far [m] uniform gravity may bring two bodies together within a time h [s]."""
+    physics = state.physics
+    return 0.5 * physics.gravity.magnitude * h * h if physics.gravity_mode == "linear" else 0.0

@@ -1,0 +1,212 @@
+"""Islands of bodies that touch: how they fall asleep and wake, and which edits wake them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.kernels.sleep import edits, islands
+from physicslab.state.state import State
+
+__all__ = [
+    "all_asleep", "check_edits", "export_rests", "fall_asleep", "follow_rows", "keep_places", "restore_rests",
+    "wake", "wake_all",
+]  # fmt: skip
+
+type _Marks = NDArray[np.bool_]
+
+
+def follow_rows(state: State) -> None:
+    """Let every entity keep what it has where rows are numbered again."""
+    if state.sleep.follow(state.entity_index.entities):
+        state.contacts.stale = True
+        _set_contacts_inactive(state)
+
+
+def check_edits(state: State, *, within: bool = False) -> None:
+    """Wake the sleepers that an edit concerns: their own numbers have changed, or those of what touches them.
+
+    ``within`` a step, what moves by itself may have moved.
+    """
+    sleep = state.sleep
+    if not sleep.count:
+        sleep.gone = sleep.gone[:0]
+        return
+    marked = sleep.asleep & state.bodies.sub_integrated
+    if sleep.laws != (state.physics, state.simulation):
+        marked |= sleep.asleep
+    figures, edited = _figures(state), np.zeros(len(sleep.asleep), np.bool_)
+    velocity = state.table(Velocity)
+    found = edits.find_edited(
+        figures, sleep.kept, velocity["linear"], velocity["angular"], sleep.asleep, sleep.known,
+        within, edited,
+    )  # fmt: skip
+    fresh = ~sleep.known & (figures[:, edits.INVERSE_MASS] == 0.0) & (sleep.entities > 0)
+    if found or len(sleep.gone) or fresh.any():
+        causes = np.flatnonzero((edited | fresh) & ~sleep.asleep)
+        edits.find_overlapped(figures, causes, sleep.asleep, marked)
+        _mark_neighbours(state, np.concatenate((sleep.gone, sleep.entities[edited])), marked)
+        marked |= edited & sleep.asleep
+    changed = found > 0 or len(sleep.gone) > 0 or fresh.any() or marked.any()
+    sleep.kept, sleep.gone = figures, sleep.gone[:0]
+    sleep.known = sleep.entities > 0
+    if changed:
+        wake(state, marked)
+
+
+def _mark_neighbours(state: State, causes: NDArray[np.int64], marked: _Marks) -> None:
+    """Mark the sleepers that touched some of the entities ``causes`` when pairs were last listed."""
+    a, b, count = _touching(state)
+    near = state.contacts.manifolds[: state.contacts.recorded]
+    for entity, row in ((near["entity_a"], b), (near["entity_b"], a)):
+        met = row[(count > 0) & np.isin(entity, causes) & (row >= 0)]
+        marked[met[state.sleep.asleep[met]]] = True
+
+
+def wake(state: State, marked: _Marks) -> _Marks:
+    """Wake the islands of the sleepers that are ``marked``, which is added to; return which bodies woke."""
+    sleep = state.sleep
+    a, b, count = _touching(state)
+    islands.join_marked(a, b, count, sleep.asleep, marked)
+    woken = marked & sleep.asleep
+    sleep.asleep &= ~woken
+    sleep.rest[woken] = sleep.slowest[woken] = 0.0
+    sleep.count = int(np.count_nonzero(sleep.asleep))
+    touches = (count > 0) & (a >= 0) & (b >= 0) & (woken[a] | woken[b])
+    state.contacts.rescale(touches, _impulse_dt(state), state.contacts.impulse_dt)
+    _set_inactive(state)
+    return woken
+
+
+def fall_asleep(state: State, falling: _Marks) -> None:
+    """Put bodies to sleep."""
+    sleep, velocity, bodies = state.sleep, state.table(Velocity), state.bodies
+    velocity["linear"][falling] = velocity["angular"][falling] = 0.0
+    sleep.rest[falling] = sleep.slowest[falling] = 0.0
+    sleep.forces[falling, :2] = bodies.force[falling]
+    sleep.forces[falling, 2] = bodies.torque[falling]
+    sleep.asleep |= falling
+    sleep.count = int(np.count_nonzero(sleep.asleep))
+    a, b, count = _touching(state)
+    contacts = state.contacts
+    contacts.release(sleep.asleep)
+    _begin(state)
+    contacts.rescale((count > 0) & (falling[a] | falling[b]), contacts.impulse_dt, _impulse_dt(state))
+    _set_inactive(state)
+
+
+def _begin(state: State) -> None:
+    """Note how everything is: an edit is a difference to that."""
+    sleep = state.sleep
+    sleep.laws = state.physics, state.simulation
+    sleep.kept, sleep.known = _figures(state), sleep.entities > 0
+
+
+def keep_places(state: State) -> None:
+    """Note where a step has brought what moves by itself: what is elsewhere later was edited."""
+    if state.sleep.count:
+        transform, kept = state.table(Transform), state.sleep.kept
+        rows = np.flatnonzero(state.table(Velocity).present & (state.bodies.inverse_mass == 0.0))
+        kept[rows, :2], kept[rows, 2] = transform["position"][rows], transform["angle"][rows]
+
+
+def wake_all(state: State) -> None:
+    """Wake every body, and begin all rests again."""
+    sleep = state.sleep
+    sleep.asleep[:] = False
+    sleep.rest[:] = sleep.slowest[:] = 0.0
+    sleep.count, sleep.unverified = 0, False
+    _set_inactive(state)
+
+
+def all_asleep(state: State) -> bool:
+    """Whether a step would change nothing but the clock: all that can be moved sleeps, and nothing moves.
+
+    No system may act within the step but those of the engine's own contact step.
+    """
+    sleep = state.sleep
+    if not sleep.count or sleep.unverified or sleep.acted_upon or state.contacts.stale:
+        return False
+    if sleep.count != np.count_nonzero(state.bodies.inverse_mass):
+        return False
+    velocity = state.table(Velocity)
+    return not (velocity["linear"].any() or velocity["angular"].any())
+
+
+def _figures(state: State) -> NDArray[np.float64]:
+    transform, shape, material = state.table(Transform), state.table(Shape), state.table(Material)
+    bodies = state.bodies
+    figures = np.zeros((len(state.sleep.asleep), edits.FIGURES))
+    state.compile(state.sleep.kernels)
+    edits.note_figures(
+        transform["position"], transform["angle"],
+        shape["kind"], shape["radius"], shape["width"], shape["height"],
+        material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
+        state.table(Velocity).present, figures,
+    )  # fmt: skip
+    return figures
+
+
+def _set_inactive(state: State) -> None:
+    """Let bodies and contacts follow which bodies sleep now."""
+    state.bodies.set_inactive(state.sleep.asleep)
+    _set_contacts_inactive(state)
+
+
+def _set_contacts_inactive(state: State) -> None:
+    asleep = state.sleep.asleep
+    none = np.zeros(0, np.bool_)
+    inactive = asleep | ~state.table(Velocity).present if state.sleep.count else none
+    state.contacts.set_inactive(inactive, len(asleep))
+
+
+def _impulse_dt(state: State) -> float:
+    """Return the time [s] that impulses of sleepers stand for."""
+    simulation = state.sleep.laws[1] if state.sleep.laws is not None else state.simulation
+    span: float = simulation.dt / simulation.substeps
+    return span
+
+
+def export_rests(state: State) -> list[list[Any]]:
+    """Return lists: an entity that sleeps, or one with how long [s] and how slowly [m/s] it has rested.
+
+    Only what a file will know again: bodies with a Shape that can be moved.
+    """
+    sleep = state.sleep
+    movable = (state.bodies.inverse_mass > 0.0) & (state.table(Shape)["kind"] != 0)
+    rows = np.flatnonzero((sleep.asleep | (sleep.rest > 0.0)) & movable)
+    columns = (sleep.entities[rows], sleep.asleep[rows], sleep.rest[rows], sleep.slowest[rows])
+    return [
+        [entity] if asleep else [entity, rest, slowest]
+        for entity, asleep, rest, slowest in zip(*(column.tolist() for column in columns), strict=True)
+    ]
+
+
+def restore_rests(state: State, rows: Sequence[Sequence[Any]]) -> None:
+    """Take back what :func:`export_rests` returned; where bodies may not sleep, all are awake."""
+    sleep = state.sleep
+    if not (sleep.on and rows):
+        return
+    for entity, *rested in rows:
+        row = state.entity_index.row_of[entity]
+        if rested:
+            sleep.rest[row], sleep.slowest[row] = rested
+        else:
+            sleep.asleep[row] = True
+    sleep.count = int(np.count_nonzero(sleep.asleep))
+    sleep.unverified = sleep.count > 0
+    sleep.forces[:] = np.nan
+    _begin(state)
+    _set_inactive(state)
+
+
+def _touching(state: State) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return of every near pair the rows as they are now, -1 for what is gone, and how many points it has."""
+    near = state.contacts.manifolds[: state.contacts.recorded]
+    index = state.entity_index
+    a, b = (np.ascontiguousarray(index.rows_of(near[name])) for name in ("entity_a", "entity_b"))
+    return a, b, np.ascontiguousarray(near["count"])

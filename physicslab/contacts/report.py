@@ -1,0 +1,130 @@
+"""Contacts as people and programs read them: normal, points, impulses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from physicslab.components import Transform
+from physicslab.ecs.vector import Vector2
+from physicslab.state.contacts import Contacts
+from physicslab.state.state import State
+
+__all__ = ["Contact", "ContactPoint", "contact_between", "list_contacts", "ordered_records"]
+
+
+@dataclass(frozen=True, slots=True)
+class ContactPoint:
+    """One point of a contact.
+
+    Attributes
+    ----------
+    position : Vector2
+        Where it is [m].
+    separation : float
+        Distance of the surfaces along the normal [m]; negative where they overlap.
+    normal_impulse, tangent_impulse : float
+        Impulses that held the bodies apart and against sliding in the last substep [N s], on B; the tangent
+        is the normal turned counter-clockwise.
+    approach_speed : float
+        Speed at which the surfaces met in an impact of the last step [m/s]; 0 if there was none.
+    impact_normal, impact_tangent : float
+        Impulses of the impacts of the last step [N s], on B.
+    """
+
+    position: Vector2
+    separation: float
+    normal_impulse: float
+    tangent_impulse: float
+    approach_speed: float
+    impact_normal: float
+    impact_tangent: float
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A pair that touches, would within a substep, or met in the last step.
+
+    Attributes
+    ----------
+    a, b : int
+        The entities; 0 for the world's bounds.
+    normal : Vector2
+        Unit vector from A to B.
+    restitution, friction : float
+        Of the pair.
+    points : tuple of ContactPoint
+        One or two; where an impact of the last step has ended, where it was.
+    """
+
+    a: int
+    b: int
+    normal: Vector2
+    restitution: float
+    friction: float
+    points: tuple[ContactPoint, ...]
+
+    @property
+    def depth(self) -> float:
+        """The deepest overlap [m], positive; negative where they are still apart."""
+        return max(-point.separation for point in self.points)
+
+
+def list_contacts(state: State) -> tuple[Contact, ...]:
+    """Return every contact and every pair with an impact of the last step, in the order of entities."""
+    return tuple(_describe(state, p) for p in _reported(state.contacts))
+
+
+def contact_between(state: State, a: int, b: int) -> Contact | None:
+    """Return the contact of two entities, seen as A and B in the order given, or ``None``."""
+    contacts = state.contacts
+    for p in _reported(contacts):
+        manifold = contacts.manifolds[p]
+        pair = int(manifold["entity_a"]), int(manifold["entity_b"])
+        if pair == (a, b):
+            return _describe(state, p)
+        if pair == (b, a):
+            seen = _describe(state, p)
+            # Seen from the other side, normal and tangent turn round, and so do the impulses on B: the
+            # numbers stay.
+            return replace(seen, a=a, b=b, normal=-seen.normal)
+    return None
+
+
+def ordered_records(contacts: Contacts) -> list[int]:
+    """Return the numbers of all records in the order of entities."""
+    near = contacts.manifolds[: contacts.recorded]
+    pairs: list[int] = np.lexsort((near["wall"], near["entity_b"], near["entity_a"])).tolist()
+    return pairs
+
+
+def _reported(contacts: Contacts) -> list[int]:
+    contacts.sync()
+    near = contacts.manifolds[: contacts.recorded]
+    reported = (near["count"] > 0) | (near["impact_count"] > 0)
+    return [p for p in ordered_records(contacts) if reported[p]]
+
+
+def _describe(state: State, p: int) -> Contact:
+    manifold = state.contacts.manifolds[p]
+    centre = Vector2(*state.table(Transform)["position"][manifold["b"]].tolist())
+    points = tuple(
+        ContactPoint(
+            centre + Vector2(float(point["arm_bx"]), float(point["arm_by"])),
+            *(
+                float(point[name])
+                for name in (
+                    "separation", "normal_impulse", "tangent_impulse",
+                    "approach_speed", "impact_normal", "impact_tangent",
+                )
+            ),
+        )
+        for k, point in enumerate(state.contacts.points[2 * p : 2 * p + 2])
+        if k < manifold["count"] or point["impact_normal"] > 0.0
+    )  # fmt: skip
+    return Contact(
+        int(manifold["entity_a"]), int(manifold["entity_b"]),
+        Vector2(float(manifold["normal_x"]), float(manifold["normal_y"])),
+        float(manifold["restitution"]), float(manifold["friction"]), points,
+    )  # fmt: skip

@@ -1,0 +1,88 @@
+"""Settled contacts taken into blocks of eight, and kept there with masses and materials as they are."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Material, Shape, Velocity
+from physicslab.kernels.wide import graph_colour, restore_slots
+from physicslab.kernels.wide.graph_colour import FEW
+from physicslab.kernels.wide.layout import WIDE
+from physicslab.kernels.wide.slots import COLOURS
+from physicslab.state.state import State
+
+__all__ = ["add_constraints", "fill_again", "refill"]
+
+
+def add_constraints(state: State, h: float) -> None:
+    """Take the contacts that have settled into blocks."""
+    contacts, bodies = state.contacts, state.bodies
+    material, shape = state.table(Material), state.table(Shape)
+    wide = contacts.wide
+    if not wide.filled and contacts.active < FEW:
+        return
+    state.compile(wide.kernels)
+    known = wide.filled > 0
+    while True:
+        came = graph_colour.add_constraints(
+            contacts.counts, wide.discs.slots, wide.boxes.slots, contacts.opened,
+            contacts.manifolds, contacts.points, contacts.scalar, contacts.sleeping, contacts.touching,
+            contacts.inactive, state.sleep.asleep,
+            shape["kind"], shape["radius"], material["restitution"], material["friction"],
+            state.table(Velocity)["linear"], bodies.awake_inverse_mass, bodies.awake_inverse_inertia, h,
+        )  # fmt: skip
+        if came != graph_colour.FULL:
+            break
+        for constraints in wide.kinds:
+            constraints.make_room(constraints.count + contacts.active // WIDE + COLOURS)
+    if came == graph_colour.SPARSE:
+        contacts.dissolve(len(state.entity_index))
+    if wide.filled and not known:
+        _remember(state)
+
+
+def refill(state: State) -> None:
+    """Let slots hold masses, sizes and materials as they are now, if one of them was changed."""
+    contacts = state.contacts
+    if contacts.wide.filled and restore_slots.outdated(contacts.wide.made_of, *_columns(state)):
+        rows = len(state.entity_index)
+        contacts.sync()
+        contacts.wide.reset(rows)
+        fill_again(state)
+        contacts.list_scalar(rows)
+
+
+def fill_again(state: State) -> None:
+    """Put the contacts whose records name a slot, as those of a file do, back into that."""
+    contacts, material = state.contacts, state.table(Material)
+    contacts.restoring = False
+    near, asleep = contacts.manifolds[: contacts.recorded], state.sleep.asleep
+    near["slot"][asleep[near["a"]] | asleep[near["b"]]] = -1  # sleepers have none
+    state.compile(contacts.wide.kernels)
+    for constraints in contacts.wide.kinds:
+        constraints.count, restored = restore_slots.restore_slots(
+            constraints.kind, constraints.data, constraints.a, constraints.b, constraints.pair,
+            constraints.colour, constraints.used, contacts.manifolds, contacts.points, contacts.recorded,
+            state.table(Shape)["kind"], state.table(Shape)["radius"],
+            material["restitution"], material["friction"],
+            state.bodies.inverse_mass, state.bodies.inverse_inertia,
+        )  # fmt: skip
+        constraints.sort()
+        contacts.wide.filled += restored
+    _remember(state)
+
+
+def _remember(state: State) -> None:
+    """Keep the masses, sizes and materials that slots hold as well."""
+    columns = _columns(state)
+    state.contacts.wide.made_of = np.zeros((len(columns[0]), len(columns)))
+    restore_slots.remember(state.contacts.wide.made_of, *columns)
+
+
+def _columns(state: State) -> tuple[NDArray[np.float64], ...]:
+    shape, material, bodies = state.table(Shape), state.table(Material), state.bodies
+    return (
+        bodies.inverse_mass, bodies.inverse_inertia, material["restitution"], material["friction"],
+        shape["radius"], shape["width"], shape["height"],
+    )  # fmt: skip

@@ -1,0 +1,222 @@
+"""Whole steps of a world whose bodies touch, in one compiled loop: the stages of leapfrog, in their order."""
+
+from typing import NamedTuple
+
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.broad.grid import still_holds
+from physicslab.kernels.forces.gravity import uniform_gravity
+from physicslab.kernels.motion import clear, drift, find_not_finite, kick
+from physicslab.kernels.records import Impacts
+from physicslab.kernels.sleep.islands import count_rest, find_touched
+from physicslab.kernels.solver.arguments import (
+    Acting,
+    Bounds,
+    Inverse,
+    Log,
+    Materials,
+    Motion,
+    Near,
+    Sizes,
+    Softness,
+)
+from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
+from physicslab.kernels.ticks import charge, ticks
+from physicslab.kernels.wide.graph_colour import ADDED, FEW, SPARSE, add_constraints
+from physicslab.kernels.wide.slots import ACTIVE, WIDE_COUNT
+
+__all__ = [
+    "ACCELERATE", "ALL", "BEGIN", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "FIND",
+    "GRAVITY", "IMPACTS", "INTEGRATE", "PAIRS_STALE", "RESOLVE", "SLEEP", "SLEEP_PENDING", "WAKE_PENDING",
+    "Gravity", "Plan", "Sleepers", "advance",
+]  # fmt: skip
+
+ALL, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING = range(6)
+"""Why the loop ended: all steps are made; the near pairs must be listed again; so many bodies touch that more
+blocks may be needed; the last step has left something that is not finite; a sleeper is touched; at the end
+of a step, an island may fall asleep."""
+BEGIN, FIND, IMPACTS = range(3)
+"""Where in a substep the loop begins: at its start; where bodies touch; at the impacts."""
+COSTS = 7
+ACCELERATE, GRAVITY, INTEGRATE, BROAD_PHASE, CONTACT, RESOLVE, SLEEP = range(COSTS)
+"""The systems whose work it is, in the order in which ``cost`` holds what each took."""
+_TIMED = 8
+"""One of so many steps of a call is timed: reading the clock takes a twentieth of a step of ten bodies."""
+
+
+class Plan(NamedTuple):
+    """Substeps a step, iterations of the solver, the substep and the step [s], the time at the start [s]."""
+
+    substeps: int
+    iterations: int
+    h: float
+    dt: float
+    time: float
+
+
+class Gravity(NamedTuple):
+    """Masses [kg], inverse masses of sleepers too [1/kg], gravity [m/s^2], the speculative margin [m]."""
+
+    mass: Numbers
+    inverse_mass: Numbers
+    gx: float
+    gy: float
+    margin: float
+
+
+class Sleepers(NamedTuple):
+    """Whether bodies may sleep and how many do; which, their rests [s] and lowest speeds [m/s].
+
+    Then room for marks, the rows whose pairs are inactive, and those pairs.
+    """
+
+    on: bool
+    number: int
+    asleep: Flags
+    rest: Numbers
+    slowest: Numbers
+    marked: Flags
+    inactive: Flags
+    pairs: Rows
+
+
+@inlined
+def _keep(motion: Motion, kept: Motion) -> None:
+    """Copy a state into arrays that are there."""
+    for i in range(len(motion.angle)):
+        kept.position[i, 0], kept.position[i, 1] = motion.position[i, 0], motion.position[i, 1]
+        kept.angle[i] = motion.angle[i]
+        kept.linear[i, 0], kept.linear[i, 1] = motion.linear[i, 0], motion.linear[i, 1]
+        kept.angular[i] = motion.angular[i]
+
+
+@inlined
+def _pull(acting: Acting, gravity: Gravity, cost: Rows, now: int) -> int:
+    """Add up the forces, if there are any."""
+    if acting.any:
+        clear(acting.force, acting.torque)
+        now = charge(cost, ACCELERATE, now)
+        uniform_gravity(acting.force, gravity.mass, gravity.inverse_mass, gravity.gx, gravity.gy)
+        now = charge(cost, GRAVITY, now)
+    return now
+
+
+@inlined
+def _kick(
+    motion: Motion, inverse: Inverse, acting: Acting, sub_integrated: Flags, damping: tuple[float, float],
+    h: float,
+) -> None:  # fmt: skip
+    """Change velocities by the forces, and by damping."""
+    kick(
+        motion.linear, motion.angular, acting.force, acting.torque, inverse.mass, inverse.inertia,
+        sub_integrated, damping[0], damping[1], h,
+    )  # fmt: skip
+
+
+@inlined
+def _made_wide(
+    near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sleepers: Sleepers,
+    opened: Rows, h: float,
+) -> bool:  # fmt: skip
+    """Take what has settled into blocks; return whether that was possible without making room."""
+    if near.counts[WIDE_COUNT] == 0 and near.counts[ACTIVE] < FEW:
+        return True
+    came = SPARSE  # the first blocks are Python's to make
+    if near.counts[WIDE_COUNT] > 0:
+        came = add_constraints(
+            near.counts, near.discs, near.boxes, opened, near.manifolds, near.points, near.scalar,
+            sleepers.pairs, near.touching, sleepers.inactive, sleepers.asleep, sizes.kind, sizes.radius,
+            materials.restitution, materials.friction, motion.linear, inverse.mass, inverse.inertia, h,
+        )  # fmt: skip
+    return came == ADDED
+
+
+@kernel
+def advance(
+    steps: int, substep: int, stage: int, plan: Plan,
+    motion: Motion, kept: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sub_integrated: Flags,
+    acting: Acting, gravity: Gravity, sleepers: Sleepers, damping: tuple[float, float], fat: Vectors,
+    bounds: Bounds, near: Near, opened: Rows, softness: Softness, impulse_dt: float, impacts: Impacts,
+    cost: Rows,
+) -> tuple[int, int, int, int, int, float]:  # fmt: skip
+    """Make ``steps`` steps, beginning at a stage of a substep.
+
+    The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and what happens at each is what
+    the systems do there. ``kept`` is given the state in which the last step began, ``impacts`` is the log,
+    and ``cost`` (7,) gets ticks added for each system.
+
+    Returns why it ended, how many steps are done, the substep that it was in, the impacts in the steps that
+    are done and all impacts, and the time [s] that the points' impulses stand for.
+    """
+    position, angle, linear, angular = motion
+    h, counts = plan.h, near.counts
+    kicked = acting.any or damping[0] != 0.0 or damping[1] != 0.0
+    done, struck, struck_done = 0, 0, 0
+    now = ticks()
+    while done < steps:
+        if stage == BEGIN:
+            if substep == 0:
+                now = ticks() if done % _TIMED == 0 else -1
+                _keep(motion, kept)
+                now = charge(cost, ACCELERATE, now)
+            drift(position, angle, linear, angular, sub_integrated, 0.5 * h)
+            now = _pull(acting, gravity, cost, charge(cost, INTEGRATE, now))
+            if kicked:
+                _kick(motion, inverse, acting, sub_integrated, damping, 0.5 * h)
+            now = charge(cost, ACCELERATE, now)
+            holds = still_holds(
+                position, angle, linear, sizes.kind, sizes.radius, sizes.width, sizes.height, fat, h
+            )
+            now = charge(cost, BROAD_PHASE, now)
+            if not holds:
+                return PAIRS_STALE, done, substep, struck_done, struck, impulse_dt
+        if stage != IMPACTS:
+            find_touching(
+                near, motion, sizes, materials, inverse, bounds, substep == 0, h, -0.5, gravity.margin
+            )
+            now = charge(cost, CONTACT, now)
+            if substep == 0:
+                wide = _made_wide(near, motion, sizes, materials, inverse, sleepers, opened, h)
+                now = charge(cost, CONTACT, now)
+                if not wide:
+                    return BLOCKS_FULL, done, substep, struck_done, struck, impulse_dt
+            if sleepers.number:
+                counts[ACTIVE], found = find_touched(
+                    near.manifolds, near.points, near.touching, counts[ACTIVE], inverse.mass, linear, angular,
+                    sleepers.asleep, sleepers.marked,
+                )  # fmt: skip
+                now = charge(cost, SLEEP, now)
+                if found:
+                    return WAKE_PENDING, done, substep, struck_done, struck, impulse_dt
+        stage = BEGIN
+        moment = plan.time + done * plan.dt + (substep + 0.5) * h
+        struck += resolve_all_impacts(
+            near, motion, inverse, acting, Log(impacts, moment), h, -0.5 * h, 0.5 * h
+        )
+        now = charge(cost, RESOLVE, now)
+        if kicked:
+            _kick(motion, inverse, acting, sub_integrated, damping, 0.5 * h)
+            now = charge(cost, ACCELERATE, now)
+        impulse_dt = press(near, motion, inverse, acting, softness, h, impulse_dt, plan.iterations)
+        now = charge(cost, RESOLVE, now)
+        drift(position, angle, linear, angular, sub_integrated, 0.5 * h)
+        now = charge(cost, INTEGRATE, now)
+        relax(near, motion, inverse, softness, 0.5 * h, plan.iterations)
+        now = charge(cost, RESOLVE, now)
+        substep += 1
+        if substep == plan.substeps:
+            substep = 0
+            failed = find_not_finite(position, angle) >= 0 or find_not_finite(linear, angular) >= 0
+            now = charge(cost, ACCELERATE, now)
+            if failed:
+                return DIVERGED, done, substep, struck_done, struck, impulse_dt
+            done, struck_done = done + 1, struck
+            if sleepers.on:
+                due = count_rest(
+                    linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height,
+                    gravity.inverse_mass, sub_integrated, sleepers.asleep, sleepers.rest, sleepers.slowest,
+                    plan.dt,
+                )  # fmt: skip
+                now = charge(cost, SLEEP, now)
+                if due:
+                    return SLEEP_PENDING, done, substep, struck_done, struck, impulse_dt
+    return ALL, done, substep, struck_done, struck, impulse_dt

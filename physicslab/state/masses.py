@@ -1,0 +1,61 @@
+"""What bodies weigh, from their components as they are now; and whether their state is still finite."""
+
+from __future__ import annotations
+
+from physicslab.components import Held, Mass, Shape, Transform, Velocity
+from physicslab.ecs.component import InvalidValue
+from physicslab.kernels import motion
+from physicslab.kernels.solver import impulse
+from physicslab.state.state import State
+
+__all__ = ["Diverged", "check_finite", "derive_masses"]
+
+_INERTIA = next(spec for spec in Mass.FIELDS if spec.name == "inertia")
+
+
+class Diverged(ArithmeticError):
+    """A value is no longer finite: the run cannot go on."""
+
+
+def derive_masses(state: State) -> None:
+    """Work out moments of inertia and inverse masses of every row.
+
+    Raises
+    ------
+    InvalidValue
+        If a body is so large and heavy that its moment of inertia is not finite.
+    """
+    bodies = state.bodies
+    if len(bodies.torque) != len(state.entity_index):
+        bodies.resize(len(state.entity_index))
+        state.compile((motion.derive_masses,))
+    mass, shape, velocity = state.table(Mass), state.table(Shape), state.table(Velocity)
+    ratio, infinite = motion.derive_masses(
+        velocity.present, mass.present, state.table(Held).present,
+        mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
+        shape["kind"], shape["radius"], shape["width"], shape["height"], velocity["angular"],
+        bodies.inverse_mass, bodies.inverse_inertia,
+    )  # fmt: skip
+    if infinite >= 0:
+        inertia, allowed = float(mass["inertia"][infinite]), f"{_INERTIA.allowed}, of mass and Shape too"
+        raise InvalidValue(f"{state.label_of_row(infinite)}: Mass", "inertia", inertia, allowed)
+    bodies.unequal = ratio > impulse.HEAVY_RATIO
+    bodies.set_inactive(state.sleep.asleep)
+
+
+def check_finite(state: State, time: float) -> None:
+    """Stop a run that has diverged at ``time`` [s], naming the entity and the component.
+
+    Raises
+    ------
+    Diverged
+        If a position, an angle or a velocity is not finite.
+    """
+    transform, velocity = state.table(Transform), state.table(Velocity)
+    for table, vectors, numbers in ((transform, "position", "angle"), (velocity, "linear", "angular")):
+        row = motion.find_not_finite(table[vectors], table[numbers])
+        if row >= 0:
+            raise Diverged(
+                f"{state.label_of_row(row)}: {table.component.__name__} is no longer finite at "
+                f"t = {time:.9g} s; a smaller dt or more substeps may help"
+            )

@@ -1,0 +1,110 @@
+"""Coordinates and forces packed into plain arrays, as compiled integrators want them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Spring, Transform, Velocity
+from physicslab.kernels.forces.force_calls import ForceKernel
+from physicslab.state.state import State
+
+__all__ = ["PackedForce", "StateLayout", "spring_ends"]
+
+
+@dataclass(frozen=True, slots=True)
+class PackedForce:
+    """A force that compiled integrators call: its kernel, and what the kernel reads.
+
+    Attributes
+    ----------
+    kernel : ForceKernel
+        What adds to the forces.
+    parameters, indices : float64 array, int64 array
+        Whatever the kernel wants to know; it gets pointers to them.
+    resistance : ForceKernel, optional
+        What the force answers to another velocity than that of the moment, where it resists motion (see
+        :mod:`physicslab.kernels.forces.resistance`).
+    """
+
+    kernel: ForceKernel
+    parameters: NDArray[np.float64]
+    indices: NDArray[np.int64]
+    resistance: ForceKernel | None = None
+
+    @property
+    def call(self) -> tuple[int, int, int]:
+        """The addresses of the kernel and of its numbers: a row of :data:`Calls`."""
+        return self.kernel.address, self.parameters.ctypes.data, self.indices.ctypes.data
+
+
+class StateLayout:
+    """Where each row of a world stands among the packed coordinates.
+
+    First two coordinates for every row that moves, then an angle for every row that forces may turn, then the
+    two coordinates of the rows that stay where they are, the world itself among them.
+
+    Attributes
+    ----------
+    moving, turning, fixed : int64 arrays
+        The rows in that order.
+    steady : int64 array
+        The rows that move and no force turns.
+    place, turn : int64 arrays (rows,)
+        Where x of a row stands, and where its angle; -1 for a row that has none, or takes no part.
+    """
+
+    place: NDArray[np.int64]
+    turn: NDArray[np.int64]
+
+    @classmethod
+    def of_rows(cls, rows: int) -> StateLayout:
+        """Return the layout of every row of a world: all x and y in turn, then all angles."""
+        layout = cls.__new__(cls)
+        layout.moving = layout.turning = np.arange(rows)
+        layout.steady = layout.fixed = np.zeros(0, np.int64)
+        layout.place, layout.turn = 2 * np.arange(rows), 2 * rows + np.arange(rows)
+        return layout
+
+    def __init__(self, state: State, part: NDArray[np.bool_] | None, *, all_turn: bool) -> None:
+        transform, velocity = state.table(Transform).present, state.table(Velocity).present
+        if part is not None:
+            transform = transform & part
+        self.moving = np.flatnonzero(transform & velocity)
+        turns = np.zeros(len(transform), np.bool_)
+        turns[self.moving] = all_turn
+        if not all_turn:
+            turns[_swung(state)] = True
+            turns &= transform & velocity
+        self.turning = np.flatnonzero(turns)
+        self.steady = np.setdiff1d(self.moving, self.turning, assume_unique=True)
+        fixed = transform & ~velocity
+        fixed[0] = True
+        self.fixed = np.flatnonzero(fixed)
+        n, m = len(self.moving), len(self.turning)
+        self.place, self.turn = np.full((2, len(transform)), -1, np.int64)
+        self.place[self.moving] = 2 * np.arange(n)
+        self.turn[self.turning] = 2 * n + np.arange(m)
+        self.place[self.fixed] = 2 * n + m + 2 * np.arange(len(self.fixed))
+
+    @property
+    def moving_count(self) -> int:
+        """How many coordinates move."""
+        return 2 * len(self.moving) + len(self.turning)
+
+
+def spring_ends(state: State) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return the rows of the springs, of the bodies at their ends A, and at B (0 for the world)."""
+    batch, spring, rows_of = state.batch(Spring), state.table(Spring), state.entity_index.rows_of
+    a = spring["a"][batch.rows]
+    return batch.rows, rows_of(np.where(a == 0, batch.entities, a)), rows_of(spring["b"][batch.rows])
+
+
+def _swung(state: State) -> NDArray[np.int64]:
+    """Return the rows that springs hold away from their middle, and so can turn."""
+    rows, a, b = spring_ends(state)
+    spring = state.table(Spring)
+    off_a, off_b = spring["anchor_a"][rows].any(axis=1), spring["anchor_b"][rows].any(axis=1)
+    return np.concatenate((a[off_a], b[off_b]))

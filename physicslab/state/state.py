@@ -1,0 +1,298 @@
+"""What a world holds: entities, columns, laws, clock and arrays. It knows no system and no stepper."""
+
+from __future__ import annotations
+
+import itertools
+import weakref
+from collections.abc import Iterable
+from typing import Any, Self
+
+import esper
+
+from physicslab.components import Name
+from physicslab.components.name import why_no_id
+from physicslab.ecs.component import Batch, InvalidValue, Table
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.context import Active, switch
+from physicslab.ecs.entity_index import EntityIndex
+from physicslab.kernels import compile_kernels
+from physicslab.state.bodies import Bodies
+from physicslab.state.checkpoint import Checkpoint
+from physicslab.state.contacts import Contacts
+from physicslab.state.sleep import Sleep
+
+__all__ = ["State"]
+
+_numbers = itertools.count(1)
+
+
+class State:
+    """Entities with their components, the laws, the clock, and the arrays that systems and steppers share.
+
+    Attributes
+    ----------
+    name, title, description : str
+        Of the scene.
+    time : float
+        The clock [s].
+    steps : int
+        Steps made.
+    substeps : int
+        Of how many parts the last step was, or each part of one that was divided: more than
+        ``simulation.substeps`` where a system found that these would not do.
+    step_divisions : int
+        Into how many parts the last step was divided, which was longer than ``simulation.dt``; or 1.
+    force_evaluations, collisions : int
+        How often forces were evaluated, and how many impacts there were.
+    compile_s : float
+        Seconds spent compiling kernels, or loading them.
+    has_forces : bool
+        Whether a force system runs.
+    event_driven : bool
+        Whether collisions are located in time, instead of found within steps.
+    window : tuple of two floats
+        When a substep begins and ends, seen from the moment at which impacts are resolved, in substeps.
+    generation : int
+        Grows whenever columns may have been changed from outside, as between steps.
+    kick_before_contacts : float
+        Which share of a substep's kick comes before contacts are found.
+    moment : float
+        The time [s] at which impacts of the substep at hand are resolved.
+    revision : int
+        How often structure, configuration or columns were changed from outside: what was measured before is
+        another world's.
+    entity_index : EntityIndex
+        Which entity has which row.
+    bodies : Bodies
+        Masses and forces, a row an entity.
+    contacts : Contacts
+        The near pairs.
+    checkpoint : Checkpoint
+        The state of motion before the step at hand.
+    sleep : Sleep
+        Which bodies have come to rest, and are not simulated until something wakes them.
+    """
+
+    def __init__(
+        self, physics: PhysicsConfig | None = None, simulation: SimulationConfig | None = None
+    ) -> None:
+        self._physics = physics or PhysicsConfig()
+        self._simulation = simulation or SimulationConfig()
+        self.name, self.title, self.description = "", "", ""
+        self.time, self.steps, self.revision = 0.0, 0, 0
+        self.substeps, self.step_divisions = self._simulation.substeps, 1
+        self.force_evaluations = self.collisions = 0
+        self.compile_s = 0.0
+        self.generation = 0
+        self.has_forces = self.event_driven = False
+        self.window, self.kick_before_contacts, self.moment = (-0.5, 0.5), 0.5, 0.0
+        self.entity_index = EntityIndex()
+        self.bodies, self.contacts, self.sleep = Bodies(), Contacts(), Sleep()
+        self.checkpoint = Checkpoint()
+        # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
+        self._names: set[str] = set()
+        self._stale = True
+        self.context = f"physicslab-{next(_numbers)}"
+        self.activate()
+        weakref.finalize(self, _forget, self.context)
+
+    # ---- contexts ------------------------------------------------------------------------------------------
+
+    def activate(self) -> None:
+        """Make this the world that plain esper calls speak of, until another is activated.
+
+        Raises
+        ------
+        RuntimeError
+            If a world is active in another thread.
+        """
+        switch(self.context)
+
+    def active(self) -> Active[Self]:
+        """Make this the world that plain esper calls speak of, within a ``with`` block.
+
+        Raises
+        ------
+        RuntimeError
+            At the start of the block, if a world is active in another thread.
+        """
+        return Active(self, self.context)
+
+    # ---- entities and components ---------------------------------------------------------------------------
+
+    def spawn(self, *components: Any, name: str | None = None) -> int:
+        """Make an entity of these components and return its number.
+
+        Systems see it from the next step on. ``name`` is its id in scene files and reports.
+        """
+        if name is not None:
+            components = (*components, Name(name))
+        kinds = [_kind(component) for component in components]
+        for kind in kinds:
+            if kinds.count(kind) > 1:
+                raise ValueError(f"an entity has one {kind.__name__}, not {kinds.count(kind)}")
+        with self.active():
+            for component in components:
+                self._check_name(component)
+            return esper.create_entity(*components)
+
+    def remove(self, entity: int) -> None:
+        """Remove an entity with all its components; handles on them keep their last values."""
+        with self.active():
+            self._require(entity)
+            esper.delete_entity(entity, immediate=True)
+
+    def clear(self) -> None:
+        """Remove every entity."""
+        with self.active():
+            for entity in esper.get_entities():
+                esper.delete_entity(entity)
+            self.entity_index.flush_deleted()
+
+    def add(self, entity: int, component: Any) -> None:
+        """Give an entity a component, in place of the one of that type if it has one."""
+        with self.active():
+            self._require(entity)
+            _kind(component)
+            self._check_name(component, entity)
+            esper.add_component(entity, component)
+
+    def discard[C](self, entity: int, component: type[C]) -> C | None:
+        """Take a component from an entity and return it, or ``None`` if it had none."""
+        with self.active():
+            self._require(entity)
+            return esper.try_remove_component(entity, component)
+
+    def component[C](self, entity: int, component: type[C]) -> C:
+        """Return an entity's component.
+
+        Raises
+        ------
+        KeyError
+            If there is no such entity, or it has no such component.
+        """
+        with self.active():
+            self._require(entity)
+            self._follow()
+            found = esper.try_component(entity, component)
+            if found is None:
+                raise KeyError(f"{self.label(entity)} has no {component.__name__}")
+            return found
+
+    def has(self, entity: int, component: type[Any]) -> bool:
+        """Whether an entity exists and has a component."""
+        with self.active():
+            return esper.entity_exists(entity) and esper.has_component(entity, component)
+
+    def components(self, entity: int) -> tuple[Any, ...]:
+        """Return all components of an entity."""
+        with self.active():
+            self._require(entity)
+            self._follow()
+            return esper.components_for_entity(entity)
+
+    def entities(self) -> list[int]:
+        """Return all entities, in the order of their numbers."""
+        with self.active():
+            return sorted(filter(esper.entity_exists, esper.get_entities()))
+
+    def entity(self, name: str) -> int:
+        """Return the entity with this id, or raise ``KeyError``."""
+        with self.active():
+            entity = self._holder(name)
+        if entity is not None:
+            return entity
+        raise KeyError(f"no entity has the id {name!r}")
+
+    def label(self, entity: int) -> str:
+        """Return the entity's id if it has one, else ``entity <number>``."""
+        with self.active():
+            named = esper.try_component(entity, Name)
+        return named.id if named is not None else f"entity {entity}"
+
+    def label_of_row(self, row: int) -> str:
+        """Return the label of the entity of a row; row 0 is the world itself."""
+        return self.label(int(self.entity_index.entities[row])) if row else "the world's bounds"
+
+    def _check_name(self, component: Any, entity: int = 0) -> None:
+        """Refuse a Name that no scene file may hold, or that another entity than this one has."""
+        if not isinstance(component, Name):
+            return
+        allowed = why_no_id(component.id)
+        if allowed is not None:
+            raise InvalidValue("Name", "id", component.id, allowed)
+        if component.id in self._names and self._holder(component.id) not in (None, entity):
+            allowed = f"an id of its own; entity {self._holder(component.id)} has this one"
+            raise InvalidValue("Name", "id", component.id, allowed)
+        self._names.add(component.id)
+
+    def _holder(self, name: str) -> int | None:
+        """Return the entity with this id, if there is one."""
+        for entity, named in esper.get_component(Name):
+            if named.id == name and esper.entity_exists(entity):
+                return entity
+        return None
+
+    def _require(self, entity: int) -> None:
+        if not esper.entity_exists(entity):
+            raise KeyError(f"there is no entity {entity} in this world")
+
+    def _follow(self) -> None:
+        """Follow what entities and components there are now."""
+        self.entity_index.synchronise()
+
+    # ---- columns -------------------------------------------------------------------------------------------
+
+    def table(self, component: type[Any]) -> Table:
+        """Return the columns of a component; rows are numbered alike in every table."""
+        return self.entity_index.table(component)
+
+    def batch(self, *components: type[Any]) -> Batch:
+        """Return the rows of the entities that have all of ``components``."""
+        return self.entity_index.batch(*components)
+
+    # ---- configuration -------------------------------------------------------------------------------------
+
+    @property
+    def physics(self) -> PhysicsConfig:
+        """The laws of this world."""
+        return self._physics
+
+    @physics.setter
+    def physics(self, physics: PhysicsConfig) -> None:
+        self._physics = physics
+        self._stale = True
+
+    @property
+    def simulation(self) -> SimulationConfig:
+        """How this world is stepped."""
+        return self._simulation
+
+    @simulation.setter
+    def simulation(self, simulation: SimulationConfig) -> None:
+        self._simulation = simulation
+        self._stale = True
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """Force evaluations, impacts, and impacts logged."""
+        return self.force_evaluations, self.collisions, self.contacts.logged
+
+    def compile(self, kernels: Iterable[Any]) -> None:
+        """Compile kernels, or load them, and note how long it took."""
+        self.compile_s += compile_kernels(kernels)
+
+
+def _kind(component: Any) -> type[Any]:
+    """Return a component's type; refuse a type given in its place."""
+    if isinstance(component, type):
+        raise TypeError(f"an entity has components, not their types: write {component.__name__}(...)")
+    return type(component)
+
+
+def _forget(context: str) -> None:
+    """Drop the esper context of a world that is no more."""
+    if esper.current_world == context:
+        esper.switch_world("default")
+    if context in esper.list_worlds():
+        esper.delete_world(context)

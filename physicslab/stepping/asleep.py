@@ -1,0 +1,43 @@
+"""Steps in which everything sleeps."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from physicslab.contacts.islands import all_asleep
+from physicslab.state.state import State
+from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.stepper import Advance
+from physicslab.systems.schedule import Schedule
+
+__all__ = ["Asleep"]
+
+
+class Asleep:
+    """Advances the clock alone, while all that could move sleeps."""
+
+    name: ClassVar[str] = "asleep"
+    leaps: ClassVar[bool] = False
+    leaves_forces: ClassVar[bool] = True
+    kernels: tuple[Any, ...] = ()
+
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
+        self.reason = "everything sleeps"
+
+    @classmethod
+    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
+        """Return why bodies cannot sleep, or ``None``."""
+        return None if state.sleep.on else "bodies do not fall asleep"
+
+    def holds(self, state: State) -> bool:
+        """Whether it does is found at every step."""
+        return True
+
+    def ready(self, state: State, h: float) -> bool:
+        """Whether nothing would happen."""
+        return all_asleep(state)
+
+    def advance(self, state: State, h: float, steps: int) -> Advance:
+        """Let the time go by."""
+        state.substeps = state.simulation.substeps
+        return Advance(steps)

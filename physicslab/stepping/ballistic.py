@@ -1,0 +1,163 @@
+"""Which worlds can have their collisions located exactly, and which gain by it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Held, Material, Shape, Transform, Velocity
+from physicslab.components.shape import BOX, CIRCLE
+from physicslab.state.state import State
+from physicslab.systems.broad_phase import BroadPhaseSystem
+from physicslab.systems.contact import ContactSystem
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.resolve import ResolveSystem
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
+
+__all__ = [
+    "MAX_BODIES",
+    "MAX_PAIRS",
+    "pairs_that_may_meet",
+    "turning_boxes",
+    "why_not_exact",
+    "why_not_worthwhile",
+]
+
+MAX_BODIES = 32
+"""Beyond so many moving bodies ``auto`` prefers the contact step."""
+MAX_PAIRS = 20_000
+"""Every impact looks through all pairs: beyond so many that costs more than any accuracy is worth."""
+_CONTACT_STEP = (IntegrateSystem, BroadPhaseSystem, ContactSystem, ResolveSystem)
+_LOOKING = OF_FRAMES | AROUND | {Stage.IMPACT}
+"""The stages at which a system may look on, without bending a flight."""
+_NEAR = 0.01
+"""Share of the smaller body's size within which bodies count as lying on each other."""
+
+
+def why_not_exact(state: State, schedule: Schedule) -> str | None:
+    """Return what stands in the way of locating the times of impacts, or ``None``.
+
+    Between impacts a body must move under a constant acceleration, and no box may turn.
+    """
+    if state.simulation.integrator not in ("auto", "exact"):
+        return f"{state.simulation.integrator} was asked for, and flights between impacts are in closed form"
+    reason = _foreign(state, schedule)
+    if reason is not None:
+        return reason
+    if state.physics.linear_damping > 0.0 or state.physics.angular_damping > 0.0:
+        return "velocities are damped"
+    if len(state.batch(Held)):
+        return "a body is held"
+    if (state.table(Velocity).present & ~state.table(Transform).present).any():
+        return "something moves that is nowhere"
+    rows = turning_boxes(state)
+    if len(rows):
+        label = state.label_of_row(int(rows[0]))
+        return f"{label} is a box that may turn (Mass.fixed_rotation would keep it as it is)"
+    if _count_pairs(state) > MAX_PAIRS:
+        return f"more than {MAX_PAIRS} pairs may meet"
+    return None
+
+
+def _foreign(state: State, schedule: Schedule) -> str | None:
+    """Return what acts within a step that is neither uniform gravity nor the contact step, or ``None``."""
+    for needed in _CONTACT_STEP:
+        if schedule.find(needed) is None:
+            return f"{needed.__name__} is not among the systems, which moves what rests"
+    for system in schedule.running:
+        if isinstance(system, ForceSystem):
+            uniform = system.uniform_acceleration(state) if type(system).packs() else None
+            if uniform is None:
+                attracts = system.attractors > 0
+                return (
+                    "bodies attract each other"
+                    if attracts
+                    else f"the force of {system.name} bends the flights"
+                )
+        elif not (system.is_engine or type(system).marked().keys() <= _LOOKING):
+            return f"{system.name} acts within the step"
+    return None
+
+
+def turning_boxes(state: State) -> NDArray[np.int64]:
+    """Return the rows of boxes that turn, or would if they were struck beside the middle."""
+    moving = state.batch(Shape, Transform, Velocity).rows
+    boxes = moving[state.table(Shape)["kind"][moving] == BOX]
+    turns = (state.bodies.inverse_inertia[boxes] > 0.0) | (state.table(Velocity)["angular"][boxes] != 0.0)
+    turning: NDArray[np.int64] = boxes[turns]
+    return turning
+
+
+def _count_pairs(state: State) -> int:
+    """Return how many pairs may meet, without making a list of what may be thousands of millions."""
+    shaped = state.batch(Shape, Transform).rows
+    count, movable = len(shaped), int(np.count_nonzero(state.bodies.inverse_mass[shaped] > 0.0))
+    walls = 0 if state.physics.bounds is None else 4
+    return movable * (movable - 1) // 2 + movable * (count - movable) + movable * walls
+
+
+def pairs_that_may_meet(state: State) -> NDArray[np.int64]:
+    """Return every pair of rows (a, b, wall) of which one can be moved, sorted, bounds as walls of row 0."""
+    shaped = state.batch(Shape, Transform).rows
+    inverse_mass = state.bodies.inverse_mass[shaped]
+    i, j = np.triu_indices(len(shaped), 1)
+    meets = (inverse_mass[i] > 0.0) | (inverse_mass[j] > 0.0)
+    bodies = np.stack((shaped[i[meets]], shaped[j[meets]], np.full(int(meets.sum()), -1)), axis=1)
+    walled = np.zeros((0, 3), np.int64)
+    if state.physics.bounds is not None:
+        inner = np.repeat(shaped[inverse_mass > 0.0], 4)
+        walled = np.stack((np.zeros_like(inner), inner, np.tile(np.arange(4), len(inner) // 4)), axis=1)
+    return np.ascontiguousarray(np.concatenate((walled, bodies)), dtype=np.int64)
+
+
+def why_not_worthwhile(state: State, schedule: Schedule) -> str | None:
+    """Return why a world that qualifies is better off with the contact step, or ``None``."""
+    moving = state.batch(Transform, Velocity).rows
+    if len(moving) > MAX_BODIES:
+        return f"more than {MAX_BODIES} bodies move"
+    pairs = pairs_that_may_meet(state)
+    restitution = state.table(Material)["restitution"]
+    other = np.where(pairs[:, 2] >= 0, state.physics.bounds_restitution, restitution[pairs[:, 0]])
+    if (np.minimum(other, restitution[pairs[:, 1]]) == 0.0).any():
+        return "some pairs do not bounce"
+    return _why_at_rest(state, schedule, moving, pairs)
+
+
+def _why_at_rest(
+    state: State, schedule: Schedule, moving: NDArray[np.int64], pairs: NDArray[np.int64]
+) -> str | None:
+    """Return what already lies on what, as far as boxes along the axes around all bodies can tell."""
+    if not schedule.forces:
+        return None  # nothing presses
+    low, high, size = _boxes(state)
+    a, b, wall = pairs.T
+    apart = np.maximum(low[b] - high[a], low[a] - high[b]).max(axis=1)
+    if state.physics.bounds is not None:
+        bounds = np.array(state.physics.bounds)
+        to_wall = np.concatenate((low - bounds[:2], bounds[2:] - high), axis=1)
+        apart = np.where(wall >= 0, to_wall[b, wall], apart)
+        size = size.copy()
+        size[0] = np.inf
+    velocity = state.table(Velocity)["linear"]
+    fall = float(state.physics.gravity.magnitude) * state.simulation.dt
+    slow = np.hypot(*(velocity[b] - velocity[a]).T) <= fall
+    lies = slow & (apart <= _NEAR * np.minimum(size[a], size[b]))
+    free = state.bodies.inverse_mass > 0.0
+    if (lies & free[a] & free[b]).any():
+        return "bodies rest on each other"
+    proximity_count = np.unique(np.concatenate((a[lies & free[a]], b[lies & free[b]])))
+    if len(moving) and len(proximity_count) == int(free[moving].sum()):
+        return "everything rests"
+    return None
+
+
+def _boxes(state: State) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return the lowest and highest coordinates of every row (rows, 2), and its size [m]."""
+    shape, transform = state.table(Shape), state.table(Transform)
+    c, s = np.abs(np.cos(transform["angle"])), np.abs(np.sin(transform["angle"]))
+    width, height, radius = shape["width"], shape["height"], shape["radius"]
+    box = 0.5 * np.stack((c * width + s * height, s * width + c * height), axis=1)
+    half = np.where((shape["kind"] == CIRCLE)[:, None], radius[:, None], box)
+    size = np.where(shape["kind"] == CIRCLE, 2.0 * radius, np.minimum(width, height))
+    return transform["position"] - half, transform["position"] + half, size

@@ -1,0 +1,82 @@
+"""The contact step, stage by stage: any scene, any systems."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from physicslab.state.masses import check_finite
+from physicslab.state.state import State
+from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.split_forces import SplitForces
+from physicslab.stepping.stepper import Advance, divisions
+from physicslab.systems.contact import ContactSystem
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.sleep import SleepSystem
+from physicslab.systems.system import Stage
+
+__all__ = ["Contact"]
+
+
+class Contact:
+    """Goes through the stages of every substep and calls the systems of each, from Python.
+
+    It can advance any world, so it is the last of the list. What springs and drag act on may move by a method
+    of its own within it (:class:`physicslab.stepping.split_forces.SplitForces`).
+    """
+
+    name: ClassVar[str] = "contact"
+    leaps: ClassVar[bool] = False
+    leaves_forces: ClassVar[bool] = True
+
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
+        self._schedule, self._stages = schedule, plan.stages.substep
+        self._contact, self._sleep = schedule.find(ContactSystem), schedule.find(SleepSystem)
+        self._split: SplitForces | None = None
+        if plan.split_forces is not None:
+            self._split = SplitForces(state, schedule.forces, plan.split_forces, plan.split_steps)
+        self.kernels: tuple[Any, ...] = tuple(schedule.kernels(state))
+        self.reason = plan.reason
+
+    @classmethod
+    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
+        """There is no world that cannot be stepped so."""
+        return None
+
+    def holds(self, state: State) -> bool:
+        """Whether what a method of its own moves is still the same."""
+        return self._split is None or not self._split.outdated(state)
+
+    def ready(self, state: State, h: float) -> bool:
+        """Be ready for any step."""
+        return True
+
+    def advance(self, state: State, h: float, steps: int) -> Advance:
+        """Make one step."""
+        parts = divisions(state, h)
+        state.substeps = state.contacts.substep_factor * state.simulation.substeps
+        self.begin(state)
+        self.go_through(state, state.time, h / parts / state.substeps, parts * state.substeps)
+        check_finite(state, state.time + h)
+        if self._sleep is not None:
+            self._schedule.call(self._sleep, self._sleep.count_rest, state, h)
+        factors = (system.substep_factor(state) for system in self._schedule.running)
+        state.contacts.substep_factor = max(factors, default=1)
+        return Advance(1, parts)
+
+    def begin(self, state: State) -> None:
+        """Begin new records of impacts, and take forces and masses as they are now."""
+        if self._contact is not None:
+            self._contact.begin_step(state)
+        if self._split is not None:
+            self._split.begin(state)
+
+    def go_through(self, state: State, start: float, h: float, count: int) -> None:
+        """Go through the stages of ``count`` substeps of ``h`` seconds, from the time ``start`` [s]."""
+        run, split = self._schedule.run, self._split
+        for substep in range(count):
+            state.moment = start + (substep - state.window[0]) * h
+            for stage, share in self._stages:
+                if stage is not Stage.PREDICT:
+                    run(stage, state, share * h)
+                if split is not None:
+                    split.take_part(stage, state, share * h)

@@ -1,0 +1,77 @@
+"""Scenes in which nothing but forces acts: one compiled flow, however many steps."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any, ClassVar
+
+from physicslab.integrators import StepTooSmall
+from physicslab.ode.system import OdeSystem
+from physicslab.state.masses import Diverged, check_finite
+from physicslab.state.state import State
+from physicslab.stepping.fastest_body import fastest_body
+from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.stepper import Advance, divisions
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.schedule import Schedule
+
+__all__ = ["Flow"]
+
+
+class Flow:
+    """Advances the smooth motion of a world by the flow of an integrator."""
+
+    name: ClassVar[str] = "flow"
+    leaps: ClassVar[bool] = True
+    leaves_forces: ClassVar[bool] = False
+
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
+        self._schedule, self._plan, self._method = schedule, plan, plan.integrator
+        self._ode = OdeSystem(state, schedule.forces)
+        self.interpreted = self._ode.interpreted
+        self.kernels: tuple[Any, ...] = self._method.kernels
+        self.reason = plan.reason
+
+    @classmethod
+    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
+        """Return what else than forces acts, or ``None``."""
+        return None if plan.smooth else plan.obstacle
+
+    def holds(self, state: State) -> bool:
+        """Whether no number was changed that the layout, or the choice of a method, depends on."""
+        return not self._ode.outdated(state)
+
+    def ready(self, state: State, h: float) -> bool:
+        """Be ready for any step."""
+        return True
+
+    @property
+    def whole(self) -> bool:
+        """Whether a run of any length is one step of the method."""
+        return self._method.chooses_steps
+
+    def advance(self, state: State, h: float, steps: int) -> Advance:
+        """Make all of the steps in one compiled loop."""
+        exact = self._method.chooses_steps or math.isinf(self._method.order)
+        parts = 1 if exact else divisions(state, h)
+        self._flow(state, h / parts, parts * steps)
+        check_finite(state, state.time + h * steps)
+        return Advance(steps, parts)
+
+    def _flow(self, state: State, h: float, steps: int) -> None:
+        method, ode = self._method, self._ode
+        ode.gather(state)
+        parts = 1 if method.chooses_steps else self._plan.substeps
+        span, count = (h * steps, 1) if method.chooses_steps else (h / parts, parts * steps)
+        start = time.perf_counter_ns()
+        try:
+            made = method.flow(state, ode, span, count)
+        except StepTooSmall as error:
+            what = f"{fastest_body(state, self._schedule.forces)}: Velocity changes too fast: {error}"
+            raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error
+        ode.scatter(state, h * steps)
+        self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - start)
+        for system in ode.forces:
+            self._schedule.note(system.name, made, 0)  # their time is within the loop's
+        state.force_evaluations += made

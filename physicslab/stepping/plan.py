@@ -1,0 +1,255 @@
+"""Which method moves a world, and why."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from physicslab.components import Transform, Velocity
+from physicslab.ecs.config import SimulationConfig
+from physicslab.integrators import INTEGRATORS, Integrator
+from physicslab.integrators.blanes_moan import BLANES_MOAN
+from physicslab.integrators.dop853 import DOP853
+from physicslab.integrators.exact import EXACT
+from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
+from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_WITH_SPLIT_FORCES
+from physicslab.ode.closed_form import NoClosedForm, closed_form
+from physicslab.state.state import State
+from physicslab.stepping.ballistic import why_not_exact, why_not_worthwhile
+from physicslab.stepping.split_forces import sub_integrated_rows
+from physicslab.systems.accelerate import AccelerateSystem
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.system import ForceSystem, Stage
+
+__all__ = ["StepPlan", "choose_plan", "default_plan", "why_not_smooth"]
+
+_CROWD = 200
+"""From so many attracting bodies on, sampling their forces costs more than accuracy is worth."""
+_WELL_RESOLVED = 0.5
+"""omega h that blanes_moan is given: beyond about 1 its order does not show."""
+_MAX_STEPS = 1000
+"""Into how many steps a step of the world may be divided of the method's own accord."""
+
+
+@dataclass(frozen=True, slots=True)
+class StepPlan:
+    """A method, and why it.
+
+    Attributes
+    ----------
+    integrator : Integrator
+        The method.
+    reason : str
+        Why, for people.
+    substeps : int
+        Steps of the method a step of the world; 1 for one that chooses its steps itself.
+    smooth : bool
+        Whether nothing but forces acts, so that the method's flow advances the world.
+    refused : str
+        Why it is not the one that was asked for; empty if it is.
+    collisions : str
+        ``"exact"`` (contact times located, flights in between in closed form), ``"step"`` (found and resolved
+        within steps) or ``"none"`` (nothing can touch).
+    collision_reason : str
+        Why so, for people.
+    obstacle : str
+        What else than forces acts within a step, where anything does.
+    stages : Integrator
+        The method by whose stages the contact step goes; where collisions are exact, only for what rests.
+    split_forces : Integrator, optional
+        What moves the bodies that springs and drag act on between contacts; ``None`` where kicks do.
+    split_steps : int
+        Its steps each half substep.
+    """
+
+    integrator: Integrator
+    reason: str
+    substeps: int
+    smooth: bool
+    refused: str = ""
+    collisions: str = "none"
+    collision_reason: str = "nothing can touch"
+    obstacle: str = ""
+    stages: Integrator = LEAPFROG
+    split_forces: Integrator | None = None
+    split_steps: int = 1
+
+    @property
+    def kick_before_contacts(self) -> float:
+        """Which share of a substep's kick comes before contacts are found."""
+        substep = self.stages.substep
+        found = [stage for stage, _ in substep].index(Stage.CONTACT)
+        return sum(share for stage, share in substep[:found] if stage is Stage.KICK)
+
+
+def default_plan(simulation: SimulationConfig) -> StepPlan:
+    """Return the choice for a world of which nothing is known yet."""
+    name = simulation.integrator
+    if name == "auto":
+        return StepPlan(LEAPFROG, "nothing moves", simulation.substeps, smooth=False)
+    method = INTEGRATORS[name]
+    stages = method if method.substep else LEAPFROG
+    return StepPlan(method, "asked for", simulation.substeps, smooth=False, stages=stages)
+
+
+def choose_plan(state: State, schedule: Schedule) -> StepPlan:
+    """Return the method for what a world holds, or the one that its configuration asks for if it can."""
+    if not schedule.runs(Stage.CONTACT):
+        return _mover(state, schedule)
+    wish = state.simulation.collisions
+    if wish == "step":
+        return replace(_mover(state, schedule), collisions="step", collision_reason="asked for")
+    obstacle = why_not_exact(state, schedule)
+    if wish == "exact":
+        if obstacle is not None:
+            reason = f"exact was asked for, and {obstacle}"
+            return replace(_mover(state, schedule), collisions="step", collision_reason=reason)
+        return _flights(state, "asked for")
+    obstacle = obstacle or why_not_worthwhile(state, schedule)
+    if obstacle is not None:
+        return replace(_mover(state, schedule), collisions="step", collision_reason=obstacle)
+    return _flights(state, "few bodies, which bounce")
+
+
+def _flights(state: State, reason: str) -> StepPlan:
+    """Return the choice for bodies whose collisions are exact."""
+    method = "between impacts bodies fly in closed form; what rests goes by leapfrog"
+    return StepPlan(
+        EXACT, method, state.simulation.substeps, smooth=False, collisions="exact", collision_reason=reason
+    )
+
+
+def _mover(state: State, schedule: Schedule) -> StepPlan:
+    """Return what moves bodies where collisions, if there are any, are found within steps."""
+    simulation = state.simulation
+    obstacle = why_not_smooth(state, schedule)
+    if simulation.integrator == "auto":
+        if obstacle is not None:
+            return _beside_contacts(state, schedule, obstacle)
+        return _best(state, schedule)
+    choice = default_plan(simulation)
+    method = choice.integrator
+    if obstacle is not None:
+        if method.substep:
+            return replace(choice, obstacle=obstacle)
+        reason = f"{method.name} was asked for, which advances bodies under forces alone, and {obstacle}"
+        return StepPlan(
+            LEAPFROG, reason, simulation.substeps, smooth=False, refused=reason, obstacle=obstacle
+        )
+    if method is EXACT:
+        try:
+            closed_form(state, schedule.forces)
+        except NoClosedForm as error:
+            reason = f"exact was asked for, and there is no closed form: {error}"
+            return replace(_best(state, schedule), reason=reason, refused=reason)
+    return replace(choice, substeps=1 if method.chooses_steps else simulation.substeps, smooth=True)
+
+
+def _best(state: State, schedule: Schedule) -> StepPlan:
+    """Return the method for a world in which nothing but forces acts."""
+    substeps, h = state.simulation.substeps, state.simulation.dt
+    forces = schedule.forces
+    python = [system.name for system in forces if not type(system).packs()]
+    if python:
+        return StepPlan(LEAPFROG, f"the force of {python[0]} has no compiled kernel", substeps, smooth=True)
+    try:
+        return StepPlan(
+            EXACT, f"{closed_form(state, schedule.forces).what}: solved in closed form", 1, smooth=True
+        )
+    except NoClosedForm as error:
+        why = str(error)
+    attractors = max((force.attractors for force in forces), default=0)
+    planets = attractors > 1
+    rate = _fastest(state, [force for force in forces if not force.attractors > 1])
+    needed = _steps(rate, h)
+    if needed > _MAX_STEPS:
+        return StepPlan(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
+    if planets and attractors >= _CROWD and state.physics.softening > 0.0:
+        return StepPlan(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
+    if planets:
+        return StepPlan(DOP853, "attracting bodies may come close: the step follows them", 1, smooth=True)
+    if _sees_velocity(state, forces):
+        return StepPlan(DOP853, f"forces depend on velocities, and {why}", 1, smooth=True)
+    singular = _why_singular(state, forces)
+    if singular is not None:
+        return StepPlan(DOP853, f"{singular}: the step follows it", 1, smooth=True)
+    reason = f"conservative and smooth; {needed} steps of omega h = {rate * h / needed:.2g}"
+    return StepPlan(BLANES_MOAN, reason, needed, smooth=True)
+
+
+def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPlan:
+    """Return the choice where more than forces acts within a step: kicks, or a method for what is tethered.
+
+    Other stages than those of leapfrog know of no flow.
+    """
+    substeps = state.simulation.substeps
+    kicks = StepPlan(LEAPFROG, obstacle, substeps, smooth=False, obstacle=obstacle)
+    forces = schedule.forces
+    moved = schedule.find(IntegrateSystem) is not None
+    if not moved or not sub_integrated_rows(state, forces).any():
+        return kicks
+    python = [system.name for system in forces if not type(system).packs()]
+    if python:
+        return replace(kicks, reason=f"{obstacle}, and the force of {python[0]} has no compiled kernel")
+    attractors = max((force.attractors for force in forces), default=0)
+    if attractors >= _CROWD:
+        return kicks
+    rate, half = _fastest(state, forces), 0.5 * state.simulation.dt / substeps
+    needed = _steps(rate, half)
+    if needed * 2 * substeps > _MAX_STEPS:
+        method, needed, how = IMPLICIT_MIDPOINT, 1, _too_fast(rate)
+    elif attractors > 1 or _sees_velocity(state, forces) or _why_singular(state, forces):
+        method, needed, how = DOP853, 1, "the step follows the motion"
+    else:
+        method, how = BLANES_MOAN, f"steps of omega h = {rate * half / needed:.2g}"
+    reason = f"{obstacle}; between contacts what springs or drag act on goes by {method.name}: {how}"
+    return replace(
+        kicks, reason=reason, stages=LEAPFROG_WITH_SPLIT_FORCES, split_forces=method, split_steps=needed
+    )
+
+
+def _fastest(state: State, forces: Sequence[ForceSystem]) -> float:
+    """Return the fastest rate that forces and damping give any body [rad/s]."""
+    rate = max((system.strongest_rate(state) for system in forces), default=0.0)
+    return max(rate, state.physics.linear_damping, state.physics.angular_damping)
+
+
+def _steps(rate: float, h: float) -> int:
+    """Return into how many steps a time h must be divided for a rate, of no more than need be told apart."""
+    phase = rate * h / _WELL_RESOLVED
+    return max(1, math.ceil(phase)) if phase <= _MAX_STEPS else _MAX_STEPS + 1
+
+
+def _why_singular(state: State, forces: Sequence[ForceSystem]) -> str | None:
+    return next((why for force in forces if (why := force.why_singular(state)) is not None), None)
+
+
+def _sees_velocity(state: State, forces: Sequence[ForceSystem]) -> bool:
+    return state.physics.linear_damping > 0.0 or any(system.sees_velocity(state) for system in forces)
+
+
+def _too_fast(rate: float) -> str:
+    return f"{rate:.3g} rad/s is too fast to be followed: what it does between steps is not shown"
+
+
+_WITHIN = {Stage.FORCE, Stage.KICK, Stage.DRIFT}
+"""What happens at these stages is within the substeps of a world in which nothing touches."""
+
+
+def why_not_smooth(state: State, schedule: Schedule) -> str | None:
+    """Return what else than forces acts on bodies within a step, or ``None``."""
+    if schedule.runs(Stage.BROAD_PHASE) or schedule.runs(Stage.CONTACT):
+        return "bodies can touch"
+    if schedule.find(IntegrateSystem) is None:
+        return "nothing moves the bodies"
+    for system in schedule.running:
+        stages = type(system).marked().keys() & _WITHIN
+        if isinstance(system, ForceSystem):
+            stages -= {Stage.FORCE}
+        if stages and not isinstance(system, AccelerateSystem | IntegrateSystem):
+            return f"{system.name} acts within the step"
+    if (state.table(Velocity).present & ~state.table(Transform).present).any():
+        return "something moves that is nowhere"
+    return None

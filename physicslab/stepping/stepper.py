@@ -1,0 +1,85 @@
+"""What a stepper is: one way to advance a state."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
+
+from physicslab.state.state import State
+from physicslab.stepping.plan import StepPlan
+from physicslab.systems.schedule import Schedule
+
+__all__ = ["Advance", "Stepper", "divisions"]
+
+_MAX_DIVISIONS = 100_000
+"""Into so many parts a step may be divided that is longer than the scene's own."""
+_TOLERATED = 0.01
+"""By which share a step may exceed the scene's own undivided: the last one of a run may take in a rest."""
+
+
+@dataclass(frozen=True, slots=True)
+class Advance:
+    """What a stepper has done: whole steps, and into how many parts each was divided."""
+
+    steps: int
+    divisions: int = 1
+
+
+class Stepper(Protocol):
+    """One way to advance a state, made for its structure and remade when that changes.
+
+    To add one, write its file, and name it in the list of :mod:`physicslab.stepping.select`, before those
+    that it is better than.
+
+    Attributes
+    ----------
+    name : str
+        For reports: ``run --json``, the HUD.
+    reason : str
+        Why this one, for people.
+    kernels : tuple of kernels
+        What it calls; compiled before it first advances, and not before.
+    leaps : bool
+        Whether several steps are one advance, made as a whole or not at all.
+    leaves_forces : bool
+        Whether ``bodies.force`` holds the forces after a step.
+    """
+
+    name: ClassVar[str]
+    leaps: ClassVar[bool]
+    leaves_forces: ClassVar[bool]
+    reason: str
+
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...
+
+    @property
+    def kernels(self) -> tuple[Any, ...]:
+        """Return the kernels that it calls."""
+
+    @classmethod
+    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
+        """Return why this stepper cannot advance such a world, or ``None``."""
+
+    def holds(self, state: State) -> bool:
+        """Whether the numbers that it was made from are still the same."""
+
+    def ready(self, state: State, h: float) -> bool:
+        """Whether it can make the coming step of ``h`` seconds."""
+
+    def advance(self, state: State, h: float, steps: int) -> Advance:
+        """Advance by ``steps`` steps of ``h`` seconds, or by some of them; the clock is the caller's.
+
+        Raises
+        ------
+        Diverged
+            If a value would not be finite. Whole steps before that one are counted by the stepper.
+        """
+
+
+def divisions(state: State, h: float) -> int:
+    """Return into how many parts a step of ``h`` seconds is divided, so that none exceeds the scene's own."""
+    own = state.simulation.dt
+    if h / own > _MAX_DIVISIONS:
+        raise ValueError(f"dt = {h!r}: must be at most {_MAX_DIVISIONS} times simulation.dt = {own!r} s")
+    return max(1, math.ceil(h / own - _TOLERATED))

@@ -1,0 +1,51 @@
+"""Forces change velocities: Newton's second law."""
+
+from __future__ import annotations
+
+from physicslab.components import Transform, Velocity
+from physicslab.kernels import motion
+from physicslab.state.state import State
+from physicslab.systems.system import Stage, System, at
+
+__all__ = ["AccelerateSystem"]
+
+
+class AccelerateSystem(System):
+    """Adds up forces from zero and turns them into velocities. Every world has one."""
+
+    engine = True
+    kernels = (motion.clear, motion.kick, motion.find_not_finite)
+
+    def attach(self, state: State) -> None:
+        """Forget the forces of systems that may run no more."""
+        state.bodies.pull[:] = 0.0
+
+    def why_left_out(self, state: State) -> str | None:
+        """Needed wherever something can change a velocity."""
+        if not len(state.batch(Velocity)):
+            return "nothing moves"
+        return None
+
+    @at(Stage.FORCE)
+    def clear(self, state: State, h: float) -> None:
+        """Begin to add up from zero, with the state packed for the forces that want it so."""
+        if state.has_forces:
+            bodies, transform, velocity = state.bodies, state.table(Transform), state.table(Velocity)
+            rows = len(bodies.torque)
+            motion.clear(bodies.force, bodies.torque)
+            bodies.q[: 2 * rows], bodies.q[2 * rows :] = transform["position"].ravel(), transform["angle"]
+            bodies.v[: 2 * rows], bodies.v[2 * rows :] = velocity["linear"].ravel(), velocity["angular"]
+            state.force_evaluations += 1
+
+    @at(Stage.KICK)
+    def kick(self, state: State, h: float) -> None:
+        """Change velocities by the forces, and by damping."""
+        bodies, physics = state.bodies, state.physics
+        if not state.has_forces and physics.linear_damping == physics.angular_damping == 0.0:
+            return
+        velocity = state.table(Velocity)
+        motion.kick(
+            velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
+            bodies.awake_inverse_mass, bodies.awake_inverse_inertia, bodies.sub_integrated,
+            physics.linear_damping, physics.angular_damping, h,
+        )  # fmt: skip

@@ -1,0 +1,260 @@
+"""What a system is: one thing that happens to a world, at which stage, and what it must say of itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import Enum
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.ecs.vector import Vector2
+from physicslab.kernels.forces.force_calls import add_forces
+from physicslab.state.packed import PackedForce, StateLayout
+from physicslab.state.state import State
+
+__all__ = ["AROUND", "OF_FRAMES", "ForceSystem", "Stage", "System", "at"]
+
+
+class Stage(Enum):
+    """The moments at which systems run. An integrator's ``substep`` puts those of a substep in order."""
+
+    INPUT = "once a frame: what the user did"
+    PREPARE = "once a step: what holds for all of it"
+    FORCE = "forces and torques are added up"
+    KICK = "forces change velocities"
+    DRIFT = "velocities change positions"
+    BROAD_PHASE = "which bodies are near each other"
+    CONTACT = "where they touch"
+    IMPACT = "approaching bodies bounce"
+    PREDICT = "what forces will do to sub-integrated bodies is shown to the contacts, and taken back"
+    SOLVE = "contact impulses keep bodies apart, correcting overlap"
+    RELAX = "contact impulses again, so that the correction leaves no velocity behind"
+    FINISH = "once a step: what is recorded of it"
+    RENDER = "once a frame: the world is drawn"
+    HUD = "once a frame: the figures are drawn over it"
+
+    __hash__ = object.__hash__  # Enum's own hashes the name, in Python, at every look-up
+
+
+OF_FRAMES = frozenset({Stage.INPUT, Stage.RENDER, Stage.HUD})
+"""The stages that belong to frames, and not to steps."""
+AROUND = frozenset({Stage.PREPARE, Stage.FINISH})
+"""The stages around a step: a system that is called there looks at every step."""
+
+
+def at[M: Callable[..., None]](stage: Stage) -> Callable[[M], M]:
+    """Mark a system's method to be called as ``method(state, h)`` at ``stage``.
+
+    ``h`` is the time [s] that the call stands for: the substep, a part of it, or the step.
+
+    Raises
+    ------
+    TypeError
+        If ``stage`` is no Stage.
+    """
+    if not isinstance(stage, Stage):
+        raise TypeError(f"@at takes a Stage, got {stage!r}: write @at(Stage.FORCE), or another of them")
+
+    def mark(method: M) -> M:
+        method.stage = stage  # type: ignore[attr-defined]
+        return method
+
+    return mark
+
+
+class System:
+    """One thing that happens to a world, and when.
+
+    To write one:
+
+    1. Subclass ``System`` (or :class:`ForceSystem`) in a file of ``physicslab/systems``.
+    2. Name the components it works on in ``needs``. While no entity has all of them, the system is left out.
+    3. Mark a method ``@at(Stage. ...)``. It gets the world's :class:`~physicslab.state.state.State` and the
+       time that the call stands for, and reads and writes columns: ``state.batch(Velocity, Mass).rows`` are
+       row numbers, ``state.table(Velocity)["linear"]`` a column.
+    4. Say in :meth:`why_left_out` what else makes it needless. What was left out is shown with that reason.
+    5. Add it to the list in ``physicslab/systems/standard.py``, in the order in which it runs within its
+       stage.
+
+    A system that is called at ``PREPARE`` or ``FINISH`` looks at every step, so steps are made one by one;
+    one that is called within a step keeps the compiled loop of whole steps from running. Both are read off
+    its marks, and shown as the stepper's reason.
+
+    Attributes
+    ----------
+    needs : tuple of component types
+        An entity must have all of them for the system to have work.
+    kernels : tuple of kernels
+        What the system calls at its stages; compiled before it first does.
+    engine : bool
+        Whether compiled steppers do this very class's work themselves. It is not inherited: a subclass may
+        do other work.
+    """
+
+    needs: ClassVar[tuple[type[Any], ...]] = ()
+    kernels: ClassVar[tuple[Any, ...]] = ()
+    engine: ClassVar[bool] = False
+
+    @property
+    def name(self) -> str:
+        """The name under which cost and reasons are reported."""
+        return type(self).__name__
+
+    def attach(self, state: State) -> None:
+        """Look at the world's new content; called whenever it changed, before :meth:`why_left_out`."""
+
+    def why_left_out(self, state: State) -> str | None:
+        """Return why this scene does not need the system, or ``None`` if it does."""
+        if self.needs and not len(state.batch(*self.needs)):
+            absent = [needed for needed in self.needs if not len(state.batch(needed))] or self.needs
+            return f"no {' and '.join(needed.__name__ for needed in absent)} in the scene"
+        return None
+
+    def kernels_for(self, state: State) -> tuple[Any, ...]:
+        """Return which of ``kernels`` the world needs as it is; what it does not need is not waited for."""
+        return self.kernels
+
+    def substep_factor(self, state: State) -> int:
+        """Return how many times as many substeps as asked for the next step needs, at the end of one."""
+        return 1
+
+    @property
+    def is_engine(self) -> bool:
+        """Whether compiled steppers do this system's work themselves."""
+        return bool(vars(type(self)).get("engine", False))
+
+    @classmethod
+    def acts_within_step(cls) -> bool:
+        """Whether the system is called within a step, and not around it or once a frame alone."""
+        return not cls.marked().keys() <= OF_FRAMES | AROUND
+
+    @classmethod
+    def observes(cls) -> bool:
+        """Whether the system is called at the beginning or the end of every step."""
+        return not AROUND.isdisjoint(cls.marked())
+
+    @classmethod
+    def marked(cls) -> dict[Stage, str]:
+        """Return the stages of the system, each with the name of its method.
+
+        A method that overrides a marked one keeps its stage. Two at one stage have no order, and are refused.
+        """
+        found: dict[Stage, str] = {}
+        for base in reversed(cls.__mro__):
+            for name, attribute in vars(base).items():
+                stage = getattr(attribute, "stage", None)
+                if not isinstance(stage, Stage):
+                    continue
+                if found.setdefault(stage, name) != name:
+                    both = f"{found[stage]} and {name}"
+                    raise TypeError(f"{cls.__name__}: {both} are both at {stage}; let one call the other")
+        return found
+
+
+class ForceSystem(System):
+    """A system that adds to ``state.bodies.force`` [N] and ``.torque`` [N m] at ``Stage.FORCE``.
+
+    A force is given in one of two ways. In Python: a method marked ``@at(Stage.FORCE)`` adds to both columns.
+    Compiled: :meth:`packed` names a kernel and the numbers that it reads; every integrator calls it, and so
+    does the contact step, so the law is written once.
+
+    It must also say what energy its force stores, so that the energy shown stays true when a force is added.
+    """
+
+    potential: ClassVar[str | None] = None
+    """The name under which the energy is reported; ``None`` for a force that stores none."""
+
+    def potential_energy(self, state: State) -> float:
+        """Return the energy stored [J]; zero for a force that stores none."""
+        return 0.0
+
+    def strongest_rate(self, state: State) -> float:
+        """Return the fastest angular frequency [rad/s] that this force gives any body; 0 if it gives none."""
+        return 0.0
+
+    def summation(self, state: State) -> str:
+        """Return how the force is summed, where that bears on what it is worth; shown beside the figures."""
+        return ""
+
+    def rates(self, state: State) -> NDArray[np.float64] | None:
+        """Return for each row the fastest angular frequency [rad/s] or rate of decay [1/s] it is given.
+
+        ``None`` for a force that does not tell bodies apart. Where it does, and contacts act as well, the
+        bodies it acts on are moved by a method that follows it, instead of a kick a substep.
+        """
+        return None
+
+    def sees_velocity(self, state: State) -> bool:
+        """Return whether the force depends on velocities, as drag does; a method is chosen by that."""
+        return False
+
+    def why_singular(self, state: State) -> str | None:
+        """Return why bodies may come where the force is not smooth, which fixed steps miss; or ``None``."""
+        return None
+
+    def uniform_acceleration(self, state: State) -> Vector2 | None:
+        """Return the acceleration [m/s^2] that the force gives to every body with Mass alike, if it does so.
+
+        Between impacts bodies then move in closed form, and compiled steps need not call the force.
+        """
+        return None
+
+    @property
+    def attractors(self) -> int:
+        """How many bodies attract each other by this force; 0 for one that is no attraction of pairs."""
+        return 0
+
+    def settings(self, state: State) -> bytes:
+        """Return the numbers, bit by bit, that the force has apart from the state of motion.
+
+        Where they change, the method that moves the bodies is chosen anew.
+        """
+        return b""
+
+    def couples(self, state: State) -> NDArray[np.int64] | None:
+        """Return the pairs of rows (n, 2) whose motions the force couples; ``None``: any with any."""
+        return None
+
+    def packed(self, state: State, layout: StateLayout) -> PackedForce | None:
+        """Return the force as compiled integrators call it, with the numbers of the scene as they are now.
+
+        A row whose ``layout.place`` is -1 takes no part; there is none where :meth:`couples` is ``None``.
+        ``None`` where there is no such kernel: the method at ``Stage.FORCE`` is called instead, from Python.
+        """
+        return None
+
+    @classmethod
+    def marked(cls) -> dict[Stage, str]:
+        """Return the stages of the system; a force that is packed is added by its kernel."""
+        found = super().marked()
+        if cls.packed is not ForceSystem.packed:
+            found.setdefault(Stage.FORCE, "add_packed")
+        return found
+
+    @classmethod
+    def packs(cls) -> bool:
+        """Whether :meth:`packed` speaks for this class's force, and not for one that it overrides."""
+        method = cls.marked()[Stage.FORCE]
+        for base in cls.__mro__:
+            if base is ForceSystem:
+                return False
+            if "packed" in vars(base) or method in vars(base):
+                return "packed" in vars(base)
+        return False
+
+    _packed_for: tuple[str, int] = ("", -1)
+    _packed: PackedForce
+    _calls: NDArray[np.int64]
+
+    def add_packed(self, state: State, h: float) -> None:
+        """Add the packed force at the present state; the numbers that it reads are packed once a step."""
+        moment = state.context, state.generation
+        if self._packed_for != moment:
+            force = self.packed(state, StateLayout.of_rows(len(state.entity_index)))
+            assert force is not None
+            state.compile((force.kernel, add_forces))
+            self._packed, self._calls, self._packed_for = force, np.array([force.call]), moment
+        bodies = state.bodies
+        add_forces(bodies.q, bodies.v, bodies.pull, self._calls)
