@@ -190,7 +190,8 @@ class World(State):
         where it stood before that step.
         """
         try:
-            self.steps += steps - self._advance(h, parts)
+            made = self._advance(h, parts)
+            self.steps += steps - made
             return steps
         except Diverged:
             if steps == 1:

@@ -522,7 +522,7 @@ def many(world: World) -> None:
         (one_ball, "exact", {}, "exact", "asked for"),
         (one_ball, "step", {}, "step", "asked for"),
         (held, "auto", {}, "step", "a body is held"),
-        (turning, "exact", {}, "step", "exact was asked for, and crate is a box that may turn"),
+        (turning, "exact", {}, "step", "exact was asked for, and crate is a box that may turn (Mass.fixed_rotation would keep it as it is)"),
         (dull, "auto", {}, "step", "some pairs do not bounce"),
         (dull, "exact", {}, "exact", "asked for"),
         (proximity_count, "auto", {}, "step", "everything rests"),
@@ -550,7 +550,7 @@ def test_a_box_set_free_to_turn_is_noticed() -> None:
     assert world.plan.collisions == "exact"
     world.component(crate, Mass).fixed_rotation = False
     world.run(seconds=0.1)
-    assert world.plan.collision_reason == "exact was asked for, and crate is a box that may turn"
+    assert world.plan.collision_reason == "exact was asked for, and crate is a box that may turn (Mass.fixed_rotation would keep it as it is)"
 
 
 def test_a_method_asked_for_by_name_comes_first() -> None:

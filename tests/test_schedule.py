@@ -123,7 +123,7 @@ def test_an_empty_world_runs_nothing_and_says_why() -> None:
     world = World(*standard_systems())
     assert running(world) == []
     reasons = left_out(world)
-    assert reasons["Bodies"] == "nothing moves"
+    assert reasons["AccelerateSystem"] == "nothing moves"
     assert reasons["GravitySystem"] == "nothing that moves has Mass"
     assert reasons["SpringSystem"] == "no Spring in the scene"
     assert reasons["IntegrateSystem"] == "no Transform and Velocity in the scene"
@@ -134,27 +134,27 @@ def test_an_empty_world_runs_nothing_and_says_why() -> None:
 def test_one_falling_ball_needs_no_contacts() -> None:
     world = World(*standard_systems())
     world.spawn(Transform(), Velocity(), Mass(), Shape.circle(1))
-    assert running(world) == ["Bodies", "GravitySystem", "IntegrateSystem"]
+    assert running(world) == ["AccelerateSystem", "GravitySystem", "IntegrateSystem"]
     assert left_out(world)["ContactSystem"] == "only one Shape in the scene, and no bounds"
 
 
 @pytest.mark.parametrize(
     ("physics", "reason"),
     [
-        (PhysicsConfig(gravity_mode="none"), 'gravity_mode is "none"'),
-        (PhysicsConfig(gravity=(0, 0)), "gravity is [0, 0]"),  # type: ignore[arg-type]
+        (PhysicsConfig(gravity_mode="none"), "gravity is switched off"),
+        (PhysicsConfig(gravity=(0, 0)), "gravity is zero"),  # type: ignore[arg-type]
         (PhysicsConfig(gravity_mode="planet"), "fewer than two bodies attract each other"),
     ],
 )
 def test_gravity_is_left_out_by_the_physics(physics: PhysicsConfig, reason: str) -> None:
     world = World(GravitySystem())
     world.spawn(Transform(), Velocity(), Mass())
-    assert running(world) == ["Bodies", "GravitySystem"]
+    assert running(world) == ["AccelerateSystem", "GravitySystem"]
     world.physics = physics
     assert left_out(world) == {"GravitySystem": reason}
     assert not world.has_forces
     world.physics = PhysicsConfig()
-    assert running(world) == ["Bodies", "GravitySystem"]
+    assert running(world) == ["AccelerateSystem", "GravitySystem"]
 
 
 def test_a_spring_brings_its_system_and_the_last_takes_it_away() -> None:
@@ -211,7 +211,7 @@ def test_timings_count_calls() -> None:
     world.run(steps=3)
     timings = world.schedule.timings
     assert {name: timing.calls for name, timing in timings.items()} == {
-        "Bodies": 3 * (4 * 3 + 1),  # clear, two half kicks, and a check at the end of each step
+        "AccelerateSystem": 3 * 4 * 3,  # clear and two half kicks
         "GravitySystem": 3 * 4,
         "IntegrateSystem": 3 * 4 * 2,
         "Onlooker": 3 * 4 * 2,
@@ -260,7 +260,7 @@ def test_mistakes_in_a_system_are_told_when_the_world_is_made() -> None:
     with pytest.raises(TypeError, match=r"Doubled: one and two are both at Stage\.FORCE"):
         World(Doubled())
     with pytest.raises(
-        TypeError, match=r"Powerless is a ForceSystem and has no method marked @at\(Stage\.FORCE\)"
+        TypeError, match=r"Powerless is a ForceSystem and packs no force and has no method marked @at\(Stage\.FORCE\)"
     ):
         World(Powerless())
     with pytest.raises(ValueError, match="GravitySystem is in the schedule twice"):

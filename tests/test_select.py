@@ -107,7 +107,7 @@ def test_what_was_asked_for_and_cannot_be_is_refused_in_words() -> None:
     assert touching.plan.refused == touching.plan.reason
     assert "rk4 was asked for" in touching.plan.reason
     planets = world_of(ball(0), ball(1), integrator="exact", gravity_mode="planet")
-    assert "planets attract each other" in planets.plan.refused
+    assert "bodies attract each other" in planets.plan.refused
 
 
 def test_every_name_of_the_contract_is_a_method() -> None:
@@ -140,7 +140,7 @@ def test_auto_keeps_to_one_evaluation_where_a_force_is_written_in_python() -> No
     world = World(Wind(), IntegrateSystem())
     world.spawn(Transform(), Velocity(), Mass())
     world.step()
-    assert world.plan.reason == "the force of Wind is written in Python"
+    assert world.plan.reason == "the force of Wind has no compiled kernel"
 
 
 def test_what_a_force_raises_reaches_the_caller() -> None:

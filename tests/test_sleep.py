@@ -167,7 +167,7 @@ def test_nobody_sleeps_on_whom_a_spring_or_drag_acts(part: Spring | Drag) -> Non
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ({"sleeping": False}, "sleeping is false"),
+        ({"sleeping": False}, "sleeping is switched off"),
         ({"physics": PhysicsConfig(gravity_mode="planet")}, "planets attract each other"),
     ],
 )

@@ -333,6 +333,7 @@ def test_configuration_is_replaced_at_any_time() -> None:
     assert world.component(ball, Velocity).linear.y == pytest.approx(-0.981)
     world.physics = PhysicsConfig(gravity=Vector2(10, 0))
     world.simulation = SimulationConfig(dt=0.1, substeps=1, integrator="symplectic_euler")
+    world.synchronise()
     assert world.plan.integrator.name == "symplectic_euler"
     world.step(0.1)
     assert world.component(ball, Velocity).linear.x == pytest.approx(1.0)

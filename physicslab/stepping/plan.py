@@ -169,7 +169,7 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
     if planets and attractors >= _CROWD and state.physics.softening > 0.0:
         return StepPlan(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
     if planets:
-        return StepPlan(DOP853, "attracting bodies may come close: the step follows them", 1, smooth=True)
+        return StepPlan(DOP853, f"{_why_singular(state, forces)}: the step follows them", 1, smooth=True)
     if _sees_velocity(state, forces):
         return StepPlan(DOP853, f"forces depend on velocities, and {why}", 1, smooth=True)
     singular = _why_singular(state, forces)

@@ -90,6 +90,10 @@ class GravitySystem(ForceSystem):
         """Uniform gravity couples nothing, that of planets every body with every other."""
         return np.zeros((0, 2), np.int64) if state.physics.gravity_mode == "linear" else None
 
+    def why_singular(self, state: State) -> str | None:
+        """Say that planets may come close, where they attract each other."""
+        return "planets may come close" if self.attractors > 1 else None
+
     @property
     def attractors(self) -> int:
         """How many bodies attract each other; none where gravity is uniform."""
