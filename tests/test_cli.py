@@ -299,7 +299,7 @@ def test_how_collisions_are_found_is_said_with_the_reason(
     assert report["collision_reason"] == "few bodies, which bounce"
     report = document(capsys, "run", "stack", "--steps", "1")
     assert (report["collision_method"], report["integrator"]) == ("step", "leapfrog")
-    assert report["collision_reason"].endswith("is a box that may turn")
+    assert "is a box that may turn" in report["collision_reason"]
     path = tmp_path / "exact.json"
     scene = {"format": "physicslab-scene/1", "simulation": {"collisions": "exact"}, "entities": []}
     path.write_text(json.dumps(scene))

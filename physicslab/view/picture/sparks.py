@@ -79,7 +79,7 @@ class Sparks:
     def _resolve_impacts(self, world: World, scale: float) -> None:
         contacts = world.contacts
         near = contacts.manifolds[: contacts.recorded]
-        impact_count = np.flatnonzero(near["struck"] > 0)
+        impact_count = np.flatnonzero(near["impact_count"] > 0)
         if not len(impact_count):
             return
         point = (2 * impact_count[:, None] + (0, 1)).ravel()
