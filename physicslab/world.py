@@ -51,6 +51,8 @@ class World(State):
         The method that moves the bodies, how collisions are found, and why.
     steppers : Steppers
         What can advance this world as it is now, the best first.
+    stepper : Stepper, optional
+        The one that made the last step.
 
     Notes
     -----
@@ -108,9 +110,10 @@ class World(State):
     def _advance(self, h: float, steps: int) -> int:
         """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many."""
         with self._undoing():
+            stepper = self._best(h)
             self.schedule.run(Stage.PREPARE, self, h)
             try:
-                made = self._best(h).advance(self, h, steps)
+                made = stepper.advance(self, h, steps)
             except NoClosedForm:  # a body was given another velocity, or another spring
                 self._choose()
                 made = self._best(h).advance(self, h, steps)

@@ -61,7 +61,7 @@ class Autosave:
         self._thread: threading.Thread | None = None
         self._outcome: list[OSError] = []
 
-    def add_constraints(self, world: World) -> None:
+    def finish(self, world: World) -> None:
         """Take the world as it is now for one that need not be saved: nothing was done to it yet."""
         self._saved = _state(world)
 

@@ -61,7 +61,7 @@ class Sandbox:
         self._systems = InputSystem(window, self.toolbar), RenderSystem(window), hud
         self.show(world)
         if autosave is not None:
-            autosave.add_constraints(world)
+            autosave.finish(world)
 
     def show(self, world: World) -> None:
         """Show a world in place of the one that was shown, with nothing held and nothing begun."""

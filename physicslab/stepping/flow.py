@@ -23,6 +23,7 @@ class Flow:
     """Advances the smooth motion of a world by the flow of an integrator."""
 
     name: ClassVar[str] = "flow"
+    title: ClassVar[str] = "Steps as one compiled flow"
     leaps: ClassVar[bool] = True
     leaves_forces: ClassVar[bool] = False
 
