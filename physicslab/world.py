@@ -56,7 +56,10 @@ class World(State):
     Notes
     -----
     Each world lives in an esper context of its own, so worlds never mix. A new world is esper's active one
-    until another is made or activated; every method enters its own context and leaves the one before.
+    until another is made or activated; every method enters its own context and leaves the one before. That
+    context is one for the whole process: one thread at a time can work with worlds. Where another does
+    meanwhile, a ``RuntimeError`` says so before anything is touched. Worlds that are to run at the same time
+    need a process each (``concurrent.futures.ProcessPoolExecutor``).
 
     Examples
     --------

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pygame
 import pytest
+from attraction import attraction
 from both_tiers import compared, name_of, same_bits
 from desk import bits
 
@@ -28,7 +29,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, read_scene, write_scene
 from physicslab.kernels import KERNELS, ask_before_compiling, compile_kernels, interpreter, motion, raster
 from physicslab.kernels.events.events import run_events
-from physicslab.kernels.forces import drag, gravity, springs
+from physicslab.kernels.forces import gravity
 from physicslab.kernels.forces.pairwise import attract_pairwise
 from physicslab.kernels.forces.tree_pull import LARGEST_ERROR, attract_by_tree
 from physicslab.kernels.interpreter import interpreted, stand_in, twin_of
@@ -147,14 +148,7 @@ def forces_by_hand() -> None:
     random, n = np.random.default_rng(2), 4
     vectors = [random.normal(size=(n, 2)) for _ in range(5)]
     numbers = [random.uniform(0.5, 2.0, n) for _ in range(4)]
-    rows, heads, tails = np.arange(n), np.array((1, 2, 3, 0)), np.array((2, 0, 1, 3))
-    drag.drag_forces(vectors[0], vectors[1], rows, numbers[0], numbers[1])
     gravity.uniform_gravity(vectors[0], numbers[0], numbers[1], 0.5, -9.81)
-    gravity.planet_gravity(vectors[0], vectors[1], numbers[0], rows, 1.0, 0.1, True)
-    springs.spring_forces(
-        vectors[0], numbers[0], vectors[1], numbers[1], vectors[2], numbers[2], rows, heads, tails,
-        vectors[3], vectors[4], numbers[3], numbers[2], numbers[1],
-    )  # fmt: skip
 
 
 def drawn() -> None:
@@ -322,11 +316,11 @@ def test_attraction_of_many_differs_by_rounding_alone(plummer: bool) -> None:
     position, mass = random.normal(size=(n, 2)), random.uniform(0.5, 2.0, n)
     rows, forces = np.arange(n), np.zeros((2, n, 2))
     laws = (1.0, 0.05, plummer)
-    compile_kernels((gravity.planet_gravity, gravity.planet_potential))
-    gravity.planet_gravity(forces[0], position, mass, rows, *laws)
+    compile_kernels((gravity.planet_potential,))
+    forces[0] = attraction(position, mass, *laws)
     compiled = gravity.planet_potential(position, mass, rows, *laws)
     with interpreted():
-        gravity.planet_gravity(forces[1], position, mass, rows, *laws)
+        forces[1] = attraction(position, mass, *laws)
         python = gravity.planet_potential(position, mass, rows, *laws)
     assert not np.array_equal(forces[0], np.zeros((n, 2)))
     assert np.abs(forces[0] - forces[1]).max() <= LOOSE * np.abs(forces[0]).max()

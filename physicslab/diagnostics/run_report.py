@@ -11,7 +11,7 @@ from typing import Any
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import Drift, Energy, measure_momentum, summation
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
-from physicslab.files.writer import unique_name
+from physicslab.ecs.text import unique_name
 from physicslab.world import World
 
 __all__ = ["RunRecord", "body_names", "find_not_finite", "run_report", "run_summary"]
