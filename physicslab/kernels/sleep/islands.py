@@ -134,13 +134,13 @@ def find_touched(
         manifold = manifolds[p]
         a, b = manifold.a, manifold.b
         if asleep[a] or asleep[b]:
-            sleeper, other = (a, b) if asleep[a] else (b, a)
+            sleeping, other = (a, b) if asleep[a] else (b, a)
             moves = linear[other, 0] != 0.0 or linear[other, 1] != 0.0 or angular[other] != 0.0
             if inverse_mass[other] == 0.0 and not moves:
                 for j in range(2 * p, 2 * p + manifold.count):
                     points[j].normal_mass = points[j].tangent_mass = 0.0  # and not infinite
                 continue
-            touched[sleeper] = True
+            touched[sleeping] = True
             found += 1
         touching[kept] = p
         kept += 1

@@ -38,7 +38,7 @@ __all__ = [
 
 
 class Wide:
-    """Eight float64 values. A plain number beside one stands for eight that are alike."""
+    """Eight float64 values. A plain number beside one is used eight times."""
 
     if TYPE_CHECKING:
 
