@@ -387,7 +387,7 @@ def another(name: str, module: str) -> type[Any]:
 def test_a_name_is_not_taken_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("physicslab.ecs.component._local", False)  # as outside of tests
     line = "component theirs.Mass: physicslab.components.mass.Mass has this name already, and "
-    with pytest.raises(TypeError, match=f"^{line}scene files go by it; choose another$"):
+    with pytest.raises(TypeError, match=f"^{line}scene files use it; choose another$"):
         component(another("Mass", "theirs"))
     assert COMPONENTS["Mass"] is Mass
     again = [component(another("Ballast", "notebook")) for _ in range(2)]

@@ -39,7 +39,7 @@ def test_the_method_goes_by_the_stiffness_and_the_reason_says_so(stiffness: floa
     world.synchronise()
     assert world.plan.split_forces is not None
     assert world.plan.split_forces is method
-    assert "between contacts what springs or drag act on goes by" in world.plan.reason
+    assert "between contacts bodies with springs or drag move by" in world.plan.reason
     assert ("too fast to be followed" in world.plan.reason) == (method is IMPLICIT_MIDPOINT)
 
 
