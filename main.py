@@ -9,7 +9,27 @@
 
 import sys
 
-from physicslab.cli import main
+REMEDY = "'uv run main.py' fetches what is needed, and so does 'python -m pip install .' once"
+USAGE = 2
+
+
+def run() -> int:
+    """Run the program and return the exit status; where a package is missing, say in one line what to do."""
+    if sys.version_info < (3, 12):  # noqa: UP036 - where it is started by hand nothing has looked
+        found = ".".join(map(str, sys.version_info[:2]))
+        print(f"physicslab: needs Python 3.12 or later, and this is {found}: {REMEDY}", file=sys.stderr)
+        return USAGE
+    try:
+        from physicslab.cli import main
+
+        return main()
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package in ("", "physicslab"):
+            raise
+        print(f"physicslab: the package {package} is not installed: {REMEDY}", file=sys.stderr)
+        return USAGE
+
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run())

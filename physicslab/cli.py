@@ -11,11 +11,15 @@ from typing import NoReturn
 
 from physicslab.commands import COMMANDS, CommandError, command
 from physicslab.commands.command_error import FAILED, USAGE
-from physicslab.files.checks import SceneError, printable
+from physicslab.ecs.fields import InvalidValue
+from physicslab.ecs.text import printable, shortened
+from physicslab.files.checks import SceneError
 from physicslab.scenes import SCENES
 
 __all__ = ["main"]
 
+_LONGEST_LINE = 4_000
+"""Characters of what is said on stderr: names of files and values come from outside."""
 _INTERRUPTED = 130
 _PIPE_CLOSED = 141
 """What a shell reports of a program that a signal ended: 128 and the signal's number."""
@@ -32,12 +36,14 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _WindowParser(_Parser):
-    """Says what commands there are, where help is asked for: a window does not wait for them."""
+    """Says what commands there are, a line each, where help is asked for: a window does not wait for them."""
 
     def format_help(self) -> str:
-        lines = (f"{name} - {(command(name).__doc__ or '').splitlines()[0]}" for name in COMMANDS)
-        self.epilog = "commands: " + "; ".join(lines)
-        return super().format_help()
+        self.usage = "physicslab [SCENE] | physicslab COMMAND ... (physicslab COMMAND --help says more)"
+        width = max(map(len, COMMANDS))
+        summaries = ((command(name).__doc__ or "").splitlines()[0] for name in COMMANDS)
+        lines = (f"  {name:<{width}}  {said}" for name, said in zip(COMMANDS, summaries, strict=True))
+        return super().format_help() + "\n".join(["\ncommands:", *lines, ""])
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -63,7 +69,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return done.code if isinstance(done.code, int) else 0
     except CommandError as error:
         return _complain(str(error), error.status)
-    except SceneError as error:
+    except (SceneError, InvalidValue) as error:
         return _complain(str(error), USAGE)
     except KeyboardInterrupt:
         return _complain("interrupted", _INTERRUPTED)
@@ -95,13 +101,16 @@ def _open(arguments: list[str]) -> int:
 
         load_scene(scene)  # a bad file is refused before a window flickers up
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
-    from physicslab.desktop.app import open_window  # no command without a window imports pygame
+    from physicslab.desktop.app import NoScreen, open_window  # no command without a window imports pygame
 
-    return open_window(scene)
+    try:
+        return open_window(scene)
+    except NoScreen as error:
+        raise CommandError(str(error), USAGE) from error
 
 
 def _complain(message: str, status: int) -> int:
-    print(f"physicslab: {printable(message)}", file=sys.stderr)
+    print(f"physicslab: {shortened(printable(message), _LONGEST_LINE)}", file=sys.stderr)
     return status
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
 
 import numpy as np
 
@@ -51,11 +50,16 @@ class World(State):
         The method that moves the bodies, how collisions are found, and why.
     steppers : Steppers
         What can advance this world as it is now, the best first.
+    stepper : Stepper, optional
+        The one that made the last step.
 
     Notes
     -----
     Each world lives in an esper context of its own, so worlds never mix. A new world is esper's active one
-    until another is made or activated; every method enters its own context and leaves the one before.
+    until another is made or activated; every method enters its own context and leaves the one before. That
+    context is one for the whole process: one thread at a time can work with worlds. Where another does
+    meanwhile, a ``RuntimeError`` says so before anything is touched. Worlds that are to run at the same time
+    need a process each (``concurrent.futures.ProcessPoolExecutor``).
 
     Examples
     --------
@@ -103,8 +107,15 @@ class World(State):
         self.time += h
 
     def _advance(self, h: float, steps: int) -> int:
-        """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many."""
-        with self._undoing():
+        """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many.
+
+        Where that fails or is broken off, the world goes back to before the step.
+        """
+        if self._stepping:
+            raise RuntimeError("a system cannot step the world that is calling it")
+        self.checkpoint.take(motion_of(self), self.counts)
+        self._stepping = True
+        try:
             self.schedule.run(Stage.PREPARE, self, h)
             try:
                 made = self._best(h).advance(self, h, steps)
@@ -112,6 +123,11 @@ class World(State):
                 self._choose()
                 made = self._best(h).advance(self, h, steps)
             self.schedule.run(Stage.FINISH, self, h * steps)
+        except BaseException:
+            self._go_back()
+            raise
+        finally:
+            self._stepping = False
         self.steps += made.steps
         self.step_divisions = made.divisions
         return made.steps
@@ -122,24 +138,13 @@ class World(State):
         self.compile(self.stepper.kernels)
         return self.stepper
 
-    @contextmanager
-    def _undoing(self) -> Iterator[None]:
-        """Go back to before the step within a ``with`` block that fails or is broken off."""
-        if self._stepping:
-            raise RuntimeError("a system cannot step the world that is calling it")
-        self.checkpoint.take(motion_of(self), self.counts)
-        self._stepping = True
-        try:
-            yield
-        except BaseException:
-            self.checkpoint.restore(motion_of(self))
-            self.force_evaluations, self.collisions, self.contacts.logged = self.checkpoint.counts
-            self.contacts.clear()  # what a failed step left there may not be finite either
-            wake_all(self)  # and nothing is known to hold any body
-            self._stale = True  # steppers hold numbers of the step that failed
-            raise
-        finally:
-            self._stepping = False
+    def _go_back(self) -> None:
+        """Stand where the step that failed began."""
+        self.checkpoint.restore(motion_of(self))
+        self.force_evaluations, self.collisions, self.contacts.logged = self.checkpoint.counts
+        self.contacts.clear()  # what a failed step left there may not be finite either
+        wake_all(self)  # and nothing is known to hold any body
+        self._stale = True  # steppers hold numbers of the step that failed
 
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.

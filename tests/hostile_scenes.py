@@ -14,8 +14,8 @@ __all__ = ["EXTREME", "HOSTILE", "NAMES", "PLAIN", "scenes"]
 
 EXTREME = st.sampled_from(
     [
-        0, -0.0, 1, -1, 0.5, 5e-324, 1e-320, 1e-300, 1e-160, 1e-30, 1e-9, 1e9, 1e30, 1e155, 1e300, 1.7e308,
-        -1e308, 2**63, 2**63 - 1, -(2**63),
+        0, -0.0, 1, -1, 0.5, 5e-324, 1e-320, 1e-300, 1e-160, 1e-30, 1e-9, 1e9, 1e30, 1e149, 1e155, 1e299,
+        1e300, 1.7e308, -1e308, 2**63, 2**63 - 1, -(2**63),
     ]
 )  # fmt: skip
 """Numbers, most of which are legal and none of which anybody means."""

@@ -67,7 +67,7 @@ def test_only_what_changed_is_saved_and_not_too_often(tmp_path: Path) -> None:
     clock, world = Clock(), load_scene("stack")
     autosave = Autosave(tmp_path / "s.json", clock=clock)
     world.synchronise()
-    autosave.add_constraints(world)
+    autosave.finish(world)
     assert not saved(autosave, world, clock, 30.0), "nothing was done to it"
     world.step()
     assert saved(autosave, world, clock)

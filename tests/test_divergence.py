@@ -9,7 +9,7 @@ import pytest
 from desk import Desk, bits
 
 from physicslab.cli import main
-from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import box, circle
@@ -76,6 +76,26 @@ def test_a_method_that_finds_no_step_names_the_body() -> None:
     assert 1.0 < world.time < math.pi / 2.0**1.5, "the fall takes pi / sqrt(8 G M)"
     place = world.component(world.entity("comet"), Transform).position.x
     assert 0.0 < place < 0.2
+
+
+def test_a_method_beside_contacts_that_finds_no_step_names_the_body() -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="planet"))
+    for name, x in (("slow", -3.0), ("fast", 3.0)):
+        ball = circle(world, (x, 0), radius=0.5, name=name)
+        world.add(ball, Drag(0.1, 0.1))
+    world.component(world.entity("fast"), Velocity).linear = (1e200, 0.0)
+    with pytest.raises(Diverged, match=r"fast: Velocity changes too fast: .* \(after t = 0 s\)"):
+        world.run(steps=30)
+    assert finite(world) and world.time == 0.0
+
+
+def test_a_body_alone_is_named_and_not_the_row_of_the_world() -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="planet"))
+    world.simulation = SimulationConfig(integrator="dop853", collisions="exact")
+    circle(world, (-1.2, 1.5), radius=0.5, name="alone")
+    world.component(world.entity("alone"), Velocity).linear = (1e30, 0.0)
+    with pytest.raises(Diverged, match=r"^alone: Velocity changes too fast: "):
+        world.run(steps=30)
 
 
 def test_what_a_step_counts_is_taken_back() -> None:
@@ -156,7 +176,7 @@ def test_a_state_that_cannot_be_saved_is_told(
     def refuse(*arguments: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("physicslab.desktop.rescue.save_scene", refuse)
+    monkeypatch.setattr("physicslab.desktop.rescue.save_new_scene", refuse)
     assert "could not be saved: [Errno 28] No space left" in failed(capsys)
 
 

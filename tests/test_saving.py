@@ -11,7 +11,7 @@ from test_hud import frame, recorded
 from physicslab.components import Held, Velocity
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import circle
-from physicslab.view.controls.scene_files import new_scene_path, newest_scene
+from physicslab.view.controls.scene_files import new_scene_paths, newest_scene
 
 CTRL = pygame.KMOD_LCTRL
 
@@ -56,7 +56,7 @@ def test_nothing_is_ever_overwritten(folder: Path) -> None:
     [("", "scene-1.json"), ("a/b c", "a-b-c-1.json"), ("drop-7", "drop-1.json"), ("../..", "scene-1.json")],
 )
 def test_names_of_scenes_as_names_of_files(folder: Path, name: str, file: str) -> None:
-    assert new_scene_path(folder, name) == folder / file
+    assert next(new_scene_paths(folder, name)) == folder / file
 
 
 def test_the_newest_scene_is_opened_where_none_was_saved(folder: Path) -> None:
@@ -112,7 +112,7 @@ def test_a_folder_that_cannot_be_written_is_told(monkeypatch: pytest.MonkeyPatch
     def refuse(*arguments: object) -> None:
         raise PermissionError("nothing may be written here")
 
-    monkeypatch.setattr("physicslab.view.controls.file_actions.save_scene", refuse)
+    monkeypatch.setattr("physicslab.view.controls.file_actions.save_new_scene", refuse)
     desk = Desk(empty_world())
     desk.key("s", CTRL)
     desk.frames()

@@ -18,10 +18,10 @@ from hypothesis import strategies as st
 from physicslab import SceneError, World, load_scene, save_scene
 from physicslab.components import Held, Mass, Name, Shape, Spring, Trail, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.text import unique_name
 from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
-from physicslab.files.writer import unique_name
 from physicslab.prefabs import box, circle, container, pendulum, pile, stack
 from physicslab.scenes import SCENES
 from physicslab.state.masses import Diverged

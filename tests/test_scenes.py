@@ -8,7 +8,7 @@ import pytest
 from physicslab import World, load_scene
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.diagnostics.energy import Drift, measure_energy, measure_momentum
-from physicslab.files.checks import printable
+from physicslab.ecs.text import printable
 from physicslab.scenes import SCENES
 
 

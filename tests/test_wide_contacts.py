@@ -1,5 +1,7 @@
 """Settled contacts in blocks: the same answer as one by one, no body twice in a block, woken by a blow."""
 
+from typing import cast
+
 import numpy as np
 import pytest
 from desk import bits
@@ -10,8 +12,8 @@ from physicslab.contacts.memory import export_contacts, restore_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import compile_kernels
-from physicslab.kernels.solver import stages
-from physicslab.kernels.solver.arguments import Acting, Inverse, Softness
+from physicslab.kernels.solver import entries
+from physicslab.kernels.solver.arguments import Motion, MotionTuple, Near, NearTuple
 from physicslab.kernels.wide import slots
 from physicslab.kernels.wide.layout import MASS_A, MASS_B, WIDE
 from physicslab.lab.worlds import floor, open_space, place
@@ -81,7 +83,7 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         for p in kind.pair[k * WIDE : (k + 1) * WIDE]
         if p >= 0
     ]
-    compile_kernels((stages.press,))
+    compile_kernels((entries.solve_stage,))
     h = 1.0 / 240.0
     ends = []
     for in_blocks in (True, False):
@@ -92,14 +94,16 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         if not in_blocks:
             counts[slots.WIDE_COUNT] = counts[slots.DISC_BLOCKS] = counts[slots.BOX_BLOCKS] = 0
         discs, boxes = ((kind.data.copy(), *kind.slots[1:]) for kind in blocks.kinds)
-        near = near_in(world)._replace(
+        near = Near(*near_in(world))._replace(
             counts=counts, points=contacts.points.copy(), touching=np.array(order, np.int64),
             discs=discs, boxes=boxes,
         )  # fmt: skip
-        motion = motion_of(world)._replace(linear=linear, angular=angular)
-        inverse = Inverse(bodies.inverse_mass, bodies.inverse_inertia)
-        softness = Softness(45.0, 2.0, 0.0005, 1.5)
-        stages.press(near, motion, inverse, Acting(bodies.force, bodies.torque, True), softness, h, h, 1)
+        motion = Motion(*motion_of(world))._replace(linear=linear, angular=angular)
+        inverse, acting = (bodies.inverse_mass, bodies.inverse_inertia), (bodies.force, bodies.torque, True)
+        entries.solve_stage(
+            cast(NearTuple, tuple(near)), cast(MotionTuple, tuple(motion)), inverse, acting,
+            (45.0, 2.0, 0.0005, 1.5), h, h, 1,
+        )  # fmt: skip
         ends.append((linear, angular))
     assert ends[0][0] == pytest.approx(ends[1][0], rel=1e-9, abs=1e-12)
     assert ends[0][1] == pytest.approx(ends[1][1], rel=1e-9, abs=1e-11)

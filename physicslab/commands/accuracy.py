@@ -9,6 +9,7 @@ from functools import partial
 
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
+from physicslab.ecs.text import printable
 from physicslab.files.scene import load_scene
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.accuracy.document import document
@@ -41,7 +42,7 @@ def execute(arguments: Namespace) -> int:
     jobs: list[tuple[float, Job[Study | SceneStudy]]] = [
         (1.0, study(problem, sparse=not arguments.names)) for problem in problems
     ]
-    jobs += [(1.0, study_scene(name, partial(load_scene, name))) for name in scenes]
+    jobs += [(1.0, study_scene(printable(name), partial(load_scene, name))) for name in scenes]
     studies: list[Study] = []
     scene_studies: list[SceneStudy] = []
     results: Iterator[Study | SceneStudy] = run.results(jobs)

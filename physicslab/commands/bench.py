@@ -6,10 +6,12 @@ import os
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
+from physicslab.ecs.text import printable
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT, SCENES, by_default, opened
 from physicslab.lab.bench.document import document
 from physicslab.lab.bench.engine import PEERS, missing_peers
@@ -88,7 +90,8 @@ def _opened(extras: list[str], name: str) -> BenchScene | None:
         extras.append(name)
         return None
     if name in BUILT_IN or os.path.exists(name):
-        return opened(name)
+        scene = opened(name)
+        return replace(scene, name=printable(scene.name), title=printable(scene.title))
     known = f"the groups are {', '.join(SCENES.families)}; built-in scenes and files are taken as well"
     raise unknown_name(name, "scene", [*SCENES.names, _UNUSED, _MEMORY, *BUILT_IN], known)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
-from physicslab.files.checks import printable
+from physicslab.ecs.text import printable
 from physicslab.kernels import cache_directory
 from physicslab.kernels.archive import ArchiveError, pack, unpack
 from physicslab.kernels.keys import platform_key

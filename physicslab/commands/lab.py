@@ -12,7 +12,7 @@ from physicslab.commands.output import Output
 from physicslab.commands.pictures import picture_directory
 from physicslab.commands.progress import Progress
 from physicslab.files.checks import shown, suggestion
-from physicslab.files.json_text import json_text
+from physicslab.files.json_text import json_bytes
 from physicslab.lab.case import Case, Catalogue, Job, run_jobs
 from physicslab.lab.table import table
 
@@ -116,4 +116,4 @@ class LabRun:
     def write(self, document: dict[str, object]) -> None:
         """Write the document, if ``--json`` was given."""
         if self._json is not None:
-            self._json.write(json_text(document).encode("utf-8"))
+            self._json.write(json_bytes(document))

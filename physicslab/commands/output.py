@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from typing import BinaryIO, TextIO
 
 from physicslab.commands.command_error import FAILED, CommandError
-from physicslab.files.checks import printable
-from physicslab.files.replace import check_writable, replace_file
+from physicslab.ecs.text import printable, shortened
+from physicslab.files.replace import check_writable, replace_file, replacing
 
 __all__ = ["Output"]
 
@@ -37,17 +37,24 @@ class Output:
     def __init__(self, option: str, path: str) -> None:
         self.path = path
         self.to_stdout = path == "-"
-        self._label = f"{option} {printable(path)}"
+        self._label = f"{option} {shortened(printable(path), 200)}"
         if self.to_stdout:
             return
+        if not path:
+            raise CommandError(f'{option} "": must be a path, or - for stdout')
         try:
             check_writable(path)
         except (OSError, ValueError) as error:  # ValueError: a null character in the name
             raise CommandError(f"{self._label}: cannot be written: {_reason(error)}") from error
 
     def is_same_as(self, path: str) -> bool:
-        """Whether this is the same file as ``path``."""
-        return not self.to_stdout and os.path.realpath(self.path) == os.path.realpath(path)
+        """Whether this is the same file as ``path``, under whatever name; ``-`` is stdout."""
+        if os.path.realpath(self.path) == os.path.realpath(path):
+            return True
+        own, other, nowhere = map(_identity, (self.path, path, os.devnull))
+        if own is None or other is None or not os.path.samestat(own, other):
+            return False
+        return nowhere is None or not os.path.samestat(own, nowhere)
 
     def write(self, content: bytes) -> None:
         """Write all of a document: a file is replaced whole, or left as it was.
@@ -71,7 +78,11 @@ class Output:
 
     @contextmanager
     def stream(self) -> Iterator[TextIO]:
-        """Open for text that is written bit by bit; what was written stays, however the run ends."""
+        """Open for text that is written bit by bit; what was written stays, however the run ends.
+
+        A file takes the place of an older one at the end. Where writing fails, or the process is killed, the
+        older one is still there.
+        """
         if self.to_stdout:
             text = io.TextIOWrapper(_stdout(), encoding="utf-8", newline="")
             try:
@@ -80,17 +91,29 @@ class Output:
             finally:
                 text.detach()
             return
+        ended: BaseException | None = None
         try:
-            file = open(self.path, "w", encoding="utf-8", newline="")  # noqa: SIM115
-        except OSError as error:
-            raise CommandError(f"{self._label}: cannot be written: {_reason(error)}") from error
-        try:
-            with file:
-                yield file
+            with replacing(self.path) as fresh, open(fresh, "w", encoding="utf-8", newline="") as file:
+                try:
+                    yield file
+                except OSError:
+                    raise
+                except BaseException as error:  # the run ended early: its rows are kept all the same
+                    ended = error
         except BrokenPipeError:
             raise
         except OSError as error:
             raise CommandError(f"{self._label}: cannot be written: {_reason(error)}", FAILED) from error
+        if ended is not None:
+            raise ended
+
+
+def _identity(path: str) -> os.stat_result | None:
+    """Return the device and the number of a file, which all its names share; ``None`` where it has none."""
+    try:
+        return os.fstat(sys.stdout.fileno()) if path == "-" else os.stat(path)
+    except (OSError, ValueError, AttributeError):  # not there; or stdout is no file, or closed
+        return None
 
 
 def _stdout() -> BinaryIO:

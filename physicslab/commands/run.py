@@ -17,15 +17,18 @@ from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.numbers import MOST_STEPS, count, duration, positive_count, positive_duration
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
+from physicslab.commands.step_watch import StepWatch
 from physicslab.desktop.rescue import save_last_good
 from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.overflow import find_overflow
 from physicslab.diagnostics.run_report import RunRecord, find_not_finite, run_report, run_summary
 from physicslab.diagnostics.trajectory import TrajectoryWriter
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import INTEGRATORS
+from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
-from physicslab.files.json_text import json_text
+from physicslab.files.json_text import json_bytes
 from physicslab.files.scene import SceneError, load_scene
 from physicslab.scenes import SCENES
 from physicslab.state.masses import Diverged
@@ -38,6 +41,8 @@ _SAMPLES = 500
 """How often a run without contacts is measured: what lies between is one compiled loop."""
 _LOOKS = 100
 """How often warnings are looked for in a run: with thousands of contacts that takes a third of a step."""
+_BUDGETED = 100_000
+"""Into how many parts, at most, a run with a budget is divided: after each, it can be stopped."""
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -51,6 +56,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--dt", metavar="S", type=positive_duration, help="length of a step, in place of the scene's")
     add("--substeps", metavar="N", type=positive_count, help="parts of a step, in place of the scene's")
     add("--integrator", metavar="NAME", help=f"one of {', '.join(INTEGRATORS)}")
+    budget = "stop after so many seconds of wall clock, compiling left out: exit 1, with what was reached"
+    add("--at-most", metavar="SECONDS", type=positive_duration, help=budget)
     add("--json", metavar="FILE", help="write energies, momenta, costs and the final state (- for stdout)")
     add(
         "--csv",
@@ -66,23 +73,28 @@ def execute(arguments: Namespace) -> int:
     world = load_scene(arguments.scene)
     _configure(world, arguments)
     name = world.name or Path(arguments.scene).stem
+    label = shortened(printable(name))
     with outputs["csv"].stream() if "csv" in outputs else nullcontext() as stream:
         trajectory = None if stream is None else TrajectoryWriter(stream)
         try:
-            record = _run(world, name, arguments, trajectory)
+            record, stopped = _run(world, name, arguments, trajectory)
         except Diverged as error:
-            raise CommandError(f"{name}: {error}; {_rescue(world, name, outputs)}", FAILED) from error
+            raise CommandError(f"{label}: {error}; {_rescue(world, name, outputs)}", FAILED) from error
     report = run_report(world, record)
     place = find_not_finite(report)
     if place is not None:
         where = f"{place} is not finite at t = {world.time:.9g} s: the run diverged"
-        raise CommandError(f"{name}: {where}; {_rescue(world, name, outputs)}", FAILED)
+        raise CommandError(f"{label}: {where}; {_rescue(world, name, outputs)}", FAILED)
+    if stopped:
+        report["stopped"] = stopped
     if "json" in outputs:
-        outputs["json"].write(json_text(report).encode("utf-8"))
+        outputs["json"].write(json_bytes(report))
     if "png" in outputs:
         outputs["png"].write(_picture(world))
     if not any(output.to_stdout for output in outputs.values()):
-        print(run_summary(report, world.title))
+        print(run_summary({**report, "scene": label}, world.title))
+    if stopped:
+        raise CommandError(f"{label}: {stopped}", FAILED)
     return 0
 
 
@@ -133,39 +145,99 @@ def _configure(world: World, arguments: Namespace) -> None:
         raise CommandError(f"--seconds {seconds:g}: must be at most {MOST_STEPS:g} steps of dt")
 
 
-def _run(world: World, name: str, arguments: Namespace, trajectory: TrajectoryWriter | None) -> RunRecord:
-    """Advance the world; between steps, outside the time that is counted, measure and record."""
-    record = RunRecord(name, Drift(world))
+def _run(
+    world: World, name: str, arguments: Namespace, trajectory: TrajectoryWriter | None
+) -> tuple[RunRecord, str]:
+    """Advance the world; between steps, outside the time that is counted, measure and record.
+
+    Returns
+    -------
+    record : RunRecord
+        What was gathered.
+    stopped : str
+        Where the run was stopped because its time was up; empty if it was not.
+    """
+    record, watch = RunRecord(name, Drift(world)), StepWatch(world)
+    _check_sums(world, record)
     seconds = _DEFAULT_S if arguments.seconds is None and arguments.steps is None else arguments.seconds
     length = arguments.steps * world.simulation.dt if seconds is None else seconds
-    start, progress = world.time, Progress(name, sys.stderr)
-    stride = 1 if trajectory is not None else max(1, round(length / world.simulation.dt) // _SAMPLES)
+    label = shortened(printable(name))
+    start, progress = world.time, Progress(label, sys.stderr)
+    clock = _Stopwatch(world)
+    whole = round(length / world.simulation.dt)
+    parts = _SAMPLES if arguments.at_most is None else _BUDGETED
+    stride = 1 if trajectory is not None else max(1, whole // parts)
     stepping = world.stepping(seconds=seconds, steps=arguments.steps, stride=stride)
-    look_every = max(1, round(length / world.simulation.dt) // (stride * _LOOKS))
-    samples = 0
+    measure_every = 1 if trajectory is not None else max(1, whole // (stride * _SAMPLES))
+    look_every = max(1, whole // (stride * _LOOKS))
+    samples, stopped = 0, ""
     try:
         while True:
             if trajectory is not None:
                 trajectory.write(world)
-            compiled, began = world.compile_s, time.perf_counter()
-            done = next(stepping, None)
-            record.wall_s += time.perf_counter() - began - (world.compile_s - compiled)
-            if samples % look_every == 0 or done is None:
+            before = clock.seconds
+            done = None if stopped else next(stepping, None)
+            taken = clock.seconds - before
+            record.wall_s += taken
+            ended = done is None
+            if ended or samples % measure_every == 0:
+                _measure(world, record)
+            if ended or samples % look_every == 0:
                 record.warnings.add(find_warnings(world))
-            samples += 1
             if done is None:
-                return record
+                record.warnings.add(watch.warnings)
+                return record, stopped
+            samples += 1
+            if (slow := watch.note(done - record.steps, taken)) and sys.stderr is not None:
+                progress.clear()
+                print(f"physicslab: {label}: {slow}", file=sys.stderr, flush=True)
             record.steps = done
-            _measure(world, record)
             progress.show((world.time - start) / length)
+            if arguments.at_most is not None and clock.seconds >= arguments.at_most:
+                stopped = _where_stopped(world, record, arguments.at_most, start + length, whole)
     finally:
         progress.clear()
+
+
+class _Stopwatch:
+    """The time since it was made, without that in which kernels were compiled or loaded.
+
+    Parameters
+    ----------
+    world : World
+        Which counts what compiling takes.
+    """
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._start = time.perf_counter() - world.compile_s
+
+    @property
+    def seconds(self) -> float:
+        """How long it has been [s]."""
+        return time.perf_counter() - self._world.compile_s - self._start
+
+
+def _where_stopped(world: World, record: RunRecord, at_most: float, end: float, whole: int) -> str:
+    """Return in words where a run was stopped; nothing where it was at its end."""
+    if world.time >= end:
+        return ""
+    steps = f"after {record.steps} of {whole} steps"
+    return f"stopped after {at_most:g} s of wall clock (--at-most) at t = {world.time:.9g} s, {steps}"
 
 
 def _measure(world: World, record: RunRecord) -> None:
     record.drift.sample(world)
     record.max_penetration = max(record.max_penetration, world.contacts.max_penetration)
     record.divided = max(record.divided, world.step_divisions)
+    _check_sums(world, record)
+
+
+def _check_sums(world: World, record: RunRecord) -> None:
+    """Stop a run whose energy or momentum is no longer finite, naming what and when."""
+    overflow = find_overflow(world, record.drift.latest)
+    if overflow is not None:
+        raise Diverged(f"{overflow} at t = {world.time:.9g} s")
 
 
 def _picture(world: World) -> bytes:

@@ -8,7 +8,7 @@ import esper
 
 from physicslab.commands.output import Output
 from physicslab.components import Transform
-from physicslab.files.json_text import json_text
+from physicslab.files.json_text import json_bytes
 from physicslab.scenes import SCENES, Scene
 
 __all__ = ["add_arguments", "execute"]
@@ -27,7 +27,7 @@ def execute(arguments: Namespace) -> int:
         for scene in SCENES.values()
     ]
     if output is not None:
-        output.write(json_text({"scenes": rows}).encode("utf-8"))
+        output.write(json_bytes({"scenes": rows}))
     if output is None or not output.to_stdout:
         width = max(len(name) for name in SCENES)
         for row in rows:

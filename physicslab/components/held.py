@@ -1,10 +1,16 @@
 """What a hand does to a body."""
 
 from physicslab.ecs.component import Component, Vector, component, field
+from physicslab.ecs.fields import LARGEST_LENGTH
 
 
 @component
 class Held(Component):
     """Marks a body that is held: infinitely heavy for contacts and forces until it is let go."""
 
-    grip: Vector = field(default=(0.0, 0.0), unit="m", meaning="where it is held, in the body's own frame")
+    grip: Vector = field(
+        default=(0.0, 0.0),
+        unit="m",
+        limit=LARGEST_LENGTH,
+        meaning="where it is held, in the body's own frame",
+    )

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from physicslab.files.checks import is_line
+from physicslab.ecs.text import has_width, is_line
 
 _LONGEST = 200
 """Characters of an id: it stands in reports, in labels and in messages, which are a line each."""
@@ -25,4 +25,6 @@ def why_no_id(value: object) -> str | None:
         return "a text on one line"
     if not value.strip():
         return "a text that is not empty"
+    if not has_width(value):
+        return "a text in which something can be seen"
     return None if len(value) <= _LONGEST else f"a text of at most {_LONGEST} characters"

@@ -1,11 +1,14 @@
 """Where a body is."""
 
 from physicslab.ecs.component import Component, Vector, component, field
+from physicslab.ecs.fields import FARTHEST
 
 
 @component
 class Transform(Component):
     """The pose of a body: where its centre of mass is and how far it has turned."""
 
-    position: Vector = field(default=(0.0, 0.0), unit="m", meaning="centre of mass; y points up")
+    position: Vector = field(
+        default=(0.0, 0.0), unit="m", limit=FARTHEST, meaning="centre of mass; y points up"
+    )
     angle: float = field(default=0.0, unit="rad", meaning="orientation, counter-clockwise")

@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from physicslab.components import Material, Shape, Transform, Velocity
-from physicslab.kernels.solver.arguments import Acting, Bounds, Inverse, Materials, Motion, Near, Sizes
+from physicslab.kernels.solver.arguments import (
+    ActingTuple,
+    BoundsTuple,
+    InverseTuple,
+    MaterialsTuple,
+    MotionTuple,
+    NearTuple,
+    SizesTuple,
+)  # fmt: skip
 from physicslab.state.state import State
 
 __all__ = [
@@ -14,45 +22,45 @@ __all__ = [
 ]  # fmt: skip
 
 
-def motion_of(state: State) -> Motion:
+def motion_of(state: State) -> MotionTuple:
     """Return positions, angles and velocities."""
     transform, velocity = state.table(Transform), state.table(Velocity)
-    return Motion(transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
+    return (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
 
 
-def sizes_of(state: State) -> Sizes:
+def sizes_of(state: State) -> SizesTuple:
     """Return kinds and sizes of shapes."""
     shape = state.table(Shape)
-    return Sizes(shape["kind"], shape["radius"], shape["width"], shape["height"])
+    return (shape["kind"], shape["radius"], shape["width"], shape["height"])
 
 
-def materials_of(state: State) -> Materials:
+def materials_of(state: State) -> MaterialsTuple:
     """Return restitutions and frictions."""
     material = state.table(Material)
-    return Materials(material["restitution"], material["friction"])
+    return (material["restitution"], material["friction"])
 
 
-def inverse_in(state: State) -> Inverse:
+def inverse_in(state: State) -> InverseTuple:
     """Return the inverse masses that are simulated: those of sleepers are zero."""
-    return Inverse(state.bodies.awake_inverse_mass, state.bodies.awake_inverse_inertia)
+    return (state.bodies.awake_inverse_mass, state.bodies.awake_inverse_inertia)
 
 
-def acting_in(state: State) -> Acting:
+def acting_in(state: State) -> ActingTuple:
     """Return the forces of this substep."""
-    return Acting(state.bodies.force, state.bodies.torque, state.has_forces)
+    return (state.bodies.force, state.bodies.torque, state.has_forces)
 
 
-def bounds_of(state: State) -> Bounds:
+def bounds_of(state: State) -> BoundsTuple:
     """Return the bounds of the world; all zero where there are none, which then have no pairs."""
     physics = state.physics
     walls = np.array(physics.bounds or (0.0, 0.0, 0.0, 0.0))
-    return Bounds(walls, physics.bounds_restitution, physics.bounds_friction)
+    return (walls, physics.bounds_restitution, physics.bounds_friction)
 
 
-def near_in(state: State) -> Near:
+def near_in(state: State) -> NearTuple:
     """Return the near pairs."""
     contacts = state.contacts
-    return Near(
+    return (
         contacts.counts, contacts.manifolds, contacts.points, contacts.scalar, contacts.touching,
         contacts.wide.discs.slots, contacts.wide.boxes.slots,
         contacts.proximity, contacts.activation_distance, state.entity_index.entities,

@@ -8,11 +8,11 @@ from importlib import import_module
 
 from physicslab.desktop.garbage import loading
 from physicslab.ecs.config import WindowConfig
-from physicslab.view.canvas.display import Display, wants_to_leave
+from physicslab.view.canvas.display import Display, NoScreen, wants_to_leave
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.panels.progress import PAUSE, draw_loading
 
-__all__ = ["FIRST_SCENE", "open_window"]
+__all__ = ["FIRST_SCENE", "NoScreen", "open_window"]
 
 FIRST_SCENE = "sandbox"
 """The scene that is opened where none is named."""
@@ -32,7 +32,7 @@ def open_window(scene: str | None) -> int:
     ------
     SceneError
         If there is no such scene or it is not allowed.
-    OSError
+    NoScreen
         If there is no screen to open a window on.
     """
     config = WindowConfig()

@@ -19,7 +19,7 @@ __all__ = ["Autosave"]
 
 
 class Autosave:
-    """Saves a world when something changed, at the most every ``period`` seconds.
+    """Saves a world when something changed, at most every ``period`` seconds.
 
     The columns are copied in one frame; turning them into text is spread over the frames that follow, a
     little in each; the disk is waited for in a thread. With 4,000 discs in contact that adds 5 ms to one
@@ -61,7 +61,7 @@ class Autosave:
         self._thread: threading.Thread | None = None
         self._outcome: list[OSError] = []
 
-    def add_constraints(self, world: World) -> None:
+    def finish(self, world: World) -> None:
         """Take the world as it is now for one that need not be saved: nothing was done to it yet."""
         self._saved = _state(world)
 
@@ -125,6 +125,27 @@ class Autosave:
         self.failure = failure
         if failure:
             self._saved = ()
+
+    def save(self, world: World, patience: float = 5.0) -> None:
+        """Save the world at once if it is not what was saved last, and save no more after that.
+
+        Parameters
+        ----------
+        world : World
+            What is saved; where that fails, ``failure`` says why, and the state saved before is left.
+        patience : float
+            How long a saving that is under way is waited for [s].
+        """
+        under_way = self._writing is not None
+        self.stop(patience)
+        if not under_way and _state(world) == self._saved and not self._outcome:
+            return
+        try:
+            replace_file(
+                self.path, b"".join(piece for piece in _text(WorldSnapshot(world)) if piece is not None)
+            )
+        except (OSError, SceneError, ValueError) as error:
+            self.failure = str(error)
 
     def stop(self, patience: float = 2.0) -> None:
         """Save no more, and wait for the disk so many seconds."""

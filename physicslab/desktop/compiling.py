@@ -7,7 +7,8 @@ from collections.abc import Hashable, Sequence
 from types import TracebackType
 from typing import Any
 
-from physicslab.kernels import KERNELS, ask_before_compiling, load
+from physicslab.desktop.small_scenes import LONGEST, SmallScenes
+from physicslab.kernels import KERNELS, ask_before_compiling, interpreter, load
 from physicslab.kernels.solver import fused_contact
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.view.canvas.display import Display, wants_to_leave
@@ -29,19 +30,25 @@ class Left(Exception):
 class Compiling:
     """Lets other processes compile kernels, in a ``with`` block of the window, which stays awake.
 
-    On the first launch they compile all, first those that the scene is about to call. Only these are waited
-    for; the rest comes while the scene runs. A wait follows once more where something new needs a kernel that
-    is not there yet.
+    On the first launch they compile all, first those that the scene is about to call. A small scene is
+    interpreted until these are there; in a large one they are waited for. The rest comes while it runs. A
+    wait follows once more where something new in it needs a kernel that is not there yet.
 
     Parameters
     ----------
     display : Display
         Where it is shown how far it is.
+
+    Attributes
+    ----------
+    scenes : SmallScenes
+        What says whether the scene that is shown may be interpreted.
     """
 
     def __init__(self, display: Display) -> None:
+        self.scenes = SmallScenes()
         self._display = display
-        self._warmup = None if is_warm() else Warmup()
+        self._warmup = None if is_warm() or interpreter.is_forced() else Warmup()
         self._progress = Progress(0, 1)
         self._frames = 0
         self._theme: Theme = DARK
@@ -50,8 +57,10 @@ class Compiling:
     def __enter__(self) -> Compiling:
         if self._warmup is not None:
             self._warmup.__enter__()
-            ask_before_compiling(self._wait)
-        else:
+            interpreter.prepare()
+            interpreter.limit(LONGEST, self._catch_up)
+            ask_before_compiling(self._ask)
+        elif not interpreter.is_forced():
             load(fused_contact.advance)  # 26 ms, for which no frame has room
         return self
 
@@ -59,6 +68,7 @@ class Compiling:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         ask_before_compiling(None)
+        interpreter.unlimited()
         if self._warmup is not None:
             self._warmup.__exit__(kind, error, trace)
 
@@ -66,6 +76,23 @@ class Compiling:
     def finished(self) -> bool:
         """Whether nothing is being compiled any more."""
         return self._warmup is None or self._warmup.finished
+
+    def _ask(self, missing: Sequence[Any]) -> Sequence[Any]:
+        """Return which of these kernels are interpreted for now, once the others are compiled."""
+        now = self.scenes.interpret(missing)
+        if now:
+            assert self._warmup is not None
+            self._warmup.hurry([name_of(jitted) for jitted in now])
+        else:
+            self._wait(missing)
+        return now
+
+    def _catch_up(self, slow: Any) -> None:
+        """Wait for what was interpreted until now, as a call of one kernel takes too long."""
+        waited = self.scenes.give_up()
+        self._wait(waited)
+        for jitted in (*waited, slow):
+            load(jitted)
 
     def _wait(self, missing: Sequence[Any]) -> None:
         """Keep the window awake until other processes have compiled these kernels, or cannot.
@@ -119,7 +146,14 @@ class Compiling:
             self._warmup.yield_to_others(True)
             share = self._progress.done / self._progress.total
             draw_corner(self._display.canvas, theme, share)
-        if self._display.left > _ROOM or self._frames % _AT_LEAST == 0:
+        if interpreter.is_forced():
+            return
+        pending = self.scenes.pending()
+        if self.scenes.notice(self._display.left):
+            self._catch_up(pending[0])
+        elif pending:  # a frame that interprets them takes longer than one that loads one
+            self._load_one(pending)
+        elif self._display.left > _ROOM or self._frames % _AT_LEAST == 0:
             self._load_one(KERNELS)
 
     def _load_one(self, kernels: Sequence[Any]) -> None:

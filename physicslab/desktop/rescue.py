@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
+import itertools
 from pathlib import Path
 
-from physicslab.files.scene import save_scene
+from physicslab.files.new_scene import file_stem, save_new_scene
 from physicslab.world import World
 
 __all__ = ["save_last_good"]
@@ -14,7 +14,8 @@ __all__ = ["save_last_good"]
 def save_last_good(world: World, name: str, directory: Path) -> Path:
     """Save a world that stands before a step that diverged, and return the path of the scene file.
 
-    It is ``<name>-before-divergence.json``, numbered where that is there already: nothing is overwritten.
+    It is ``<name>-before-divergence.json``, numbered where that is there already, with the name shortened
+    where it is long: nothing is overwritten, even by runs that diverge at the same time.
 
     Raises
     ------
@@ -23,10 +24,6 @@ def save_last_good(world: World, name: str, directory: Path) -> Path:
     OSError
         If the file cannot be written.
     """
-    stem = re.sub(r"[^\w.-]+", "-", name).strip("-.") or "scene"
-    path, count = directory / f"{stem}-before-divergence.json", 1
-    while path.exists() or path.is_symlink():
-        count += 1
-        path = directory / f"{stem}-before-divergence-{count}.json"
-    save_scene(world, path)
-    return path
+    stem = f"{file_stem(name)}-before-divergence"
+    numbered = (directory / f"{stem}-{number}.json" for number in itertools.count(2))
+    return save_new_scene(world, itertools.chain([directory / f"{stem}.json"], numbered))

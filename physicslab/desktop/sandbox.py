@@ -34,6 +34,8 @@ class Sandbox:
         Returns the time [s]; it limits how long the steps of a frame may take.
     autosave : Autosave, optional
         What keeps the state for the case that the program ends badly.
+    shown : callable, optional
+        Called with every world that is to be shown, before any system is installed in it.
 
     Attributes
     ----------
@@ -49,8 +51,10 @@ class Sandbox:
         window: Window,
         clock: Callable[[], float] = time.perf_counter,
         autosave: Autosave | None = None,
+        shown: Callable[[World], None] | None = None,
     ) -> None:
         self.window = window
+        self._shown = shown
         self._clock = clock
         self._autosave = autosave
         self._reported = False  # that the state cannot be kept
@@ -61,11 +65,13 @@ class Sandbox:
         self._systems = InputSystem(window, self.toolbar), RenderSystem(window), hud
         self.show(world)
         if autosave is not None:
-            autosave.add_constraints(world)
+            autosave.finish(world)
 
     def show(self, world: World) -> None:
         """Show a world in place of the one that was shown, with nothing held and nothing begun."""
         self.world = world
+        if self._shown is not None:
+            self._shown(world)
         world.install(*self._systems)
         window = self.window
         window.spring_tool.cancel()

@@ -9,19 +9,26 @@ from physicslab.desktop.compiling import Compiling, Left
 from physicslab.desktop.garbage import loading
 from physicslab.desktop.sandbox import Sandbox
 from physicslab.desktop.sessions import Session, session_folder
+from physicslab.desktop.termination import Termination
 from physicslab.ecs.config import WindowConfig
+from physicslab.ecs.text import printable, shortened
 from physicslab.files.scene import load_scene
 from physicslab.kernels import working_ns
-from physicslab.view.canvas.display import Display
+from physicslab.view.canvas.display import Display, ask_to_leave
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = ["run_window"]
 
+_LONGEST_TITLE = 200
+"""Characters of the window's title that come from the scene."""
+
 
 def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     """Show a scene until the window is closed; return the exit status.
+
+    Where a signal ends the program (a logout, ``kill``), the state is saved and offered at the next start.
 
     Raises
     ------
@@ -31,35 +38,48 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     world = load_scene(scene)
     display.title = _title(world)
     window = Window(display.canvas, config)
-    folder = session_folder()
-    abandoned = Session.abandoned(folder)
-    session: Session | None = None
-    autosave: Autosave | None = None
-    try:
-        session = Session.begin(folder)
-    except OSError as error:
-        words = f"The state cannot be kept for the case of a crash: {error}"
-        window.notify(words, 8.0, failed=True)
-    else:
-        autosave = Autosave(session.path)
+    session, abandoned = _begin_session(window)
+    autosave = None if session is None else Autosave(session.path)
     window.recovery = Recovery(abandoned, None if session is None else session.path)
+    sandbox: Sandbox | None = None
     try:
-        with Compiling(display) as compiling:
-            with loading():
-                # What is waited for a kernel is no time that steps took.
-                sandbox = Sandbox(world, window, lambda: 1e-9 * working_ns(), autosave)
-                sandbox.frame(0.0)
-            _loop(sandbox, display, compiling)
-    except Left:  # the window was closed while it waited for kernels
-        pass
+        with Termination(ask_to_leave) as termination:
+            try:
+                with Compiling(display) as compiling:
+                    with loading():
+                        # What is waited for a kernel is no time that steps took.
+                        sandbox = Sandbox(
+                            world, window, lambda: 1e-9 * working_ns(), autosave, compiling.scenes.follow
+                        )
+                        sandbox.frame(0.0)
+                    _loop(sandbox, display, compiling)
+            except Left:  # the window was closed while it waited for kernels
+                pass
+            if termination.signal and autosave is not None and sandbox is not None:
+                autosave.save(sandbox.world)
     finally:
         window.error_study.stop()
         window.recovery.leave()
-    # Only here, where the window was closed as it should be: an error leaves the state to the next start.
-    if autosave is not None and session is not None:
+    if session is not None and termination.signal:
+        session.release()
+    elif autosave is not None and session is not None:
+        # The user closed the window: only then, for an error or a signal leaves the state to the next start.
         autosave.stop()
         session.end()
-    return 0
+    return termination.status
+
+
+def _begin_session(window: Window) -> tuple[Session | None, list[Session]]:
+    """Begin a session and find those that were left; where that fails the window says so, and works."""
+    abandoned: list[Session] = []
+    try:
+        folder = session_folder()
+        abandoned = Session.abandoned(folder)
+        return Session.begin(folder), abandoned
+    except OSError as error:
+        words = f"The state cannot be kept for the case of a crash: {error}"
+        window.notify(words, 8.0, failed=True)
+        return None, abandoned
 
 
 def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
@@ -70,20 +90,23 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
     while not window.closing:
         sandbox.frame(elapsed)
         compiling.advance(window.theme)
+        window.pace.max_dt = compiling.scenes.made_up_for(window.config.max_dt)
         display.title = _title(sandbox.world)
         if window.wants_screenshot:
             window.wants_screenshot = False
-            window.notify(_keep_screenshot(display))
+            _keep_screenshot(display, window)
         elapsed = display.show()
 
 
 def _title(world: World) -> str:
-    return f"{world.title or world.name or 'A scene'} - PhysicsLab"
+    """Return what the window is called: a world made by a program may have a title of any length."""
+    return f"{shortened(printable(world.title or world.name or 'A scene'), _LONGEST_TITLE)} - PhysicsLab"
 
 
-def _keep_screenshot(display: Display) -> str:
-    """Save a picture of the window where the program was started, and return what to say of it."""
+def _keep_screenshot(display: Display, window: Window) -> None:
+    """Save a picture of the window where the program was started, and say what came of it."""
     try:
-        return f"Saved {display.save_screenshot(Path.cwd())}"
+        window.notify(f"Saved {printable(str(display.save_screenshot(Path.cwd())))}")
     except OSError as error:
-        return f"The screenshot could not be saved: {error.strerror or error}"
+        words = f"The screenshot could not be saved: {error.strerror or error}"
+        window.notify(words, 6.0, failed=True)

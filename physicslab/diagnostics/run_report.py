@@ -11,7 +11,7 @@ from typing import Any
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import Drift, Energy, measure_momentum, summation
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
-from physicslab.files.writer import unique_name
+from physicslab.ecs.text import unique_name
 from physicslab.world import World
 
 __all__ = ["RunRecord", "body_names", "find_not_finite", "run_report", "run_summary"]
@@ -60,7 +60,10 @@ def body_names(world: World) -> dict[int, str]:
 
 def run_report(world: World, record: RunRecord) -> dict[str, Any]:
     """Return the document of a run, as the contract of ``run --json`` has it; SI units."""
-    momentum = measure_momentum(world)
+    world.synchronise()
+    momentum, stepper = measure_momentum(world), world.steppers.main(world)
+    # What has run and is not needed any more has run: it is not among what was left out.
+    timings = {name: timing for name, timing in world.schedule.timings.items() if timing.calls}
     return {
         "scene": record.scene,
         "time": world.time,
@@ -76,11 +79,16 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "force_evaluations": world.force_evaluations,
         "wall_s": record.wall_s,
         "compile_s": world.compile_s,
+        "stepper": {"name": stepper.name, "reason": stepper.reason},
+        "steppers_left_out": [{"name": left.name, "reason": left.reason} for left in world.steppers.left_out],
         "systems": [
-            {"name": name, "calls": timing.calls, "ms": timing.ms}
-            for name, timing in world.schedule.timings.items()
+            {"name": name, "calls": timing.calls, "ms": timing.ms} for name, timing in timings.items()
         ],
-        "left_out": [{"name": left.name, "reason": left.reason} for left in world.schedule.left_out],
+        "left_out": [
+            {"name": left.name, "reason": left.reason}
+            for left in world.schedule.left_out
+            if left.name not in timings
+        ],
         "energy": _energy(record.drift.latest, record.drift),
         "momentum": list(momentum.linear),
         "angular_momentum": momentum.angular,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar
 
-from physicslab.ecs.fields import Field, InvalidValue
+from physicslab.ecs.fields import FARTHEST, Field, InvalidValue
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
@@ -96,14 +96,17 @@ class PhysicsConfig:
 
 
 def _box(owner: str, name: str, value: Any) -> tuple[float, ...]:
-    corner = Field(name, "vector", owner=owner)
+    corner = Field(name, "vector", limit=FARTHEST, owner=owner)
     try:
         xmin, ymin, xmax, ymax = value
         box = (*corner.check((xmin, ymin)), *corner.check((xmax, ymax)))
     except (TypeError, ValueError):
         box = ()
     if not box or not (box[0] < box[2] and box[1] < box[3]):
-        words = "null or four finite numbers [xmin, ymin, xmax, ymax] m with xmin < xmax and ymin < ymax"
+        words = (
+            "null or four finite numbers [xmin, ymin, xmax, ymax] m with xmin < xmax and ymin < ymax, "
+            f"at most {FARTHEST:g} each"
+        )
         raise InvalidValue(owner, name, value, words)
     return box
 

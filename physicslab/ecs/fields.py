@@ -12,12 +12,16 @@ import numpy as np
 
 from physicslab.ecs.vector import Vector2
 
-__all__ = ["REQUIRED", "Field", "InvalidValue", "Kind", "field"]
+__all__ = ["FARTHEST", "LARGEST_LENGTH", "REQUIRED", "Field", "InvalidValue", "Kind", "field"]
 
 Kind = Literal["number", "whole", "vector", "flag", "entity", "choice"]
 
 _LONGEST = 100
 """Characters of a value that a message shows."""
+FARTHEST = 1e300
+"""The largest coordinate [m]: the difference of two is finite, and the product of one with a usual number."""
+LARGEST_LENGTH = 1e150
+"""The largest extent, arm or length of a spring [m]: the squares of two can be added."""
 REQUIRED: Any = object()
 """The default of a field that has none."""
 
@@ -65,6 +69,8 @@ class Field:
         SI unit ("1" for a pure number) and one line on what the number is.
     minimum, maximum, above : float
         Inclusive bounds, and an exclusive lower one.
+    limit : float
+        How large a number, or each part of a vector, the engine can hold.
     choices : tuple of str
         The words that a choice field takes.
     derived : str
@@ -87,6 +93,7 @@ class Field:
     derived: str = ""
     fixed: bool = False
     owner: str = ""
+    limit: float = math.inf
 
     @property
     def allowed(self) -> str:
@@ -100,7 +107,8 @@ class Field:
             case "entity":
                 return "an entity or null"
             case "vector":
-                return f"two finite numbers [x, y]{unit}"
+                each = f", at most {self.limit:g} each" if self.limit < math.inf else ""
+                return f"two finite numbers [x, y]{unit}{each}"
         words = "a whole number" if self.kind == "whole" else "a finite number"
         if self.above > -math.inf:
             words += f" > {self.above:g}"
@@ -110,7 +118,8 @@ class Field:
             words += f" >= {self.minimum:g}"
         elif self.maximum < math.inf:
             words += f" <= {self.maximum:g}"
-        return words + unit + (" or null" if self.derived else "")
+        most = f", at most {self.limit:g}" if self.limit < math.inf else ""
+        return words + unit + most + (" or null" if self.derived else "")
 
     @property
     def lowest(self) -> float:
@@ -120,7 +129,7 @@ class Field:
     @property
     def highest(self) -> float:
         """The largest finite number in the field's range."""
-        return min(self.maximum, _LARGEST)
+        return min(self.maximum, self.limit, _LARGEST)
 
     def check(self, value: object) -> Any:
         """Return ``value`` as a column stores it, or raise :class:`InvalidValue`.
@@ -144,13 +153,16 @@ def field(
     choices: tuple[str, ...] = (),
     derived: str = "",
     fixed: bool = False,
+    limit: float = math.inf,
 ) -> Any:
     """Describe one field of a component; :class:`Field` says what the values mean.
 
     Name, kind and owner are filled in by :func:`physicslab.ecs.component.component`. Without ``default``
     the field is required. A ``derived`` field that is given as ``None`` is kept up to date by the world.
     """
-    return Field("", "number", default, unit, meaning, minimum, maximum, above, choices, derived, fixed)
+    return Field(
+        "", "number", default, unit, meaning, minimum, maximum, above, choices, derived, fixed, limit=limit
+    )
 
 
 _LARGEST = float(np.finfo(np.float64).max)
@@ -182,8 +194,9 @@ def _whole(field: Field, value: object) -> int | None:
 
 
 def _vector(field: Field, value: object) -> tuple[float, float] | None:
+    limit = field.highest  # which no number that is not finite is within
     if isinstance(value, Vector2):
-        return (value.x, value.y) if math.isfinite(value.x) and math.isfinite(value.y) else None
+        return (value.x, value.y) if abs(value.x) <= limit and abs(value.y) <= limit else None
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, tuple | list) or (
@@ -192,7 +205,7 @@ def _vector(field: Field, value: object) -> tuple[float, float] | None:
         if len(value) != 2:
             return None
         x, y = _finite(value[0]), _finite(value[1])
-        return (x, y) if x is not None and y is not None else None
+        return (x, y) if x is not None and y is not None and abs(x) <= limit and abs(y) <= limit else None
     return None
 
 
@@ -221,4 +234,4 @@ _CONVERSIONS: Mapping[Kind, Callable[[Field, object], Any]] = {
     "entity": _entity,
     "choice": _choice,
 }
-"""How each kind of field turns a value into what its column stores; ``None`` for a value it cannot hold."""
+"""How each kind of field turns a value into what its column stores; ``None`` for one that it cannot hold."""

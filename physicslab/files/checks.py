@@ -6,17 +6,26 @@ import difflib
 import itertools
 import json
 import math
-import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from physicslab.ecs.text import SHORT, has_width, is_line, printable, shortened
+
 __all__ = [
-    "JsonObject", "SceneError", "checked_keys", "checked_object", "checked_text", "is_line", "is_number",
-    "printable", "refusal", "shown", "suggestion",
+    "JsonObject",
+    "SceneError",
+    "checked_keys",
+    "checked_object",
+    "checked_text",
+    "checked_title",
+    "is_number",
+    "refusal",
+    "shown",
+    "suggestion",
 ]  # fmt: skip
 
-_LONGEST = 60
-_MOST_KNOWN = 2_000
+_SUGGESTED_FROM = 2_000
+"""Known words that a misspelt one is compared with."""
 _BREAKS = dict.fromkeys(map(ord, "\n\t"), " ")
 
 
@@ -60,39 +69,28 @@ def shown(value: object) -> str:
     >>> shown([1, None, "two\nlines"])
     '[1, null, "two\\nlines"]'
     """
-    if isinstance(value, str) and value.isalnum() and len(value) < _LONGEST:  # as most ids are, and soon told
+    if isinstance(value, str) and value.isalnum() and len(value) < SHORT:  # as most ids are, and soon told
         return f'"{value}"'
     try:
         text = json.dumps(_beginning(value), ensure_ascii=False, default=repr)
     except (ValueError, RecursionError):  # a whole number of thousands of digits, or lists without end
         text = f"<{type(value).__name__}>"
     text = printable(text)
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+    return shortened(text)
 
 
 def _beginning(value: object) -> object:
     """Return as much of a value as can be shown: a whole one may be as long as the file it stood in."""
     if isinstance(value, str):
-        return value[: _LONGEST + 1]
+        return value[: SHORT + 1]
     if isinstance(value, list | tuple):
-        return [_beginning(item) for item in value[:_LONGEST]]
+        return [_beginning(item) for item in value[:SHORT]]
     if isinstance(value, dict):
         return {
-            key[:_LONGEST] if isinstance(key, str) else key: _beginning(item)
-            for key, item in itertools.islice(value.items(), _LONGEST)
+            key[:SHORT] if isinstance(key, str) else key: _beginning(item)
+            for key, item in itertools.islice(value.items(), SHORT)
         }
     return value
-
-
-def printable(text: str) -> str:
-    r"""Return a text with everything that a terminal would not print written as an escape.
-
-    >>> print(printable("a\x1b[2Jb"))
-    a\x1b[2Jb
-    """
-    if text.isprintable():
-        return text
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
@@ -102,7 +100,7 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     '; did you mean "Velocity"?'
     """
     # Comparing takes time with the square of a word's length, and with the number of words.
-    likely = difflib.get_close_matches(word[:_LONGEST], list(itertools.islice(known, _MOST_KNOWN)), n=1)
+    likely = difflib.get_close_matches(word[:SHORT], list(itertools.islice(known, _SUGGESTED_FROM)), n=1)
     return f"; did you mean {shown(likely[0])}?" if likely else ""
 
 
@@ -119,7 +117,7 @@ def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequenc
     """Refuse the first key that is not ``known``; ``noun`` is what keys are called there."""
     for key, value in given.items():
         if key not in known:
-            plain = isinstance(key, str) and key.isidentifier() and len(key) <= _LONGEST
+            plain = isinstance(key, str) and key.isidentifier() and len(key) <= SHORT
             name = key if plain else shown(key)
             likely = suggestion(str(key), known)
             allowed = ", ".join(known) or "none"
@@ -128,22 +126,24 @@ def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequenc
             )
 
 
-def is_line(text: str) -> bool:
-    r"""Whether a text has neither half surrogate pairs nor control characters nor breaks of lines.
-
-    >>> is_line("caf\u00e9"), is_line("a\nb"), is_line("\u2028")
-    (True, False, False)
-    """
-    if text.isprintable():  # as nearly every text is, and soon told
-        return True
-    return not {unicodedata.category(c) for c in text} & {"Cc", "Cs", "Zl", "Zp"}
-
-
 def checked_text(value: object, where: str, *, lines: bool = False) -> str:
     """Return a text without half surrogate pairs or control characters (but new lines, if ``lines``)."""
     if isinstance(value, str) and is_line(value.translate(_BREAKS) if lines else value):
         return value
     raise refusal(where, value, "a text" if lines else "a text on one line")
+
+
+def checked_title(value: object, where: str, longest: int) -> str:
+    """Return a text on one line of at most ``longest`` characters: empty, or with something to be seen.
+
+    A text of joiners and marks of direction alone has no width, and a font refuses to draw it.
+    """
+    text = checked_text(value, where)
+    if len(text) > longest:
+        raise refusal(where, text, f"a text of at most {longest} characters")
+    if text and not has_width(text):
+        raise refusal(where, text, "a text in which something can be seen, or empty")
+    return text
 
 
 def is_number(value: object) -> bool:

@@ -1,11 +1,12 @@
 """The entities of a scene document, checked: their ids, their components and what refers to them.
 
 Nothing here lists the fields of a component: names, types and ranges come from ``Component.FIELDS``, so a
-component that someone adds is read, checked and refused like the others.
+new component is read, checked and refused like the others.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -105,7 +106,7 @@ def check_contacts(
 def check_rests(
     rows: object, entities: Sequence[Mapping[str, Any]], ids: Mapping[str, int], source: str
 ) -> list[list[Any]]:
-    """Return who sleeps, and how long and how slowly others have rested, with places, from 1, for ids."""
+    """Return which bodies sleep, and how long and how slowly others rest, with places, from 1, for ids."""
     if not isinstance(rows, list):
         raise refusal(f"{source}: rests", rows, "a list of lists")
     mapped: list[list[Any]] = []
@@ -174,10 +175,23 @@ def _check_together(components: Sequence[Component], entity: Mapping[str, Any], 
         if name in entity and Transform.__name__ not in entity:
             raise SceneError(f"{where}: {name} = {shown(entity[name])}: must have a Transform beside it")
     of: dict[type[Any], Any] = {type(component): component for component in components}
+    if Mass in of and Shape in of:
+        _check_inertia(of[Mass], of[Shape], where)
     fixed = Mass in of and of[Mass].fixed_rotation
     if fixed and Velocity in of and of[Velocity].angular != 0.0:
         angular = of[Velocity].angular
         raise refusal(f"{where}: Velocity.angular", angular, "0 rad/s where Mass.fixed_rotation is true")
+
+
+def _check_inertia(mass: Mass, shape: Shape, where: str) -> None:
+    """Refuse a body so large and heavy that its moment of inertia is not finite, by its largest size."""
+    if mass.is_given("inertia"):
+        return
+    sizes = {name: float(getattr(shape, name)) for name in shape.SIZES[shape.kind]}
+    largest = max(sizes, key=lambda name: sizes[name])
+    if not math.isfinite(mass.mass * sum(size * size for size in sizes.values())):
+        allowed = f"smaller: the moment of inertia is not finite with Mass.mass = {mass.mass:g} kg"
+        raise refusal(f"{where}: Shape.{largest}", sizes[largest], allowed)
 
 
 def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any]], where: str) -> None:

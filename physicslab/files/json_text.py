@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 
-__all__ = ["json_pieces", "json_text"]
+__all__ = ["json_bytes", "json_pieces", "json_text"]
 
 
 def json_text(document: Mapping[str, object]) -> str:
@@ -28,6 +28,25 @@ def json_text(document: Mapping[str, object]) -> str:
     }
     """
     return "".join(json_pieces(document))
+
+
+def json_bytes(document: Mapping[str, object]) -> bytes:
+    r"""Return a document as JSON in UTF-8, as it is written to a file.
+
+    A file name that is not UTF-8 has bytes that Python keeps as half surrogate pairs. UTF-8 has no such
+    letters, and JSON has an escape for them: nothing is lost.
+
+    Raises
+    ------
+    ValueError
+        If a number in it is not finite.
+
+    Examples
+    --------
+    >>> json_bytes({"scene": "caf\udce9"})
+    b'{\n  "scene": "caf\\udce9"\n}\n'
+    """
+    return json_text(document).encode("utf-8", "backslashreplace")
 
 
 def json_pieces(document: Mapping[str, object]) -> Iterator[str]:

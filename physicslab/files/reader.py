@@ -17,6 +17,7 @@ from physicslab.files.checks import (
     checked_keys,
     checked_object,
     checked_text,
+    checked_title,
     is_number,
     refusal,
     shown,
@@ -30,6 +31,11 @@ __all__ = ["FORMAT", "SceneDraft", "check_scene", "read_scene"]
 
 FORMAT = "physicslab-scene/1"
 """What the key ``format`` of a scene says."""
+
+LONGEST_NAME = 1_000
+"""Characters that the name of a scene may have."""
+LONGEST_TITLE = 200
+"""Characters that its title may have: it stands over the window, and on a line of the menu."""
 
 _KEYS = (
     "format", "name", "title", "description", "time", "physics", "simulation", "entities", "contacts",
@@ -130,8 +136,8 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
     ids = check_ids(scene["entities"], source)
     simulation = _config(SimulationConfig, scene.get("simulation", {}), source)
     return SceneDraft(
-        name=checked_text(scene.get("name", ""), f"{source}: name"),
-        title=checked_text(scene.get("title", ""), f"{source}: title"),
+        name=checked_title(scene.get("name", ""), f"{source}: name", LONGEST_NAME),
+        title=checked_title(scene.get("title", ""), f"{source}: title", LONGEST_TITLE),
         description=checked_text(scene.get("description", ""), f"{source}: description", lines=True),
         time=_time(scene.get("time", 0.0), f"{source}: time"),
         physics=_config(PhysicsConfig, scene.get("physics", {}), source),

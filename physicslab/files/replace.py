@@ -9,18 +9,37 @@ import secrets
 import stat
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["check_writable", "remove_leftovers", "replace_file"]
+__all__ = ["check_writable", "create_file", "remove_leftovers", "replace_file", "replacing"]
 
 _ENDING = ".physicslab-tmp"
 """How files end that are being written; one that is there for long was left by a process that was killed."""
 _ABANDONED = 3600.0
-"""Age [s] from which on such a file is nobody's any more."""
+"""Age [s] from which on such a file is taken for one that was left behind."""
 
 
 def replace_file(path: str | os.PathLike[str], content: bytes) -> None:
     """Write ``content`` to a file; if anything fails, the file stays as it was.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+
+    See Also
+    --------
+    replacing : How it is written.
+    """
+    with replacing(path) as fresh, open(fresh, "wb") as file:
+        file.write(content)
+
+
+@contextmanager
+def replacing(path: str | os.PathLike[str]) -> Iterator[str | os.PathLike[str]]:
+    """Give the path to open for writing a file whole; if the ``with`` block fails, the file stays as it was.
 
     The bytes go to a new file beside it and to the disk; then that takes the old one's place. Links are
     followed, and what is no ordinary file (a device, a pipe) is written to as it is. A process that is killed
@@ -34,19 +53,54 @@ def replace_file(path: str | os.PathLike[str], content: bytes) -> None:
     """
     check_writable(path)
     if os.path.exists(path) and not os.path.isfile(path):
-        Path(path).write_bytes(content)
+        yield path
         return
     target = Path(os.path.realpath(path))
-    fresh = target.with_name(f"{_beginning(target)}{secrets.token_hex(8)}{_ENDING}")
     remove_leftovers(target, _ABANDONED)
-    try:
+    with _beside(target) as fresh:
+        with open(fresh, "xb"):
+            pass
+        yield fresh
+        with open(fresh, "rb+") as written:
+            os.fsync(written.fileno())
+        if target.exists():
+            os.chmod(fresh, stat.S_IMODE(target.stat().st_mode))
+        os.replace(fresh, target)
+
+
+def create_file(path: Path, content: bytes) -> None:
+    """Write a new file whole, under a name that nothing has: of two that try at once, one succeeds.
+
+    Raises
+    ------
+    FileExistsError
+        If the name is taken, be it by a link that leads nowhere; what has it stays as it was.
+    OSError
+        If the file cannot be written.
+    """
+    if os.path.lexists(path):
+        raise FileExistsError(f"{path} exists")
+    with _beside(path) as fresh:
         with open(fresh, "xb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        if target.exists():
-            os.chmod(fresh, stat.S_IMODE(target.stat().st_mode))
-        os.replace(fresh, target)
+        try:
+            os.link(fresh, path)  # fails where the name is taken, which a renaming does not
+        except FileExistsError:
+            raise
+        except (OSError, NotImplementedError):  # a file system without hard links
+            with open(path, "xb"):
+                pass
+            os.replace(fresh, path)
+
+
+@contextmanager
+def _beside(target: Path) -> Iterator[Path]:
+    """Give the name of a new file beside another; what has it after the ``with`` block is removed."""
+    fresh = target.with_name(f"{_beginning(target)}{secrets.token_hex(8)}{_ENDING}")
+    try:
+        yield fresh
     finally:
         fresh.unlink(missing_ok=True)
 
@@ -69,10 +123,11 @@ def check_writable(path: str | os.PathLike[str]) -> None:
     """Raise the ``OSError`` that writing this file would, without touching it."""
     if os.path.isdir(path):
         raise IsADirectoryError(f"{path} is a directory")
-    if os.path.exists(path):  # asked of the path itself: /dev/stdout leads to a pipe, which has no other name
+    if os.path.exists(path):  # of the path itself: /dev/stdout leads to a pipe, which has no other name
         if not os.access(path, os.W_OK):
             raise PermissionError(f"{path} may not be written")
-        return
+        if not os.path.isfile(path):
+            return
     parent = Path(os.path.realpath(path)).parent
     if not parent.is_dir():
         raise FileNotFoundError(f"there is no directory {parent}")

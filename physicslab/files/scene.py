@@ -10,15 +10,16 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from physicslab.files.checks import JsonObject, SceneError, printable, suggestion
-from physicslab.files.json_text import json_text
+from physicslab.ecs.text import printable
+from physicslab.files.checks import JsonObject, SceneError, suggestion
+from physicslab.files.json_text import json_bytes
 from physicslab.files.reader import check_scene, read_scene
 from physicslab.files.replace import replace_file
 from physicslab.files.writer import write_scene
 from physicslab.scenes import SCENES
 from physicslab.world import World
 
-__all__ = ["SceneError", "load_scene", "read_scene", "save_scene", "write_scene"]
+__all__ = ["SceneError", "load_scene", "read_scene", "save_scene", "scene_bytes", "write_scene"]
 
 LARGEST_FILE = 100 * 2**20
 """Bytes that a scene file may have."""
@@ -71,17 +72,34 @@ def save_scene(world: World, path: str | os.PathLike[str]) -> None:
     OSError
         If the file cannot be written.
     """
-    source = printable(os.fspath(path))
+    replace_file(path, scene_bytes(world, os.fspath(path)))
+
+
+def scene_bytes(world: World, source: str) -> bytes:
+    """Return the content of a scene file, checked as it will be when it is read.
+
+    Parameters
+    ----------
+    world : World
+        What is written.
+    source : str
+        What messages call the scene: the path that it will have.
+
+    Raises
+    ------
+    SceneError
+        If the world holds what no scene may.
+    """
     document = write_scene(world)
-    check_scene(document, source)
-    replace_file(path, json_text(document).encode("utf-8"))
+    check_scene(document, printable(source))
+    return json_bytes(document)
 
 
 @contextmanager
 def _uncollected() -> Iterator[None]:
-    """Let nobody look for garbage meanwhile: of the millions of objects of a large scene, none is any.
+    """Collect no garbage in a ``with`` block: of the millions of objects of a large scene, none is any.
 
-    Looking takes half of the time that such a scene takes to load.
+    A search takes half of the time that such a scene takes to load.
     """
     enabled = gc.isenabled()
     gc.disable()
@@ -115,7 +133,7 @@ def _read_text(path: str | os.PathLike[str], source: str) -> str:
 
 def _read_bytes(path: str | os.PathLike[str], source: str) -> bytes:
     """Read a plain file, and never more of it than the limit: what is opened may grow, or have no end."""
-    # Without O_NONBLOCK, opening a pipe that nobody writes to would wait for ever.
+    # Without O_NONBLOCK, opening a pipe without a writer would wait for ever.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     if os.path.isdir(path):  # Windows would say "permission denied"
         raise SceneError(f"{source}: is a directory, not a scene file")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Generator, Iterable, Mapping
+from collections.abc import Generator, Iterable, Mapping
 from typing import Any
 
 from physicslab.contacts.memory import remembered
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.fields import REQUIRED, Field
+from physicslab.ecs.text import unique_name
 from physicslab.ecs.vector import Vector2
 from physicslab.files.checks import SceneError
 from physicslab.files.entities import UNSAVED
@@ -16,7 +17,7 @@ from physicslab.files.reader import FORMAT
 from physicslab.files.snapshot import WorldSnapshot
 from physicslab.world import World
 
-__all__ = ["scene_pieces", "unique_name", "write_scene"]
+__all__ = ["scene_pieces", "write_scene"]
 
 _FIRST = ("Transform", "Velocity", "Mass", "Shape", "Material", "Spring", "Trail")
 
@@ -88,19 +89,6 @@ def _solver(frozen: WorldSnapshot) -> dict[str, Any]:
         else {}
     )
     return span | ({"finer": contacts.substep_factor} if contacts.substep_factor != 1 else {})
-
-
-def unique_name(wanted: str, taken: Container[str]) -> str:
-    """Return ``wanted``, numbered if it is taken.
-
-    >>> unique_name("entity 3", ["entity 3", "floor"])
-    'entity 3 (2)'
-    """
-    name, count = wanted, 1
-    while name in taken:
-        count += 1
-        name = f"{wanted} ({count})"
-    return name
 
 
 def _saved(frozen: WorldSnapshot, entity: int) -> list[Component]:

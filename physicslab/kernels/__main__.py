@@ -10,6 +10,7 @@ import gc
 import sys
 
 from physicslab.kernels import KERNELS, compile_kernels
+from physicslab.kernels.interpreter import compile_all_the_same
 from physicslab.kernels.loading import prepare
 from physicslab.kernels.warm import Progress, Warmup, load_all
 
@@ -48,4 +49,5 @@ def _budget() -> int:
 
 
 if __name__ == "__main__":
+    compile_all_the_same()
     sys.exit({"worker": _work, "budget": _budget}.get(" ".join(sys.argv[1:]), _fill)())

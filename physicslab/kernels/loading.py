@@ -15,6 +15,7 @@ from numba.core import bytecode
 from numba.core.registry import cpu_target
 
 from physicslab.kernels import cache
+from physicslab.kernels.interpreter import is_forced, stand_in
 
 __all__ = [
     "ask_before_compiling", "at_first_call", "compile_kernels", "load", "prepare", "refuse_calls",
@@ -39,7 +40,7 @@ def ask_before_compiling(ask: _Ask | None) -> None:
     ----------
     ask : callable or None
         Called with kernels that are about to be called. When it returns they are compiled here, or loaded;
-        but not those that it returns, for which something else answers until they are loaded.
+        but not those that it returns: they are interpreted until they are loaded.
     """
     global _ask
     _ask = ask
@@ -78,22 +79,31 @@ def _waiting() -> Iterator[None]:
 
 
 def compile_kernels(kernels: Iterable[Any]) -> float:
-    """Compile the given kernels, or load them from the cache; return the seconds it took."""
+    """Compile the given kernels, or load them from the cache; return the seconds it took.
+
+    Those that are to be interpreted (:mod:`physicslab.kernels.interpreter`) are made ready for that.
+    """
     missing = [jitted for jitted in kernels if not jitted.compiled]
     if not missing:
         return 0.0
     before = _waited_ns
     with _waiting():
-        elsewhere = (_ask(missing) if _ask is not None else None) or ()
+        asked = None if _ask is None or is_forced() else _ask(missing)
+        waiting = tuple(asked or ())
         for jitted in missing:
-            if jitted not in elsewhere:
+            if jitted in waiting:
+                stand_in(jitted)
+            else:
                 load(jitted)
     return (_waited_ns - before) / 1e9
 
 
 def load(jitted: Any) -> None:
-    """Load one kernel from the cache, or compile it here and now."""
+    """Load one kernel from the cache, or compile it here and now, unless all are to be interpreted."""
     if jitted.compiled:
+        return
+    if is_forced():
+        stand_in(jitted)
         return
     with _waiting():
         separate_symbols()

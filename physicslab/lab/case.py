@@ -107,7 +107,7 @@ def run_jobs[Result](jobs: Iterable[tuple[float, Job[Result]]]) -> Iterator[floa
         How much of the whole each is, in any unit, and the job.
     """
     listed = list(jobs)
-    whole, done = sum(weight for weight, _ in listed), 0.0
+    whole, done = sum(weight for weight, _ in listed) or 1.0, 0.0  # a scene may have no bodies: a weight of 0
     for weight, job in listed:
         gc.collect()
         yield done / whole

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import itertools
 import weakref
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from typing import Any, Self
 
 import esper
@@ -15,6 +14,7 @@ from physicslab.components.name import why_no_id
 from physicslab.ecs.batch import Batch
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.context import Active, switch
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Table
 from physicslab.kernels import compile_kernels, seconds_waited
@@ -93,27 +93,30 @@ class State:
         self._names: set[str] = set()
         self._stale = True
         self.context = f"physicslab-{next(_numbers)}"
-        esper.switch_world(self.context)
+        self.activate()
         weakref.finalize(self, _forget, self.context)
 
     # ---- contexts ------------------------------------------------------------------------------------------
 
     def activate(self) -> None:
-        """Make this the world that plain esper calls speak of, until another is activated."""
-        esper.switch_world(self.context)
+        """Make this the world that plain esper calls speak of, until another is activated.
 
-    @contextmanager
-    def active(self) -> Iterator[Self]:
-        """Make this the world that plain esper calls speak of, within a ``with`` block."""
-        before = esper.current_world
-        if before != self.context:
-            esper.switch_world(self.context)
-        try:
-            yield self
-        finally:
-            if esper.current_world != before:
-                # The world that was active before may have been forgotten meanwhile.
-                esper.switch_world(before if before in esper.list_worlds() else "default")
+        Raises
+        ------
+        RuntimeError
+            If a world is active in another thread.
+        """
+        switch(self.context)
+
+    def active(self) -> Active[Self]:
+        """Make this the world that plain esper calls speak of, within a ``with`` block.
+
+        Raises
+        ------
+        RuntimeError
+            At the start of the block, if a world is active in another thread.
+        """
+        return Active(self, self.context)
 
     # ---- entities and components ---------------------------------------------------------------------------
 

@@ -17,6 +17,7 @@ class Asleep:
     """Advances the clock alone, while all that could move sleeps."""
 
     name: ClassVar[str] = "asleep"
+    title: ClassVar[str] = "Everything sleeps: only time passes"
     leaps: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = True
     kernels: tuple[Any, ...] = ()

@@ -25,6 +25,7 @@ class Contact:
     """
 
     name: ClassVar[str] = "contact"
+    title: ClassVar[str] = "Steps stage by stage, each system called"
     leaps: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = True
 

@@ -6,13 +6,11 @@ import math
 import time
 from typing import Any, ClassVar
 
-import numpy as np
-
 from physicslab.integrators import StepTooSmall
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.state import State
-from physicslab.stepping.forces import add_up_forces
+from physicslab.stepping.fastest_body import fastest_body
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.integrate import IntegrateSystem
@@ -25,6 +23,7 @@ class Flow:
     """Advances the smooth motion of a world by the flow of an integrator."""
 
     name: ClassVar[str] = "flow"
+    title: ClassVar[str] = "Steps as one compiled flow"
     leaps: ClassVar[bool] = True
     leaves_forces: ClassVar[bool] = False
 
@@ -70,18 +69,10 @@ class Flow:
         try:
             made = method.flow(state, ode, span, count)
         except StepTooSmall as error:
-            what = f"{_liveliest(state, self._schedule)}: Velocity changes too fast: {error}"
+            what = f"{fastest_body(state, self._schedule.forces)}: Velocity changes too fast: {error}"
             raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error
         ode.scatter(state, h * steps)
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - start)
         for system in ode.forces:
             self._schedule.note(system.name, made, 0)  # their time is within the loop's
         state.force_evaluations += made
-
-
-def _liveliest(state: State, schedule: Schedule) -> str:
-    """Return the label of the body whose velocity changes fastest as things stand."""
-    add_up_forces(state, schedule)
-    force = state.bodies.force
-    rates = np.hypot(force[:, 0], force[:, 1]) * state.bodies.inverse_mass
-    return state.label_of_row(int(np.argmax(rates)))

@@ -24,8 +24,8 @@ from physicslab.contacts.wide import refill
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.kernels.broad import grid, near_pairs
+from physicslab.kernels.loading import working_ns
 from physicslab.kernels.solver import fused_contact as fused
-from physicslab.kernels.solver.arguments import Motion
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
@@ -56,6 +56,7 @@ class FusedContact:
     """
 
     name: ClassVar[str] = "fused_contact"
+    title: ClassVar[str] = "Whole steps in one compiled loop"
     leaps: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = True
     kernels: tuple[Any, ...] = (
@@ -65,13 +66,12 @@ class FusedContact:
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule = schedule
-        self._systems: list[System | None] = [None] * fused.COSTS
-        self._calls = [0] * fused.COSTS
+        self._calls: list[tuple[int, str, int, int]] = []
         for system in schedule.running:
             place = _place(system) if system.is_engine else None
             if place is not None:
-                self._systems[place] = system
-                self._calls[place] = sum(stage in type(system).marked() for stage in _SUBSTEP)
+                calls = sum(stage in type(system).marked() for stage in _SUBSTEP)
+                self._calls.append((place, system.name, calls, int(isinstance(system, SleepSystem))))
         self._broad_phase = _found(schedule, BroadPhaseSystem)
         self._contact = _found(schedule, ContactSystem)
         self._resolve = _found(schedule, ResolveSystem)
@@ -79,6 +79,9 @@ class FusedContact:
         uniform = [force.uniform_acceleration(state) for force in schedule.forces]
         self._gravity = sum((g for g in uniform if g is not None), start=Vector2(0.0, 0.0))
         self._cost = np.zeros(fused.COSTS, np.int64)
+        self._h = 0.0
+        self._kept: object = None
+        self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], Any]
         self.reason = "bodies can touch, and nothing looks at substeps"
 
     @classmethod
@@ -151,7 +154,7 @@ class FusedContact:
         began = time.perf_counter_ns()
         contacts, substeps = state.contacts, state.substeps
         self._cost[:] = 0
-        plan = fused.Plan(substeps, state.simulation.iterations or 1, h / substeps, h, state.time + made * h)
+        plan = (substeps, state.simulation.iterations or 1, h / substeps, h, state.time + made * h)
         why, done, substep, struck_before, struck, contacts.impulse_dt = fused.advance(
             steps, substep, stage, plan, *self._arguments(state, h / substeps)
         )
@@ -165,41 +168,48 @@ class FusedContact:
         return why, done, substep
 
     def _arguments(self, state: State, h: float) -> tuple[Any, ...]:
-        """Return what the loop works on."""
-        bodies, contacts, physics, sleep = state.bodies, state.contacts, state.physics, state.sleep
-        margin = speculative_margin(state, h)
-        return (
-            motion_of(state), Motion(*state.checkpoint.columns), sizes_of(state), materials_of(state),
-            inverse_in(state), bodies.sub_integrated, acting_in(state),
-            fused.Gravity(
-                state.table(Mass)["mass"], bodies.inverse_mass, self._gravity.x, self._gravity.y, margin
-            ),
-            fused.Sleepers(
-                self._sleep is not None, sleep.count, sleep.asleep, sleep.rest, sleep.slowest,
-                np.zeros_like(sleep.asleep), contacts.inactive, contacts.sleeping,
-            ),
-            (physics.linear_damping, physics.angular_damping), self._broad_phase.fat, bounds_of(state),
-            near_in(state), contacts.opened, self._resolve.softness(1.0), contacts.impulse_dt, contacts.log,
-            self._cost,
+        """Return what the loop works on; what only a change of structure or laws changes is kept."""
+        contacts, sleep, kept = state.contacts, state.sleep, state.checkpoint.columns
+        if self._kept is not kept or self._h != h:
+            self._kept, self._h, self._fixed = kept, h, self._fixed_arguments(state, h)
+        motion, laws, marked = self._fixed
+        sleepers = (
+            self._sleep is not None, sleep.count, sleep.asleep, sleep.rest, sleep.slowest, marked,
+            contacts.inactive, contacts.sleeping,
         )  # fmt: skip
+        damping, bounds = laws
+        return (
+            *motion, sleepers, damping, self._broad_phase.fat, bounds, near_in(state), contacts.opened,
+            self._resolve.softness(1.0), contacts.impulse_dt, contacts.log, self._cost,
+        )  # fmt: skip
+
+    def _fixed_arguments(self, state: State, h: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:
+        """Return the columns in order, the laws, and room for marks."""
+        bodies, physics = state.bodies, state.physics
+        gravity = (
+            state.table(Mass)["mass"], bodies.inverse_mass, self._gravity.x, self._gravity.y,
+            speculative_margin(state, h),
+        )  # fmt: skip
+        columns = (
+            motion_of(state), tuple(state.checkpoint.columns), sizes_of(state), materials_of(state),
+            inverse_in(state), bodies.sub_integrated, acting_in(state), gravity,
+        )  # fmt: skip
+        laws = (physics.linear_damping, physics.angular_damping), bounds_of(state)
+        return columns, laws, np.zeros_like(state.sleep.asleep)
 
     def _note(self, state: State, steps: int, nanoseconds: int) -> None:
         """Note as many calls as the stages would make; the time is shared out by the loop's own clock."""
         costs: list[int] = self._cost.tolist()
         total = max(1, sum(costs))
-        for system, calls, cost in zip(self._systems, self._calls, costs, strict=True):
-            if system is not None:
-                self._schedule.note(
-                    system.name, steps * (calls * state.substeps + isinstance(system, SleepSystem)),
-                    nanoseconds * cost // total,
-                )  # fmt: skip
+        for place, name, calls, once in self._calls:
+            share = nanoseconds * costs[place] // total
+            self._schedule.note(name, steps * (calls * state.substeps + once), share)
 
     def _timed(self, system: System, call: Callable[[State, float], None], state: State, h: float) -> None:
         """Call a system's method, whose call is counted with the step, and note what it cost."""
-        began, compiling = time.perf_counter_ns(), state.compile_s
+        began = working_ns()
         call(state, h)
-        waited = int(1e9 * (state.compile_s - compiling))
-        self._schedule.note(system.name, 0, time.perf_counter_ns() - began - waited)
+        self._schedule.note(system.name, 0, working_ns() - began)
 
 
 def _place(system: System) -> int | None:

@@ -31,6 +31,11 @@ class Steppers:
         """Return the best of them that can make the coming step."""
         return next(stepper for stepper in self.usable if stepper.ready(state, h))
 
+    def main(self, state: State) -> Stepper:
+        """Return the best of them for awake bodies and steps of the scene's own length, for reports."""
+        awake = [stepper for stepper in self.usable if not isinstance(stepper, Asleep)]
+        return next(stepper for stepper in awake if stepper.ready(state, state.simulation.dt))
+
     def hold(self, state: State) -> bool:
         """Whether the numbers that they were made from are still the same."""
         return all(stepper.holds(state) for stepper in self.usable)

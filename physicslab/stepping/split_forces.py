@@ -13,6 +13,7 @@ from physicslab.kernels import motion
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import Diverged
 from physicslab.state.state import State
+from physicslab.stepping.fastest_body import fastest_body
 from physicslab.systems.system import ForceSystem, Stage
 
 __all__ = ["SplitForces", "sub_integrated_rows"]
@@ -69,7 +70,7 @@ class SplitForces:
     """
 
     def __init__(self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int) -> None:
-        self._method, self._steps = method, steps
+        self._forces, self._method, self._steps = forces, method, steps
         rows = sub_integrated_rows(state, forces)
         self._ode = OdeSystem(state, forces, rows)
         # Contacts are good to far fewer digits than a free flight: more would only cost time.
@@ -109,6 +110,7 @@ class SplitForces:
         try:
             made = self._method.flow(state, ode, h / self._steps, self._steps)
         except StepTooSmall as error:
-            raise Diverged(f"{error} (after t = {state.time:.9g} s)") from error
+            what = f"{fastest_body(state, self._forces)}: Velocity changes too fast: {error}"
+            raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error
         ode.scatter(state, h)
         state.force_evaluations += made

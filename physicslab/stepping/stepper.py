@@ -34,8 +34,8 @@ class Stepper(Protocol):
 
     Attributes
     ----------
-    name : str
-        For reports: ``run --json``, the HUD.
+    name, title : str
+        For reports (``run --json``), and for people (the HUD).
     reason : str
         Why this one, for people.
     kernels : tuple of kernels
@@ -47,6 +47,7 @@ class Stepper(Protocol):
     """
 
     name: ClassVar[str]
+    title: ClassVar[str]
     leaps: ClassVar[bool]
     leaves_forces: ClassVar[bool]
     reason: str

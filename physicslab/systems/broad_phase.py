@@ -91,8 +91,8 @@ class BroadPhaseSystem(System):
     def search(self, state: State, h: float) -> None:
         """Bring the list of near pairs up to date, where it no longer holds."""
         self.follow_rows(state)
-        motion = motion_of(state)
-        if not grid.still_holds(motion.position, motion.angle, motion.linear, *sizes_of(state), self.fat, h):
+        position, angle, linear, _ = motion_of(state)
+        if not grid.still_holds(position, angle, linear, *sizes_of(state), self.fat, h):
             self.list_pairs(state, h)
 
     def list_pairs(self, state: State, h: float) -> None:

@@ -13,7 +13,7 @@ from physicslab.contacts.arguments import (
 )
 from physicslab.contacts.wide import add_constraints, refill
 from physicslab.kernels.narrow import contact
-from physicslab.kernels.solver import stages
+from physicslab.kernels.solver import entries
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.system import Stage, System, at
@@ -29,7 +29,7 @@ class ContactSystem(System):
     """
 
     engine = True
-    kernels = (stages.find_touching, contact.find_contacts)
+    kernels = (entries.find_stage, contact.find_contacts)
 
     def __init__(self) -> None:
         self._first = True
@@ -52,7 +52,7 @@ class ContactSystem(System):
         """Find or refresh the points of every near pair; once a step, take what has settled into blocks."""
         if self._first:
             refill(state)
-        stages.find_touching(
+        entries.find_stage(
             near_in(state), motion_of(state), sizes_of(state), materials_of(state), inverse_in(state),
             bounds_of(state), self._first, h, state.window[0], speculative_margin(state, h),
         )  # fmt: skip

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from physicslab.contacts.arguments import acting_in, inverse_in, motion_of, near_in
-from physicslab.kernels.solver import impulse, stages
-from physicslab.kernels.solver.arguments import Log, Softness
+from physicslab.kernels.solver import entries, impulse
+from physicslab.kernels.solver.arguments import SoftnessTuple
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.system import Stage, System, at
@@ -30,7 +30,7 @@ class ResolveSystem(System):
     """
 
     engine = True
-    kernels = (stages.resolve_all_impacts, stages.press, stages.relax)
+    kernels = (entries.impact_stage, entries.solve_stage, entries.relax_stage)
 
     def __init__(
         self, hertz: float = 45.0, damping_ratio: float = 2.0, max_push: float = 1.5, slop: float = 0.0005
@@ -60,23 +60,23 @@ class ResolveSystem(System):
             parts *= 2
         return parts
 
-    def softness(self, substep_factor: float) -> Softness:
+    def softness(self, substep_factor: float) -> SoftnessTuple:
         """Return the contact spring for substeps that are so many times as short as asked for."""
-        return Softness(self.hertz * substep_factor, self.damping_ratio, self.slop, self.max_push)
+        return self.hertz * substep_factor, self.damping_ratio, self.slop, self.max_push
 
     @at(Stage.IMPACT)
     def resolve_impacts(self, state: State, h: float) -> None:
         """Bounce the pairs that meet within the substep."""
         start, end = state.window
-        state.collisions += stages.resolve_all_impacts(
+        state.collisions += entries.impact_stage(
             near_in(state), motion_of(state), inverse_in(state), acting_in(state),
-            Log(state.contacts.log, state.moment), h, start * h, end * h,
+            state.contacts.log, state.moment, h, start * h, end * h,
         )  # fmt: skip
 
     @at(Stage.SOLVE)
     def solve(self, state: State, h: float) -> None:
         """Find the impulses that keep bodies apart, taking some of the overlap away."""
-        state.contacts.impulse_dt = stages.press(
+        state.contacts.impulse_dt = entries.solve_stage(
             near_in(state), motion_of(state), inverse_in(state), acting_in(state), self._softness_now(state),
             h, state.contacts.impulse_dt, state.simulation.iterations or 1,
         )  # fmt: skip
@@ -84,10 +84,10 @@ class ResolveSystem(System):
     @at(Stage.RELAX)
     def relax(self, state: State, h: float) -> None:
         """Take back the velocity that came from taking overlap away."""
-        stages.relax(
+        entries.relax_stage(
             near_in(state), motion_of(state), inverse_in(state), self._softness_now(state),
             h, state.simulation.iterations or 1,
         )  # fmt: skip
 
-    def _softness_now(self, state: State) -> Softness:
+    def _softness_now(self, state: State) -> SoftnessTuple:
         return self.softness(state.substeps / state.simulation.substeps)

@@ -45,6 +45,10 @@ class Schedule:
         Those that the world needs at present.
     left_out : tuple of LeftOut
         The others, each with the reason.
+    forces : tuple of ForceSystem
+        The force systems among those that run.
+    observer : System, optional
+        The first of them that looks at every step.
     timings : dict of str to Timing
         Calls and cost of every system that ever ran.
     """
@@ -55,6 +59,8 @@ class Schedule:
         self.extend(systems)
         self.running: tuple[System, ...] = ()
         self.left_out: tuple[LeftOut, ...] = ()
+        self.forces: tuple[ForceSystem, ...] = ()
+        self.observer: System | None = None
         self.timings: dict[str, Timing] = {}
         self._calls: dict[Stage, list[tuple[Callable[[State, float], None], Timing]]] = {}
 
@@ -80,6 +86,8 @@ class Schedule:
             else:
                 left_out.append(LeftOut(system.name, reason))
         self.running, self.left_out = tuple(running), tuple(left_out)
+        self.forces = tuple(system for system in running if isinstance(system, ForceSystem))
+        self.observer = next((system for system in running if system.observes()), None)
         self._calls = {stage: [] for stage in Stage}
         for system in running:
             timing = self.timings.setdefault(system.name, Timing())
@@ -89,16 +97,6 @@ class Schedule:
     def runs(self, stage: Stage) -> bool:
         """Whether any system has work at ``stage``."""
         return bool(self._calls.get(stage))
-
-    @property
-    def forces(self) -> tuple[ForceSystem, ...]:
-        """The force systems among those that run."""
-        return tuple(system for system in self.running if isinstance(system, ForceSystem))
-
-    @property
-    def observer(self) -> System | None:
-        """The first running system that looks at every step, if one does."""
-        return next((system for system in self.running if system.observes()), None)
 
     def kernels(self, state: State) -> list[Any]:
         """Return the kernels that the running systems call at their stages."""

@@ -11,7 +11,7 @@ from physicslab.contacts.islands import check_edits, fall_asleep, keep_places, w
 from physicslab.kernels import motion
 from physicslab.kernels.narrow import contact
 from physicslab.kernels.sleep import edits, islands
-from physicslab.kernels.solver.arguments import Inverse
+from physicslab.kernels.solver.arguments import InverseTuple
 from physicslab.state.sleep import Sleep
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
@@ -90,7 +90,7 @@ class SleepSystem(System):
         near = contacts.manifolds[scalar]
         theirs = np.ascontiguousarray(scalar[woken[near["a"]] | woken[near["b"]]])
         # Of these the masses are others now; no impact of this step can have been theirs.
-        awake = Inverse(bodies.awake_inverse_mass, bodies.awake_inverse_inertia)
+        awake = (bodies.awake_inverse_mass, bodies.awake_inverse_inertia)
         _find_among(state, theirs, contacts.touching, awake, h, first=True)
         contacts.active = _find_among(state, scalar, contacts.touching, awake, h, first=False)
 
@@ -138,22 +138,22 @@ class SleepSystem(System):
         pairs = np.empty(contacts.recorded, np.int64)
         count = islands.list_sleeping(contacts.manifolds, contacts.recorded, inactive, pairs)
         h = state.simulation.dt / state.simulation.substeps
-        own = Inverse(bodies.inverse_mass, bodies.inverse_inertia)
+        own = (bodies.inverse_mass, bodies.inverse_inertia)
         contacts.sleeping_count = _find_among(state, pairs[:count], contacts.sleeping, own, h, first=True)
         unsupported = sleep.asleep & ~self._held(state, sleep.asleep)
         return wake(state, unsupported) if unsupported.any() else unsupported
 
 
 def _find_among(
-    state: State, pairs: NDArray[np.int64], touching: NDArray[np.int64], inverse: Inverse, h: float, *,
+    state: State, pairs: NDArray[np.int64], touching: NDArray[np.int64], inverse: InverseTuple, h: float, *,
     first: bool,
 ) -> int:  # fmt: skip
     """Find or refresh the points of some of the pairs; return how many of them touch."""
-    contacts, bounds = state.contacts, bounds_of(state)
+    contacts, (walls, restitution, friction) = state.contacts, bounds_of(state)
     state.compile((contact.find_contacts,))
     return contact.find_contacts(
         contacts.manifolds, contacts.points, pairs, len(pairs), touching, *motion_of(state), *sizes_of(state),
-        *materials_of(state), *inverse, bounds.walls, bounds.restitution, bounds.friction, first, h,
+        *materials_of(state), *inverse, walls, restitution, friction, first, h,
         state.window[0],
         speculative_margin(state, h),
     )  # fmt: skip

@@ -17,6 +17,7 @@ from physicslab.kernels.narrow.contact import effective_masses, mix
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.records import Impacts, Manifold, Manifolds, Point, Points
 from physicslab.kernels.solver.impact_log import write_impact
+from physicslab.kernels.twins import endless
 
 __all__ = [
     "BALLISTIC", "CAME_TO_REST", "DEEP", "DONE", "FIXED", "IN_CONTACT", "KINEMATIC", "OVERLAP", "REST",
@@ -208,6 +209,7 @@ def run_events(
     return now + low, impacts, why, p
 
 
+@endless
 @inlined
 def _predict_pair(
     manifolds: Manifolds, count: int, first: int, second: int, paths: Vectors, mode: Rows, face: Rows,

@@ -13,7 +13,9 @@ forces answer with their value at the middle.
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable
+from functools import cached_property
 from typing import Annotated, Any
 
 import numba
@@ -25,6 +27,8 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from physicslab.kernels import KERNELS, Numbers, cached, inlined, kernel
+from physicslab.kernels.stand_ins import Memory, stands_in_for
+from physicslab.kernels.twins import endless, twin_of
 
 __all__ = ["Calls", "ForceKernel", "accelerate", "accelerate_over", "add_forces", "force_kernel"]
 
@@ -33,12 +37,15 @@ Calls = Annotated[NDArray[np.int64], int64[:, ::1]]
 _pointer: Any = types.CPointer
 _REAL, _WHOLE = _pointer(float64), _pointer(int64)
 _SIGNATURE = void(_REAL, _REAL, float64, _REAL, _REAL, _WHOLE)
+_REALS, _WHOLES = ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int64)
+_C_FUNCTION = ctypes.CFUNCTYPE(None, _REALS, _REALS, ctypes.c_double, _REALS, _REALS, _WHOLES)
 
 
 class ForceKernel:
     """A force ``f(q, v, span, force, parameters, indices)``: a C function, compiled for its address.
 
-    All but the span [s] are pointers, to float64 and (the last) int64.
+    All but the span [s] are pointers, to float64 and (the last) int64. While ``stands_in`` is true and
+    nothing is compiled, the C function runs the Python body.
     """
 
     declared_signature = _SIGNATURE
@@ -52,12 +59,14 @@ class ForceKernel:
         )
         self.overloads: dict[Any, Any] = {}
         self.compiled = False
+        self.stands_in = False
 
     def compile(self, signature: Any) -> None:
         """Compile it, or load it from the cache."""
         with cached():
             make = numba.cfunc(signature, cache=True, error_model="numpy")
             self.overloads[signature.args] = make(self.py_func)
+        _KERNELS[self.address] = self
 
     def disable_compile(self) -> None:
         """There is one signature in any case."""
@@ -67,12 +76,34 @@ class ForceKernel:
         """The signatures that it has been compiled for: the one, or none."""
         return list(self.overloads)
 
+    def _interpret(self, q: Any, v: Any, span: float, force: Any, numbers: Any, whole: Any) -> None:
+        """Run the Python body on what lies behind pointers, or what is compiled of it by now."""
+        if self.overloads:
+            _C_FUNCTION(self.address)(q, v, span, force, numbers, whole)
+            return
+        with np.errstate(all="ignore"):
+            twin_of(self)(Memory(q), Memory(v), np.float64(span), Memory(force), Memory(numbers), whole)
+
     @property
     def address(self) -> int:
-        """Where the C function lies in memory."""
+        """Where the C function lies in memory, or one that runs the Python body while that stands in."""
+        if not self.overloads and self.stands_in:
+            return self._address_of_python
         if not self.overloads:
             self.compile(_SIGNATURE)
         return int(self.overloads[_SIGNATURE.args].address)
+
+    @cached_property
+    def _address_of_python(self) -> int:
+        # Kept for good: who was given its address may call it at any time.
+        self._c_function = _C_FUNCTION(self._interpret)
+        address: int = ctypes.cast(self._c_function, ctypes.c_void_p).value or 0
+        _KERNELS[address] = self
+        return address
+
+
+_KERNELS: dict[int, ForceKernel] = {}
+"""Forces by the addresses that were given out, of compiled code and of what stands in for it."""
 
 
 def force_kernel(function: Callable[..., None]) -> ForceKernel:
@@ -106,6 +137,20 @@ def _call_type(
 _call: Any = intrinsic(_call_type)
 
 
+@stands_in_for(_call)
+def _call_interpreted(
+    address: int, q: Numbers, v: Numbers, span: float, force: Numbers, numbers: int, whole: int
+) -> None:
+    """Call a force from a method that is interpreted itself."""
+    behind = ctypes.cast(int(numbers), _REALS), ctypes.cast(int(whole), _WHOLES)
+    known = _KERNELS.get(int(address))
+    if known is not None:
+        twin_of(known)(q, v, span, force, Memory(behind[0]), behind[1])
+        return
+    q_data, v_data, force_data = (ctypes.cast(array.ctypes.data, _REALS) for array in (q, v, force))
+    _C_FUNCTION(int(address))(q_data, v_data, span, force_data, *behind)
+
+
 @kernel
 def add_forces(q: Numbers, v: Numbers, force: Numbers, calls: Calls) -> None:
     """Add forces at an instant to those that are there."""
@@ -121,6 +166,7 @@ def accelerate(
     accelerate_over(q, v, 0.0, acceleration, inverse_mass, damping, calls)
 
 
+@endless
 @inlined
 def accelerate_over(
     q: Numbers, v: Numbers, span: float,

@@ -7,14 +7,12 @@ vectors of eight bodies for more (:mod:`physicslab.kernels.forces.pairwise`), a 
 
 import math
 
-import numpy as np
-
 from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
 from physicslab.kernels.forces.pairwise import attract_pairwise, depth_of_pairs
 from physicslab.kernels.forces.tree_pull import attract_by_tree, depth_by_tree
 
 __all__ = [
-    "FEW", "MANY", "attract", "fastest_fall", "inverse_cube", "planet_gravity", "planet_potential",
+    "FEW", "MANY", "attract", "fastest_fall", "inverse_cube", "planet_potential",
     "uniform_gravity", "uniform_potential",
 ]  # fmt: skip
 
@@ -75,39 +73,6 @@ def attract(
         attract_by_tree(x, y, mass, softening, plummer, ax, ay)
     else:
         attract_pairwise(x, y, mass, softening, plummer, ax, ay)
-
-
-@allocating_kernel
-def planet_gravity(
-    force: Vectors, position: Vectors, mass: Numbers, rows: Rows, G: float, softening: float, plummer: bool
-) -> None:
-    """Add the attraction of every pair of ``rows`` to the forces on both.
-
-    Equal and opposite to rounding; from :data:`MANY` bodies on as exactly as the tree is right.
-    """
-    n = len(rows)
-    if n > FEW:
-        x, y, weight, ax, ay = position[rows, 0], position[rows, 1], mass[rows], np.empty(n), np.empty(n)
-        attract(x, y, weight, softening, plummer, ax, ay)
-        for p in range(n):
-            force[rows[p], 0] += G * weight[p] * ax[p]
-            force[rows[p], 1] += G * weight[p] * ay[p]
-        return
-    softening2 = softening * softening
-    for p in range(n):
-        i = rows[p]
-        fx, fy = 0.0, 0.0
-        for q in range(p + 1, n):
-            j = rows[q]
-            dx = position[j, 0] - position[i, 0]
-            dy = position[j, 1] - position[i, 1]
-            f = G * mass[i] * mass[j] * inverse_cube(dx * dx + dy * dy, softening2, plummer)
-            fx += f * dx
-            fy += f * dy
-            force[j, 0] -= f * dx
-            force[j, 1] -= f * dy
-        force[i, 0] += fx
-        force[i, 1] += fy
 
 
 @allocating_kernel

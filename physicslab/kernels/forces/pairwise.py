@@ -19,6 +19,7 @@ from numba import float64, int64, types
 from numba.extending import intrinsic
 
 from physicslab.kernels import Numbers, allocating, inlined_loosely
+from physicslab.kernels.stand_ins import stands_in_for
 
 __all__ = [
     "attract_pairwise", "depth_of", "depth_of_pairs", "depth_terms", "inverse_root", "pull_of", "pull_terms",
@@ -54,6 +55,9 @@ def _start_type(context: Any, array: Any) -> Any:
 _bits: Any = intrinsic(_bits_type)
 _number: Any = intrinsic(_number_type)
 _start: Any = intrinsic(_start_type)
+stands_in_for(_bits)(lambda value: value.view(np.int64))
+stands_in_for(_number)(lambda value: value.view(np.float64))
+stands_in_for(_start)(lambda array: array)
 
 
 @inlined_loosely

@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 
-__all__ = ["mean_spring_pull", "spring_forces", "spring_potential", "spring_pull", "turn_over", "turned"]
+__all__ = ["mean_spring_pull", "spring_potential", "spring_pull", "turn_over", "turned"]
 
 
 @inlined
@@ -62,38 +62,6 @@ def mean_spring_pull(
     nx, ny = 2.0 * dx / lengths, 2.0 * dy / lengths
     pull = stiffness * (0.5 * lengths - rest_length) + damping * (nx * vx + ny * vy)
     return pull * nx, pull * ny
-
-
-@kernel
-def spring_forces(
-    force: Vectors, torque: Numbers, position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers,
-    springs: Rows, row_a: Rows, row_b: Rows, anchor_a: Vectors, anchor_b: Vectors,
-    rest_length: Numbers, stiffness: Numbers, damping: Numbers,
-) -> None:  # fmt: skip
-    """Add the pull of every spring to both ends.
-
-    ``springs`` are the rows of the springs, ``row_a`` and ``row_b`` those of the bodies at their ends (0: the
-    world).
-    """
-    for s in range(len(springs)):
-        k = springs[s]
-        a, b = row_a[s], row_b[s]
-        ax, ay = turned(angle[a], anchor_a[k, 0], anchor_a[k, 1])
-        bx, by = turned(angle[b], anchor_b[k, 0], anchor_b[k, 1])
-        dx = position[b, 0] + bx - position[a, 0] - ax
-        dy = position[b, 1] + by - position[a, 1] - ay
-        fx, fy = spring_pull(
-            dx, dy,
-            linear[b, 0] - angular[b] * by - linear[a, 0] + angular[a] * ay,
-            linear[b, 1] + angular[b] * bx - linear[a, 1] - angular[a] * ax,
-            rest_length[k], stiffness[k], damping[k],
-        )  # fmt: skip
-        force[a, 0] += fx
-        force[a, 1] += fy
-        torque[a] += ax * fy - ay * fx
-        force[b, 0] -= fx
-        force[b, 1] -= fy
-        torque[b] -= bx * fy - by * fx
 
 
 @kernel

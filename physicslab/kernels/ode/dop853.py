@@ -92,8 +92,9 @@ def step_error(
                 high += ESTIMATE_5[stage] * values[i, stage]
                 low += ESTIMATE_3[stage] * values[i, stage]
             if scale > 0.0:
-                fifth += (high / scale) ** 2
-                third += (low / scale) ** 2
+                high, low = high / scale, low / scale
+                fifth += high * high
+                third += low * low
     if fifth == 0.0 and third == 0.0:
         return 0.0
     return abs(h) * fifth / math.sqrt((fifth + 0.01 * third) * 2 * n) / tolerance

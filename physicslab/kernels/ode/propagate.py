@@ -36,7 +36,7 @@ def response(rate2: float, drag: float, t: float) -> tuple[float, float]:
     s = math.sqrt(-square)
     slow, fast = math.exp(-rate2 / (s + half) * t) if s + half > 0.0 else 1.0, math.exp(-(s + half) * t)
     if s * t < 1e-3:  # the two rates meet: sinh(s t) / s by its series
-        z = (s * t) ** 2
+        z = (s * t) * (s * t)
         decay = math.exp(-half * t)
         return decay * math.cosh(s * t), decay * t * (1.0 + z / 6.0 + z * z / 120.0)
     return 0.5 * (slow + fast), 0.5 * (slow - fast) / s

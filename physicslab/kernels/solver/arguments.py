@@ -1,12 +1,22 @@
-"""What the stages of a substep work on: arrays of a world, in named tuples."""
+"""What the stages of a substep work on: arrays of a world, in named tuples.
+
+Python hands them over as plain tuples: numba takes those in three times as fast (for the fused loop 4 us
+instead of 15), and :func:`named_motion` and the like give them names.
+"""
 
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, fused
 from physicslab.kernels.records import Couples, Impacts, Manifolds, Points
 from physicslab.kernels.wide.slots import Slots
 
-__all__ = ["Acting", "Bounds", "Inverse", "Log", "Materials", "Motion", "Near", "Sizes", "Softness"]
+__all__ = [
+    "Acting", "ActingTuple", "Bounds", "BoundsTuple", "Gravity", "GravityTuple", "Inverse",
+    "InverseTuple", "Log", "Materials", "MaterialsTuple", "Motion", "MotionTuple", "Near", "NearTuple",
+    "Plan", "PlanTuple", "Sizes", "SizesTuple", "Sleepers", "SleepersTuple", "Softness", "SoftnessTuple",
+    "named_acting", "named_bounds", "named_gravity", "named_inverse", "named_materials", "named_motion",
+    "named_near", "named_plan", "named_sizes", "named_sleepers", "named_softness",
+]  # fmt: skip
 
 
 class Motion(NamedTuple):
@@ -90,3 +100,122 @@ class Softness(NamedTuple):
     damping_ratio: float
     slop: float
     max_push: float
+
+
+class Plan(NamedTuple):
+    """Substeps a step, iterations of the solver, the substep and the step [s], the time at the start [s]."""
+
+    substeps: int
+    iterations: int
+    h: float
+    dt: float
+    time: float
+
+
+class Gravity(NamedTuple):
+    """Masses [kg], inverse masses of sleepers too [1/kg], gravity [m/s^2], the speculative margin [m]."""
+
+    mass: Numbers
+    inverse_mass: Numbers
+    gx: float
+    gy: float
+    margin: float
+
+
+class Sleepers(NamedTuple):
+    """Whether bodies may sleep and how many do; which, their rests [s] and lowest speeds [m/s].
+
+    Then room for marks, the rows whose pairs are inactive, and those pairs.
+    """
+
+    on: bool
+    number: int
+    asleep: Flags
+    rest: Numbers
+    slowest: Numbers
+    marked: Flags
+    inactive: Flags
+    pairs: Rows
+
+
+MotionTuple = tuple[Vectors, Numbers, Vectors, Numbers]
+SizesTuple = tuple[Rows, Numbers, Numbers, Numbers]
+MaterialsTuple = tuple[Numbers, Numbers]
+InverseTuple = tuple[Numbers, Numbers]
+ActingTuple = tuple[Vectors, Numbers, bool]
+BoundsTuple = tuple[Numbers, float, float]
+NearTuple = tuple[Rows, Manifolds, Points, Rows, Rows, Slots, Slots, Couples, Numbers, Rows]
+SoftnessTuple = tuple[float, float, float, float]
+PlanTuple = tuple[int, int, float, float, float]
+GravityTuple = tuple[Numbers, Numbers, float, float, float]
+SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows]
+"""The same, without names."""
+
+
+@fused
+def named_motion(plain: MotionTuple) -> Motion:
+    """Give names to a tuple."""
+    return Motion(plain[0], plain[1], plain[2], plain[3])
+
+
+@fused
+def named_sizes(plain: SizesTuple) -> Sizes:
+    """Give names to a tuple."""
+    return Sizes(plain[0], plain[1], plain[2], plain[3])
+
+
+@fused
+def named_materials(plain: MaterialsTuple) -> Materials:
+    """Give names to a tuple."""
+    return Materials(plain[0], plain[1])
+
+
+@fused
+def named_inverse(plain: InverseTuple) -> Inverse:
+    """Give names to a tuple."""
+    return Inverse(plain[0], plain[1])
+
+
+@fused
+def named_acting(plain: ActingTuple) -> Acting:
+    """Give names to a tuple."""
+    return Acting(plain[0], plain[1], plain[2])
+
+
+@fused
+def named_bounds(plain: BoundsTuple) -> Bounds:
+    """Give names to a tuple."""
+    return Bounds(plain[0], plain[1], plain[2])
+
+
+@fused
+def named_near(plain: NearTuple) -> Near:
+    """Give names to a tuple."""
+    return Near(
+        plain[0], plain[1], plain[2], plain[3], plain[4], plain[5], plain[6], plain[7], plain[8],
+        plain[9],
+    )  # fmt: skip
+
+
+@fused
+def named_softness(plain: SoftnessTuple) -> Softness:
+    """Give names to a tuple."""
+    return Softness(plain[0], plain[1], plain[2], plain[3])
+
+
+@fused
+def named_plan(plain: PlanTuple) -> Plan:
+    """Give names to a tuple."""
+    return Plan(plain[0], plain[1], plain[2], plain[3], plain[4])
+
+
+@fused
+def named_gravity(plain: GravityTuple) -> Gravity:
+    """Give names to a tuple."""
+    return Gravity(plain[0], plain[1], plain[2], plain[3], plain[4])
+
+
+@fused
+def named_sleepers(plain: SleepersTuple) -> Sleepers:
+    """Give names to a tuple."""
+    return Sleepers(plain[0], plain[1], plain[2], plain[3], plain[4], plain[5], plain[6], plain[7])

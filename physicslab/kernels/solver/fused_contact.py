@@ -1,8 +1,6 @@
 """Whole steps of a world whose bodies touch, in one compiled loop: the stages of leapfrog, in their order."""
 
-from typing import NamedTuple
-
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Rows, Vectors, inlined, kernel
 from physicslab.kernels.broad.grid import still_holds
 from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.motion import clear, drift, find_not_finite, kick
@@ -10,15 +8,40 @@ from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.islands import count_rest, find_touched
 from physicslab.kernels.solver.arguments import (
     Acting,
+    ActingTuple,
     Bounds,
+    BoundsTuple,
+    Gravity,
+    GravityTuple,
     Inverse,
+    InverseTuple,
     Log,
     Materials,
+    MaterialsTuple,
     Motion,
+    MotionTuple,
     Near,
+    NearTuple,
+    Plan,
+    PlanTuple,
     Sizes,
+    SizesTuple,
+    Sleepers,
+    SleepersTuple,
     Softness,
-)
+    SoftnessTuple,
+    named_acting,
+    named_bounds,
+    named_gravity,
+    named_inverse,
+    named_materials,
+    named_motion,
+    named_near,
+    named_plan,
+    named_sizes,
+    named_sleepers,
+    named_softness,
+)  # fmt: skip
 from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
 from physicslab.kernels.ticks import charge, ticks
 from physicslab.kernels.wide.graph_colour import ADDED, FEW, SPARSE, add_constraints
@@ -27,7 +50,7 @@ from physicslab.kernels.wide.slots import ACTIVE, WIDE_COUNT
 __all__ = [
     "ACCELERATE", "ALL", "BEGIN", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "FIND",
     "GRAVITY", "IMPACTS", "INTEGRATE", "PAIRS_STALE", "RESOLVE", "SLEEP", "SLEEP_PENDING", "WAKE_PENDING",
-    "Gravity", "Plan", "Sleepers", "advance",
+    "advance",
 ]  # fmt: skip
 
 ALL, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING = range(6)
@@ -41,42 +64,6 @@ ACCELERATE, GRAVITY, INTEGRATE, BROAD_PHASE, CONTACT, RESOLVE, SLEEP = range(COS
 """The systems whose work it is, in the order in which ``cost`` holds what each took."""
 _TIMED = 8
 """One of so many steps of a call is timed: reading the clock takes a twentieth of a step of ten bodies."""
-
-
-class Plan(NamedTuple):
-    """Substeps a step, iterations of the solver, the substep and the step [s], the time at the start [s]."""
-
-    substeps: int
-    iterations: int
-    h: float
-    dt: float
-    time: float
-
-
-class Gravity(NamedTuple):
-    """Masses [kg], inverse masses of sleepers too [1/kg], gravity [m/s^2], the speculative margin [m]."""
-
-    mass: Numbers
-    inverse_mass: Numbers
-    gx: float
-    gy: float
-    margin: float
-
-
-class Sleepers(NamedTuple):
-    """Whether bodies may sleep and how many do; which, their rests [s] and lowest speeds [m/s].
-
-    Then room for marks, the rows whose pairs are inactive, and those pairs.
-    """
-
-    on: bool
-    number: int
-    asleep: Flags
-    rest: Numbers
-    slowest: Numbers
-    marked: Flags
-    inactive: Flags
-    pairs: Rows
 
 
 @inlined
@@ -130,23 +117,15 @@ def _made_wide(
     return came == ADDED
 
 
-@kernel
-def advance(
+@inlined
+def _advance(
     steps: int, substep: int, stage: int, plan: Plan,
     motion: Motion, kept: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sub_integrated: Flags,
     acting: Acting, gravity: Gravity, sleepers: Sleepers, damping: tuple[float, float], fat: Vectors,
     bounds: Bounds, near: Near, opened: Rows, softness: Softness, impulse_dt: float, impacts: Impacts,
     cost: Rows,
 ) -> tuple[int, int, int, int, int, float]:  # fmt: skip
-    """Make ``steps`` steps, beginning at a stage of a substep.
-
-    The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and what happens at each is what
-    the systems do there. ``kept`` is given the state in which the last step began, ``impacts`` is the log,
-    and ``cost`` (7,) gets ticks added for each system.
-
-    Returns why it ended, how many steps are done, the substep that it was in, the impacts in the steps that
-    are done and all impacts, and the time [s] that the points' impulses stand for.
-    """
+    """Make steps, beginning at a stage of a substep, as :func:`advance` says."""
     position, angle, linear, angular = motion
     h, counts = plan.h, near.counts
     kicked = acting.any or damping[0] != 0.0 or damping[1] != 0.0
@@ -220,3 +199,28 @@ def advance(
                 if due:
                     return SLEEP_PENDING, done, substep, struck_done, struck, impulse_dt
     return ALL, done, substep, struck_done, struck, impulse_dt
+
+
+@kernel
+def advance(
+    steps: int, substep: int, stage: int, plan: PlanTuple,
+    motion: MotionTuple, kept: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
+    inverse: InverseTuple, sub_integrated: Flags, acting: ActingTuple, gravity: GravityTuple,
+    sleepers: SleepersTuple, damping: tuple[float, float], fat: Vectors, bounds: BoundsTuple,
+    near: NearTuple, opened: Rows, softness: SoftnessTuple, impulse_dt: float, impacts: Impacts, cost: Rows,
+) -> tuple[int, int, int, int, int, float]:  # fmt: skip
+    """Make ``steps`` steps, beginning at a stage of a substep.
+
+    The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and what happens at each is what
+    the systems do there. ``kept`` is given the state in which the last step began, ``impacts`` is the log,
+    and ``cost`` (7,) gets ticks added for each system.
+
+    Returns why it ended, how many steps are done, the substep that it was in, the impacts in the steps that
+    are done and all impacts, and the time [s] that the points' impulses stand for.
+    """
+    return _advance(
+        steps, substep, stage, named_plan(plan), named_motion(motion), named_motion(kept),
+        named_sizes(sizes), named_materials(materials), named_inverse(inverse), sub_integrated,
+        named_acting(acting), named_gravity(gravity), named_sleepers(sleepers), damping, fat,
+        named_bounds(bounds), named_near(near), opened, named_softness(softness), impulse_dt, impacts, cost,
+    )  # fmt: skip

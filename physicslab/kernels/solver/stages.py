@@ -1,6 +1,9 @@
-"""The stages of a substep at contacts: called one by one by systems, and all of them by the fused loop."""
+"""The stages of a substep at contacts: all of them are called by the fused loop of whole steps.
 
-from physicslab.kernels import Numbers, Rows, fused, inlined, kernel
+Systems call them one by one through :mod:`physicslab.kernels.solver.entries`.
+"""
+
+from physicslab.kernels import Numbers, Rows, fused, inlined
 from physicslab.kernels.broad.near_pairs import activate, sort_scalar
 from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE, find_contacts
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
@@ -40,7 +43,7 @@ Solved = tuple[Numbers, int, Rows, Rows, Rows, Numbers, int, Rows, Rows, Rows]
 """Blocks of discs and of boxes: data, how many, their order, rows of A and B."""
 
 
-@kernel
+@inlined
 def find_touching(
     near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
     first: bool, h: float, start: float, speculative_margin: float,
@@ -81,7 +84,7 @@ def find_touching(
     )  # fmt: skip
 
 
-@kernel
+@inlined
 def resolve_all_impacts(
     near: Near, motion: Motion, inverse: Inverse, acting: Acting, log: Log, h: float, start: float, end: float
 ) -> int:
@@ -135,7 +138,7 @@ def _solved(near: Near) -> Solved:
     )  # fmt: skip
 
 
-@kernel
+@inlined
 def press(
     near: Near, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
     h: float, impulse_dt: float, iterations: int,
@@ -155,7 +158,7 @@ def press(
     return h
 
 
-@kernel
+@inlined
 def relax(
     near: Near, motion: Motion, inverse: Inverse, softness: Softness, h: float, iterations: int
 ) -> None:

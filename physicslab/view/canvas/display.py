@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import io
+import itertools
+import os
 import time
 import warnings
 from collections.abc import Iterator
@@ -13,11 +16,20 @@ from pathlib import Path
 import pygame
 
 from physicslab.ecs.config import WindowConfig
+from physicslab.files.replace import create_file
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
 
-__all__ = ["Display", "wants_to_leave"]
+__all__ = ["Display", "NoScreen", "ask_to_leave", "wants_to_leave"]
+
+_INVISIBLE = ("dummy", "offscreen")
+"""Drivers of SDL without a window."""
+_WITHOUT_WINDOW = "physicslab run SCENE needs none"
+
+
+class NoScreen(OSError):
+    """There is no screen to open a window on; the message is one line with a remedy."""
 
 
 class Display:
@@ -41,17 +53,18 @@ class Display:
 
         Raises
         ------
-        OSError
+        NoScreen
             If there is no screen to open it on.
         """
         try:
             pygame.display.init()  # not pygame.init(): sound is not needed, and complains where there is none
+            _check_visible()
             pygame.font.init()
             pygame.display.set_icon(_icon(theme))
             surface = pygame.display.set_mode(config.size, pygame.RESIZABLE)
         except pygame.error as error:
             pygame.quit()
-            raise OSError(f"no window can be opened: {error}") from error
+            raise NoScreen(f"no window can be opened: {error}; {_WITHOUT_WINDOW}") from error
         try:
             pygame.display.set_caption(drawable(title))
             _limit(config.least_size)
@@ -93,14 +106,32 @@ class Display:
     def save_screenshot(self, directory: Path) -> Path:
         """Write a PNG of the window and return its path; raise ``OSError`` if that cannot be done."""
         name = datetime.now().strftime("physicslab-%Y%m%d-%H%M%S")
-        path = directory / f"{name}.png"
-        count = 1
-        while path.exists():
-            count += 1
-            path = directory / f"{name}-{count}.png"
-        with path.open("wb") as stream:
-            pygame.image.save(self.canvas.surface, stream, path.name)
+        picture = io.BytesIO()
+        pygame.image.save(self.canvas.surface, picture, f"{name}.png")
+        for count in itertools.count(1):
+            path = directory / (f"{name}.png" if count == 1 else f"{name}-{count}.png")
+            with contextlib.suppress(FileExistsError):
+                create_file(path, picture.getvalue())
+                break
         return path
+
+
+def _check_visible() -> None:
+    """Refuse a driver that shows nothing, which SDL takes where there is no screen.
+
+    One that SDL_VIDEODRIVER names is taken: tests draw without a screen.
+    """
+    driver = pygame.display.get_driver()
+    chosen = any(os.environ.get(name) for name in ("SDL_VIDEODRIVER", "SDL_VIDEO_DRIVER"))
+    if driver in _INVISIBLE and not chosen:
+        pygame.quit()
+        raise NoScreen(f"no window can be opened: there is no screen; {_WITHOUT_WINDOW}")
+
+
+def ask_to_leave() -> None:
+    """Have the window closed, as a click on its cross does."""
+    if pygame.display.get_init():
+        pygame.event.post(pygame.Event(pygame.QUIT))
 
 
 def wants_to_leave() -> bool:

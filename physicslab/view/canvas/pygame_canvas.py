@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from physicslab.view.canvas.cached_layer import CachedLayer, left_of
 from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle, TextSurface
+from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_strokes
 from physicslab.view.canvas.surface_cache import SurfaceCache
 from physicslab.view.canvas.theme import Colour
 
@@ -66,6 +66,9 @@ class PygameCanvas:
     def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
         """Draw discs, each with a rim and a line that shows its angle, or hatched."""
         paint_discs = _painter("paint_discs")
+        if paint_discs is None:
+            draw_discs(self.surface, centre, radius, angle, look, _RIM)
+            return
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         centre, radius, angle = _plain(centre), _plain(radius), _plain(angle)
         paint_discs(self._pixels(), centre, radius, angle, fill, rim, look.hatched, _RIM)
@@ -73,6 +76,9 @@ class PygameCanvas:
     def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
         """Draw boxes of the given widths and heights, each with a rim and a notch, or hatched."""
         paint_boxes = _painter("paint_boxes")
+        if paint_boxes is None:
+            draw_boxes(self.surface, centre, 0.5 * extent, angle, look, _RIM)
+            return
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         centre, half, angle = _plain(centre), _plain(0.5 * extent), _plain(angle)
         paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.hatched, _RIM)
@@ -82,15 +88,22 @@ class PygameCanvas:
     ) -> None:
         """Draw straight lines of one kind, with round ends; each may have an opacity of its own."""
         paint_lines = _painter("paint_lines")
+        shares = np.full(len(start), opacity) if isinstance(opacity, float) else _plain(opacity)
+        if paint_lines is None:
+            alike = np.tile(np.array(colour, np.uint8), (len(start), 1))
+            draw_strokes(self.surface, start, end, alike, np.full(len(start), width), shares)
+            return
         packed = self._colours.get(colour)
         if packed is None:
             packed = self._colours[colour] = int(self._packed(np.array([colour], np.uint8))[0])
-        shares = np.full(len(start), opacity) if isinstance(opacity, float) else _plain(opacity)
         paint_lines(self._pixels(), _plain(start), _plain(end), width, packed, shares)
 
     def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
         """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
         paint_strokes = _painter("paint_strokes")
+        if paint_strokes is None:
+            draw_strokes(self.surface, start, end, colour, width, np.ones(len(start)))
+            return
         paint = self._packed(colour)
         paint_strokes(self._pixels(), _plain(start), _plain(end), _plain(width), paint)
 
@@ -122,17 +135,18 @@ class PygameCanvas:
         painter(self.surface)
 
 
-@functools.cache
-def _painter(name: str) -> Any:
-    """Return a loop of the rasteriser, ready to be called.
+def _painter(name: str) -> Any | None:
+    """Return a loop of the rasteriser, ready to be called; ``None`` while it is to be interpreted.
 
-    numba is imported here and not above: words and bars are drawn before it is there.
+    That would take seconds a picture. numba is imported here and not above: words and bars are drawn before
+    it is there.
     """
     from physicslab.kernels import compile_kernels, raster
 
-    painter = getattr(raster, name)
-    compile_kernels((painter,))
-    return painter
+    painter: Any = getattr(raster, name)
+    if not painter.compiled:
+        compile_kernels((painter,))
+    return painter if painter.compiled else None
 
 
 def _plain(numbers: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from physicslab.ecs.fields import InvalidValue
-from physicslab.files.scene import SceneError, load_scene, save_scene
-from physicslab.view.controls.scene_files import new_scene_path, newest_scene
+from physicslab.ecs.text import printable
+from physicslab.files.new_scene import save_new_scene
+from physicslab.files.scene import SceneError, load_scene
+from physicslab.view.controls.scene_files import new_scene_paths, newest_scene
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -16,13 +18,12 @@ __all__ = ["open_scene", "reopen", "request_screenshot", "save", "study_error"]
 def save(world: World, window: Window) -> None:
     """Save the world to a new scene file where the program was started."""
     try:
-        path = new_scene_path(Path.cwd(), world.name)
-        save_scene(world, path)
+        path = save_new_scene(world, new_scene_paths(Path.cwd(), world.name))
     except (SceneError, OSError) as error:
         window.notify(f"The scene could not be saved: {error}", 6.0, failed=True)
     else:
         window.scene_file = path
-        window.notify(f"Saved {path}")
+        window.notify(f"Saved {printable(str(path))}")
 
 
 def reopen(world: World, window: Window) -> None:
@@ -49,7 +50,7 @@ def open_scene(window: Window, source: str | Path) -> None:
     window.next_world = opened
     if isinstance(source, Path):
         window.scene_file = source
-    window.notify(f"Opened {source if isinstance(source, Path) else opened.title}")
+    window.notify(f"Opened {printable(str(source)) if isinstance(source, Path) else opened.title}")
 
 
 def request_screenshot(world: World, window: Window) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from physicslab.ecs.text import printable
 from physicslab.scenes import SCENES
 from physicslab.view.controls import actions, file_actions
 from physicslab.view.controls.scene_files import scene_files
@@ -54,7 +55,8 @@ def _scenes(world: World, window: Window) -> list[Choice]:
         window.notify(f"Files could not be listed: {error}", failed=True)
         files = []
     built_in = [choice(scene.title, name) for name, scene in SCENES.items()]
-    saved = [Choice("Files in the working directory"), *(choice(path.name, path) for path in files)]
+    found = (choice(printable(path.name), path) for path in files)
+    saved = [Choice("Files in the working directory"), *found]
     return [Choice("Built-in scenes"), *built_in, *(saved if files else [])]
 
 

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
+import itertools
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
-__all__ = ["new_scene_path", "newest_scene", "scene_files"]
+from physicslab.files.new_scene import file_stem
+
+__all__ = ["new_scene_paths", "newest_scene", "scene_files"]
 
 _MARK = b"physicslab-scene/"
 """What the format of a scene file begins with."""
 
 
-def new_scene_path(directory: Path, name: str) -> Path:
-    """Return a path that no file has yet: the scene's name, as far as a file may bear it, and a number.
+def new_scene_paths(directory: Path, name: str) -> Iterator[Path]:
+    """Yield paths to save a scene under: its name, as far as a file may bear it, and a number from 1.
 
     A number at the end of the name is taken for one that was given here.
     """
-    stem = re.sub(r"[^\w.-]+", "-", re.sub(r"-\d+$", "", name)).strip("-.") or "scene"
-    number = 1
-    while (path := directory / f"{stem}-{number}.json").exists():
-        number += 1
-    return path
+    stem = file_stem(re.sub(r"-\d+$", "", name))
+    return (directory / f"{stem}-{number}.json" for number in itertools.count(1))
 
 
 def scene_files(directory: Path) -> list[Path]:

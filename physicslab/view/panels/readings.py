@@ -79,10 +79,18 @@ def method_lines(world: World) -> list[Line]:
         Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
         Line(world.plan.integrator.title, kind="remark"),
         Line(f"because: {world.plan.reason}", kind="remark"),
+        *_stepper_lines(world),
         *_division_lines(world),
         *(Line(f"{_plain(name)} is computed by Python: slower", kind="remark") for name in world.interpreted),
         *_collision_lines(world),
     ]
+
+
+def _stepper_lines(world: World) -> list[Line]:
+    stepper = world.stepper
+    if stepper is None or stepper.reason == world.plan.reason:
+        return [] if stepper is None else [Line(stepper.title, kind="remark")]
+    return [Line(stepper.title, kind="remark"), Line(f"because: {stepper.reason}", kind="remark")]
 
 
 def _division_lines(world: World) -> list[Line]:

@@ -1,0 +1,64 @@
+"""Words as they stand in a line: what can be printed, how long they may be, and names that differ."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Container
+
+__all__ = ["SHORT", "has_width", "is_line", "printable", "shortened", "unique_name"]
+
+SHORT = 60
+"""Characters of a value, a key or a name that a message shows."""
+
+
+def has_width(text: str) -> bool:
+    r"""Whether a text has a letter, sign or symbol that can be seen.
+
+    >>> has_width("a"), has_width("\u200b\u200d"), has_width(" ")
+    (True, False, False)
+    """
+    return any(unicodedata.category(c)[0] not in "CZM" or unicodedata.category(c) == "Co" for c in text)
+
+
+def is_line(text: str) -> bool:
+    r"""Whether a text has neither half surrogate pairs nor control characters nor breaks of lines.
+
+    >>> is_line("caf\u00e9"), is_line("a\nb"), is_line("\u2028")
+    (True, False, False)
+    """
+    if text.isprintable():  # as nearly every text is, and quick to find
+        return True
+    return not {unicodedata.category(c) for c in text} & {"Cc", "Cs", "Zl", "Zp"}
+
+
+def printable(text: str) -> str:
+    r"""Return a text with everything that a terminal would not print written as an escape.
+
+    >>> print(printable("a\x1b[2Jb"))
+    a\x1b[2Jb
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def shortened(text: str, length: int = SHORT) -> str:
+    """Return a text of at most ``length`` characters, the end of a longer one left out.
+
+    >>> shortened("x" * 1000, 8), shortened("drop", 8)
+    ('xxxxx...', 'drop')
+    """
+    return text if len(text) <= length else f"{text[: length - 3]}..."
+
+
+def unique_name(wanted: str, taken: Container[str]) -> str:
+    """Return ``wanted``, numbered if it is taken.
+
+    >>> unique_name("entity 3", ["entity 3", "floor"])
+    'entity 3 (2)'
+    """
+    name, count = wanted, 1
+    while name in taken:
+        count += 1
+        name = f"{wanted} ({count})"
+    return name

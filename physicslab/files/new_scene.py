@@ -1,0 +1,57 @@
+"""Scene files under names that nothing has yet."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+from physicslab.files.replace import create_file
+from physicslab.files.scene import scene_bytes
+from physicslab.world import World
+
+__all__ = ["file_stem", "save_new_scene"]
+
+_LONGEST = 100
+"""Bytes of the part of a file name that comes from a scene's name: systems allow 143 to 255 for the whole."""
+
+
+def file_stem(name: str) -> str:
+    """Return a scene's name as far as a file may bear it: without what paths are made of, and shortened.
+
+    >>> file_stem("a/b c"), file_stem("../.."), len(file_stem("x" * 1000))
+    ('a-b-c', 'scene', 100)
+    """
+    plain = re.sub(r"[^\w.-]+", "-", name[:_LONGEST])
+    return plain.encode("utf-8", "ignore")[:_LONGEST].decode("utf-8", "ignore").strip("-.") or "scene"
+
+
+def save_new_scene(world: World, paths: Iterable[Path]) -> Path:
+    """Save a world under the first of some names that nothing has, and return it: nothing is overwritten.
+
+    Of several programs that save at once under the same names, each gets a name of its own.
+
+    Parameters
+    ----------
+    world : World
+        What is saved.
+    paths : iterable of Path
+        The names in order; one that does not end.
+
+    Raises
+    ------
+    SceneError
+        If the world holds what no scene may.
+    OSError
+        If the file cannot be written.
+    """
+    content: bytes | None = None
+    for path in paths:
+        if content is None:
+            content = scene_bytes(world, str(path))
+        try:
+            create_file(path, content)
+        except FileExistsError:
+            continue
+        return path
+    raise FileExistsError("every name is taken")

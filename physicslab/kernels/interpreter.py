@@ -1,0 +1,268 @@
+"""Runs kernels as the plain Python that they are written in, until they are compiled or for a debugger.
+
+Every kernel has a twin: the same code, in which every kernel and inner function that it calls is a twin too,
+literals are np.float64, and what Python has not is stood in for (:mod:`physicslab.kernels.stand_ins`). Each
+operation is rounded as in compiled code, so both give the same bits, but for what ``@inlined_loosely`` sums
+in whatever order is fastest: gravity of more bodies than :data:`physicslab.kernels.forces.gravity.FEW`.
+
+With the environment variable ``PHYSICSLAB_INTERPRET=1`` nothing is compiled, and breakpoints in kernels hold;
+:func:`interpreted` does the same within a ``with`` block.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numba import types
+from numba.extending import is_jitted
+from numba.np.numpy_support import as_dtype
+from numpy.typing import NDArray
+
+from physicslab.kernels import compiler, loading
+from physicslab.kernels.stand_ins import Records
+from physicslab.kernels.twins import Overdue, patience, twin_of
+
+__all__ = [
+    "compile_all_the_same",
+    "entry_of",
+    "interpreted",
+    "is_forced",
+    "limit",
+    "prepare",
+    "stand_in",
+    "twin_of",
+    "unlimited",
+]
+
+_forced = os.environ.get("PHYSICSLAB_INTERPRET", "0") not in ("", "0")
+
+
+def is_forced() -> bool:
+    """Whether kernels are to be interpreted, be they compiled or not."""
+    return _forced
+
+
+def limit(seconds: float, compile_now: Callable[[Any], None]) -> None:
+    """Let no kernel be interpreted for much longer than so many seconds at a time, until :func:`unlimited`.
+
+    One that is gets back what its arguments held, ``compile_now`` is called with it and must load it, and it
+    is called again: so a method that chooses its steps, or a thousand impacts within one, stop no window.
+    """
+    global _limit, _compile_now
+    _limit, _compile_now = seconds, compile_now
+
+
+def unlimited() -> None:
+    """Let every kernel that is interpreted run for as long as it takes."""
+    limit(math.inf, _load)
+
+
+def _load(jitted: Any) -> None:
+    """Load a kernel that has been interpreted for too long, where nothing else is to be done about it."""
+    loading.load(jitted)
+
+
+_limit: float = math.inf
+_compile_now: Callable[[Any], None] = _load
+
+
+def compile_all_the_same() -> None:
+    """Let kernels be compiled in this process whatever the environment says: it is there for that."""
+    global _forced
+    _forced = False
+
+
+def stand_in(jitted: Any) -> None:
+    """Let a kernel's twin run wherever it is called, until it is compiled.
+
+    The kernel's whole tree is Python then, and native code once :func:`physicslab.kernels.load` has loaded
+    it; a call that is under way ends as it began. It costs a compiled kernel nothing.
+
+    Parameters
+    ----------
+    jitted : kernel
+        One that is not compiled; of one that is, nothing changes.
+    """
+    if _is_dispatcher(jitted):
+        # What numba's dispatcher calls where no compiled signature fits; it then calls what is returned.
+        entry = entry_of(jitted)
+        jitted._compile_for_args = lambda *arguments: entry
+    else:
+        jitted.stands_in = True
+
+
+@contextmanager
+def interpreted() -> Iterator[None]:
+    """Let every kernel that is called within a ``with`` block run as Python: a debugger can step into it.
+
+    Kernels that are compiled are set aside, and are there again at the end.
+
+    Examples
+    --------
+    >>> from physicslab import load_scene
+    >>> with interpreted():
+    ...     load_scene("drop").step()
+    """
+    global _forced
+    before, _forced = _forced, True
+    aside = {jitted: dict(jitted.overloads) for jitted in compiler.KERNELS if jitted.compiled}
+    for jitted in aside:
+        _set_aside(jitted)
+    for jitted in compiler.KERNELS:
+        stand_in(jitted)
+    try:
+        yield
+    finally:
+        _forced = before
+        for jitted in compiler.KERNELS:
+            _stand_back(jitted)
+        for jitted, overloads in aside.items():
+            _take_back(jitted, overloads)
+
+
+def _is_dispatcher(value: Any) -> bool:
+    """Whether something is what numba makes of a function, and not a force that is called by its address."""
+    return bool(is_jitted(value))
+
+
+def _stand_back(jitted: Any) -> None:
+    """Let a kernel be compiled where it is called, as it was before :func:`stand_in`."""
+    if _is_dispatcher(jitted):
+        loading.at_first_call(jitted)
+    else:
+        jitted.stands_in = False
+
+
+def _set_aside(jitted: Any) -> None:
+    """Let a kernel have no compiled code."""
+    jitted.compiled = False
+    jitted.overloads.clear()
+    if _is_dispatcher(jitted):
+        jitted._reset_overloads()
+        jitted._can_compile = True
+
+
+def _take_back(jitted: Any, overloads: dict[Any, Any]) -> None:
+    """Let a kernel have its compiled code again."""
+    for arguments, code in overloads.items():
+        if _is_dispatcher(jitted):
+            jitted.add_overload(code)
+        else:
+            jitted.overloads[arguments] = code
+    jitted.disable_compile()
+    jitted.compiled = True
+
+
+def prepare() -> None:
+    """Make the twins of all kernels there are, which the first that is called would else wait for."""
+    for jitted in compiler.KERNELS:
+        twin_of(jitted)
+
+
+@cache
+def entry_of(jitted: Any) -> Callable[..., Any]:
+    """Return what Python calls in place of a kernel: its twin, among values of Python's."""
+    signature = jitted.declared_signature
+    ways_in = [_way_in(kind) for kind in signature.args]
+    way_out = _way_out(signature.return_type)
+
+    def enter(*arguments: Any) -> Any:
+        try:
+            taken = [take(argument) for take, argument in zip(ways_in, arguments, strict=True)]
+        except (TypeError, ValueError) as error:
+            raise TypeError(f"No matching definition of {jitted.__name__}: {error}") from error
+        with np.errstate(all="ignore"):
+            if _limit == math.inf or _forced:
+                return way_out(twin_of(jitted)(*taken))
+            kept = [(array, array.copy()) for array in _arrays(arguments)]
+            try:
+                return way_out(_in_time(twin_of(jitted), taken))
+            except Overdue:
+                for array, copy in kept:
+                    array[...] = copy
+        _compile_now(jitted)
+        return jitted(*arguments)
+
+    return enter
+
+
+def _in_time(twin: Callable[..., Any], taken: list[Any]) -> Any:
+    """Call a twin, which raises Overdue if it takes longer than it may."""
+    before, patience.until = patience.until, time.perf_counter() + _limit
+    try:
+        return twin(*taken)
+    finally:
+        patience.until = before
+
+
+def _arrays(arguments: tuple[Any, ...]) -> Iterator[NDArray[Any]]:
+    """Yield the arrays among arguments, and within tuples of them."""
+    for argument in arguments:
+        if isinstance(argument, np.ndarray):
+            yield argument
+        elif isinstance(argument, tuple):
+            yield from _arrays(argument)
+
+
+def _way_in(kind: Any) -> Callable[[Any], Any]:
+    """Return what makes of an argument what a twin takes, and refuses what is of another type."""
+    if isinstance(kind, types.Array):
+        return _way_of_arrays(kind)
+    if isinstance(kind, types.BaseTuple):
+        ways, make = [_way_in(part) for part in _parts(kind)], _maker(kind)
+        return lambda parts: make([take(part) for take, part in zip(ways, parts, strict=True)])
+    if isinstance(kind, types.Float):
+        return _checked(float, np.float64)
+    if isinstance(kind, types.Boolean):
+        return _checked((bool, np.bool_), bool)
+    return _checked((int, np.integer), int)
+
+
+def _parts(kind: Any) -> tuple[Any, ...]:
+    return tuple(kind)
+
+
+def _maker(kind: Any) -> Callable[[list[Any]], Any]:
+    """Return what makes a tuple of a type, with names where it has them."""
+    named = getattr(kind, "instance_class", None)
+    return tuple if named is None else named._make
+
+
+def _checked(allowed: Any, make: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    def take(number: Any) -> Any:
+        if not isinstance(number, allowed):
+            raise TypeError(f"{number!r} is no {make.__name__}")
+        return make(number)
+
+    return take
+
+
+def _way_of_arrays(kind: Any) -> Callable[[Any], Any]:
+    """Return what lets arrays of one type pass, those of records as :class:`Records`."""
+    dtype, dimensions = as_dtype(kind.dtype), kind.ndim
+    wrap = Records if dtype.names else None
+
+    def take(array: Any) -> Any:
+        right = isinstance(array, np.ndarray) and array.dtype == dtype and array.ndim == dimensions
+        if not right or not array.flags.c_contiguous:
+            raise TypeError(f"an array is no {kind}")
+        return array if wrap is None else wrap(array)
+
+    return take
+
+
+def _way_out(kind: Any) -> Callable[[Any], Any]:
+    """Return what makes of a twin's answer what the compiled kernel returns."""
+    if isinstance(kind, types.BaseTuple):
+        ways, make = [_way_out(part) for part in _parts(kind)], _maker(kind)
+        return lambda parts: make([give(part) for give, part in zip(ways, parts, strict=True)])
+    if isinstance(kind, types.NoneType):
+        return lambda _: None
+    return float if isinstance(kind, types.Float) else bool if isinstance(kind, types.Boolean) else int

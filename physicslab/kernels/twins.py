@@ -1,0 +1,114 @@
+"""Kernels as plain Python: the same code, in which all that it calls is Python too."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from functools import cache
+from importlib import import_module
+from types import FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+from numba.core.extending import _Intrinsic
+from numba.extending import is_jitted
+
+from physicslab.kernels.stand_ins import arithmetic, math_functions, stand_in_of
+
+__all__ = ["Overdue", "endless", "patience", "twin_of"]
+
+_VECTORS = "physicslab.kernels.wide.interpreted"
+"""Where the stand-ins of vectors are: they are imported when the first kernel is interpreted."""
+_endless: set[Any] = set()
+
+
+def endless[F: Callable[..., Any]](function: F) -> F:
+    """Mark what a loop calls each time of which nothing says how often it runs.
+
+    There the time is looked at where a kernel may not be interpreted for long; compiled code is the same.
+    """
+    _endless.add(function)
+    return function
+
+
+class Overdue(Exception):
+    """A kernel is interpreted for longer than it may be."""
+
+
+class _Patience:
+    """Until when the kernel that is interpreted may go on, by ``time.perf_counter``."""
+
+    until = math.inf
+
+
+patience = _Patience()
+
+
+@cache
+def twin_of(jitted: Any) -> Callable[..., Any]:
+    """Return a kernel, or an inner function, as plain Python that calls nothing compiled.
+
+    It takes what kernels give each other: records as :class:`physicslab.kernels.stand_ins.Records`, numbers
+    as np.float64, eight numbers as an array (8,); warnings of NumPy's are the caller's to silence.
+    """
+    import_module(_VECTORS)
+    function = jitted.py_func
+    code = function.__code__
+    constants = tuple(_of_float64(constant) for constant in code.co_consts)
+    names = _names_of(function.__globals__)
+    code = code.replace(co_consts=constants)
+    twin = FunctionType(code, names, function.__name__, function.__defaults__, function.__closure__)
+    return _timed(twin) if jitted in _endless else twin
+
+
+def _timed(twin: Callable[..., Any]) -> Callable[..., Any]:
+    def call(*arguments: Any) -> Any:
+        if time.perf_counter() > patience.until:
+            raise Overdue
+        return twin(*arguments)
+
+    return call
+
+
+_modules: dict[int, dict[str, Any]] = {}
+"""What the twins of each module know, by where the module's own names are."""
+
+
+def _names_of(module: dict[str, Any]) -> dict[str, Any]:
+    """Return the names of a module as its functions' twins know them."""
+    names = _modules.get(id(module))
+    if names is None:
+        names = _modules[id(module)] = {**module, **arithmetic}
+        for name, value in module.items():
+            names[name] = _counterpart(value)
+    return names
+
+
+class _TwinModule:
+    """A module of kernels as twins know it."""
+
+    def __init__(self, names: dict[str, Any]) -> None:
+        self.__dict__ = names
+
+
+def _counterpart(value: Any) -> Any:
+    """Return what a twin sees in place of something that a kernel knows by name."""
+    if value is math:
+        return math_functions
+    if isinstance(value, ModuleType) and value.__name__.startswith(f"{__package__}."):
+        return _TwinModule(_names_of(vars(value)))
+    if is_jitted(value):
+        return twin_of(value)
+    if isinstance(value, _Intrinsic):
+        return stand_in_of(value)
+    return _of_float64(value)
+
+
+def _of_float64(value: Any) -> Any:
+    """Return a constant with np.float64 in place of every float: unlike that it divides by zero."""
+    if type(value) is float:
+        return np.float64(value)
+    if type(value) is tuple:
+        return tuple(_of_float64(part) for part in value)
+    return value

@@ -1,0 +1,40 @@
+"""Which body to name where a method finds no step: the one that moves or speeds up fastest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from physicslab.components import Velocity
+from physicslab.state.state import State
+from physicslab.systems.system import ForceSystem, Stage
+
+__all__ = ["fastest_body"]
+
+
+@np.errstate(all="ignore")
+def fastest_body(state: State, forces: Iterable[ForceSystem]) -> str:
+    """Return the label of the body whose speed, with what forces add in a step, is largest or not finite.
+
+    ``bodies.force`` and ``.torque`` hold the forces at the present state afterwards; nothing that moves is
+    changed. Row 0, which is the world itself, is never meant.
+
+    Parameters
+    ----------
+    state : State
+        In which something has a Velocity; its context is active.
+    forces : iterable of ForceSystem
+        Those that act.
+    """
+    bodies, velocity = state.bodies, state.table(Velocity)
+    bodies.force[:] = 0.0
+    bodies.torque[:] = 0.0
+    for force in forces:
+        state.compile(force.kernels_for(state))
+        getattr(force, force.marked()[Stage.FORCE])(state, 0.0)
+    gained = np.hypot(bodies.force[:, 0], bodies.force[:, 1]) * bodies.inverse_mass * state.simulation.dt
+    speeds = np.hypot(velocity["linear"][:, 0], velocity["linear"][:, 1]) + gained
+    speeds = np.where(np.isfinite(speeds), speeds, np.inf)
+    speeds[~velocity.present] = -1.0
+    return state.label_of_row(int(np.argmax(speeds)))

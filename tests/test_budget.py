@@ -1,0 +1,161 @@
+"""Runs that take long or leave the range of numbers: stopped, with what was reached and where."""
+
+import csv
+import json
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from physicslab.cli import main
+from physicslab.commands.step_watch import StepWatch
+from physicslab.ecs.config import SimulationConfig
+from physicslab.files.scene import load_scene
+from physicslab.world import World
+
+BALL: dict[str, Any] = {
+    "id": "ball", "Transform": {"position": [0, 2]}, "Velocity": {}, "Mass": {"mass": 2},
+    "Shape": {"kind": "circle", "radius": 0.5},
+}  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_run_stops_when_its_time_is_up_and_keeps_what_it_reached(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    load_scene("gas").run(steps=2)  # kernels are there
+    start = time.perf_counter()
+    command = ["run", "gas", "--seconds", "100000", "--at-most", "1", "--json", "o.json", "--csv", "o.csv"]
+    assert main(command) == 1
+    assert 1.0 < time.perf_counter() - start < 15.0, "the rest is loading and writing"
+    said = capsys.readouterr()
+    report = json.loads(Path("o.json").read_text())
+    assert said.err == f"physicslab: gas: {report['stopped']}\n" and said.out.startswith("gas: ")
+    reached = f"at t = {report['time']:.9g} s, after {report['steps']} of 6000000 steps"
+    assert report["stopped"] == f"stopped after 1 s of wall clock (--at-most) {reached}"
+    with Path("o.csv").open(newline="") as file:
+        assert float(list(csv.reader(file))[-1][0]) == report["time"] > 0.0
+
+
+def test_a_run_within_its_budget_is_as_any_other(capsys: pytest.CaptureFixture[str]) -> None:
+    load_scene("stack").run(seconds=3.0)  # kernels are there: a first call that loads one is slow
+    for budget in ([], ["--at-most", "100"]):
+        assert main(["run", "stack", "--seconds", "3", "--json", f"{len(budget)}.json", *budget]) == 0
+    assert capsys.readouterr().err == ""
+    one, two = (json.loads(Path(name).read_text()) for name in ("0.json", "2.json"))
+    assert one["entities"] == two["entities"] and one["steps"] == two["steps"] == 180
+    assert "stopped" not in two
+
+
+@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "soon"])
+def test_a_budget_that_is_no_time_is_refused(value: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "drop", "--at-most", value]) == 2
+    assert f"argument --at-most: '{value}': must be a finite number > 0 s" in capsys.readouterr().err
+
+
+def test_a_slow_step_is_told_once_with_its_place_and_its_reason() -> None:
+    world = World(simulation=SimulationConfig(collisions="exact"))
+    world.synchronise()
+    watch = StepWatch(world)
+    assert watch.note(1, 0.5) == "" and not watch.warnings, "half a second is nothing to speak of"
+    world.time, world.force_evaluations = 0.5, 40_000
+    line = watch.note(2, 5.0)
+    assert line.startswith("slow: the step to t = 0.5 s took 2.5 s: forces change so fast that")
+    assert "20000" in line.replace("2e+04", "20000")
+    assert watch.note(1, 7.0) == "", "one line is enough"
+    (advice,) = watch.warnings
+    assert advice.value == 7.0 and "there is much to compute" in advice.what
+
+
+def test_a_storm_of_impacts_is_called_so() -> None:
+    world = load_scene("drop")
+    world.synchronise()
+    watch = StepWatch(world)
+    world.collisions += 5_000
+    assert "one impact follows another (5e+03 impacts)" in watch.note(1, 2.0)
+    (advice,) = watch.warnings
+    assert advice.setting == 'simulation.collisions = "step"'
+
+
+def test_run_says_where_it_is_slow(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stepping = World.stepping
+
+    def sluggish(world: World, **options: Any) -> Iterator[int]:
+        for done in stepping(world, **options):
+            if done == 3:
+                time.sleep(1.1)
+            yield done
+
+    monkeypatch.setattr(World, "stepping", sluggish)
+    assert main(["run", "stack", "--steps", "5", "--json", "o.json"]) == 0
+    line = capsys.readouterr().err
+    assert (
+        line.startswith("physicslab: stack: slow: the step to t = 0.05 s took 1.") and line.count("\n") == 1
+    )
+    advice = json.loads(Path("o.json").read_text())["advice"]
+    assert [found["what"] for found in advice] == ["a step takes long: there is much to compute"]
+
+
+OVERFLOWS = [
+    ({"Velocity": {"linear": [1e200, 0]}}, "ball: Velocity.linear = [1e+200, 0] m/s: its kinetic energy"),
+    (
+        {"Velocity": {"angular": 1e170}},
+        "ball: Velocity.angular = 1e+170 rad/s: its kinetic energy of rotation",
+    ),
+    (
+        {"Transform": {"position": [0, 1e299]}, "Velocity": {"linear": [1e12, 0]}},
+        "ball: Transform.position = [0, 1e+299] m: its angular momentum about the origin",
+    ),
+]
+
+
+@pytest.mark.parametrize(("changes", "line"), OVERFLOWS)
+def test_a_sum_that_is_not_finite_names_its_entity_and_its_time(
+    changes: dict[str, Any], line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = {
+        "format": "physicslab-scene/1",
+        "entities": [{"id": "other", "Transform": {}}, {**BALL, **changes}],
+    }
+    Path("far.json").write_text(json.dumps(scene))
+    assert main(["run", "far.json"]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith(
+        f"physicslab: far: {line} is not finite at t = 0 s; the last good state, of t = 0 s"
+    )
+
+
+def test_the_time_of_an_overflow_is_when_it_came(capsys: pytest.CaptureFixture[str]) -> None:
+    scene = {
+        "format": "physicslab-scene/1", "entities": [BALL],
+        "physics": {"gravity": [1e153, 0.0]}, "simulation": {"dt": 1.0},
+    }  # fmt: skip
+    Path("fall.json").write_text(json.dumps(scene))
+    assert main(["run", "fall.json", "--seconds", "1000"]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("physicslab: fall: ball: ") and " is not finite at t = " in said
+    when = float(said.split(" at t = ")[1].split(" s;")[0])
+    # v = g t, and m v^2 / 2 leaves the numbers at 1.34e154 m/s.
+    assert 13.4 < when < 16.0
+
+
+@pytest.mark.parametrize("length", [240, 900])
+def test_a_long_name_is_shortened_in_messages(length: int, capsys: pytest.CaptureFixture[str]) -> None:
+    fast = {**BALL, "Velocity": {"linear": [1e200, 0]}}
+    scene = {"format": "physicslab-scene/1", "name": "x" * length, "entities": [fast]}
+    Path("long.json").write_text(json.dumps(scene))
+    assert main(["run", "long.json"]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"physicslab: {'x' * 57}...: ball: ") and "-before-divergence.json" in said
+    Path("long.json").write_text(json.dumps({**scene, "name": "x" * 10**7}))
+    assert main(["run", "long.json"]) == 2
+    assert len(capsys.readouterr().err) < 300

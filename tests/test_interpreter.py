@@ -1,0 +1,427 @@
+"""Kernels as plain Python: the bits of compiled code, until that is there, and for a debugger."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pygame
+import pytest
+from attraction import attraction
+from both_tiers import compared, name_of, same_bits
+from desk import bits
+
+from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.desktop import compiling
+from physicslab.desktop.small_scenes import LONGEST, SmallScenes
+from physicslab.diagnostics.energy import measure_energy
+from physicslab.ecs.config import WindowConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import load_scene, read_scene, write_scene
+from physicslab.kernels import KERNELS, ask_before_compiling, compile_kernels, interpreter, motion, raster
+from physicslab.kernels.events.events import run_events
+from physicslab.kernels.forces import gravity
+from physicslab.kernels.forces.pairwise import attract_pairwise
+from physicslab.kernels.forces.tree_pull import LARGEST_ERROR, attract_by_tree
+from physicslab.kernels.interpreter import interpreted, stand_in, twin_of
+from physicslab.kernels.ode.dop853 import dop853
+from physicslab.kernels.stand_ins import math_functions
+from physicslab.kernels.warm import Warmup
+from physicslab.systems.system import ForceSystem
+from physicslab.view.canvas.canvas import Look
+from physicslab.view.canvas.display import Display
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.world import World
+
+ROOT = Path(__file__).parent.parent
+Entity = dict[str, Any]
+
+
+def scene(*entities: Entity, physics: Entity | None = None, **simulation: object) -> World:
+    laws = {"gravity_mode": "linear", **(physics or {})}
+    document = {"format": "physicslab-scene/1", "physics": laws, "simulation": simulation}
+    named = [{"id": f"e{i}", **entity} for i, entity in enumerate(entities)]
+    return read_scene({**document, "entities": named})
+
+
+def body(x: float, y: float, shape: str = "", **more: object) -> Entity:
+    """Return an entity of a scene at (x, y) [m]: a disc, a box or a point, which moves."""
+    shapes = {"disc": {"kind": "circle", "radius": 0.5}, "box": {"kind": "box", "width": 1, "height": 1}}
+    parts: Entity = {"Transform": {"position": [x, y]}, "Velocity": {}, "Mass": {"mass": 1.5}}
+    if shape:
+        parts |= {"Shape": shapes[shape], "Material": {"friction": 0.5, "restitution": 0.2}}
+    return parts | more
+
+
+FLOOR: Entity = {
+    "Transform": {"position": [0, -0.5]}, "Shape": {"kind": "box", "width": 40, "height": 1},
+    "Material": {"friction": 0.6, "restitution": 0.3},
+}  # fmt: skip
+
+
+def settled(shape: str, struck: bool = True) -> World:
+    """Return so many discs or boxes in a heap that their contacts are solved eight at a time."""
+    places = [(1.001 * (i % 9) - 4.0, 0.5 + 0.999 * (i // 9)) for i in range(63)]
+    ball = body(0.3, 13.0, "disc", Velocity={"linear": [0.5, -6.0]})
+    heap = [*(body(x, y, shape) for x, y in places), *([ball] if struck else [])]
+    return scene(FLOOR, *heap, physics={"bounds": [-4.6, -1, 4.6, 20]})
+
+
+def heaps() -> None:
+    for shape in ("disc", "box"):
+        world = settled(shape)
+        world.run(steps=30)
+        assert world.contacts.wide.filled > 0
+        for _ in range(40):  # through every stage by itself, while a ball strikes the heap
+            world.step(0.015)
+        read_scene(write_scene(world)).step(0.01)
+        world.component(7, Mass).mass = 3.0
+        world.step()
+        assert world.contacts.max_penetration >= 0.0
+    quiet = settled("box", struck=False)
+    quiet.run(seconds=4.0)
+    assert quiet.sleep.count > 0
+
+
+def heavy_loads() -> None:
+    heavy = body(0.0, 1.5, "box", Mass={"mass": 500.0}, Drag={"linear": 0.1})
+    world = scene(FLOOR, body(0.0, 0.5, "box"), heavy, collisions="step")
+    for _ in range(3):
+        world.step(0.01)
+
+
+def sleepers() -> None:
+    world = scene(FLOOR, *(body(x, 0.5, "box") for x in (0.0, 1.0, 5.0)), collisions="step")
+    world.run(seconds=0.4)
+    for _ in range(30):
+        world.step()
+    assert world.sleep.count == 3
+    world.component(2, Transform).position = Vector2(0.0, 0.6)
+    world.run(steps=3)
+    world.spawn(Transform((5.0, 1.4)), Velocity((0.0, -1.0)), Mass(1.0), Shape.circle(0.4))
+    world.step()
+    world.run(steps=4)
+
+
+def planets() -> None:
+    rocks = [body(3.0 * math.cos(i), 3.0 * math.sin(2 * i)) for i in range(9)]
+    for law in ("clamp", "plummer"):
+        world = scene(*rocks, physics={"gravity_mode": "planet", "softening": 0.1, "softening_law": law})
+        world.run(steps=2)
+        measure_energy(world)
+    touching = [body(2.0 * i, 0.0, "disc") for i in range(5)]
+    world = scene(*touching, physics={"gravity_mode": "planet"})
+    world.step()
+    assert max(
+        system.strongest_rate(world) for system in world.schedule.running if isinstance(system, ForceSystem)
+    )
+    world.run(steps=2)
+    measure_energy(world)
+
+
+def smooth_motion() -> None:
+    chain: list[Entity] = []
+    for i in range(4):
+        end = {"b": f"e{i - 1}"} if i else {"anchor_b": [0.0, 5.0]}
+        spring = {"a": f"e{i}", "anchor_a": [0.1, 0.05], "stiffness": 300.0, "damping": 0.5}
+        chain.append(body(0.5 * i, 4.0, Spring={**spring, **end}, Drag={"linear": 0.1, "quadratic": 0.2}))
+    names = "leapfrog", "symplectic_euler", "rk4", "blanes_moan", "dop853", "implicit_midpoint"
+    for name in names:
+        world = scene(*chain, physics={"linear_damping": 0.1}, integrator=name)
+        world.run(steps=2)
+        measure_energy(world)
+    still = body(0.0, 1.0, Spring={"a": "e0", "anchor_b": [0, 0], "rest_length": 0.0, "stiffness": 9.0})
+    scene(still, integrator="exact").run(steps=2)
+
+
+def forces_by_hand() -> None:
+    """Call what only other kernels call, or none any more."""
+    random, n = np.random.default_rng(2), 4
+    vectors = [random.normal(size=(n, 2)) for _ in range(5)]
+    numbers = [random.uniform(0.5, 2.0, n) for _ in range(4)]
+    gravity.uniform_gravity(vectors[0], numbers[0], numbers[1], 0.5, -9.81)
+
+
+def drawn() -> None:
+    pixels, two = np.full((24, 40), 0x102030, np.uint32), np.array((0x40A0F0, 0x8090A0), np.uint32)
+    centre, turned = np.array(((9.3, 8.1), (30.0, 15.5))), np.array((0.4, 2.0))
+    sizes, hatched = np.array(((6.5, 4.0), (9.0, 9.5))), np.array((False, True))
+    rims = two[::-1].copy()
+    raster.paint_discs(pixels, centre, sizes[:, 0].copy(), turned, two, rims, hatched, 1.6)
+    raster.paint_boxes(pixels, centre, sizes, turned, two, rims, hatched, 1.6)
+    raster.paint_lines(pixels, centre, sizes, 2.5, 0x123456, np.array((1.0, 0.3)))
+    raster.paint_strokes(pixels, centre - 12.0, sizes + 30.0, np.array((1.0, 7.0)), two)
+    assert len(np.unique(pixels)) > 20
+
+
+def built_in() -> None:
+    for name in ("drop", "stack", "sandbox", "slope", "bounces", "dominoes", "pendulum", "newtons_cradle"):
+        world = load_scene(name)
+        for _ in range(6):
+            world.step()
+        world.run(steps=6)
+
+
+def test_every_kernel_gives_the_same_bits_as_python() -> None:
+    calls: Counter[str] = Counter()
+    for drive in (built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, forces_by_hand, drawn):
+        with compared(calls):
+            drive()
+    own = {name_of(jitted) for jitted in KERNELS if jitted.__module__.startswith("physicslab.")}
+    assert own - set(calls) == set()
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (1.0, np.nextafter(1.0, 2.0).item()), (0.0, -0.0), (1, 1.0), ((1, 2.0), (1, 3.0)),
+        (np.ones(2), np.array((1.0, np.nextafter(1.0, 0.0)))), (np.arange(2), np.array((0, 2))),
+    ],
+)  # fmt: skip
+def test_the_comparison_notices_a_single_bit(one: Any, other: Any) -> None:
+    same_bits("it", one, one)
+    with pytest.raises(AssertionError):
+        same_bits("it", one, other)
+
+
+@pytest.mark.parametrize("name", ["drop", "sandbox", "pendulum", "two_planets"])
+def test_a_run_that_changes_tiers_half_way_ends_in_the_same_bits(name: str) -> None:
+    expected, world = load_scene(name), load_scene(name)
+    for _ in range(8):
+        expected.step()
+    with interpreted():
+        for _ in range(4):
+            world.step()
+    for _ in range(4):
+        world.step()
+    assert bits(world) == bits(expected)
+    assert motion.derive_masses.compiled  # type: ignore[attr-defined]
+
+
+SWITCHING = """
+import numpy as np
+from physicslab.components import Transform
+from physicslab.files.scene import load_scene
+from physicslab.kernels import KERNELS, ask_before_compiling, load, motion
+ask_before_compiling(lambda missing: missing)
+world = load_scene("slope")
+for _ in range(5):
+    world.step()
+assert not any(jitted.compiled for jitted in KERNELS)
+load(motion.drift)
+load(motion.derive_masses)
+for _ in range(5):
+    world.step()
+print(sum(jitted.compiled for jitted in KERNELS), world.table(Transform)["position"].tobytes().hex())
+"""
+
+
+def test_kernels_are_interpreted_until_they_are_loaded(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", SWITCHING], env={**os.environ, "XDG_CACHE_HOME": str(tmp_path)},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    loaded, places = done.stdout.split()
+    world = load_scene("slope")
+    for _ in range(10):
+        world.step()
+    assert loaded == "2"
+    assert places == world.table(Transform)["position"].tobytes().hex()
+
+
+def test_the_environment_forbids_to_compile(tmp_path: Path) -> None:
+    command = [sys.executable, "main.py", "run", "drop", "--steps", "20", "--json", "-"]
+    documents = []
+    for forced in ("0", "1"):
+        caches = {"XDG_CACHE_HOME": str(tmp_path)} if forced == "1" else {}
+        environment = {**os.environ, "PHYSICSLAB_INTERPRET": forced, **caches}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True, cwd=ROOT)
+        documents.append(json.loads(done.stdout))
+    assert documents[0]["entities"] == documents[1]["entities"]
+    assert documents[0]["energy"] == documents[1]["energy"]
+    assert not list(tmp_path.rglob("*.nbc"))
+
+
+def orbit() -> World:
+    sun = body(0.0, 0.0, Mass={"mass": 50.0})
+    earth = body(3.0, 0.0, Velocity={"linear": [0.0, 4.0]})
+    return scene(sun, earth, physics={"gravity_mode": "planet"}, integrator="dop853")
+
+
+@pytest.mark.parametrize(("make", "jitted"), [(lambda: load_scene("drop"), run_events), (orbit, dop853)])
+def test_what_would_be_interpreted_for_too_long_is_compiled_first(
+    make: Callable[[], World], jitted: Any
+) -> None:
+    expected, world, late = make(), make(), []
+    for _ in range(3):
+        expected.step()
+    overloads = dict(jitted.overloads)
+
+    def compile_now(kernel: Any) -> None:
+        late.append(kernel)
+        interpreter._take_back(kernel, overloads)
+
+    world.synchronise()
+    interpreter._set_aside(jitted)
+    stand_in(jitted)
+    interpreter.limit(0.0, compile_now)
+    ask_before_compiling(lambda missing: missing)
+    try:
+        for _ in range(3):
+            world.step()
+    finally:
+        ask_before_compiling(None)
+        interpreter.unlimited()
+        interpreter._stand_back(jitted)
+    assert late == [jitted]
+    assert bits(world) == bits(expected)
+
+
+@pytest.mark.parametrize(
+    "odd", [np.ones(3, np.float32), np.ones(3, np.int64), np.ones(6)[::2], np.ones((2, 2)), [1.0, 2.0]]
+)
+def test_arguments_of_another_type_are_refused_as_they_are_by_compiled_code(odd: Any) -> None:
+    vectors = np.ones((3, 2))
+    with interpreted():
+        motion.clear(vectors, np.ones(3))
+        with pytest.raises(TypeError, match="No matching definition of clear"):
+            motion.clear(vectors, odd)
+    assert not vectors.any()
+
+
+def test_a_debugger_finds_the_lines_of_a_kernel() -> None:
+    twin: Any = twin_of(motion.kick)
+    original = motion.kick.py_func  # type: ignore[attr-defined]
+    assert twin.__code__.co_filename == original.__code__.co_filename
+    assert list(twin.__code__.co_lines()) == list(original.__code__.co_lines())
+
+
+LOOSE = 1e-13
+"""Share of the largest pull that sums in another order may differ by: two units in the last place of each of
+a hundred or so terms."""
+
+
+@pytest.mark.parametrize("plummer", [False, True])
+def test_attraction_of_many_differs_by_rounding_alone(plummer: bool) -> None:
+    n, random = gravity.FEW + 30, np.random.default_rng(3)
+    position, mass = random.normal(size=(n, 2)), random.uniform(0.5, 2.0, n)
+    rows, forces = np.arange(n), np.zeros((2, n, 2))
+    laws = (1.0, 0.05, plummer)
+    compile_kernels((gravity.planet_potential,))
+    forces[0] = attraction(position, mass, *laws)
+    compiled = gravity.planet_potential(position, mass, rows, *laws)
+    with interpreted():
+        forces[1] = attraction(position, mass, *laws)
+        python = gravity.planet_potential(position, mass, rows, *laws)
+    assert not np.array_equal(forces[0], np.zeros((n, 2)))
+    assert np.abs(forces[0] - forces[1]).max() <= LOOSE * np.abs(forces[0]).max()
+    assert python == pytest.approx(compiled, rel=LOOSE)
+
+
+def test_the_tree_is_as_near_as_stated_when_interpreted() -> None:
+    n, random = 90, np.random.default_rng(4)
+    x, y, mass = random.normal(size=n), random.normal(size=n), random.uniform(0.5, 2.0, n)
+    direct, tree = np.zeros((2, n)), np.zeros((2, n))
+    with np.errstate(all="ignore"):
+        twin_of(attract_pairwise)(x, y, mass, np.float64(0.0), False, *direct)
+        twin_of(attract_by_tree)(x, y, mass, np.float64(0.0), False, *tree)
+    pulls = np.hypot(*direct)
+    assert np.hypot(*(tree - direct)).max() < LARGEST_ERROR * pulls.mean()
+
+
+def test_math_gives_what_compiled_code_gives_where_python_raises() -> None:
+    with np.errstate(all="ignore"):
+        assert math.isnan(math_functions.sqrt(-1.0)) and math.isnan(math_functions.sin(math.inf))
+        assert math_functions.exp(1e4) == math.inf and math_functions.log(0.0) == -math.inf
+        assert math_functions.pow(0.0, -1.0) == math.inf
+    assert math_functions.floor(math.nan) == -(2**63) and math_functions.floor(-1.5) == -2
+
+
+# ---- the window while kernels are compiled -----------------------------------------------------------------
+
+
+def test_pictures_are_drawn_before_the_painters_are_there() -> None:
+    surface = pygame.Surface((60, 40), 0, 32)
+    canvas = PygameCanvas(surface)
+    places, turned = np.array(((15.0, 20.0), (45.0, 20.0))), np.array((0.0, 0.5))
+    with interpreted():
+        canvas.discs(places[:1], np.array((9.0,)), turned[:1], Look.plain((200, 40, 40), (255, 255, 255), 1))
+        canvas.boxes(places[1:], np.array(((16.0, 12.0),)), turned[1:], Look.plain((1, 90, 1), (9, 9, 9), 1))
+        canvas.lines(np.array(((0.0, 2.0),)), np.array(((59.0, 2.0),)), (0, 0, 255), 1.0, 0.5)
+    assert surface.get_at((13, 16))[:3] == (200, 40, 40)
+    assert surface.get_at((45, 22))[:3] == (1, 90, 1)
+    assert surface.get_at((30, 2))[:3] == (0, 0, 128)
+    assert surface.get_at((30, 30))[:3] == (0, 0, 0)
+
+
+@pytest.mark.parametrize("size", [1e3, 1e6, 1e12])
+def test_what_is_far_larger_than_the_picture_is_cut_off(size: float) -> None:
+    surface = pygame.Surface((60, 40), 0, 32)
+    canvas, look = PygameCanvas(surface), Look.plain((200, 40, 40), (255, 255, 255), 1)
+    start = time.perf_counter()
+    with interpreted():
+        canvas.boxes(np.array(((30.0, size / 2 + 20.0),)), np.array(((size, size),)), np.zeros(1), look)
+        assert surface.get_at((30, 35))[:3] == (200, 40, 40) and surface.get_at((30, 10))[:3] == (0, 0, 0)
+        surface.fill((0, 0, 0))
+        canvas.discs(np.array(((30.0, size + 20.0),)), np.array((size,)), np.zeros(1), look)
+        canvas.lines(np.array(((-size, 5.0),)), np.array(((size, 5.0),)), (0, 0, 255))
+    assert surface.get_at((30, 5))[:3] == (0, 0, 255)
+    assert time.perf_counter() - start < 2.0
+
+
+def waiting(*names: str) -> list[Any]:
+    return [type(name, (), {"compiled": False})() for name in names]
+
+
+def test_a_small_scene_is_interpreted_and_a_large_one_waits() -> None:
+    scenes, kernels = SmallScenes(), waiting("a", "b")
+    assert scenes.interpret(kernels) == ()  # nothing is shown yet
+    scenes.follow(load_scene("sandbox"))
+    assert scenes.interpret(kernels) == kernels == scenes.pending()
+    assert scenes.made_up_for(0.1) < 0.1
+    kernels[0].compiled = True
+    assert scenes.pending() == kernels[1:]
+    scenes.follow(load_scene("pile"))
+    assert scenes.interpret(waiting("c")) == ()
+
+
+def test_bodies_that_attract_each_other_count_twice() -> None:
+    scenes, places = SmallScenes(), [body(1.0 * i, 0.0) for i in range(30)]
+    scenes.follow(scene(*places))
+    assert scenes.small
+    scenes.follow(scene(*places, physics={"gravity_mode": "planet"}))
+    assert not scenes.small
+
+
+def test_a_scene_that_turns_out_to_be_slow_is_waited_for() -> None:
+    scenes, kernels = SmallScenes(), waiting("a")
+    scenes.follow(load_scene("drop"))
+    scenes.interpret(kernels)
+    assert not any(scenes.notice(left) for left in (-1.0, -1.0, 0.0, -1.0, -1.0, -1.0))
+    assert scenes.notice(-1.0)
+    assert scenes.give_up() == kernels
+    assert scenes.interpret(waiting("b")) == ()
+    scenes.follow(load_scene("drop"))
+    assert scenes.small
+
+
+def test_the_window_hands_over_what_is_small_and_hurries_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    hurried: list[str] = []
+    monkeypatch.setattr(compiling, "is_warm", lambda: False)
+    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, (sys.executable, "-c", "input()")))
+    monkeypatch.setattr(Warmup, "hurry", lambda _, names: hurried.extend(names))
+    with Display.open(WindowConfig(), "test") as display, compiling.Compiling(display) as started:
+        started.scenes.follow(load_scene("drop"))
+        assert started._ask([motion.drift]) == [motion.drift]
+        assert hurried == ["physicslab.kernels.motion.drift"]
+        assert interpreter._limit == LONGEST
+    assert interpreter._limit == math.inf
