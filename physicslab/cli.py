@@ -36,7 +36,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _WindowParser(_Parser):
-    """Says what commands there are, a line each, where help is asked for: a window does not wait for them."""
+    """Lists the commands in its help alone, a line each; a window does not wait for their import."""
 
     def format_help(self) -> str:
         self.usage = "physicslab [SCENE] | physicslab COMMAND ... (physicslab COMMAND --help says more)"
@@ -47,19 +47,21 @@ class _WindowParser(_Parser):
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Do what the command line says and return the exit status.
+    """Run the command line and return the exit status.
 
-    0: done. 1: the run failed. 2: bad usage or a bad scene. 130: interrupted. 141: nobody reads stdout any
-    more. Whatever goes wrong is said in one line on stderr.
+    0: done. 1: the run failed. 2: bad usage or a bad scene. 130: interrupted. 141: stdout was closed
+    by its reader. Every error is one line on stderr.
 
     Parameters
     ----------
     argv : sequence of str, optional
-        The arguments, without the program's name; those of the process where none are given.
+        The arguments, without the program's name; by default those of the process.
     """
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")  # a terminal may not know every letter of a title
+            stream.reconfigure(
+                errors="backslashreplace"
+            )  # a terminal may not be able to show every letter of a title
     try:
         status = _dispatch(list(sys.argv[1:] if argv is None else argv))
         if sys.stdout is not None:
@@ -115,7 +117,7 @@ def _complain(message: str, status: int) -> int:
 
 
 def _let_go_of_stdout() -> None:
-    """Send what is still to be written nowhere, or Python would fail on it once more at its end."""
+    """Redirect buffered output to nowhere, or Python would fail on it again at exit."""
     with suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

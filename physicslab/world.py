@@ -27,7 +27,7 @@ from physicslab.systems.system import Stage, System
 __all__ = ["World"]
 
 _quiet = np.errstate(all="ignore")
-"""What overflows becomes infinite, which is found and told as :class:`Diverged`: numpy need not warn."""
+"""An overflow becomes infinite, which is found and raised as :class:`Diverged`: numpy need not warn."""
 _STEP = Field("dt", "number", minimum=SHORTEST, unit="s", owner="step")
 _STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 
@@ -91,14 +91,14 @@ class World(State):
     def step(self, dt: float | None = None) -> None:
         """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps.
 
-        What is longer than ``simulation.dt`` is divided, so that no substep is longer than the scene's own:
-        ``step_divisions`` says into how many parts. A method that is exact or chooses its steps takes it
+        A step longer than ``simulation.dt`` is divided, so that no substep is longer than the scene's own:
+        ``step_divisions`` is the number of parts. A method that is exact or chooses its steps takes it
         whole.
 
         Raises
         ------
         Diverged
-            If a value would not be finite; the world then stands where it stood before the step.
+            If a value would not be finite; the world is then as it was before the step.
         """
         h = self.simulation.dt if dt is None else _STEP.check(dt)
         with self.active():
@@ -139,11 +139,11 @@ class World(State):
         return self.stepper
 
     def _go_back(self) -> None:
-        """Stand where the step that failed began."""
+        """Go back to the state before the step that failed."""
         self.checkpoint.restore(motion_of(self))
         self.force_evaluations, self.collisions, self.contacts.logged = self.checkpoint.counts
         self.contacts.clear()  # what a failed step left there may not be finite either
-        wake_all(self)  # and nothing is known to hold any body
+        wake_all(self)  # no contact supports any body now
         self._stale = True  # steppers hold numbers of the step that failed
 
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
@@ -160,7 +160,7 @@ class World(State):
     ) -> Iterator[int]:
         """Advance like :meth:`run`, yielding the number of steps done after every ``stride`` steps.
 
-        What lies between is one compiled loop where it can be.
+        The steps in between are one compiled loop where possible.
         """
         _STRIDE.check(stride)
         length, start, done = run_length(self, seconds, steps), self.time, 0
@@ -197,8 +197,8 @@ class World(State):
     def _leap(self, h: float, parts: int, steps: int) -> int:
         """Advance by ``parts`` times ``h`` at once, which count as ``steps``; return those.
 
-        Where that fails it is halved, until the one step that cannot be made is found; the world then stands
-        where it stood before that step.
+        Where that fails it is halved, until the one step that cannot be made is found; the world is then
+        as it was before that step.
         """
         try:
             made = self._advance(h, parts)
@@ -223,7 +223,7 @@ class World(State):
 
     @_quiet
     def synchronise(self) -> None:
-        """Follow what entities and components there are now, and weigh them.
+        """Follow the present entities and components, and compute their masses.
 
         The engine does so at the start of every step; what a system changes within one takes part from the
         next.
@@ -232,7 +232,7 @@ class World(State):
             self._synchronise()
 
     def _synchronise(self) -> None:
-        """Do so where this world's context is active and numpy is quiet."""
+        """Do so where this world's context is active and numpy gives no warnings."""
         self._follow()
         if not self._stepping:
             self.generation += 1
@@ -248,7 +248,7 @@ class World(State):
 
     @_quiet
     def _adapt(self) -> None:
-        """Weigh bodies and choose systems and steppers again, until nothing changes any more."""
+        """Compute masses and choose systems and steppers again, until nothing changes any more."""
         while True:
             self._stale = True  # and stays so if a system refuses what it finds
             self.generation += 1
@@ -278,10 +278,10 @@ class World(State):
         self.event_driven = self.plan.collisions == "exact"
         self.steppers = select_steppers(self, self.schedule, self.plan)
         self.contacts.stale |= before or self.event_driven
-        foreign = [system for system in self.schedule.running if not system.is_engine]
-        self.sleep.acted_upon = any(system.acts_within_step() for system in foreign)
+        others = [system for system in self.schedule.running if not system.is_engine]
+        self.sleep.acted_upon = any(system.acts_within_step() for system in others)
         self.sleep.has_external_writers = any(
-            system.acts_within_step() or system.observes() for system in foreign
+            system.acts_within_step() or system.observes() for system in others
         )
 
     def edited(self) -> None:
@@ -293,9 +293,9 @@ class World(State):
         self.revision += 1
 
     def install(self, *systems: System) -> None:
-        """Let further systems act on this world, behind those of the same stage that do already.
+        """Add systems to this world, after those of the same stage.
 
-        That is how a window looks at a world that was made without one.
+        So a window can show a world that was made without one.
         """
         self.schedule.extend(systems)
         self._stale = True
@@ -310,10 +310,10 @@ class World(State):
 
     @_quiet
     def add_up_forces(self) -> None:
-        """See to it that ``bodies.force`` and ``.torque`` hold the forces that act.
+        """Update ``bodies.force`` and ``.torque`` to the forces that act.
 
         The stages of a step leave them there; a compiled flow does not, and they are added up at the present
-        state. Nothing that moves is changed.
+        state. The state of motion is not changed.
         """
         if self.steppers.usable and not self.steppers.usable[-1].leaves_forces:
             with self.active():

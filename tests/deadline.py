@@ -1,4 +1,4 @@
-"""A deadline for each example of a fuzz test: what hangs fails, and says which example it was."""
+"""A deadline for each example of a fuzz test: one that does not end fails, and its example is named."""
 
 from __future__ import annotations
 

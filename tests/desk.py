@@ -35,7 +35,7 @@ def bits(world: World) -> bytes:
 class Desk:
     """A world in a window of 1280 x 720 whose camera shows 100 px per metre, the origin in the middle.
 
-    The clock that limits the steps of a frame stands still, so that no step hangs on how busy the machine is.
+    The clock that limits the steps of a frame stands still, so that no step depends on the machine's load.
     """
 
     def __init__(

@@ -38,7 +38,7 @@ def test_the_frame_rate_changes_no_bit(name: str) -> None:
     assert desk.world.steps == 120
 
 
-def test_a_long_frame_is_clamped_and_what_is_dropped_is_told() -> None:
+def test_a_long_frame_is_clamped_and_what_is_dropped_is_shown() -> None:
     world = empty_world()
     circle(world, (0, 0))
     desk = Desk(world)
@@ -231,7 +231,7 @@ def test_no_screen_is_an_os_error(monkeypatch: pytest.MonkeyPatch) -> None:
         open_window("drop")
 
 
-def test_frames_come_at_the_rate_asked_for(each_frame: EachFrame) -> None:
+def test_frames_come_at_the_configured_rate(each_frame: EachFrame) -> None:
     times: list[float] = []
 
     def deed(display: Display, frame: int) -> None:

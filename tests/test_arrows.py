@@ -55,7 +55,7 @@ def test_kinds_differ_in_head_and_in_colour() -> None:
     assert len({kind.colour(DARK) for kind in KINDS}) == len(KINDS)
 
 
-def test_nothing_is_shown_unasked() -> None:
+def test_nothing_is_shown_by_default() -> None:
     world = empty_world()
     circle(world, (0, 0), velocity=(3, 0))
     _, canvas = shown(world)

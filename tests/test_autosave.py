@@ -79,7 +79,7 @@ def test_only_what_changed_is_saved_and_not_too_often(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("way", ["full", "gone", "nan"])
-def test_what_cannot_be_saved_is_told_once_and_the_sandbox_goes_on(
+def test_a_failed_save_is_reported_once_and_the_sandbox_goes_on(
     way: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock, world = Clock(), load_scene("stack")
@@ -114,7 +114,7 @@ def test_what_cannot_be_saved_is_told_once_and_the_sandbox_goes_on(
     assert gc.isenabled() and (way == "nan" or sandbox.world.time > 1.0)
 
 
-def test_a_lock_tells_a_crash_from_a_window_that_is_open(tmp_path: Path) -> None:
+def test_a_lock_distinguishes_a_crash_from_an_open_window(tmp_path: Path) -> None:
     code = (
         "import sys, time, pathlib; from physicslab.desktop.sessions import Session;"
         "s = Session.begin(pathlib.Path(sys.argv[1])); s.path.write_text('{}'); print(s.path, flush=True);"
@@ -214,7 +214,7 @@ def test_discarding_offers_the_one_before(tmp_path: Path) -> None:
     assert not desk.sandbox.toolbar.offers and not list(tmp_path.iterdir()) and desk.world is world
 
 
-def test_a_state_that_cannot_be_read_is_told_and_kept(tmp_path: Path) -> None:
+def test_a_state_that_cannot_be_read_is_reported_and_kept(tmp_path: Path) -> None:
     crashed(tmp_path, "stack")
     (path,) = tmp_path.glob("*.json")
     path.write_text("{ half")
@@ -267,7 +267,7 @@ def test_a_window_that_closes_leaves_nothing(monkeypatch: pytest.MonkeyPatch, tm
     assert frames == 3 and not list((tmp_path / "state").iterdir())
 
 
-def test_a_folder_that_cannot_be_made_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_made_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "state").write_text("a file, no folder")
     monkeypatch.setattr("physicslab.desktop.compiling.is_warm", lambda: True)
     monkeypatch.setattr("physicslab.desktop.session_window.session_folder", lambda: tmp_path / "state")

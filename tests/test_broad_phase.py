@@ -76,7 +76,7 @@ def test_the_list_holds_until_a_body_leaves_its_fat_box() -> None:
     assert near(world) == [(ball, other, -1)]
 
 
-def test_a_changed_size_is_seen() -> None:
+def test_a_changed_size_takes_effect() -> None:
     world = World(BroadPhaseSystem())
     ball = body(world, 0, 0, Shape.circle(0.5))
     other = body(world, 3, 0, Shape.circle(0.5))

@@ -57,11 +57,11 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
     ]  # fmt: skip
     assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
     assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "exact")
-    assert report["integrator_reason"].startswith("between impacts bodies fly in closed form")
+    assert report["integrator_reason"].startswith("between impacts bodies move in closed form")
     assert report["force_evaluations"] == 0
     assert 0.0 < report["wall_s"] < 10.0
     gravity = next(system for system in report["systems"] if system["name"] == "GravitySystem")
-    assert gravity["calls"] > 0 and gravity["ms"] == 0.0  # its cost is within the flights'
+    assert gravity["calls"] > 0 and gravity["ms"] == 0.0  # its cost is part of the event loop's
     assert {"name": "SpringSystem", "reason": "no Spring in the scene"} in report["left_out"]
     assert set(report["energy"]) == {
         "initial", "final", "kinetic_linear", "kinetic_angular", "potential_gravity", "potential_spring",
@@ -92,7 +92,7 @@ def test_the_numbers_are_those_of_the_world(capsys: pytest.CaptureFixture[str]) 
     assert report["force_evaluations"] == world.force_evaluations
 
 
-def test_time_is_exactly_what_was_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+def test_time_is_exactly_as_requested(capsys: pytest.CaptureFixture[str]) -> None:
     report = document(capsys, "run", "drop", "--seconds", "0.1", "--dt", "0.03")
     assert (report["time"], report["steps"], report["dt"]) == (0.1, 4, 0.03)
     report = document(capsys, "run", "stack", "--steps", "7", "--substeps", "2")
@@ -102,7 +102,7 @@ def test_time_is_exactly_what_was_asked_for(capsys: pytest.CaptureFixture[str]) 
     assert document(capsys, "run", "pendulum")["time"] == 10.0
 
 
-def test_the_method_can_be_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_method_can_be_chosen(capsys: pytest.CaptureFixture[str]) -> None:
     report = document(capsys, "run", "pendulum", "--steps", "5", "--integrator", "symplectic_euler")
     assert (report["integrator"], report["integrator_reason"]) == ("symplectic_euler", "asked for")
 
@@ -134,7 +134,7 @@ def test_a_scene_goes_on_from_its_own_time(capsys: pytest.CaptureFixture[str], t
     assert report["time"] == 1.5
 
 
-def test_run_tells_how_many_sleep(capsys: pytest.CaptureFixture[str]) -> None:
+def test_run_reports_how_many_sleep(capsys: pytest.CaptureFixture[str]) -> None:
     report = document(capsys, "run", "stack", "--seconds", "5")
     assert (report["asleep"], report["contacts"]) == (10, 10)
     assert cli.main(["run", "stack", "--seconds", "5"]) == 0
@@ -387,7 +387,7 @@ def test_progress_is_for_terminals_and_long_runs() -> None:
         assert stream.getvalue() == after
 
 
-def test_an_output_knows_its_file(tmp_path: Path) -> None:
+def test_an_output_identifies_its_file(tmp_path: Path) -> None:
     output = Output("--json", str(tmp_path / "a"))
     assert output.is_same_as(str(tmp_path / "b" / ".." / "a"))
     assert not output.is_same_as(str(tmp_path / "b"))
@@ -472,7 +472,7 @@ def test_the_package_exports_the_names_of_the_contract() -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-def test_a_full_disk_is_told_of_the_file_that_did_not_fit(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_full_disk_is_reported_with_the_file_that_did_not_fit(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["run", "drop", "--seconds", "5", "--csv", "/dev/full"]) == 1
     message = capsys.readouterr().err
     assert "--csv /dev/full: cannot be written: No space left on device" in message

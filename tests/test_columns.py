@@ -248,12 +248,12 @@ def test_sizes_belong_to_the_kind_when_written_too() -> None:
     assert world.table(Shape)["radius"][1] == 0.75
 
 
-def test_misspelt_and_settled_fields() -> None:
+def test_misspelt_and_fixed_fields() -> None:
     with pytest.raises(AttributeError):
         Transform().postion = (1, 2)  # type: ignore[attr-defined]
     with pytest.raises(TypeError, match="Transform has no field 'postion'; it has position, angle"):
         Transform(postion=(1, 2))  # type: ignore[call-arg]
-    with pytest.raises(AttributeError, match=r"Shape\.kind is settled"):
+    with pytest.raises(AttributeError, match=r"Shape\.kind is fixed"):
         Shape.circle(1).kind = "box"
     with pytest.raises(TypeError, match="at most 2 values, got 3"):
         Transform((0, 0), 0, 0)  # type: ignore[call-arg]
@@ -340,7 +340,7 @@ def test_a_contributed_component_and_system_work_in_a_world() -> None:
     assert Ion.charge.__doc__ == "electric charge [C]"
 
 
-def test_mistakes_in_a_component_are_told_when_it_is_made() -> None:
+def test_mistakes_in_a_component_are_reported_when_it_is_made() -> None:
     with pytest.raises(TypeError, match=r"Bare\.value: describe it with field"):
 
         @component

@@ -202,11 +202,11 @@ def test_a_run_that_diverges_stops_at_the_same_step() -> None:
 
 
 class OwnGravity(GravitySystem):
-    """Somebody's own."""
+    """A system of a user."""
 
     @property
     def name(self) -> str:
-        """The name of the one that it stands for."""
+        """The name of the system that it replaces."""
         return "GravitySystem"
 
 
@@ -218,7 +218,7 @@ def falling(*systems: System, **simulation: object) -> World:
     return world
 
 
-def test_it_says_who_does_not_qualify() -> None:
+def test_it_gives_the_reason_where_it_cannot_run() -> None:
     own = [OwnGravity() if isinstance(system, GravitySystem) else system for system in standard_systems()]
     assert why_not_fused(falling(*standard_systems())) is None
     assert "GravitySystem" in (why_not_fused(falling(*own)) or "")
@@ -230,7 +230,7 @@ def test_it_says_who_does_not_qualify() -> None:
     assert "not among" in (why_not_fused(load_scene("two_planets")) or "")
 
 
-def test_what_is_changed_between_runs_is_seen() -> None:
+def test_a_change_between_runs_takes_effect() -> None:
     stepped, ran = watched(BENCH["circles_10"].build()), BENCH["circles_10"].build()
     for world in (stepped, ran):
         world.run(steps=20)

@@ -20,7 +20,7 @@ from physicslab.world import World
 
 
 def stiff_world(stiffness: float = 1e12, *, touching: bool = False, **simulation: object) -> World:
-    """Return a world whose spring is too stiff for leapfrog: it flies apart."""
+    """Return a world whose spring is too stiff for leapfrog: it diverges."""
     config = SimulationConfig(integrator="leapfrog", **simulation)  # type: ignore[arg-type]
     world = World(*standard_systems(), simulation=config, physics=PhysicsConfig(gravity_mode="none"))
     world.name = "boom"
@@ -170,7 +170,7 @@ def test_the_table_keeps_every_good_row(boom: Path, capsys: pytest.CaptureFixtur
     assert float(last[3]) == saved.component(saved.entity("bob"), Transform).position.y
 
 
-def test_a_state_that_cannot_be_saved_is_told(
+def test_a_state_that_cannot_be_saved_is_reported(
     boom: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*arguments: object) -> None:

@@ -90,7 +90,7 @@ def test_the_key_measures_in_another_process_and_shows_the_plot(tmp_path: Path) 
     assert not desk.window.error_study.shown and not desk.window.closing
 
 
-def test_a_laboratory_that_fails_is_told_in_its_own_words(tmp_path: Path) -> None:
+def test_a_laboratory_that_fails_is_reported_in_its_own_words(tmp_path: Path) -> None:
     desk, _ = desk_with(tmp_path, "sys.exit('physicslab: the scene is too strange')")
     measured(desk)
     desk.frames()

@@ -425,7 +425,7 @@ def test_a_rolling_disc_comes_to_roll_without_sliding_and_stays_on_the_floor() -
     assert abs(velocity.linear.y) < 1e-6 and abs(world.component(ball, Transform).position.y - 0.5) < 1e-3
 
 
-def test_a_dropped_box_lies_still() -> None:
+def test_a_dropped_box_comes_to_rest() -> None:
     world = falling(e=0.4, mu=0.5)
     block = box(world, (0, 2), fixed_rotation=True, restitution=0.4, friction=0.5, velocity=(1, 0))
     world.run(seconds=3.0)
@@ -436,7 +436,7 @@ def test_a_dropped_box_lies_still() -> None:
     assert abs(place.y - 0.25) < 1e-3
 
 
-def test_what_rests_does_not_spoil_what_flies() -> None:
+def test_resting_bodies_do_not_disturb_ballistic_ones() -> None:
     world = falling(e=1.0)
     circle(world, (-5, 3), radius=0.3, restitution=0.5)
     circle(world, (5, 5.3), radius=0.3, restitution=1, friction=0)
@@ -556,7 +556,7 @@ def test_a_box_set_free_to_turn_is_noticed() -> None:
     assert world.plan.collision_reason == f"exact was asked for, and {TURNS}"
 
 
-def test_a_method_asked_for_by_name_comes_first() -> None:
+def test_a_method_chosen_by_name_comes_first() -> None:
     world = falling("auto")
     one_ball(world)
     world.simulation = dataclasses.replace(world.simulation, integrator="leapfrog")
@@ -565,7 +565,7 @@ def test_a_method_asked_for_by_name_comes_first() -> None:
     assert world.plan.collision_reason.startswith("leapfrog was asked for")
 
 
-def test_impacts_are_told_as_those_of_the_contact_step_are() -> None:
+def test_impacts_are_reported_as_those_of_the_contact_step_are() -> None:
     world = falling(e=0.5, mu=0.2)
     floor = 1
     ball = circle(world, (0, 0.3), radius=0.25, velocity=(1, 0), restitution=0.5, friction=0.2)

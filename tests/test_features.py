@@ -35,7 +35,7 @@ def watched(world: World, *keys: str) -> tuple[Desk, RecordingCanvas]:
 
 
 def last_frame(desk: Desk, canvas: RecordingCanvas) -> None:
-    """Let figures be read anew, and keep what one frame draws."""
+    """Read the figures again, and keep what one frame draws."""
     desk.frames(8)
     canvas.calls.clear()
     desk.frames()
@@ -327,7 +327,7 @@ def test_escape_quits(desk: Desk) -> None:
 # Also
 
 
-def test_collisions_strike_sparks() -> None:
+def test_collisions_make_sparks() -> None:
     desk, canvas = watched(collision())
     desk.frames(2)
     canvas.calls.clear()

@@ -1,4 +1,4 @@
-"""Whatever stands on the command line: done, refused in one line, or failed with one that says where."""
+"""Any command line: done, refused in one line, or failed with one that says where."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def lines(draw: st.DrawFn) -> list[str]:
 
 
 def _is_long(line: list[str]) -> bool:
-    """Whether it asks, in words that are allowed, for more steps than a test can wait for."""
+    """Whether it requests, in words that are allowed, more steps than a test can wait for."""
     long = {"1e308", "5e-324", "9" * 5000}
     return any(
         option in ("--seconds", "--dt") and value in long | {"1e-3"}

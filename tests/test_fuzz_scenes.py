@@ -1,4 +1,4 @@
-"""Whatever stands in a scene document, it is refused in one line or runs with finite numbers.
+"""Any scene document is refused in one line or runs with finite numbers.
 
 A few examples are tried with every run of the tests; thousands by
 

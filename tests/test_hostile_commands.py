@@ -1,4 +1,4 @@
-"""The program as a process of its own: whatever stands on its command line, it says one line or does it."""
+"""The program as a process of its own: any command line is run, or refused in one line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers that are legal and that nobody means: each is refused by name, or runs on with finite numbers."""
+"""Numbers that are legal and absurd: each is refused by name, or runs on with finite numbers."""
 
 from __future__ import annotations
 

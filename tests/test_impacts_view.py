@@ -17,7 +17,7 @@ from physicslab.world import World
 
 
 def rattling(collisions: str = "exact") -> World:
-    """Return a ball that flies to and fro between two walls, 40 times a second."""
+    """Return a ball that bounces to and fro between two walls, 40 times a second."""
     world = empty_world(gravity=(0, 0), bounds=(-0.5, -3, 0.5, 3), bounds_restitution=1.0)
     world.simulation = replace(world.simulation, collisions=collisions)
     circle(world, (0, 0), radius=0.25, mass=1.0, velocity=(20, 0), restitution=1.0)

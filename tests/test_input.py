@@ -59,7 +59,7 @@ def test_a_button_let_go_unseen_leaves_nothing_held(desk: Desk) -> None:
     assert not desk.world.has(ball, Held)
 
 
-def test_walls_stay_where_they_are_and_the_user_is_told(desk: Desk) -> None:
+def test_walls_stay_where_they_are_and_the_user_is_informed(desk: Desk) -> None:
     wall = box(desk.world, (0, 0), static=True, name="floor")
     desk.press(0, 0)
     desk.frames()

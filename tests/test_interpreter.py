@@ -312,7 +312,7 @@ a hundred or so terms."""
 
 @pytest.mark.parametrize("plummer", [False, True])
 def test_attraction_of_many_differs_by_rounding_alone(plummer: bool) -> None:
-    n, random = gravity.FEW + 30, np.random.default_rng(3)
+    n, random = gravity.PLAIN_LIMIT + 30, np.random.default_rng(3)
     position, mass = random.normal(size=(n, 2)), random.uniform(0.5, 2.0, n)
     rows, forces = np.arange(n), np.zeros((2, n, 2))
     laws = (1.0, 0.05, plummer)

@@ -255,7 +255,7 @@ def test_the_wait_for_a_kernel_is_no_cost_of_the_system_that_calls_it() -> None:
 
 
 def test_functions_that_count_no_references_return_no_arrays() -> None:
-    """What one of those returned would be given up once too often by whoever called it."""
+    """The result of one of those would be released once too often by its caller."""
     for path in sorted(FOLDER.rglob("*.py")):
         for node in ast.parse(path.read_text()).body:
             if isinstance(node, ast.FunctionDef) and node.returns is not None:

@@ -1,4 +1,4 @@
-"""Near pairs that lie idle: when they get a record, in which order, and that it makes no difference."""
+"""Proximity pairs: when they get a record, in which order, and that it makes no difference."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_a_disc_on_its_way_gets_a_record_when_it_comes_within_reach() -> None:
     assert (world.contacts.proximity_count, world.contacts.count) == (0, 1)
 
 
-def test_what_parts_again_lies_idle_in_the_next_list() -> None:
+def test_pairs_that_part_are_proximity_pairs_in_the_next_list() -> None:
     world = World(BroadPhaseSystem(), ContactSystem())
     one, other = disc(world, 0.0, 0.0), disc(world, 1.0, 0.0)
     world.step()
@@ -95,7 +95,7 @@ def test_records_are_gone_through_in_the_order_of_rows_whenever_they_came() -> N
     assert reported == sorted(reported)
 
 
-def test_a_gas_goes_on_with_the_same_bits_whatever_lies_idle() -> None:
+def test_a_gas_goes_on_with_the_same_bits_whatever_pairs_have_no_record() -> None:
     region = (-3.0, -2.0, 3.0, 2.0)
     laws = PhysicsConfig(gravity_mode="none", bounds=region, bounds_restitution=1.0)
     simulation = SimulationConfig(sleeping=False)
@@ -158,7 +158,7 @@ def test_just_those_within_reach_are_promoted(made: list[tuple[float, float]], h
 @given(
     st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9), st.integers(-1, 3)), max_size=60, unique=True)
 )
-def test_loose_pairs_are_sorted_by_rows_and_walls(pairs: list[tuple[int, int, int]]) -> None:
+def test_scalar_pairs_are_sorted_by_rows_and_walls(pairs: list[tuple[int, int, int]]) -> None:
     manifolds = np.zeros(len(pairs), MANIFOLD)
     for p, pair in enumerate(pairs):
         manifolds[p]["a"], manifolds[p]["b"], manifolds[p]["wall"] = pair

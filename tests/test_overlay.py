@@ -59,7 +59,7 @@ def test_the_arrows_drawn_change_the_momenta_exactly(offset: float) -> None:
     foot = lines_in(canvas, DARK.normal_impulse)[0]["start"][0]
 
     def impulse(colour: Colour) -> Vector2:
-        """Return what the arrow at the contact stands for, by the legend's scale [N s]."""
+        """Return what the arrow at the contact represents, by the legend's scale [N s]."""
         calls = lines_in(canvas, colour)[:-4]  # without the legend's
         if not calls:
             return Vector2()
@@ -170,7 +170,7 @@ def test_labels_lie_apart_and_stay_where_they_are() -> None:
     assert len(places[0]) == 10 and places[0] == places[1]
 
 
-def test_clearing_forgets_impacts() -> None:
+def test_clearing_drops_impacts() -> None:
     world = empty_world(gravity=(0, 0))
     circle(world, (-0.3, 0), radius=0.25, velocity=(1, 0), restitution=1)
     circle(world, (0.3, 0), radius=0.25, velocity=(-1, 0), restitution=1)

@@ -58,7 +58,7 @@ def test_steps_that_could_not_be_made_are_dropped_and_counted() -> None:
     assert pace.due(DT) == 1
 
 
-def test_paused_time_is_never_owed() -> None:
+def test_paused_time_is_never_made_up() -> None:
     pace = Pace(max_dt=0.1)
     pace.toggle_pause()
     assert run(pace, [0.05] * 100) == 0
@@ -82,7 +82,7 @@ def test_slow_motion_is_a_quarter() -> None:
     assert pace.speed == 0.25
 
 
-def test_after_a_halt_nothing_is_owed() -> None:
+def test_after_a_halt_nothing_is_made_up() -> None:
     pace = Pace(max_dt=0.1)
     pace.begin(0.1)
     pace.halt()

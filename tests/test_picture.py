@@ -25,7 +25,7 @@ def test_a_file_and_a_stream_get_the_same_picture(tmp_path: Path) -> None:
     assert stream.getvalue().startswith(b"\x89PNG")
 
 
-def test_it_has_the_size_asked_for_and_shows_the_world(tmp_path: Path) -> None:
+def test_it_has_the_requested_size_and_shows_the_world(tmp_path: Path) -> None:
     world = empty_world()
     circle(world, (1000, -500), radius=3)
     save_png(world, tmp_path / "picture.png", size=(320, 200))

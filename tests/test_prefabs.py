@@ -41,7 +41,7 @@ def space(**physics: object) -> World:
     return World(*standard_systems(), physics=PhysicsConfig(**physics))  # type: ignore[arg-type]
 
 
-def test_a_circle_is_what_was_asked_for() -> None:
+def test_a_circle_has_the_given_properties() -> None:
     world = World()
     ball = circle(
         world, (1, 2), radius=0.5, mass=3, velocity=(4, 5), angular_velocity=6, angle=7,

@@ -231,7 +231,7 @@ def test_nothing_passes_through_a_thin_wall(speed: float, moving: bool, kind: st
     assert measure_energy(world).total <= energy * (1 + 1e-9)
 
 
-def test_a_fast_disc_that_misses_flies_on() -> None:
+def test_a_fast_disc_that_misses_moves_on() -> None:
     world = laboratory()
     disc(world, (-3, 1.2), (500, 0), radius=0.1)
     world.spawn(Transform((0, 0)), Shape.box(0.1, 2), Material(1, 0))
@@ -240,7 +240,7 @@ def test_a_fast_disc_that_misses_flies_on() -> None:
     assert world.component(1, Transform).position.x == pytest.approx(47.0)
 
 
-def test_bounds_reflect_rub_and_keep_everything_in() -> None:
+def test_bounds_reflect_have_friction_and_keep_everything_in() -> None:
     world = laboratory(
         PhysicsConfig(gravity_mode="none", bounds=(0, 0, 4, 4), bounds_restitution=1, bounds_friction=0)
     )
@@ -366,7 +366,7 @@ def test_the_same_scene_gives_the_same_bits() -> None:
     assert final() == final()
 
 
-def test_what_the_solver_remembers_survives_export() -> None:
+def test_what_the_solver_keeps_survives_export() -> None:
     """A world rebuilt from components and exported contacts goes on with the same bits."""
     world = laboratory(PhysicsConfig(gravity=Vector2(0, -10), bounds=(-10, -10, 10, 10)))
     entities = [*stack(world, 5, gap=0.03, e=0.3), disc(world, (-3, 2), (6, 1), mu=0.4, e=0.4)]

@@ -74,7 +74,7 @@ def test_the_newest_scene_is_opened_where_none_was_saved(folder: Path) -> None:
 @pytest.mark.parametrize(
     "text", ["not json at all", '{"format": "physicslab-scene/1", "entities": [{"Mas": 1}]}']
 )
-def test_a_bad_file_is_told_and_nothing_is_lost(folder: Path, text: str) -> None:
+def test_a_bad_file_is_reported_and_nothing_is_lost(folder: Path, text: str) -> None:
     (folder / "bad.json").write_text(text)
     world = empty_world(gravity=(0, 0))
     ball = circle(world, (0, 0))
@@ -88,14 +88,14 @@ def test_a_bad_file_is_told_and_nothing_is_lost(folder: Path, text: str) -> None
     assert reported["style"].colour == desk.window.theme.error
 
 
-def test_no_file_is_told() -> None:
+def test_no_file_is_reported() -> None:
     desk = Desk(empty_world())
     desk.key("o", CTRL)
     desk.frames()
     assert "There is no scene file" in desk.window.notice and desk.window.notice_failed
 
 
-def test_a_world_that_no_file_can_hold_is_told(folder: Path) -> None:
+def test_a_world_that_no_file_can_hold_is_reported(folder: Path) -> None:
     world = empty_world()
     ball = circle(world, (0, 0))
     desk = Desk(world)
@@ -108,7 +108,7 @@ def test_a_world_that_no_file_can_hold_is_told(folder: Path) -> None:
     assert not list(folder.iterdir())
 
 
-def test_a_folder_that_cannot_be_written_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_that_cannot_be_written_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*arguments: object) -> None:
         raise PermissionError("nothing may be written here")
 

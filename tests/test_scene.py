@@ -131,7 +131,7 @@ def test_a_file_of_a_built_in_name_is_opened_by_its_path(
     assert not load_scene(Path("drop")).entities()
 
 
-def test_json_objects_remember_a_key_given_twice() -> None:
+def test_json_objects_record_a_key_given_twice() -> None:
     assert JsonObject.of([("a", 1), ("b", 2)]).repeated is None
     assert JsonObject.of([("a", 1), ("b", 2), ("b", 3)]).repeated == "b"
 

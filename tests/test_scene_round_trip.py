@@ -257,7 +257,7 @@ def test_a_directory_is_no_place_for_a_scene(tmp_path: Path) -> None:
 
 
 def test_a_collapsing_pyramid_goes_on_with_the_same_bits() -> None:
-    """Near pairs come and go at other times in the loaded world; what they do must not hang on that."""
+    """Near pairs come and go at other times in the loaded world; the result must not depend on that."""
     world = load_scene("pyramid")
     world.physics = dataclasses.replace(world.physics, gravity=Vector2(5, -10))
     world.run(steps=20)
@@ -290,7 +290,7 @@ def burden_one(world: World, discs: list[int]) -> None:
 
 
 def overburden_one(world: World, discs: list[int]) -> None:
-    world.component(discs[-1], Mass).mass *= 30.0  # which takes more substeps than asked for
+    world.component(discs[-1], Mass).mass *= 30.0  # which takes more substeps than configured
 
 
 def shorten(world: World, discs: list[int]) -> None:

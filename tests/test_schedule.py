@@ -101,7 +101,7 @@ def test_an_override_keeps_its_stage() -> None:
     assert ("louder", 1.0) in louder.calls and ("force", 1.0) not in louder.calls
 
 
-def test_frame_stages_run_when_asked() -> None:
+def test_frame_stages_run_when_called() -> None:
     frames: list[float] = []
 
     class Drawing(System):
@@ -231,7 +231,7 @@ def test_in_a_compiled_run_the_loop_is_timed_and_the_forces_are_counted() -> Non
 # ---- mistakes ----------------------------------------------------------------------------------------------
 
 
-def test_mistakes_in_a_system_are_told_when_the_world_is_made() -> None:
+def test_mistakes_in_a_system_are_reported_when_the_world_is_made() -> None:
     class Silent(System):
         def work(self, world: World, h: float) -> None: ...
 

@@ -57,7 +57,7 @@ def test_auto_chooses_by_what_there_is_and_says_why(world: World, name: str, rea
     assert reason in world.plan.reason
 
 
-def test_auto_thinks_again_when_the_content_changes() -> None:
+def test_auto_chooses_again_when_the_content_changes() -> None:
     world = world_of(ball())
     spring = world.spawn(*ball(2, Spring(rest_length=2.2, stiffness=1e4)))
     world.synchronise()
@@ -101,7 +101,7 @@ def test_strong_drag_on_a_body_at_rest_at_the_origin_is_no_trap() -> None:
     assert world.component(body, Transform).position.y == pytest.approx(-0.0313, abs=2e-4)
 
 
-def test_what_was_asked_for_and_cannot_be_is_refused_in_words() -> None:
+def test_a_chosen_method_that_cannot_run_is_refused_in_words() -> None:
     touching = world_of(ball(0, Shape.circle(1)), ball(9, Shape.circle(1)), integrator="rk4")
     assert touching.plan.integrator.name == "leapfrog"
     assert touching.plan.refused == touching.plan.reason

@@ -1,4 +1,4 @@
-"""Islands and sleeping: who may stop being simulated, and what wakes whom."""
+"""Islands and sleeping: which bodies may stop being simulated, and what wakes them."""
 
 import json
 import math
@@ -62,7 +62,7 @@ def test_half_a_second_of_rest_and_not_less() -> None:
     assert (velocity.linear, velocity.angular) == (Vector2(), 0.0)
 
 
-def test_a_sleeper_stays_where_it_is_and_its_contacts_are_still_told() -> None:
+def test_a_sleeping_body_stays_where_it_is_and_its_contacts_are_still_reported() -> None:
     world, (first,) = sleeping_boxes(0.0)
     before, contact = bits(world), contact_between(world, 1, first)
     world.run(seconds=5.0)
@@ -73,7 +73,7 @@ def test_a_sleeper_stays_where_it_is_and_its_contacts_are_still_told() -> None:
     assert world.contacts.count == 1 and world.contacts.max_penetration == contact.depth
 
 
-def test_a_whole_island_or_nobody() -> None:
+def test_a_whole_island_sleeps_or_none_of_it() -> None:
     world, boxes = resting_boxes(0.0, 0.0)
     world.component(boxes[1], Transform).position = Vector2(0.0, 1.5)
     ball = circle(world, (0.0, 4.0), radius=0.1, restitution=0.9, friction=0.5)
@@ -140,7 +140,7 @@ def test_what_rides_on_a_lift_stays_awake_until_it_stands() -> None:
     assert world.component(rider, Transform).position.y == pytest.approx(0.5 + 0.06 + 0.5, abs=0.01)
 
 
-def test_a_lift_that_starts_in_a_file_wakes_who_stands_on_it() -> None:
+def test_a_lift_that_starts_in_a_file_wakes_what_stands_on_it() -> None:
     world = open_space(sleeping=True)
     lift = world.spawn(Transform((0.0, -0.5)), Velocity(), Shape.box(4.0, 1.0), Material(friction=0.5))
     rider = box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
@@ -155,7 +155,7 @@ def test_a_lift_that_starts_in_a_file_wakes_who_stands_on_it() -> None:
 
 
 @pytest.mark.parametrize("part", [Spring(anchor_b=(0.0, 3.0), stiffness=1.0), Drag(linear=0.1)])
-def test_nobody_sleeps_on_whom_a_spring_or_drag_acts(part: Spring | Drag) -> None:
+def test_no_body_sleeps_on_which_a_spring_or_drag_acts(part: Spring | Drag) -> None:
     world, boxes = resting_boxes(0.0, 5.0)
     world.add(boxes[0], part)
     world.run(seconds=2.0)
@@ -180,7 +180,7 @@ def test_it_says_why_it_is_left_out(change: dict[str, object], reason: str) -> N
     assert not sleepers(world)
 
 
-def test_flights_between_located_impacts_know_no_sleep() -> None:
+def test_no_body_sleeps_where_impacts_are_located() -> None:
     world = open_space(sleeping=True, collisions="exact")
     floor(world, friction=0.5, restitution=0.5)
     circle(world, (0.0, 0.3), radius=0.25, friction=0.5, restitution=0.5)
@@ -234,7 +234,7 @@ def test_a_blow_wakes_and_finds_the_bodys_own_mass() -> None:
     assert world.component(target, Velocity).linear.x == pytest.approx(6.0 * 1.5 / 3.0, abs=1e-3)
 
 
-def test_a_touch_far_up_wakes_all_of_a_tower_and_nobody_else() -> None:
+def test_a_touch_far_up_wakes_all_of_a_tower_and_nothing_else() -> None:
     world, (beside,) = resting_boxes(20.0)
     tower = stack(world, 5)
     world.run(seconds=3.0)
@@ -247,7 +247,7 @@ def test_a_touch_far_up_wakes_all_of_a_tower_and_nobody_else() -> None:
     assert sleepers(world) == {beside, late, *tower}
 
 
-def test_what_is_spawned_elsewhere_wakes_nobody() -> None:
+def test_what_is_spawned_elsewhere_wakes_nothing() -> None:
     world, boxes = sleeping_boxes(0.0)
     circle(world, (8.0, 5.0), radius=0.2)
     box(world, (-8.0, 5.0), width=1.0, height=1.0, static=True)
@@ -284,7 +284,7 @@ def hold(world: World, first: int) -> None:
     world.add(first, Held())
 
 
-def tether(world: World, first: int) -> None:
+def add_spring(world: World, first: int) -> None:
     world.spawn(Spring(first, anchor_b=(0.0, 3.0), stiffness=1.0))
 
 
@@ -326,14 +326,14 @@ def spawn_wall(world: World, first: int) -> None:
 
 
 EDITS: list[Callable[[World, int], None]] = [
-    change_velocity, change_place, change_angle, change_size, change_mass, change_material, hold, tether,
+    change_velocity, change_place, change_angle, change_size, change_mass, change_material, hold, add_spring,
     change_laws, change_steps, move_floor, shrink_floor, grease_floor, remove_floor, free_floor, hollow_floor,
     spawn_wall,
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize("edit", EDITS, ids=lambda edit: edit.__name__)
-def test_an_edit_wakes_whom_it_concerns(edit: Callable[[World, int], None]) -> None:
+def test_an_edit_wakes_what_it_affects(edit: Callable[[World, int], None]) -> None:
     world, (first,) = sleeping_boxes(0.0)
     edit(world, first)
     world.step()
@@ -378,7 +378,7 @@ def test_a_wall_that_a_system_moves_within_steps_wakes_what_leaned_on_it() -> No
 
 
 class Wind(ForceSystem):
-    """Pushes everything to the right, as hard as it is told."""
+    """Pushes everything to the right with a given force."""
 
     strength = 0.0
 
@@ -441,7 +441,7 @@ def test_where_everybody_sleeps_no_substep_is_made() -> None:
         assert world.schedule.timings[name].calls == calls[name]
 
 
-def test_somebody_elses_system_is_called_while_everybody_sleeps() -> None:
+def test_a_foreign_system_is_called_while_all_bodies_sleep() -> None:
     wind = Wind()
     world = World(*standard_systems(), wind)
     floor(world)
@@ -499,7 +499,7 @@ def test_a_fresh_world_has_no_rests_in_its_file() -> None:
     assert [len(rest) for rest in write_scene(world)["rests"]] == [1]
 
 
-def test_who_hangs_in_the_air_in_a_file_wakes() -> None:
+def test_a_body_that_sleeps_in_the_air_in_a_file_wakes() -> None:
     world, (first,) = sleeping_boxes(0.0)
     document = write_scene(world)
     document["entities"][1]["Transform"]["position"] = [0.0, 3.0]
@@ -568,7 +568,7 @@ def test_runs_steps_and_files_agree_while_bodies_sleep_and_wake(
 
 @settings(max_examples=15)
 @given(st.lists(bodies, min_size=1, max_size=8))
-def test_sleepers_have_no_velocity_and_lie_on_something(given: list[tuple[float, ...]]) -> None:
+def test_sleeping_bodies_have_no_velocity_and_are_supported(given: list[tuple[float, ...]]) -> None:
     world = thrown(given)
     for _ in world.stepping(steps=240, stride=5):
         asleep, velocity = world.sleep.asleep, world.table(Velocity)

@@ -1,4 +1,4 @@
-"""Sparks: struck by impacts, drawn by the window, gone soon."""
+"""Sparks: made by impacts, drawn by the window, gone soon."""
 
 from dataclasses import replace
 
@@ -49,7 +49,7 @@ def first_sparks(world: World, frames: int = 60) -> Sparks:
     return watched.sparks
 
 
-def test_an_impact_strikes_sparks_where_it_was() -> None:
+def test_an_impact_makes_sparks_where_it_was() -> None:
     sparks = first_sparks(meeting(4.0))
     assert 3 <= len(sparks) <= 18
     assert np.allclose(sparks.place, (0, 0), atol=0.05)
@@ -71,7 +71,7 @@ def test_contacts_at_rest_and_faint_ones_make_none() -> None:
     assert not len(first_sparks(world))
 
 
-def test_they_fly_apart_and_go_out() -> None:
+def test_they_move_apart_and_go_out() -> None:
     watched = Watched(meeting(6.0))
     while not len(watched.sparks):
         watched.frames()
@@ -85,16 +85,16 @@ def test_they_fly_apart_and_go_out() -> None:
 
 @pytest.mark.parametrize("collisions", ["exact", "step"])
 def test_sparks_do_not_depend_on_how_many_steps_a_frame_has(collisions: str) -> None:
-    flights = []
+    seen = []
     for steps in (1, 2, 4):
         world = meeting(5.0)
         world.simulation = replace(world.simulation, collisions=collisions)
         watched = Watched(world)
         watched.frames(12 // steps, steps)
-        flights.append(watched.sparks)
-    assert len(flights[0])
-    for other in flights[1:]:
-        assert np.allclose(flights[0].place, other.place) and np.allclose(flights[0].age, other.age)
+        seen.append(watched.sparks)
+    assert len(seen[0])
+    for other in seen[1:]:
+        assert np.allclose(seen[0].place, other.place) and np.allclose(seen[0].age, other.age)
 
 
 def test_the_same_run_makes_the_same_sparks() -> None:

@@ -77,7 +77,7 @@ def test_a_held_body_follows_in_fast_motion() -> None:
     assert (place.x, place.y) == pytest.approx((1.0, 1.0))
 
 
-def test_time_dropped_in_fast_motion_is_told_in_seconds_on_the_wall() -> None:
+def test_time_dropped_in_fast_motion_is_shown_in_seconds_on_the_wall() -> None:
     pace = Pace(max_dt=0.1)
     pace.choose(4.0)
     pace.begin(0.1)

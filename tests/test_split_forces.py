@@ -49,7 +49,7 @@ def test_dampers_are_followed_by_an_adaptive_method() -> None:
     assert world.plan.split_forces is DOP853
 
 
-def test_a_method_asked_for_by_name_is_used() -> None:
+def test_a_method_chosen_by_name_is_used() -> None:
     world = far_floor(open_space(integrator="leapfrog"))
     circle(world, (0.0, 0.0), radius=0.1)
     world.spawn(Spring(2, None, stiffness=10.0))
@@ -58,7 +58,7 @@ def test_a_method_asked_for_by_name_is_used() -> None:
     assert not world.bodies.sub_integrated.any()
 
 
-def test_what_no_spring_holds_is_not_tethered() -> None:
+def test_what_no_spring_holds_is_not_sub_integrated() -> None:
     world, bob = hung(50.0)
     free = circle(world, (5.0, 0.0), radius=0.1)
     world.synchronise()
@@ -129,7 +129,7 @@ def test_two_bodies_on_a_spring_keep_their_momentum_through_collisions() -> None
     assert after.angular == pytest.approx(before.angular, abs=1e-3)  # overlapping, the two arms differ
 
 
-def test_an_elastic_bob_that_strikes_a_wall_keeps_its_energy() -> None:
+def test_an_elastic_bob_that_hits_a_wall_keeps_its_energy() -> None:
     world = open_space()
     box(world, (-0.7, -1.0), width=1.0, height=4.0, static=True, restitution=1.0, friction=0.0)
     bob = circle(world, (0.8, -0.6), radius=0.2, restitution=1.0, friction=0.0)
@@ -194,7 +194,7 @@ def test_a_heavy_load_makes_substeps_finer_and_its_taking_away_coarser() -> None
     assert world.substeps == world.simulation.substeps
 
 
-def test_what_lies_on_a_heavy_body_makes_nothing_finer() -> None:
+def test_what_rests_on_a_heavy_body_makes_no_substep_shorter() -> None:
     world = open_space()
     floor(world)
     box(world, (0.0, 0.5), width=1.0, height=1.0, mass=1e6)

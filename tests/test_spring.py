@@ -64,7 +64,7 @@ def test_two_bodies_with_anchors() -> None:
     assert torque_b == pytest.approx(20)  # (-1, 1) x (-20, 0)
 
 
-def test_damping_sees_the_turning_of_anchors() -> None:
+def test_damping_includes_the_turning_of_anchors() -> None:
     world = springs()
     wheel = world.spawn(Transform(), Velocity((0, 0), 2.0), Mass(1, 1))
     world.add(wheel, Spring(anchor_a=(0, 1), anchor_b=(-3, 1), rest_length=3, stiffness=1, damping=5))
@@ -228,11 +228,11 @@ def test_an_end_that_is_no_body_is_refused_by_name(spring: Spring, field: str, v
     assert world.has(ball, Transform)
 
 
-def test_ends_are_settled() -> None:
+def test_ends_are_fixed() -> None:
     world = springs()
     world.spawn(Transform())
     spring = world.component(world.spawn(Spring(1)), Spring)
-    with pytest.raises(AttributeError, match=r"Spring\.b is settled"):
+    with pytest.raises(AttributeError, match=r"Spring\.b is fixed"):
         spring.b = 1
     spring.stiffness = 7
     assert world.table(Spring)["stiffness"].max() == 7

@@ -29,7 +29,7 @@ def test_the_record_is_where_the_body_was() -> None:
 
 
 @pytest.mark.parametrize("length", [0.3, 1.0, 2.13, 10.0, 1000.0])
-def test_it_goes_back_as_far_as_asked_in_bounded_room(length: float) -> None:
+def test_it_goes_back_as_far_as_its_length_in_bounded_room(length: float) -> None:
     world, system, body = gliding(length)
     world.step()
     for _ in range(SAMPLES * 3):

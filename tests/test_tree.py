@@ -1,4 +1,4 @@
-"""Gravity by the tree: as near to the direct sum as it says, wherever bodies lie."""
+"""Gravity by the tree: as near to the direct sum as documented, wherever bodies are."""
 
 import numpy as np
 import pytest
@@ -90,7 +90,7 @@ def test_one_body_at_1e9_m_spoils_nothing(law: str) -> None:
 
 
 def test_within_the_softening_nothing_is_taken_whole() -> None:
-    """Where all lie within the softening of the clamp law, every pair is summed."""
+    """Where all are within the softening of the clamp law, every pair is summed."""
     random = np.random.default_rng(6)
     position, mass = even(2_000, random), np.ones(2_000)
     direct, tree = both(position, mass, 10.0, "clamp")
@@ -116,5 +116,5 @@ def test_the_same_bodies_have_the_same_pulls_to_the_bit() -> None:
 @pytest.mark.parametrize(
     ("n", "levels"), [(1, 0), (LEAF, 0), (LEAF + 1, 1), (4 * LEAF, 2), (4 * LEAF + 1, 3)]
 )
-def test_the_depth_hangs_on_the_number_alone(n: int, levels: int) -> None:
+def test_the_depth_depends_on_the_number_alone(n: int, levels: int) -> None:
     assert levels_of.py_func(n) == levels  # type: ignore[attr-defined]

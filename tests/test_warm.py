@@ -140,7 +140,9 @@ needs_priorities = pytest.mark.skipif(
 
 
 @needs_priorities
-def test_workers_stand_back_only_while_nothing_waits(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_workers_have_low_priority_only_while_nothing_waits(
+    mark: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     given: list[tuple[int, int]] = []
     monkeypatch.setattr(os, "setpriority", lambda kind, process, value: given.append((process, value)))
     own = os.getpriority(os.PRIO_PROCESS, 0)
@@ -213,7 +215,7 @@ def test_a_window_that_loads_is_drawn_where_it_changes(monkeypatch: pytest.Monke
     assert not app._load(display, "nothing")
 
 
-def test_a_worker_compiles_what_it_is_told() -> None:
+def test_a_worker_compiles_what_it_is_given() -> None:
     name = "physicslab.kernels.motion.clear"
     done = subprocess.run(
         [sys.executable, "-m", "physicslab.kernels", "worker"],
@@ -264,7 +266,7 @@ def test_while_it_waits_nothing_that_the_user_does_is_forgotten() -> None:
         assert kept == [pygame.MOUSEBUTTONUP, pygame.KEYDOWN, pygame.KEYUP]
 
 
-def test_what_is_asked_for_is_compiled_first(mark: Path) -> None:
+def test_what_is_needed_is_compiled_first(mark: Path) -> None:
     with Warmup(1, ECHO) as warmup:
         pass
     last = list(warmup._jobs)[-1]
@@ -302,7 +304,7 @@ def test_kernels_are_loaded_in_frames_that_have_time_left(
         assert [kernel.compiled for kernel in asleep] == [True, True, False]
 
 
-def test_the_window_knows_every_kernel_from_the_start() -> None:
+def test_the_window_lists_every_kernel_from_the_start() -> None:
     """What is in no imported module could not be loaded while there is time for it."""
     code = """
 from physicslab.desktop import app

@@ -93,7 +93,7 @@ def test_what_chooses_its_steps_or_is_exact_needs_no_advice() -> None:
         assert find_warnings(world) == ()
 
 
-def test_what_was_asked_for_and_refused_is_said() -> None:
+def test_a_refused_choice_is_reported() -> None:
     world = open_world(integrator="exact", collisions="exact")
     floor(world)
     box(world, (0, 0.25), angular_velocity=1.0)
@@ -192,7 +192,7 @@ def test_the_worst_of_each_kind_is_kept() -> None:
     assert [(advice.what, advice.value) for advice in worst.all] == [("one", 5.0), ("two", None)]
 
 
-def test_a_look_changes_nothing() -> None:
+def test_measuring_changes_nothing() -> None:
     worlds = load_scene("pile"), load_scene("pile")
     for _ in range(30):
         for world in worlds:

@@ -1,4 +1,4 @@
-"""Eight numbers as one: every operation gives, lane by lane, what it gives of plain numbers."""
+"""Eight numbers as one: every operation gives in each slot what it gives for plain numbers."""
 
 import numba
 import numpy as np
@@ -10,6 +10,7 @@ from physicslab.kernels.wide.float64x8 import (
     choose,
     greater,
     least,
+    mask_bits,
     put,
     put_numbers,
     put_vectors,
@@ -18,7 +19,6 @@ from physicslab.kernels.wide.float64x8 import (
     take,
     take_numbers,
     take_vectors,
-    true_lanes,
 )
 from physicslab.kernels.wide.layout import WIDE
 
@@ -43,7 +43,7 @@ def comparisons(x: Numbers, y: Numbers, limit: float, out: Numbers) -> int:
     put(out, 0, least(a, b))
     put(out, 8, greater(a, limit))
     put(out, 16, choose(inside | (b > 1.0), a, limit))
-    return true_lanes(inside)
+    return mask_bits(inside)
 
 
 @numba.njit(error_model="numpy")
@@ -65,7 +65,7 @@ eight = st.lists(finite, min_size=WIDE, max_size=WIDE).map(np.array)
 
 @settings(max_examples=200)
 @given(eight, eight.filter(lambda y: bool(np.all(y != 0.0))), finite)
-def test_arithmetic_is_that_of_each_lane(x: Numbers, y: Numbers, scale: float) -> None:
+def test_arithmetic_is_that_of_each_slot(x: Numbers, y: Numbers, scale: float) -> None:
     out = np.zeros(48)
     arithmetic(x, y, scale, out)
     with np.errstate(over="ignore"):
@@ -76,7 +76,7 @@ def test_arithmetic_is_that_of_each_lane(x: Numbers, y: Numbers, scale: float) -
 
 @settings(max_examples=200)
 @given(eight, eight, finite)
-def test_comparisons_are_those_of_each_lane(x: Numbers, y: Numbers, limit: float) -> None:
+def test_comparisons_are_those_of_each_slot(x: Numbers, y: Numbers, limit: float) -> None:
     out = np.zeros(24)
     inside = (x < y) & (x > limit)
     assert comparisons(x, y, limit, out) == sum(int(yes) << slot for slot, yes in enumerate(inside))

@@ -1,4 +1,4 @@
-"""Settled contacts in blocks: the same answer as one by one, no body twice in a block, woken by a blow."""
+"""Wide contacts: the same result as one by one, no body twice in a block, woken by an impact."""
 
 from typing import cast
 
@@ -41,7 +41,7 @@ ADDED = {"boxes": settled_boxes, "discs": settled_discs}
 
 
 @pytest.mark.parametrize("name", ADDED)
-def test_what_has_settled_lies_in_blocks(name: str) -> None:
+def test_steady_contacts_are_in_blocks(name: str) -> None:
     world = ADDED[name]()
     assert world.contacts.wide.filled > 0.7 * world.contacts.count
     assert world.contacts.count == world.contacts.active + world.contacts.wide.filled
@@ -60,12 +60,12 @@ def test_no_block_moves_a_body_twice(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ADDED)
-def test_every_pair_has_one_lane_or_is_loose(name: str) -> None:
+def test_every_pair_has_one_slot_or_is_scalar(name: str) -> None:
     contacts = ADDED[name]().contacts
     restored = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.wide.kinds])
     restored = restored[restored >= 0]
-    everyone = np.sort(np.concatenate((restored, contacts.scalar[: contacts.scalar_count])))
-    assert np.array_equal(everyone, np.arange(contacts.recorded))
+    all_pairs = np.sort(np.concatenate((restored, contacts.scalar[: contacts.scalar_count])))
+    assert np.array_equal(all_pairs, np.arange(contacts.recorded))
 
 
 @pytest.mark.parametrize("name", ADDED)
@@ -109,7 +109,7 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
     assert ends[0][1] == pytest.approx(ends[1][1], rel=1e-9, abs=1e-11)
 
 
-def test_few_contacts_stay_loose() -> None:
+def test_few_contacts_stay_scalar() -> None:
     world = open_space()
     floor(world)
     for i in range(5):
@@ -118,7 +118,7 @@ def test_few_contacts_stay_loose() -> None:
     assert world.contacts.wide.filled == 0
 
 
-def test_a_settled_pile_rests_and_keeps_its_momentum() -> None:
+def test_a_pile_with_wide_contacts_rests_and_keeps_its_momentum() -> None:
     world = settled_discs()
     energy = measure_energy(world).total
     world.run(seconds=2.0)
@@ -126,7 +126,7 @@ def test_a_settled_pile_rests_and_keeps_its_momentum() -> None:
     assert measure_momentum(world).linear.magnitude < 0.05 * 120
 
 
-def test_a_blow_goes_through_a_settled_row_of_elastic_balls() -> None:
+def test_an_impact_goes_through_a_resting_row_of_elastic_balls() -> None:
     world = open_space(gravity=None, collisions="step")
     balls = [circle(world, (0.2 * i, 0.0), radius=0.1, restitution=1.0, friction=0.0) for i in range(80)]
     world.run(steps=5)
@@ -169,32 +169,32 @@ def test_removing_a_body_lets_those_above_fall() -> None:
     assert np.isfinite(world.table(Transform)["position"]).all()
 
 
-def test_lanes_that_a_file_makes_up_stay_loose() -> None:
-    """Two contacts in one lane, boxes in a lane of discs, a body twice in a block, a lane far out."""
-    for spoiled in ("one lane", "wrong kind", "one block", "far out"):
+def test_slots_that_a_file_makes_up_stay_scalar() -> None:
+    """Two contacts in one slot, boxes in a slot of discs, a body twice in a block, a slot far out."""
+    for spoiled in ("one slot", "wrong kind", "one block", "far out"):
         world = settled_boxes()
         rows = [row for row in export_contacts(world.contacts) if len(row) > 20]
         world.contacts.clear()
         slots: dict[str, list[tuple[float, float]]] = {
-            "one lane": [(1, 0) for _ in rows],
+            "one slot": [(1, 0) for _ in rows],
             "wrong kind": [(row[-2] - 1, row[-1]) for row in rows],
             "one block": [(2 * n + 1, 0) for n in range(len(rows))],
             "far out": [(10**15 + 1, 0) for _ in rows],
         }
-        changed = [[*row[:-2], *fill_slot] for row, fill_slot in zip(rows, slots[spoiled], strict=True)]
+        changed = [[*row[:-2], *slot] for row, slot in zip(rows, slots[spoiled], strict=True)]
         restore_contacts(world.contacts, changed)
         world.run(steps=30)
         contacts = world.contacts
         restored = np.concatenate([kind.pair[: kind.count * WIDE] for kind in contacts.wide.kinds])
         restored = restored[restored >= 0]
-        everyone = np.sort(np.concatenate((restored, contacts.scalar[: contacts.scalar_count])))
-        assert np.array_equal(everyone, np.arange(contacts.recorded))
+        all_pairs = np.sort(np.concatenate((restored, contacts.scalar[: contacts.scalar_count])))
+        assert np.array_equal(all_pairs, np.arange(contacts.recorded))
         assert len(restored) == contacts.wide.filled
         assert contacts.max_penetration < 0.02
 
 
-def test_all_lanes_of_a_settled_pile_go_on_from_a_file() -> None:
-    """When none joins them after they were seated, they are solved in their order all the same."""
+def test_all_slots_of_a_pile_are_restored_from_a_file() -> None:
+    """Where none is added after they got slots, they are solved in their order all the same."""
     world = settled_discs()
     again = read_scene(write_scene(world))
     for _ in range(20):
@@ -219,7 +219,7 @@ def test_every_block_is_solved_once_while_contacts_come_and_go(name: str) -> Non
 
 
 @pytest.mark.parametrize("name", ADDED)
-def test_a_heavier_body_keeps_its_lanes_which_know_of_it(name: str) -> None:
+def test_a_heavier_body_keeps_its_slots_with_the_new_mass(name: str) -> None:
     world = ADDED[name]()
     before = world.contacts.wide.filled
     body = [entity for entity in world.entities() if world.has(entity, Mass)][40]

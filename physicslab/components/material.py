@@ -5,7 +5,7 @@ from physicslab.ecs.component import Component, component, field
 
 @component
 class Material(Component):
-    """What a surface does in a contact: a pair uses e = min(e_a, e_b) and mu = sqrt(mu_a mu_b)."""
+    """The properties of a surface in contact: a pair uses e = min(e_a, e_b) and mu = sqrt(mu_a mu_b)."""
 
     restitution: float = field(
         default=0.0, minimum=0.0, maximum=1.0, meaning="share of the approach speed given back"

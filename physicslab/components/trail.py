@@ -5,6 +5,6 @@ from physicslab.ecs.component import Component, component, field
 
 @component
 class Trail(Component):
-    """Asks for a record of where the body has been."""
+    """Makes the world record where the body has been."""
 
     length: float = field(default=2.0, unit="s", above=0.0, meaning="how far back the record goes")

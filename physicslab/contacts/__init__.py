@@ -1,1 +1,1 @@
-"""What is done with contacts: pairs listed, constraints made wide, sleepers woken, figures reported."""
+"""Operations on contacts: listing pairs, wide constraints, waking sleeping bodies, reports."""

@@ -1,4 +1,4 @@
-"""What the kernels of the contact stages work on, taken from a state."""
+"""The arguments of the kernels of the contact stages, taken from a state."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def materials_of(state: State) -> MaterialsTuple:
 
 
 def inverse_in(state: State) -> InverseTuple:
-    """Return the inverse masses that are simulated: those of sleepers are zero."""
+    """Return the inverse masses that are simulated: those of sleeping bodies are zero."""
     return (state.bodies.awake_inverse_mass, state.bodies.awake_inverse_inertia)
 
 

@@ -21,16 +21,16 @@ type _Marks = NDArray[np.bool_]
 
 
 def follow_rows(state: State) -> None:
-    """Let every entity keep what it has where rows are numbered again."""
+    """Move the values of every entity where rows are numbered again."""
     if state.sleep.follow(state.entity_index.entities):
         state.contacts.stale = True
         _set_contacts_inactive(state)
 
 
 def check_edits(state: State, *, within: bool = False) -> None:
-    """Wake the sleepers that an edit concerns: their own numbers have changed, or those of what touches them.
+    """Wake the bodies that an edit affects: they, or bodies that touch them, have other values now.
 
-    ``within`` a step, what moves by itself may have moved.
+    ``within`` a step, kinematic bodies may have moved.
     """
     sleep = state.sleep
     if not sleep.count:
@@ -59,7 +59,7 @@ def check_edits(state: State, *, within: bool = False) -> None:
 
 
 def _mark_neighbours(state: State, causes: NDArray[np.int64], marked: _Marks) -> None:
-    """Mark the sleepers that touched some of the entities ``causes`` when pairs were last listed."""
+    """Mark the sleeping bodies that touched some of the entities ``causes`` when pairs were last listed."""
     a, b, count = _touching(state)
     near = state.contacts.manifolds[: state.contacts.recorded]
     for entity, row in ((near["entity_a"], b), (near["entity_b"], a)):
@@ -68,7 +68,7 @@ def _mark_neighbours(state: State, causes: NDArray[np.int64], marked: _Marks) ->
 
 
 def wake(state: State, marked: _Marks) -> _Marks:
-    """Wake the islands of the sleepers that are ``marked``, which is added to; return which bodies woke."""
+    """Wake the islands of the ``marked`` bodies, and mark all of them; return which bodies woke."""
     sleep = state.sleep
     a, b, count = _touching(state)
     islands.join_marked(a, b, count, sleep.asleep, marked)
@@ -100,14 +100,14 @@ def fall_asleep(state: State, falling: _Marks) -> None:
 
 
 def _begin(state: State) -> None:
-    """Note how everything is: an edit is a difference to that."""
+    """Record the present state; an edit is a difference from it."""
     sleep = state.sleep
     sleep.laws = state.physics, state.simulation
     sleep.kept, sleep.known = _figures(state), sleep.entities > 0
 
 
 def keep_places(state: State) -> None:
-    """Note where a step has brought what moves by itself: what is elsewhere later was edited."""
+    """Record where a step has moved kinematic bodies: one that is elsewhere later was edited."""
     if state.sleep.count:
         transform, kept = state.table(Transform), state.sleep.kept
         rows = np.flatnonzero(state.table(Velocity).present & (state.bodies.inverse_mass == 0.0))
@@ -152,7 +152,7 @@ def _figures(state: State) -> NDArray[np.float64]:
 
 
 def _set_inactive(state: State) -> None:
-    """Let bodies and contacts follow which bodies sleep now."""
+    """Update bodies and contacts by which bodies sleep now."""
     state.bodies.set_inactive(state.sleep.asleep)
     _set_contacts_inactive(state)
 
@@ -165,7 +165,7 @@ def _set_contacts_inactive(state: State) -> None:
 
 
 def _impulse_dt(state: State) -> float:
-    """Return the time [s] that impulses of sleepers stand for."""
+    """Return the time [s] over which impulses of sleeping contacts act."""
     simulation = state.sleep.laws[1] if state.sleep.laws is not None else state.simulation
     span: float = simulation.dt / simulation.substeps
     return span
@@ -174,7 +174,7 @@ def _impulse_dt(state: State) -> float:
 def export_rests(state: State) -> list[list[Any]]:
     """Return lists: an entity that sleeps, or one with how long [s] and how slowly [m/s] it has rested.
 
-    Only what a file will know again: bodies with a Shape that can be moved.
+    Only bodies that a file can restore: those with a Shape that can be moved.
     """
     sleep = state.sleep
     movable = (state.bodies.inverse_mass > 0.0) & (state.table(Shape)["kind"] != 0)
@@ -187,7 +187,7 @@ def export_rests(state: State) -> list[list[Any]]:
 
 
 def restore_rests(state: State, rows: Sequence[Sequence[Any]]) -> None:
-    """Take back what :func:`export_rests` returned; where bodies may not sleep, all are awake."""
+    """Restore what :func:`export_rests` returned; where bodies may not sleep, all are awake."""
     sleep = state.sleep
     if not (sleep.on and rows):
         return
@@ -205,7 +205,7 @@ def restore_rests(state: State, rows: Sequence[Sequence[Any]]) -> None:
 
 
 def _touching(state: State) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return of every near pair the rows as they are now, -1 for what is gone, and how many points it has."""
+    """Return the present rows of every near pair, -1 for removed bodies, and how many points it has."""
     near = state.contacts.manifolds[: state.contacts.recorded]
     index = state.entity_index
     a, b = (np.ascontiguousarray(index.rows_of(near[name])) for name in ("entity_a", "entity_b"))

@@ -1,4 +1,4 @@
-"""What contacts remember from step to step, as rows of numbers that a file can hold."""
+"""What contacts keep from step to step, as rows of numbers that a file can hold."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from physicslab.kernels.wide.layout import WIDE
 from physicslab.kernels.wide.slots import COLOURS
 from physicslab.state.contacts import Contacts
 
-__all__ = ["copied", "export_contacts", "remembered", "restore_contacts"]
+__all__ = ["copied", "export_contacts", "kept_rows", "restore_contacts"]
 
 _NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap", "slot")
 _KEPT = tuple(name for name in MANIFOLD.names or () if name not in _NO_ROWS)
@@ -18,7 +18,7 @@ _WARM = ("feature", "normal_impulse", "tangent_impulse")
 
 
 def copied(contacts: Contacts) -> Contacts:
-    """Return what :func:`remembered` needs, in copies that no step changes."""
+    """Return what :func:`kept_rows` needs, in copies that no step changes."""
     contacts.sync()
     held = Contacts()
     held.recorded, held.impulse_dt = contacts.recorded, contacts.impulse_dt
@@ -30,12 +30,12 @@ def copied(contacts: Contacts) -> Contacts:
     return held
 
 
-def remembered(contacts: Contacts) -> Iterator[list[float] | None]:
+def kept_rows(contacts: Contacts) -> Iterator[list[float] | None]:
     """Yield what the next step takes from the last one, as rows of numbers that JSON can hold.
 
     A row starts with the two entities (0 for the world's bounds) and the wall. Points that will be found
-    again leave their features and impulses; those that will be kept, everything; ``None`` stands for a pair
-    of which nothing is kept. A settled contact adds its slot, and the colour of its block; one that will have
+    again leave their features and impulses; those that will be kept, everything; ``None`` is for a pair
+    of which nothing is kept. A wide contact adds its slot, and the colour of its block; one that will have
     an impact in the next substep, which of its points do: 1, 2, or 3 for both.
     """
     for p in ordered_records(contacts):
@@ -58,13 +58,13 @@ def remembered(contacts: Contacts) -> Iterator[list[float] | None]:
 
 
 def export_contacts(contacts: Contacts) -> list[list[float]]:
-    """Return all that is :func:`remembered`."""
+    """Return all :func:`kept_rows`."""
     contacts.sync()
-    return [row for row in remembered(contacts) if row is not None]
+    return [row for row in kept_rows(contacts) if row is not None]
 
 
 def restore_contacts(contacts: Contacts, rows: Sequence[Sequence[float]]) -> None:
-    """Take back what :func:`export_contacts` returned.
+    """Restore what :func:`export_contacts` returned.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def restore_contacts(contacts: Contacts, rows: Sequence[Sequence[float]]) -> Non
         if len(row) not in (light, heavy, light + 1, light + 2, heavy + 2):
             raise ValueError(f"a contact has {light} or {heavy} values, or two more, not {len(row)}")
         if len(row) == light + 1 and row[-1] not in (1, 2, 3):
-            raise ValueError(f"points that strike next: {row[-1]!r}: must be 1, 2 or 3")
+            raise ValueError(f"points with an impact next: {row[-1]!r}: must be 1, 2 or 3")
         manifold = contacts.manifolds[p]
         named = len(row) in (light + 2, heavy + 2)
         manifold["slot"] = _take_slot(contacts, *row[-2:]) if named else -1
@@ -89,7 +89,7 @@ def restore_contacts(contacts: Contacts, rows: Sequence[Sequence[float]]) -> Non
             values = iter(row[2 + len(_KEPT) :])
             names: Sequence[str] = POINT.names or ()
         else:
-            manifold["count"] = 1  # it had points: if it has none now, their impulses are forgotten
+            manifold["count"] = 1  # it had points: if it has none now, their impulses are dropped
             values, names = iter(row[3:]), _WARM
         for j in (2 * p, 2 * p + 1):
             for name in names:
@@ -101,9 +101,9 @@ def restore_contacts(contacts: Contacts, rows: Sequence[Sequence[float]]) -> Non
 
 
 def _take_slot(contacts: Contacts, slot: float, colour: float) -> int:
-    """Note that a slot is that of a contact that will be found again, in a block of a colour."""
+    """Reserve the slot of a contact that will be found again, in a block of a colour."""
     if not (slot == int(slot) and slot >= 0):
-        raise ValueError(f"a lane of {slot!r}: must be a whole number >= 0")
+        raise ValueError(f"a slot of {slot!r}: must be a whole number >= 0")
     if not (colour == int(colour) and 0 <= colour < COLOURS):
         raise ValueError(f"a colour of {colour!r}: must be a whole number from 0 to 63")
     constraints, block = contacts.wide.kinds[int(slot) % 2], int(slot) // 2 // WIDE

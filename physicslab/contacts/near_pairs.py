@@ -1,4 +1,4 @@
-"""The list of near pairs: taken over from a search, with what each pair remembers."""
+"""The list of near pairs: taken over from a search, with the record of each pair."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def partition(
 ) -> None:
     """Take a new list of near pairs: ``found`` of bodies, in no order, and ``walls`` of the bounds.
 
-    Pairs of discs of which nothing is remembered get no record until they come near.
+    Pairs of discs without a record get none until they come near.
     """
     contacts, shape = state.contacts, state.table(Shape)
     _make_table(state)
@@ -38,7 +38,7 @@ def partition(
 def list_all(state: State, pairs: NDArray[np.int64], count: int) -> None:
     """Take a new sorted list of ``count`` near pairs (a, b, wall), each with its record.
 
-    Pairs known before stay as they are. What touches is still to be found out.
+    Pairs listed before stay as they are. Which pairs touch is found afterwards.
     """
     _make_table(state)
     state.contacts.proximity_count = 0
@@ -46,7 +46,7 @@ def list_all(state: State, pairs: NDArray[np.int64], count: int) -> None:
 
 
 def _make_table(state: State) -> None:
-    """See to it that there is room to look up every record."""
+    """Make room to look up every record."""
     contacts = state.contacts
     if len(contacts.table) < 4 * contacts.recorded:
         contacts.table = np.zeros(8 * contacts.recorded, np.int64)
@@ -56,7 +56,7 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
     contacts, entities = state.contacts, state.entity_index.entities
     if contacts.stale:
         contacts.sync()
-        # Rows may be others now: what had a slot gets it again.
+        # Rows may have changed: contacts that had a slot get it again.
         contacts.restoring |= contacts.wide.filled > 0
         contacts.wide.reset(len(entities))
     most = count + contacts.proximity_count

@@ -77,7 +77,7 @@ def list_contacts(state: State) -> tuple[Contact, ...]:
 
 
 def contact_between(state: State, a: int, b: int) -> Contact | None:
-    """Return the contact of two entities, seen as A and B in the order given, or ``None``."""
+    """Return the contact of two entities, as A and B in the order given, or ``None``."""
     contacts = state.contacts
     for p in _reported(contacts):
         manifold = contacts.manifolds[p]
@@ -86,7 +86,7 @@ def contact_between(state: State, a: int, b: int) -> Contact | None:
             return _describe(state, p)
         if pair == (b, a):
             seen = _describe(state, p)
-            # Seen from the other side, normal and tangent turn round, and so do the impulses on B: the
+            # From the other side, normal and tangent are reversed, and so are the impulses on B: the
             # numbers stay.
             return replace(seen, a=a, b=b, normal=-seen.normal)
     return None

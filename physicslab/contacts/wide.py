@@ -1,4 +1,4 @@
-"""Settled contacts taken into blocks of eight, and kept there with masses and materials as they are."""
+"""Wide contacts: put into blocks of eight, and kept up to date with masses and materials."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape, Velocity
 from physicslab.kernels.wide import graph_colour, restore_slots
-from physicslab.kernels.wide.graph_colour import FEW
+from physicslab.kernels.wide.graph_colour import MIN_WIDE
 from physicslab.kernels.wide.layout import WIDE
 from physicslab.kernels.wide.slots import COLOURS
 from physicslab.state.state import State
@@ -16,11 +16,11 @@ __all__ = ["add_constraints", "fill_again", "refill"]
 
 
 def add_constraints(state: State, h: float) -> None:
-    """Take the contacts that have settled into blocks."""
+    """Put steady contacts into blocks."""
     contacts, bodies = state.contacts, state.bodies
     material, shape = state.table(Material), state.table(Shape)
     wide = contacts.wide
-    if not wide.filled and contacts.active < FEW:
+    if not wide.filled and contacts.active < MIN_WIDE:
         return
     state.compile(wide.kernels)
     known = wide.filled > 0
@@ -43,7 +43,7 @@ def add_constraints(state: State, h: float) -> None:
 
 
 def refill(state: State) -> None:
-    """Let slots hold masses, sizes and materials as they are now, if one of them was changed."""
+    """Update the masses, sizes and materials in slots, if one of them was changed."""
     contacts = state.contacts
     if contacts.wide.filled and restore_slots.outdated(contacts.wide.made_of, *_columns(state)):
         rows = len(state.entity_index)
@@ -54,11 +54,11 @@ def refill(state: State) -> None:
 
 
 def fill_again(state: State) -> None:
-    """Put the contacts whose records name a slot, as those of a file do, back into that."""
+    """Put the contacts whose records name a slot, as those of a file do, back into it."""
     contacts, material = state.contacts, state.table(Material)
     contacts.restoring = False
     near, asleep = contacts.manifolds[: contacts.recorded], state.sleep.asleep
-    near["slot"][asleep[near["a"]] | asleep[near["b"]]] = -1  # sleepers have none
+    near["slot"][asleep[near["a"]] | asleep[near["b"]]] = -1  # sleeping contacts have none
     state.compile(contacts.wide.kernels)
     for constraints in contacts.wide.kinds:
         constraints.count, restored = restore_slots.restore_slots(
@@ -74,7 +74,7 @@ def fill_again(state: State) -> None:
 
 
 def _remember(state: State) -> None:
-    """Keep the masses, sizes and materials that slots hold as well."""
+    """Record the masses, sizes and materials that slots contain."""
     columns = _columns(state)
     state.contacts.wide.made_of = np.zeros((len(columns[0]), len(columns)))
     restore_slots.remember(state.contacts.wide.made_of, *columns)

@@ -13,9 +13,9 @@ from physicslab.ecs.vector import Vector2
 __all__ = ["ABSENT", "Derived", "Maker", "Vector", "accessor", "maker"]
 
 type Maker = Callable[[object], list[list[Any]]]
-"""Makes of a value what a detached component holds of it: a list a column."""
+"""Converts a value to the form that a detached component holds: a list for each column."""
 ABSENT: Any = object()
-"""What stands for a value that was not given."""
+"""Marks a value that was not given."""
 
 
 class Vector:
@@ -31,22 +31,22 @@ class Vector:
 
 
 class Derived:
-    """The type of a number that the world works out where it is ``None``: reads as ``float``, takes both."""
+    """The type of a number that the world computes where it is ``None``: reads as ``float``, takes both."""
 
     def __get__(self, handle: object, owner: type | None = None) -> float:
-        """Return the number in the handle's row; 0 while it is not given and no world has worked it out."""
+        """Return the number in the handle's row; 0 while it is not given and no world has computed it."""
         raise NotImplementedError  # the decorator puts a property in this place
 
     def __set__(self, handle: object, value: float | None) -> None:
-        """Give the number by hand, or hand it back to the world with ``None``."""
+        """Give the number explicitly, or leave it to the world with ``None``."""
         raise NotImplementedError
 
 
 def maker(spec: Field) -> Maker:
-    """Make what turns a value of a field into what a detached component holds of it: a list a column."""
+    """Return the conversion of a value to the form of a detached component: a list for each column."""
     check, low, high, default = spec.check, spec.lowest, spec.highest, spec.default
 
-    def settled(value: object) -> object:
+    def converted(value: object) -> object:
         if value is not ABSENT:
             return value
         if default is REQUIRED:
@@ -56,17 +56,17 @@ def maker(spec: Field) -> Maker:
     def number(value: object) -> list[list[Any]]:
         if type(value) is float and low <= value <= high:
             return [[value]]
-        return [[check(settled(value))]]
+        return [[check(converted(value))]]
 
     def vector(value: object) -> list[list[Any]]:
-        return [list(check(settled(value)))]
+        return [list(check(converted(value)))]
 
     def derived(value: object) -> list[list[Any]]:
-        value = settled(value)
+        value = converted(value)
         return [[0.0], [False]] if value is None else [[check(value)], [True]]
 
     def other(value: object) -> list[list[Any]]:
-        return [[check(settled(value))]]
+        return [[check(converted(value))]]
 
     makers: dict[Kind, Maker] = {"number": number, "vector": vector}
     return derived if spec.derived else makers.get(spec.kind, other)
@@ -107,11 +107,11 @@ def accessor(spec: Field, column: int, *, validated: bool) -> property:
     write_field = write_derived if spec.derived else writes.get(spec.kind, write)
 
     def write_validated(self: Any, value: object) -> None:
-        type(self)(**{**self.given(), spec.name: value})  # raises where the values do not go together
+        type(self)(**{**self.given(), spec.name: value})  # raises where the values are inconsistent
         write_field(self, value)
 
     def refuse(self: Any, value: object) -> None:
-        raise AttributeError(f"{spec.owner}.{spec.name} is settled when the component is made; add a new one")
+        raise AttributeError(f"{spec.owner}.{spec.name} is fixed when the component is made; add a new one")
 
     unit = "" if spec.unit == "1" else f" [{spec.unit}]"
     return property(

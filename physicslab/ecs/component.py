@@ -1,8 +1,8 @@
 """Components as rows of numpy columns.
 
 A component object is a handle on one row of its component's table. Reading ``transform.position`` and running
-a vectorised system over ``world.table(Transform)["position"]`` touch the same memory, so there is one truth
-and nothing to copy. A component that no world has adopted yet owns a row of its own.
+a vectorised system over ``world.table(Transform)["position"]`` touch the same memory, so there is one copy of
+each value. A component that no world has adopted yet owns a row of its own.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ __all__ = [
 ]  # fmt: skip
 
 COMPONENTS: dict[str, type[Component]] = {}
-"""What files may hold: every class made by :func:`component`, by name, in the order of definition."""
+"""The components of files: every class made by :func:`component`, by name, in the order of definition."""
 _local = False
 """Whether a component may have the name of another: within a block of :func:`local_components`."""
 _BUILT_IN = "physicslab.components."
@@ -42,7 +42,7 @@ class Component:
 
     def __init_subclass__(cls) -> None:
         if cls.__bases__ != (Component,):
-            raise TypeError(f"{cls.__name__}: a component has no subclasses; esper goes by the exact type")
+            raise TypeError(f"{cls.__name__}: a component has no subclasses; esper looks up the exact type")
 
     def __init__(self, *args: object, **kwargs: object) -> None:
         # Loading a scene of 100,000 entities makes 500,000 components: nothing here is done twice.
@@ -75,7 +75,7 @@ class Component:
         return given | kwargs
 
     def validate(self) -> None:
-        """Raise :class:`InvalidValue` where fields do not go together. Override where there is such a rule.
+        """Raise :class:`InvalidValue` where fields are inconsistent. Override where there is such a rule.
 
         It is called on a new component, so it may read every field; a write is tried on a new one first.
         """
@@ -85,11 +85,11 @@ class Component:
         return {spec.name: getattr(self, spec.name) for spec in self.FIELDS}
 
     def given(self) -> dict[str, Any]:
-        """Return what makes the same component again: its values, ``None`` for those the world works out."""
+        """Return the arguments to make the same component: values, ``None`` for those the world computes."""
         return {name: value if self.is_given(name) else None for name, value in self.values().items()}
 
     def is_given(self, name: str) -> bool:
-        """Whether a derived field was given by hand (``True`` for every other field)."""
+        """Whether a derived field was given explicitly (``True`` for every other field)."""
         column = 0
         for spec in self.FIELDS:
             if spec.name == name:
@@ -109,7 +109,7 @@ class Component:
 def component[T](cls: type[T]) -> type[T]:
     """Turn an annotated class into a component whose fields live in columns.
 
-    Derive it from :class:`Component`, so that type checkers know its methods, and from nothing else. Annotate
+    Derive it from :class:`Component`, so that type checkers find its methods, and from nothing else. Annotate
     each field with its type and describe it with :func:`field`:
 
     ======================  =========================================  ===============================
@@ -118,7 +118,7 @@ def component[T](cls: type[T]) -> type[T]:
     ``float``               a finite number, within its range          float64 (n,)
     ``int``                 a whole number, within its range           int64 (n,)
     ``Vector``              two finite numbers, read as ``Vector2``    float64 (n, 2)
-    ``Derived``             a number the world can work out            float64 (n,) and a bool (n,)
+    ``Derived``             a number the world can compute             float64 (n,) and a bool (n,)
     ``bool``                a flag                                     bool (n,)
     ``int | None``          an entity, or none                         int64 (n,), 0 for none
     ``str`` with choices    one word of a fixed list                   int64 (n,), 1 + index in the list
@@ -126,7 +126,7 @@ def component[T](cls: type[T]) -> type[T]:
 
     A row whose entity lacks the component is all zeros. Reading gives plain Python values; writing checks the
     value and raises :class:`InvalidValue` with the component, the field, the value and what is allowed.
-    Scene files know a component by the name of its class, so no two classes have the same one; a class that
+    Scene files identify a component by the name of its class, so no two classes have the same; a class that
     is defined again, as by a notebook's cell, replaces itself. Examples and tests use
     :func:`local_components`.
 
@@ -154,7 +154,7 @@ def component[T](cls: type[T]) -> type[T]:
     known = COMPONENTS.get(cls.__name__)
     if known is not None and not _local and _origin(known) != _origin(cls):
         raise TypeError(
-            f"component {_origin(cls)}: {_origin(known)} has this name already, and scene files go by it; "
+            f"component {_origin(cls)}: {_origin(known)} has this name already, and scene files use it; "
             "choose another"
         )
     namespace: dict[str, Any] = {
@@ -179,7 +179,7 @@ def local_components() -> Iterator[None]:
     """Let components be defined for the length of a ``with`` block, under any name.
 
     For examples and tests: such a class may have the name of a component that exists, or that will exist one
-    day. After the block files know the components that they knew before. The classes go on working in worlds.
+    day. After the block the components of files are those of before. The classes go on working in worlds.
 
     Examples
     --------
@@ -199,7 +199,7 @@ def local_components() -> Iterator[None]:
     try:
         yield
     finally:
-        # What the package itself defined meanwhile, because it was imported in the block, stays.
+        # Components of the package itself that were imported in the block stay.
         stay = {n: kind for n, kind in COMPONENTS.items() if kind.__module__.startswith(_BUILT_IN)}
         COMPONENTS.clear()
         COMPONENTS.update(stay | before)

@@ -26,7 +26,7 @@ INTEGRATORS = (
 )
 COLLISIONS = ("auto", "step", "exact")
 SHORTEST = 1e-100
-"""The shortest step [s]: the parts of shorter ones, and their squares, are soon no more than zero."""
+"""The shortest step [s]: the parts of shorter ones, and their squares, would soon underflow to zero."""
 
 
 def _settle(config: PhysicsConfig | SimulationConfig) -> None:
@@ -122,11 +122,11 @@ class SimulationConfig:
     substeps : int
         Into how many parts a step is divided.
     iterations : int, optional
-        Sweeps of the contact solver a substep; ``None`` leaves it to the solver (one).
+        Sweeps of the contact solver a substep; ``None`` for the default of the solver (one).
     integrator : str
         A method by name, or ``"auto"``.
     sleeping : bool
-        Whether settled bodies may stop being simulated.
+        Whether bodies at rest may stop being simulated.
     collisions : str
         ``"step"`` (found and resolved within steps), ``"exact"`` (contact times located) or ``"auto"``.
     tolerance : float
@@ -147,7 +147,7 @@ class SimulationConfig:
         Field("substeps", "whole", minimum=1, maximum=10_000, meaning="parts that a step is divided into"),
         Field("iterations", "whole", minimum=1, maximum=1_000, derived="from the solver", meaning="sweeps"),
         Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),
-        Field("sleeping", "flag", meaning="whether settled bodies may stop being simulated"),
+        Field("sleeping", "flag", meaning="whether bodies at rest may stop being simulated"),
         Field("collisions", "choice", choices=COLLISIONS, meaning="how contacts are found"),
         Field("tolerance", "number", minimum=1e-20, maximum=1e-2, meaning="error a step of adaptive methods"),
     )
@@ -171,7 +171,7 @@ class WindowConfig:
     pixels_per_metre : float
         Scale of the default camera.
     max_dt : float
-        The longest time [s] that one frame makes up for; what lies beyond is dropped, and the HUD says so.
+        The longest time [s] that one frame makes up for; the rest is dropped, and the HUD says so.
     throw_window : float
         How far back [s] the cursor's history counts for a throw.
     max_throw_speed : float

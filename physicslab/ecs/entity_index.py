@@ -17,14 +17,14 @@ __all__ = ["EntityIndex"]
 
 
 class _Nothing:
-    """A component that no entity has: asking esper for it is cheap, and tells whether anything changed."""
+    """A component that no entity has: looking it up in esper is cheap, and shows whether anything changed."""
 
 
 class EntityIndex:
-    """The rows of one world. esper alone decides who has what; :meth:`synchronise` follows.
+    """The rows of one world. esper owns the entities and their components; :meth:`synchronise` follows.
 
-    Row 0 is the world itself. The others are in the order of their entity ids, so that results never hang on
-    the order of a set. A removed entity leaves a blank row behind; blanks are closed up when they are many.
+    Row 0 is the world itself. The others are in the order of their entity ids, so that results do not depend
+    on the order of a set. A removed entity leaves a blank row; blanks are closed up when they are many.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class EntityIndex:
             try:
                 if self._components.get(entity) == components:  # handles are equal only to themselves
                     continue
-            except Exception:  # what a foreign component makes of == is no concern of ours
+            except Exception:  # a component of another program may define == in any way
                 pass
             changed[entity] = components
         self._follow_components(changed)
@@ -81,7 +81,7 @@ class EntityIndex:
         return True
 
     def flush_deleted(self) -> None:
-        """Finish what ``esper.delete_entity`` put off.
+        """Delete the entities that ``esper.delete_entity`` marked.
 
         Raises
         ------
@@ -137,7 +137,7 @@ class EntityIndex:
             table.compact(kept, self.row_of)
 
     def _follow_components(self, changed: Mapping[int, Iterable[Any]]) -> None:
-        """Release what entities no longer have, then adopt what is new: a component may change hands."""
+        """Release what entities no longer have, then adopt what is new: a component may change its entity."""
         handles = {
             entity: {type(handle): handle for handle in components if isinstance(handle, Component)}
             for entity, components in changed.items()

@@ -1,4 +1,4 @@
-"""What is known of one value: its type, unit, range and meaning, and so whether it may be what it is."""
+"""The description of one value: its type, unit, range and meaning, by which it is checked."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class InvalidValue(ValueError):
         self.component, self.field, self.value, self.allowed = component, field, value, allowed
         try:
             shown = repr(value)
-        except (ValueError, RecursionError):  # a whole number of thousands of digits, or lists without end
+        except (ValueError, RecursionError):  # an integer of thousands of digits, or recursive lists
             shown = f"<{type(value).__name__}>"
         if len(shown) > _LONGEST:
             shown = f"{shown[: _LONGEST - 3]}..."
@@ -55,7 +55,7 @@ class InvalidValue(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """What is known of one field: its type, unit, range and meaning.
+    """The description of one field: its type, unit, range and meaning.
 
     The inspector, the scene file and every check are made from this record.
 
@@ -76,7 +76,7 @@ class Field:
     derived : str
         Where the value comes from when it is ``None`` ("from the Shape").
     fixed : bool
-        Whether the field is settled when the component is made.
+        Whether the field cannot change once the component is made.
     owner : str
         The component or section that has the field.
     """

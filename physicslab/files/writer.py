@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Iterable, Mapping
 from typing import Any
 
-from physicslab.contacts.memory import remembered
+from physicslab.contacts.memory import kept_rows
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.fields import REQUIRED, Field
@@ -54,7 +54,7 @@ def scene_pieces(frozen: WorldSnapshot) -> Generator[None, None, dict[str, Any]]
         yield
     contacts: list[list[Any]] = []
     shaped = {0, *frozen.shaped}
-    for row in remembered(frozen.contacts):
+    for row in kept_rows(frozen.contacts):
         if row is not None and shaped.issuperset(row[:2]):  # what is still there to touch
             contacts.append(row)
         yield

@@ -15,4 +15,4 @@ INTEGRATORS: dict[str, Integrator] = {
     method.name: method
     for method in (SYMPLECTIC_EULER, LEAPFROG, RK4, BLANES_MOAN, DOP853, EXACT, IMPLICIT_MIDPOINT)
 }
-"""Every method that can be asked for by name."""
+"""Every method that can be chosen by name."""

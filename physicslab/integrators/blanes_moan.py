@@ -1,4 +1,4 @@
-"""Blanes and Moan's method of order 6 for forces that hang on positions."""
+"""Blanes and Moan's method of order 6 for forces that depend on positions alone."""
 
 from __future__ import annotations
 

@@ -9,21 +9,30 @@ from physicslab.state.state import State
 
 __all__ = ["DOP853"]
 
-_MOST = 1_000_000
-"""Force evaluations a step of the world. What ``auto`` lets be followed, up to 500 rad in a step, takes
+_MAX_EVALUATIONS = 1_000_000
+"""Force evaluations a step of the world. The most that ``auto`` gives it, 500 rad in a step, takes
 120,000 at the finest tolerance; a million take 0.2 s for two bodies."""
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     eq, tolerance = ode, ode.tolerance
     made = dop853(
-        eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, steps * h, tolerance, state.simulation.dt, _MOST
+        eq.q,
+        eq.v,
+        eq.inverse_mass,
+        eq.damping,
+        eq.calls,
+        steps * h,
+        tolerance,
+        state.simulation.dt,
+        _MAX_EVALUATIONS,
     )
     if made == NOT_FINITE:
         raise StepTooSmall(f"forces are no longer finite at t = {state.time:.9g} s")
     if made == EXHAUSTED:
         raise StepTooSmall(
-            f"{_MOST:,} force evaluations do not make a step of {state.simulation.dt:g} s at a tolerance of "
+            f"{_MAX_EVALUATIONS:,} force evaluations do not make a step of {state.simulation.dt:g} s "
+            f"at a tolerance of "
             f"{tolerance:g}; a larger tolerance, a smaller dt or the integrator implicit_midpoint may help"
         )
     if made < 0:

@@ -1,8 +1,8 @@
 """The implicit midpoint rule, with the springs' force over the step: bounded however stiff they are.
 
-The midpoint rule itself keeps what is quadratic, so the energy of a spring of no rest length; one that turns
-as it swings many times a step gains energy. Springs therefore answer with a discrete gradient of what they
-store (:func:`physicslab.kernels.forces.springs.mean_spring_pull`), by which the energy is kept to the
+The midpoint rule itself conserves quadratic energies, as of a spring without rest length; a spring with one
+that rotates and oscillates many times a step gains energy. Springs therefore return a discrete gradient of
+their energy (:func:`physicslab.kernels.forces.springs.mean_spring_pull`), by which the energy is kept to the
 rounding of the search, and so no spring becomes longer than the energy allows. The price: areas in phase
 space are kept only where the force is linear. All other forces are taken at the middle of the step.
 """
@@ -26,7 +26,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         eq.near = _banded(state, ode)
     order, band = eq.near
     if len(eq.damping) or len(eq.resistances):
-        # Beside each coordinate of the mean velocity stands that of what the end's has more.
+        # Each coordinate of the mean velocity is next to the same one of the end velocity less the mean.
         order, band = np.stack((order, order + len(order)), axis=1).ravel(), 2 * band + 1
     made = implicit_midpoint(
         eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, eq.resistances, order, band, h, steps
@@ -39,7 +39,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
 
 
 def _banded(state: State, ode: OdeSystem) -> tuple[NDArray[np.int64], int]:
-    """Return an order of the coordinates in which those that forces couple are near, and how near."""
+    """Return an order of the coordinates in which coupled ones are near each other, and the bandwidth."""
     layout = ode.layout
     pairs = [force.couples(state) for force in ode.forces]
     bodies = layout.moving.tolist()

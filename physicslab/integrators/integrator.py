@@ -1,4 +1,4 @@
-"""What is known of a method."""
+"""The record of a method."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ type Flow = Callable[[State, OdeSystem, float, int], int]
 
 
 class StepTooSmall(ArithmeticError):
-    """No step is short enough for the accuracy asked for: the motion is singular."""
+    """No step is short enough for the required accuracy: the motion is singular."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Integrator:
         For files, and for people.
     order : int
         The error after a fixed time falls with the ``order``-th power of the step, for smooth forces (that
-        hang on positions alone, where ``positions_only``).
+        depend on positions alone, where ``positions_only``).
     evaluations : int
         Force evaluations a step.
     stability_limit : float
@@ -48,13 +48,13 @@ class Integrator:
         What ``flow`` calls.
     substep : tuple of (Stage, float)
         How it advances a world in which more than forces acts: the stages of one substep in order, each with
-        the share of the substep's time that it stands for. Empty for a method that cannot.
+        its share of the substep's time. Empty for a method that cannot.
     window : tuple of two floats
-        When the substep begins and ends, seen from the moment at which impacts are resolved, in substeps.
+        When the substep begins and ends, relative to the moment at which impacts are resolved, in substeps.
     positions_only : bool
-        Whether the order holds only for forces that do not hang on velocities.
+        Whether the order holds only for forces that do not depend on velocities.
     chooses_steps : bool
-        Whether it divides the time that it is given by itself.
+        Whether it chooses its own steps within the given time.
     """
 
     name: str

@@ -40,8 +40,8 @@ LEAPFROG = Integrator(
 
 _PREDICTED = ((Stage.PREDICT, 0.5), (Stage.SOLVE, 1.0), (Stage.PREDICT, -0.5))
 
-# What is tethered (see physicslab.stepping.split_forces) is not kicked: the contact solver is
-# shown ahead what comes.
+# What is sub-integrated (see physicslab.stepping.split_forces) is not kicked: the contact solver is
+# given its predicted velocity.
 LEAPFROG_WITH_SPLIT_FORCES = replace(
     LEAPFROG,
     substep=tuple(

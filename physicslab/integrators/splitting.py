@@ -1,4 +1,4 @@
-"""Methods that move and push in turn."""
+"""Splitting methods: drifts and kicks in turn."""
 
 from __future__ import annotations
 

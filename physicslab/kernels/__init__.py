@@ -1,12 +1,12 @@
-"""Compiled loops over arrays. Nothing here knows a world, an entity or a screen.
+"""Compiled loops over arrays. Nothing here depends on a world, an entity or a screen.
 
 A function that Python calls is a ``@kernel``, or an ``@allocating_kernel`` if it makes arrays. Its
 annotations are its one signature: :data:`Numbers`, :data:`Vectors`, :data:`Rows`, :data:`Flags`, ``float``,
 ``int`` and ``bool``. A stray int, float32 or strided column is an error and never a silent recompilation of
 seconds. A function that only kernels call is ``@inlined``; from Python only its ``.py_func`` can be called.
 
-Compiled kernels are kept between runs (:mod:`physicslab.kernels.cache`); they are machine code, and what
-decides on what they do is as good as a program.
+Compiled kernels are kept between runs (:mod:`physicslab.kernels.cache`); they are machine code: the
+folder that holds them must be trusted like a program.
 """
 
 from physicslab.kernels.cache import cache_directory, cached

@@ -77,7 +77,7 @@ def unpack(path: Path) -> int:
     Raises
     ------
     ArchiveError
-        If it is no archive of kernels, is damaged, does not fit, or holds what none may.
+        If it is no archive of kernels, is damaged, does not fit, or holds other files.
     OSError
         If it cannot be read, or the cache cannot be written.
     """
@@ -103,7 +103,7 @@ def unpack(path: Path) -> int:
 
 
 def _manifest(archive: zipfile.ZipFile) -> dict[str, Any]:
-    """Return what an archive says of itself."""
+    """Return an archive's manifest."""
     if _MANIFEST not in archive.namelist() or archive.getinfo(_MANIFEST).file_size > _MANIFEST_LIMIT:
         raise ArchiveError("is no archive of kernels: it has no manifest")
     manifest = json.loads(archive.read(_MANIFEST))
@@ -137,7 +137,7 @@ def _files(archive: zipfile.ZipFile) -> dict[tuple[str, str], bytes]:
         size += member.file_size
         if size > _LIMIT:
             raise ArchiveError(f"holds more than {_LIMIT >> 20} MiB")
-        found[match[1], match[2]] = archive.read(member)  # of no more bytes than it says
+        found[match[1], match[2]] = archive.read(member)  # no more bytes than its header gives
     if not found:
         raise ArchiveError("holds no kernels")
     hashes = {f"{folder}/{name}": _hash(content) for (folder, name), content in found.items()}

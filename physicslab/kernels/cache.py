@@ -1,9 +1,9 @@
 """Where compiled kernels are kept between runs, and which of them are still right.
 
-Each module's kernels lie in a folder named after a hash of all that decides on their machine code
+Each module's kernels are in a folder named after a hash of all that determines their machine code
 (:mod:`physicslab.kernels.keys`). An edit leaves the folders of modules that do not depend on it as they are.
 
-numba unpickles what lies there, so **a compiled kernel is a program that will be run**. The folder is used
+numba unpickles the files there, so **a compiled kernel is a program that will be run**. The folder is used
 only if it is this user's, closed to all others (mode 0700), and no link. Its place is the environment
 variable ``PHYSICSLAB_KERNELS``, or ``physicslab/kernels`` in the user's cache folder, or, where there is no
 such folder, ``physicslab-<user>/kernels`` among the temporary files; else a new temporary one that is removed
@@ -46,13 +46,13 @@ _VERSIONS = 8
 _log = logging.getLogger(__name__)
 
 
-# ---- where it lies -----------------------------------------------------------------------------------------
+# ---- the folder --------------------------------------------------------------------------------------------
 
 _directory: Path | None = None
 
 
 def cache_directory() -> Path:
-    """Return where compiled kernels are kept: a folder of this user's that nobody else can write or read."""
+    """Return where compiled kernels are kept: a folder that only this user can write or read."""
     global _directory
     if _directory is None:
         _directory = _first_private()
@@ -60,9 +60,9 @@ def cache_directory() -> Path:
 
 
 def use_directory(directory: Path) -> None:
-    """Keep kernels in another folder, of which the caller knows that it is private.
+    """Keep kernels in another folder; the caller ensures that it is private.
 
-    Kernels that are defined by then stay with the folder of before.
+    Kernels that are defined before this call stay in the previous folder.
     """
     global _directory
     _directory = directory
@@ -133,15 +133,15 @@ def _remove_own(directory: Path, process: int) -> None:
 
 
 def mark() -> Path:
-    """Return the file that says that every kernel of this package is kept."""
+    """Return the file whose existence means that every kernel of this package is kept."""
     return cache_directory() / f"complete-{hash_of(*sorted(current_folders().values()))[:16]}"
 
 
-# ---- what numba is given -----------------------------------------------------------------------------------
+# ---- for numba ---------------------------------------------------------------------------------------------
 
 
 class _Locator(UserProvidedCacheLocator):
-    """Says to numba where a kernel is kept: by what decides on its code, and not by paths or dates."""
+    """Locates a kernel for numba: by what determines its code, and not by paths or dates."""
 
     def __init__(self, function: Callable[..., Any], path: str) -> None:
         self._py_file, self._lineno = path, function.__code__.co_firstlineno
@@ -159,13 +159,13 @@ class _Locator(UserProvidedCacheLocator):
 
     @classmethod
     def from_function(cls, function: Callable[..., Any], path: str) -> _Locator | None:
-        """Return the place of a function; numba looks elsewhere for what has no file."""
+        """Return the locator of a function; None where it has no file, for which numba has other locators."""
         return cls(function, path) if os.path.exists(path) else None
 
 
 @contextmanager
 def cached() -> Iterator[None]:
-    """Let what numba is given within a ``with`` block keep its code in the cache."""
+    """Let functions compiled by numba within a ``with`` block keep their code in the cache."""
     settings: Any = numba.core.config
     before = CacheImpl._locator_classes
     chosen = getattr(settings, "CACHE_LOCATOR_CLASSES", "")
@@ -196,7 +196,7 @@ def is_kept(function: Callable[..., Any]) -> bool:
 
 @cache
 def note_use(function: Callable[..., Any]) -> None:
-    """Note that a kernel's folder is in use, so that it is not removed as forgotten."""
+    """Note that a kernel's folder is in use, so that it is not removed as unused."""
     _touch(_folder(function))
 
 
@@ -207,7 +207,7 @@ def _touch(path: Path) -> None:
 
 
 def prune() -> None:
-    """Remove what the sources as they are do not need and what was not used for a month.
+    """Remove what the present sources do not need and what was not used for a month.
 
     Of each module the eight folders that were used last stay at most: other versions of this program, and
     other Pythons, have theirs in the same place.
@@ -215,7 +215,7 @@ def prune() -> None:
     root, own = cache_directory(), set(current_folders().values())
     old: dict[str, list[tuple[float, Path]]] = {}
     with contextlib.suppress(OSError):
-        beside = root.parent.glob(f"kernels-{'[0-9a-f]' * 16}")  # as they were named before
+        beside = root.parent.glob(f"kernels-{'[0-9a-f]' * 16}")  # named as in earlier versions
         for path in (*root.iterdir(), *beside):
             name, _, digest = path.name.rpartition("-")
             if re.fullmatch("[0-9a-f]{16}", digest) and path.name not in own and path != mark():

@@ -1,8 +1,8 @@
-"""Which machine code is right: what decides on that of each module's kernels, as a hash.
+"""Which machine code is right: what determines that of each module's kernels, as a hash.
 
-numba's own cache does not see an edit in another module's callee and would return the old code. So what is
-kept of a module's kernels goes by its source, by the sources of all that it imports within this package, and
-by what else decides on machine code: numba, Python, the processor.
+numba's own cache does not notice an edit of a callee in another module and would return the old code. So the
+key of a module's kernels depends on its source, on the sources of all that it imports within this package,
+and on what else determines machine code: numba, Python, the processor.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _WITHOUT_CODE = frozenset(
         "__main__", "archive", "budget", "cache", "interpreter", "keys", "loading", "stand_ins", "warm",
     )
 )  # fmt: skip
-"""Modules that decide when kernels are compiled and where they are kept, but not on a single instruction."""
+"""Modules that determine when kernels are compiled and where they are kept, but no instruction of them."""
 _IMPORT = re.compile(
     r"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n]*)|import[ \t]+([^\n]+))", re.MULTILINE
 )
@@ -71,7 +71,7 @@ def depends_on(module: str) -> frozenset[str]:
 
 @cache
 def platform_key() -> dict[str, str]:
-    """Return what else than sources decides on machine code, and on the form in which it is kept, by name."""
+    """Return what determines machine code and its stored form besides the sources, by name."""
     settings: Any = numba.core.config
     features = settings.CPU_FEATURES
     if features is None:

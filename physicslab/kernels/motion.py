@@ -1,4 +1,4 @@
-"""Newton's second law: what bodies weigh, how forces change velocities and velocities positions."""
+"""Newton's second law: the masses of bodies, and how forces change velocities and velocities positions."""
 
 import math
 
@@ -14,13 +14,13 @@ def derive_masses(
     kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
 ) -> tuple[float, int]:  # fmt: skip
-    """Work out each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
+    """Compute each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
 
     Returns the ratio of the greatest mass that can be moved to the least, of what has a shape, 1 if none has;
     and the first row of which the moment of inertia is not finite, or -1.
 
-    A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. What has no velocity, no mass or is held weighs
-    infinitely much; what is too small to have an inverse inertia does not turn.
+    A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. A body without velocity or mass, or one that is
+    held, has infinite mass; one too small to have an inverse inertia does not turn.
     """
     lightest, heaviest, infinite = 0.0, math.inf, -1
     for i in range(len(mass)):
@@ -62,7 +62,7 @@ def kick(
 ) -> None:  # fmt: skip
     """Change velocities by constant forces over a time h, with damping dv/dt = -c v solved exactly.
 
-    What is tethered is left to the method that moves it.
+    Rows that are ``sub_integrated`` are left to the method that moves them.
 
     v(h) = v e^(-c h) + a (1 - e^(-c h)) / c, so that half kicks compose to whole ones.
     """
@@ -85,11 +85,11 @@ def kick(
 def drift(
     position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers, sub_integrated: Flags, h: float
 ) -> None:
-    """Move and turn every row that is not tethered at its present velocity for a time h."""
+    """Move and turn every row that is not sub-integrated at its present velocity for a time h."""
     free = True
     for i in range(len(sub_integrated)):
         free &= not sub_integrated[i]
-    if free:  # as a rule: nothing to decide, so that vectors of numbers are added
+    if free:  # the usual case, without a branch in the loop, so that it is vectorised
         places, velocities = position.reshape(position.size), linear.reshape(linear.size)
         for i in range(len(places)):
             places[i] += h * velocities[i]
@@ -108,7 +108,7 @@ def predict(
     linear: Vectors, angular: Numbers, force: Vectors, torque: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers, gentle: Flags, h: float,
 ) -> None:  # fmt: skip
-    """Change the velocities of the rows that are pulled gently by what the forces give them in a time h."""
+    """Change the velocities of the rows under weak forces by what these cause in a time h."""
     for i in range(len(gentle)):
         if gentle[i]:
             linear[i, 0] += h * force[i, 0] * inverse_mass[i]

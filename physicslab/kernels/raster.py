@@ -53,7 +53,7 @@ def _unit(value: float) -> float:
 def _pixel(place: float, count: int) -> int:
     """Return the first of ``count`` pixels whose middle is not before a place; ``count`` if none is.
 
-    It has no sign, so that what it indexes is not searched for from the end too: a third of a line's time.
+    It has no sign, so that an index is not tested for counting from the end: a third of a line's time.
     """
     return np.uint64(min(max(math.ceil(place - 0.5), 0.0), float(count)))  # type: ignore[return-value]
 
@@ -73,7 +73,7 @@ def _stroke(
     aside = reach / abs(uy) if abs(uy) > 1e-9 else 1e9
     low, high = max(min(xa, xb) - reach, 0.0), float(width)
     limit = int(_pixel(max(xa, xb) + reach, width))
-    # As many pixels in each row, though some may not be covered: the processor foresees where a row ends.
+    # As many pixels in each row, though some may not be covered: the processor predicts where a row ends.
     count = int(min(2.0 * aside, high)) + 2
     for row in range(_pixel(min(ya, yb) - reach, height), _pixel(max(ya, yb) + reach, height)):
         py = row + 0.5 - ya

@@ -20,7 +20,7 @@ MANIFOLD = np.dtype(
         (
             "count",
             np.int64,
-        ),  # points in use; negative for a pair that flies, which the contact step passes over
+        ),  # points in use; negative for a pair in event-driven motion, which the contact step skips
         ("normal_x", np.float64),  # unit, from A to B
         ("normal_y", np.float64),
         ("friction", np.float64),
@@ -40,7 +40,7 @@ MANIFOLD = np.dtype(
         # known not to meet within it, 0 where normal and separation are those of now.
         ("swept", np.int64),
         ("size", np.float64),  # of the smaller body
-        ("slot", np.int64),  # twice the number of its lane, plus the kind of block; -1 for a loose pair
+        ("slot", np.int64),  # twice the number of its slot, plus the kind of block; -1 for a scalar pair
     ]
 )
 """A pair that the broad phase found near each other, and where it touches."""

@@ -1,4 +1,4 @@
-"""What parts of a kernel cost."""
+"""The time that parts of a kernel take."""
 
 import time
 from typing import Any
@@ -23,18 +23,18 @@ def _read_clock(_typing: Any) -> Any:
 
 
 ticks: Any = intrinsic(_read_clock)
-"""Called by a kernel, returns the processor's own clock, in ticks of it; 0 on one that has none."""
+"""Returns the processor's cycle counter, in a kernel; 0 on a processor without one."""
 stands_in_for(ticks)(time.perf_counter_ns)
 
 
 @inlined
-def charge(cost: Rows, whose: int, since: int) -> int:
-    """Add the ticks since then to what ``whose`` work has cost; return the clock.
+def charge(cost: Rows, system: int, since: int) -> int:
+    """Add the ticks since ``since`` to the cost of a ``system``; return the clock.
 
     Where ``since`` is negative nothing is timed.
     """
     if since < 0:
         return since
     now: int = ticks()
-    cost[whose] += now - since
+    cost[system] += now - since
     return now

@@ -72,11 +72,11 @@ def _timed(twin: Callable[..., Any]) -> Callable[..., Any]:
 
 
 _modules: dict[int, dict[str, Any]] = {}
-"""What the twins of each module know, by where the module's own names are."""
+"""The names for the twins of each module, by where the module's own names are."""
 
 
 def _names_of(module: dict[str, Any]) -> dict[str, Any]:
-    """Return the names of a module as its functions' twins know them."""
+    """Return the names of a module for the twins of its functions."""
     names = _modules.get(id(module))
     if names is None:
         names = _modules[id(module)] = {**module, **arithmetic}
@@ -86,14 +86,14 @@ def _names_of(module: dict[str, Any]) -> dict[str, Any]:
 
 
 class _TwinModule:
-    """A module of kernels as twins know it."""
+    """A module of kernels as its twins use it."""
 
     def __init__(self, names: dict[str, Any]) -> None:
         self.__dict__ = names
 
 
 def _counterpart(value: Any) -> Any:
-    """Return what a twin sees in place of something that a kernel knows by name."""
+    """Return what a twin uses in place of something that a kernel refers to by name."""
     if value is math:
         return math_functions
     if isinstance(value, ModuleType) and value.__name__.startswith(f"{__package__}."):

@@ -1,4 +1,4 @@
-"""Fills the cache of compiled kernels, and knows whether it is full."""
+"""Filling the cache of compiled kernels."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _FIRST = (
 """Modules whose kernels almost every scene needs; they are compiled first."""
 _WORKER = (sys.executable, "-m", "physicslab.kernels", "worker")
 _YIELDING = 15
-"""By how much a running scene comes before the workers, as Unix counts it."""
+"""How much higher the priority of a running scene is than that of the workers, as a Unix nice value."""
 
 
 def is_warm() -> bool:
@@ -80,14 +80,14 @@ def name_of(jitted: Any) -> str:
 
 
 def rank_of(name: str) -> int:
-    """Return how late a kernel is to be compiled, as far as that is known before there is a scene."""
+    """Return the rank of a kernel in the order of compilation, before the scene is known."""
     module = name.split(".")[-2]
     return _FIRST.index(module) if module in _FIRST else len(_FIRST)
 
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far the compiling is: so many kernels of so many, and the name of the last."""
+    """Progress of compiling: how many kernels of how many, and the name of the last."""
 
     done: int
     total: int
@@ -97,14 +97,14 @@ class Progress:
 class Warmup:
     """Compiles every kernel that the cache does not hold, in processes of their own.
 
-    In a thread of this process it would hold up everything else for tenths of a second, time and again. Used
-    in a ``with`` block, at whose end the processes are stopped if they still run. If one fails, nothing is
-    lost: what is missing is compiled when it is first needed, and fails then with its reason.
+    A thread of this process would block everything else for tenths of a second, again and again. Used in a
+    ``with`` block, at the end of which the processes are stopped if they still run. If one fails, nothing is
+    lost: a missing kernel is compiled when it is first needed, and fails then with its reason.
 
     Parameters
     ----------
     workers : int, optional
-        How many processes; one for each processor, up to four, where nothing is said.
+        How many processes; by default one for each processor, up to four.
     command : sequence of str
         What each runs: it reads names of kernels, a line each, and prints each when it is compiled.
 
@@ -154,7 +154,7 @@ class Warmup:
         thread.start()
 
     def _employ(self, process: subprocess.Popen[str]) -> None:
-        """Give one process a kernel after the other, until there are none left or it is not to go on."""
+        """Give one process a kernel after the other, until none is left or the work is stopped."""
         with process:
             assert process.stdin is not None
             assert process.stdout is not None
@@ -174,7 +174,7 @@ class Warmup:
             return self._jobs.popleft() if self._jobs and process not in self._retired else ""
 
     def hurry(self, names: Iterable[str]) -> None:
-        """Let these kernels be compiled before all others, except for those that are being compiled."""
+        """Compile these kernels before all others, except for those that are being compiled."""
         with self._lock:
             wanted = [name for name in dict.fromkeys(names) if name in self._jobs]  # two may need the same
             for name in wanted:
@@ -182,9 +182,9 @@ class Warmup:
             self._jobs.extendleft(reversed(wanted))
 
     def yield_to_others(self, yields: bool) -> None:
-        """Let other processes come before the workers, or not: not while something waits for a kernel.
+        """Lower the priority of the workers, or restore it; it is normal while something waits for a kernel.
 
-        Where the system lets no process come forward again that stood back, others take the workers' places
+        Where the system does not let a process raise its priority again, new workers replace the old ones
         once these are done with what they compile.
         """
         if yields == self._yields or not hasattr(os, "setpriority"):

@@ -25,7 +25,7 @@ _IN_LINE = 1e-12
 
 
 class NoClosedForm(LookupError):
-    """The world's motion is not known in closed form; the message says what stands in the way."""
+    """The world's motion has no known closed form; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class ClosedForm:
     direction : float64 array (n, 2)
         The first axis of each, a unit vector; the second is at a right angle to it.
     rate2, drag, centre, acceleration : float64 arrays (n, 2)
-        By axis: 1/s^2, 1/s, m and m/s^2. The centre includes what the acceleration does to it where rate2 is
+        By axis: 1/s^2, 1/s, m and m/s^2. The centre includes the shift by the acceleration where rate2 is
         not 0.
     what : str
         What it covers, in words.

@@ -33,8 +33,8 @@ class OdeSystem:
 
     Attributes
     ----------
-    layout : Slots
-        Where each row stands.
+    layout : StateLayout
+        The place of each row.
     q, v : float64 arrays
         The state.
     inverse_mass : float64 array
@@ -42,10 +42,10 @@ class OdeSystem:
     damping : float64 array
         Rates of damping [1/s]; empty where nothing is damped.
     calls, resistances : int64 arrays (n, 3)
-        What kernels call for the forces, and for what of them resists motion.
+        What kernels call for the forces, and for their resistance to motion.
     near : int64 array and int, optional
-        An order of the coordinates in which those that forces couple are near, and how near; whoever needs
-        it finds it once, as it hangs on the layout alone.
+        An order of the coordinates in which those that forces couple are near, and how near; found
+        once by the method that needs it, as it depends on the layout alone.
     tolerance : float
         Relative error a step for methods that choose their steps.
     forces : tuple of ForceSystem
@@ -60,7 +60,7 @@ class OdeSystem:
     forces : sequence of ForceSystem
         What acts.
     part : bool array (rows,), optional
-        The rows that take part; all where nothing is said.
+        The rows that take part; all by default.
     """
 
     def __init__(
@@ -139,7 +139,7 @@ class OdeSystem:
             for system in self.forces
         ]
         forces = [force for _, force in packed if force is not None]
-        # Behind how many coordinates there are, as resistances get several velocities in one.
+        # After the number of coordinates: resistances get several velocities in one array.
         resisting = [
             (force.resistance, force.parameters, np.concatenate(([len(self.q)], force.indices)))
             for force in forces

@@ -15,12 +15,12 @@ type Pair = Vector2 | tuple[float, float]
 
 
 class BodyOptions(TypedDict, total=False):
-    """What may be said of any body.
+    """Options of any body.
 
     Attributes
     ----------
     mass : float
-        Its mass [kg]; 1 where nothing is said.
+        Its mass [kg]; 1 by default.
     velocity, angular_velocity : vector, float
         How it moves [m/s], [rad/s] counter-clockwise; not at all.
     angle : float
@@ -30,7 +30,7 @@ class BodyOptions(TypedDict, total=False):
     fixed_rotation : bool
         Whether it keeps its angle whatever the torque.
     static : bool
-        Whether it stays where it is; mass and velocity then count for nothing.
+        Whether it stays where it is; mass and velocity are then ignored.
     name : str
         Its id in scene files and reports.
     """

@@ -24,7 +24,7 @@ def gas(
     fastest: float = 3.0,
     seed: int = 1,
 ) -> list[int]:
-    """Spawn elastic, frictionless discs that fly in all directions; return their entities.
+    """Spawn elastic, frictionless discs that move in all directions; return their entities.
 
     No two overlap: each is at a random place in a cell of its own.
 
@@ -37,7 +37,7 @@ def gas(
     radius, mass : float
         Of each [m], [kg].
     slowest, fastest : float
-        Between which the speeds lie [m/s].
+        Limits of the speeds [m/s].
     seed : int
         Of places, directions and speeds.
 

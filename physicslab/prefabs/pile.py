@@ -25,7 +25,7 @@ def pile(
     friction: float = 0.5,
     seed: int = 1,
 ) -> list[int]:
-    """Spawn ``count`` discs in loose rows that will fall into a pile; return their entities, row by row.
+    """Spawn ``count`` discs in spaced rows that will fall into a pile; return their entities, row by row.
 
     Parameters
     ----------

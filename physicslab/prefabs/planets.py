@@ -109,7 +109,7 @@ def planets(world: World, star: float, orbiting: Sequence[Planet], *, trail: flo
         velocity = Vector2.from_angle(planet.angle, speed).perpendicular
         recoil -= velocity * planet.mass
         moving.append((planet, velocity))
-    # What the planets carry the star takes back: speeds are relative to it, momentum is not.
+    # The star compensates the momentum of the planets: speeds are relative to it, momentum is not.
     drift = recoil / (star + sum(planet.mass for planet in orbiting))
     made = [world.spawn(Transform(), Velocity(drift), Mass(star), Trail(trail), name="star")]
     for planet, velocity in moving:

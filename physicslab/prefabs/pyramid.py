@@ -32,7 +32,7 @@ def pyramid(
     size : float
         Side of a box [m].
     gap : float
-        Between neighbours of a row [m]; the rows lie on each other.
+        Between neighbours of a row [m]; the rows rest on each other.
     mass, restitution, friction : float
         Of each box: [kg], and the numbers of its surface.
     """

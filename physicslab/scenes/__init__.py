@@ -36,7 +36,7 @@ _NAMES = (
 
 
 class _Scenes(Mapping[str, "Scene"]):
-    """Scenes by name, each imported when it is looked up: names are known before there is a world."""
+    """Scenes by name, each imported when it is looked up: names are available before there is a world."""
 
     def __getitem__(self, name: str) -> "Scene":
         if name not in _NAMES:

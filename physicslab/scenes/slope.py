@@ -16,7 +16,7 @@ def _fill(world: World) -> None:
     along = Vector2.from_angle(_ANGLE)
     box(world, (0, 0), width=16, height=0.5, angle=_ANGLE, static=True, friction=1, name="slope")
     for i, friction in enumerate((0.1, 0.2, 0.5, 0.8)):
-        # A pair rubs with the root of the product, and the slope's friction is 1.
+        # The friction of a pair is the root of the product, and that of the slope is 1.
         place = along * (1.5 * i - 1.0) + along.perpendicular * 0.5
         box(
             world, place, width=0.8, height=0.5, angle=_ANGLE, friction=friction**2, name=f"mu = {friction:g}"

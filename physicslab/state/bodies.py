@@ -22,11 +22,11 @@ class Bodies:
     inverse_mass, inverse_inertia : float64 arrays (rows,)
         Zero for what cannot be moved or turned: static, kinematic and held bodies.
     awake_inverse_mass, awake_inverse_inertia : float64 arrays (rows,)
-        The same, and zero for sleepers: what is simulated goes by these.
+        The same, and zero for sleeping bodies: the simulation uses these.
     unequal : bool
         Whether two bodies that may meet differ so much in mass that one may be too heavy for the other.
     sub_integrated : bool array (rows,)
-        What moves by a method of its own beside contacts (:class:`physicslab.stepping.split_forces`).
+        The rows with a method of their own between contacts (:class:`physicslab.stepping.split_forces`).
     """
 
     def __init__(self) -> None:
@@ -34,7 +34,7 @@ class Bodies:
         self.resize(0)
 
     def resize(self, rows: int) -> None:
-        """Hold so many rows, all of them zero."""
+        """Set the number of rows, all of them zero."""
         self.pull: NDArray[np.float64] = np.zeros(3 * rows)
         self.force, self.torque = self.pull[: 2 * rows].reshape(rows, 2), self.pull[2 * rows :]
         self.q: NDArray[np.float64] = np.zeros(3 * rows)
@@ -46,7 +46,7 @@ class Bodies:
         self.sub_integrated: NDArray[np.bool_] = np.zeros(rows, np.bool_)
 
     def set_inactive(self, asleep: NDArray[np.bool_]) -> None:
-        """Give sleepers an infinite mass for what is simulated."""
+        """Give sleeping bodies an infinite mass in the simulation."""
         np.copyto(self.awake_inverse_mass, self.inverse_mass)
         np.copyto(self.awake_inverse_inertia, self.inverse_inertia)
         if asleep.any():

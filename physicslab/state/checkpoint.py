@@ -16,8 +16,8 @@ class Checkpoint:
     """Positions, angles, velocities and a few counts, as they were before a step.
 
     It is taken before every step, so it holds no more than what a step may make infinite (7 us for 4,000
-    bodies, of a step of some milliseconds). What contacts remember is not copied, which would cost ten times
-    as much; going back forgets it, and the contacts are found again.
+    bodies, of a step of some milliseconds). Records of contacts are not copied, which would cost ten times as
+    much; going back drops them, and the contacts are found again.
 
     Attributes
     ----------

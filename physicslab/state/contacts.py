@@ -38,16 +38,16 @@ class Contacts:
         How much of each array is in use; kernels change it (:mod:`physicslab.kernels.wide.slots`).
     manifolds : array of MANIFOLD (capacity,)
         One for each near pair that has a record; the first ``recorded`` are in use. Those that were listed
-        together are in order; those activated since stand behind them.
+        together are in order; those activated since come after them.
     points : array of POINT (2 capacity,)
         Points 2 p and 2 p + 1 belong to pair p; the first ``manifolds[p]["count"]`` are in use.
     proximity : uint32 array (2 capacity,)
         Rows of the discs that are near each other and have no record, two by two; the first
         ``proximity_count`` pairs are in use.
     activation_distance : float64 array (capacity,)
-        How near these must come to get one [m].
+        The distance at which these get one [m].
     wide : WideContacts
-        The settled contacts, eight side by side; their records are as old as the last :meth:`sync`.
+        The wide contacts, eight side by side; their records are as old as the last :meth:`sync`.
     scalar : int64 array (capacity,)
         The pairs with records that are neither in a block nor inactive; the first ``scalar_count`` are in
         use.
@@ -62,15 +62,15 @@ class Contacts:
     opened : int64 array (COLOURS,)
         Room in which blocks with free slots are noted.
     impulse_dt : float
-        The time [s] that the points' impulses stand for; 0 before there were any.
+        The time [s] over which the points' impulses act; 0 before there were any.
     substep_factor : int
-        How many times as many substeps as asked for the coming step needs.
+        The factor by which the coming step needs more substeps than configured.
     stale : bool
         Whether the pairs must be listed again because bodies came, went or changed.
     restoring : bool
         Whether records name slots that are still to be filled, as those of a file do.
     log : array of IMPACT
-        The last impacts; number n stands at n modulo the length.
+        The last impacts; number n is at n modulo the length.
     """
 
     LOGGED = 32_768
@@ -107,13 +107,13 @@ class Contacts:
         return np.roll(self.log, -self.logged % len(self.log))
 
     def forget_impacts(self, first: int, count: int) -> None:
-        """Take ``count`` impacts from number ``first`` on out of the log; later ones move up."""
+        """Remove ``count`` impacts from number ``first`` on from the log; later ones move up."""
         kept = self.log[np.arange(first + count, self.logged) % len(self.log)]
         self.log[np.arange(first, first + len(kept)) % len(self.log)] = kept
         self.logged -= count
 
     def make_room(self, capacity: int) -> None:
-        """Hold nothing, with room for so many records."""
+        """Drop everything, and make room for so many records."""
         self.manifolds: NDArray[Any] = np.zeros(capacity, MANIFOLD)
         self.points: NDArray[Any] = np.zeros(2 * capacity, POINT)
         self.touching: NDArray[np.int64] = np.zeros(capacity, np.int64)
@@ -136,11 +136,11 @@ class Contacts:
         return int(self.active + self.wide.filled + self.sleeping_count)
 
     def changed(self) -> None:
-        """Note that lanes hold what their records do not say."""
+        """Note that slots are newer than their records."""
         self._synced = not self.wide.filled
 
     def sync(self) -> None:
-        """Write what lanes hold into the records of their pairs, if that is not there already."""
+        """Write slots into the records of their pairs, if they are newer."""
         if not self._synced:
             for constraints in self.wide.kinds:
                 slots.store(
@@ -154,7 +154,7 @@ class Contacts:
             self._synced = True
 
     def dissolve(self, rows: int) -> None:
-        """Give every contact back to its record, in a world of so many rows."""
+        """Write every slot to its record and empty it, in a world of so many rows."""
         if self.wide.filled:
             self.sync()
             self.manifolds["slot"] = -1
@@ -162,13 +162,13 @@ class Contacts:
         self.wide.reset(rows)
 
     def in_order(self, rows: int) -> None:
-        """Put the loose pairs in order, where some were set loose since: a file tells no other order."""
+        """Sort the scalar pairs, where some were added since: a file keeps no other order."""
         if self.unordered:
             near_pairs.sort_scalar(self.manifolds, self.scalar, self.scalar_count, rows)
             self.unordered = 0
 
     def list_scalar(self, rows: int) -> None:
-        """Find out which pairs are scalar and which are inactive."""
+        """Find which pairs are scalar and which are inactive."""
         self.scalar_count, self.sleeping_count = slots.list_scalar(
             self.manifolds, self.recorded, self.inactive, self.scalar, self.sleeping
         )
@@ -178,7 +178,7 @@ class Contacts:
     def set_inactive(self, inactive: NDArray[np.bool_], rows: int) -> None:
         """Leave out the pairs of which both bodies are ``inactive`` (rows,), and take in all others."""
         self.inactive = inactive
-        if not self.stale:  # else that is done when they are listed
+        if not self.stale:  # else this is done when they are listed
             self.list_scalar(rows)
             scalar = self.scalar[: self.scalar_count]
             touching = scalar[self.manifolds["count"][scalar] > 0]
@@ -186,7 +186,7 @@ class Contacts:
             self.touching[: self.active] = touching
 
     def release(self, asleep: NDArray[np.bool_]) -> None:
-        """Give the contacts of sleepers back to their records."""
+        """Write the slots of sleeping bodies to their records and empty them."""
         if self.wide.filled:
             self.wide.filled -= sum(
                 slots.release(*constraints.layout, self.manifolds, self.points, asleep)
@@ -194,14 +194,14 @@ class Contacts:
             )
 
     def rescale(self, pairs: NDArray[np.bool_], before: float, after: float) -> None:
-        """Let the impulses of some pairs stand for another time [s] than ``before``."""
+        """Rescale the impulses of some pairs from the time ``before`` [s] to the present one."""
         if before > 0.0 and after > 0.0 and before != after:
             chosen = np.repeat(pairs, 2)
             for name in ("normal_impulse", "tangent_impulse"):
                 self.points[name][: len(chosen)][chosen] *= after / before
 
     def clear(self) -> None:
-        """Forget every pair."""
+        """Drop every pair."""
         self.wide.reset(1)
         logged, self.counts[:] = self.logged, 0
         self.logged = logged

@@ -1,4 +1,4 @@
-"""What bodies weigh, from their components as they are now; and whether their state is still finite."""
+"""The masses of bodies, from their present components; and whether their state is still finite."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Diverged(ArithmeticError):
 
 
 def derive_masses(state: State) -> None:
-    """Work out moments of inertia and inverse masses of every row.
+    """Compute moments of inertia and inverse masses of every row.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Coordinates and forces packed into plain arrays, as compiled integrators want them."""
+"""Coordinates and forces packed into plain arrays, as compiled integrators take them."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class PackedForce:
     kernel : ForceKernel
         What adds to the forces.
     parameters, indices : float64 array, int64 array
-        Whatever the kernel wants to know; it gets pointers to them.
+        Whatever the kernel reads; it gets pointers to them.
     resistance : ForceKernel, optional
-        What the force answers to another velocity than that of the moment, where it resists motion (see
+        The response of the force to a velocity other than the present one, where it resists motion (see
         :mod:`physicslab.kernels.forces.resistance`).
     """
 
@@ -41,7 +41,7 @@ class PackedForce:
 
 
 class StateLayout:
-    """Where each row of a world stands among the packed coordinates.
+    """The place of each row of a world among the packed coordinates.
 
     First two coordinates for every row that moves, then an angle for every row that forces may turn, then the
     two coordinates of the rows that stay where they are, the world itself among them.
@@ -53,7 +53,7 @@ class StateLayout:
     steady : int64 array
         The rows that move and no force turns.
     place, turn : int64 arrays (rows,)
-        Where x of a row stands, and where its angle; -1 for a row that has none, or takes no part.
+        Indices of x and of the angle of a row; -1 for a row that has none, or takes no part.
     """
 
     place: NDArray[np.int64]

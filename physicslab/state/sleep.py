@@ -1,4 +1,4 @@
-"""Which bodies sleep, how long the others have rested, and how the sleepers were left: arrays."""
+"""Which bodies sleep, how long the others have rested, and how the sleeping ones were left: arrays."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ __all__ = ["Sleep"]
 
 
 class Sleep:
-    """The sleepers of one world.
+    """The sleeping bodies of one world.
 
-    A sleeper has no velocity, and an infinite mass for what is simulated (``bodies.awake_inverse_mass``); its
+    Such a body has no velocity, and an infinite mass in the simulation (``bodies.awake_inverse_mass``); its
     contacts stay in their records. :class:`physicslab.systems.sleep.SleepSystem` puts islands to sleep and
-    wakes what is touched or pushed; what an edit concerns is found before every step
+    wakes what is touched or pushed; what an edit affects is found before every step
     (:func:`physicslab.contacts.islands.check_edits`).
 
     Attributes
@@ -29,19 +29,19 @@ class Sleep:
     rest, slowest : float64 arrays (rows,)
         How long [s] each of the others has been slow, and its lowest speed [m/s] in that time.
     forces : float64 array (rows, 3)
-        Forces [N] and torque [N m] on each sleeper; not a number where they are not known yet.
+        Forces [N] and torque [N m] on each sleeping body; NaN where they are not known yet.
     on : bool
         Whether bodies of this world may sleep.
     unverified : bool
-        Whether sleepers came from a file, so that it is still to be seen what holds them.
+        Whether sleeping bodies came from a file, so that their support must still be checked.
     acted_upon : bool
         Whether a system that is not the engine's acts within a substep.
     has_external_writers : bool
         Whether such a system acts anywhere in a step, and so may change anything.
     kept : float64 array (rows, FIGURES)
-        How everything was when it was last looked at; an edit is a difference to that.
+        The state when it was last checked; an edit is a difference from it.
     known : bool array (rows,)
-        Of which rows ``kept`` says anything.
+        The rows that ``kept`` describes.
     entities : int64 array (rows,)
         The entities of the rows.
     gone : int64 array (n,)
@@ -69,11 +69,11 @@ class Sleep:
         self._followed = self.entities
 
     def follow(self, entities: NDArray[np.int64]) -> bool:
-        """Let every entity keep what it has where rows are numbered again; return whether they are."""
+        """Move the values of every entity where rows are numbered again; return whether they are."""
         if entities is self._followed:
             return False
         self._followed = entities
-        entities, before = entities.copy(), self.entities  # the index blanks rows where they stand
+        entities, before = entities.copy(), self.entities  # the index blanks rows in place
         row = np.full(max(int(entities.max()), int(before.max())) + 1, -1)
         row[before] = np.arange(len(before))
         row[0] = -1

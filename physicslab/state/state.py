@@ -1,4 +1,4 @@
-"""What a world holds: entities, columns, laws, clock and arrays. It knows no system and no stepper."""
+"""What a world holds: entities, columns, laws, clock and arrays. It depends on no system and no stepper."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class State:
         Steps made.
     substeps : int
         Of how many parts the last step was, or each part of one that was divided: more than
-        ``simulation.substeps`` where a system found that these would not do.
+        ``simulation.substeps`` where a system found these too few.
     step_divisions : int
         Into how many parts the last step was divided, which was longer than ``simulation.dt``; or 1.
     force_evaluations, collisions : int
@@ -51,7 +51,7 @@ class State:
     event_driven : bool
         Whether collisions are located in time, instead of found within steps.
     window : tuple of two floats
-        When a substep begins and ends, seen from the moment at which impacts are resolved, in substeps.
+        When a substep begins and ends, relative to the moment at which impacts are resolved, in substeps.
     generation : int
         Grows whenever columns may have been changed from outside, as between steps.
     kick_before_contacts : float
@@ -59,8 +59,8 @@ class State:
     moment : float
         The time [s] at which impacts of the substep at hand are resolved.
     revision : int
-        How often structure, configuration or columns were changed from outside: what was measured before is
-        another world's.
+        How often structure, configuration or columns were changed from outside: measurements from
+        before do not apply any more.
     entity_index : EntityIndex
         Which entity has which row.
     bodies : Bodies
@@ -99,7 +99,7 @@ class State:
     # ---- contexts ------------------------------------------------------------------------------------------
 
     def activate(self) -> None:
-        """Make this the world that plain esper calls speak of, until another is activated.
+        """Make this the world that plain esper calls act on, until another is activated.
 
         Raises
         ------
@@ -109,7 +109,7 @@ class State:
         switch(self.context)
 
     def active(self) -> Active[Self]:
-        """Make this the world that plain esper calls speak of, within a ``with`` block.
+        """Make this the world that plain esper calls act on, within a ``with`` block.
 
         Raises
         ------
@@ -150,7 +150,7 @@ class State:
             self.entity_index.flush_deleted()
 
     def add(self, entity: int, component: Any) -> None:
-        """Give an entity a component, in place of the one of that type if it has one."""
+        """Add a component to an entity, in place of the one of that type if it has one."""
         with self.active():
             self._require(entity)
             _kind(component)
@@ -238,7 +238,7 @@ class State:
             raise KeyError(f"there is no entity {entity} in this world")
 
     def _follow(self) -> None:
-        """Follow what entities and components there are now."""
+        """Follow the present entities and components."""
         self.entity_index.synchronise()
 
     # ---- columns -------------------------------------------------------------------------------------------
@@ -296,7 +296,7 @@ def _kind(component: Any) -> type[Any]:
 
 
 def _forget(context: str) -> None:
-    """Drop the esper context of a world that is no more."""
+    """Drop the esper context of a world that was deleted."""
     if esper.current_world == context:
         esper.switch_world("default")
     if context in esper.list_worlds():

@@ -1,4 +1,4 @@
-"""Settled contacts of one world, eight side by side."""
+"""Wide contacts of one world, eight side by side."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class WideConstraints:
     data : float64 array (capacity * rows,)
         What they hold, as :mod:`physicslab.kernels.wide.layout` has it.
     a, b, pair : int64 arrays (capacity * WIDE,)
-        Rows of the bodies in each lane, and which near pair it is; -1 for a free lane.
+        Rows of the bodies in each slot, and which near pair it is; -1 for a free slot.
     colour : int64 array (capacity,)
-        Which of a body's contacts each block holds.
+        The colour of each block: no body has two contacts of one colour.
     order : int64 array (capacity,)
         The blocks, those of one colour together: as they are solved.
     used : uint64 array (rows of the world,)
@@ -51,12 +51,12 @@ class WideConstraints:
         self._counts[self._place] = blocks
 
     def reset(self, rows: int) -> None:
-        """Hold nothing, in a world of so many rows."""
+        """Drop every block, in a world of so many rows."""
         self.count = 0
         self.used: NDArray[np.uint64] = np.zeros(rows, np.uint64)
 
     def make_room(self, blocks: int) -> None:
-        """See to it that so many blocks have room."""
+        """Make room for so many blocks."""
         if len(self.colour) < blocks:
             room = 2 * blocks
             data, (colour, order) = _in_lines(room * self.rows), np.zeros((2, room), np.int64)
@@ -73,32 +73,33 @@ class WideConstraints:
 
     @property
     def slots(self) -> Slots:
-        """What kernels want to know that count the blocks themselves."""
+        """The arguments of kernels that count the blocks themselves."""
         return self.data, self.a, self.b, self.pair, self.colour, self.used, self.order
 
     @property
     def layout(self) -> tuple[int, _Numbers, int, _Rows, _Rows, _Rows, _Rows, NDArray[np.uint64]]:
-        """What kernels that take lanes in or give them back want to know."""
+        """The arguments of kernels that fill or empty slots."""
         return self.kind, self.data, self.count, self.a, self.b, self.pair, self.colour, self.used
 
     @property
     def solved(self) -> tuple[_Numbers, int, _Rows, _Rows, _Rows]:
-        """What kernels that only change impulses want to know."""
+        """The arguments of kernels that only change impulses."""
         return self.data, self.count, self.order, self.a, self.b
 
 
 class WideContacts:
-    """The settled contacts of a world, and what they were made of.
+    """The wide contacts of a world, and what they were made of.
 
-    A contact is settled when its bodies move little for their size, it has no impact, and overlaps little.
-    Discs and boxes lie in blocks of their own; all else, and all in a world of few contacts, stays scalar.
+    A contact is steady when its bodies move little for their size, it has no impact, and overlaps little.
+    Steady contacts of discs and of boxes are in blocks of their own; all others, and all in a world of few
+    contacts, are scalar.
 
     Attributes
     ----------
     discs, boxes : WideConstraints
         The blocks.
     made_of : float64 array (rows, 7)
-        The masses, sizes and materials that slots hold as well.
+        The masses, sizes and materials that slots contain.
 
     Parameters
     ----------
@@ -140,7 +141,7 @@ class WideContacts:
 
 
 def _in_lines(size: int) -> NDArray[np.float64]:
-    """Return so many zeros from the start of a cache line on: what lies across two takes twice as long."""
+    """Return so many zeros, aligned to a cache line: a row across two lines takes twice as long."""
     line = WIDE * 8
     room = np.zeros(size + WIDE)
     start = -room.ctypes.data % line // 8

@@ -31,7 +31,7 @@ class Asleep:
         return None if state.sleep.on else "bodies do not fall asleep"
 
     def holds(self, state: State) -> bool:
-        """Whether it does is found at every step."""
+        """Return True: whether everything sleeps is found at every step."""
         return True
 
     def ready(self, state: State, h: float) -> bool:

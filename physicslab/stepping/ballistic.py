@@ -1,4 +1,4 @@
-"""Which worlds can have their collisions located exactly, and which gain by it."""
+"""Which worlds can have their collisions located exactly, and which benefit."""
 
 from __future__ import annotations
 
@@ -25,24 +25,24 @@ __all__ = [
 ]
 
 MAX_BODIES = 32
-"""Beyond so many moving bodies ``auto`` prefers the contact step."""
+"""Number of moving bodies above which ``auto`` prefers the contact step."""
 MAX_PAIRS = 20_000
-"""Every impact looks through all pairs: beyond so many that costs more than any accuracy is worth."""
+"""Largest number of pairs: every impact searches all of them, which would take too long for more."""
 _CONTACT_STEP = (IntegrateSystem, BroadPhaseSystem, ContactSystem, ResolveSystem)
-_LOOKING = OF_FRAMES | AROUND | {Stage.IMPACT}
-"""The stages at which a system may look on, without bending a flight."""
-_NEAR = 0.01
-"""Share of the smaller body's size within which bodies count as lying on each other."""
+_OBSERVING = OF_FRAMES | AROUND | {Stage.IMPACT}
+"""The stages at which a system may observe without changing a ballistic path."""
+_CONTACT_DISTANCE = 0.01
+"""Share of the smaller body's size within which bodies count as resting on each other."""
 
 
 def why_not_exact(state: State, schedule: Schedule) -> str | None:
-    """Return what stands in the way of locating the times of impacts, or ``None``.
+    """Return why the times of impacts cannot be located, or ``None``.
 
     Between impacts a body must move under a constant acceleration, and no box may turn.
     """
     if state.simulation.integrator not in ("auto", "exact"):
-        return f"{state.simulation.integrator} was asked for, and flights between impacts are in closed form"
-    reason = _foreign(state, schedule)
+        return f"{state.simulation.integrator} was asked for, and between impacts bodies move in closed form"
+    reason = _why_not_ballistic(state, schedule)
     if reason is not None:
         return reason
     if state.physics.linear_damping > 0.0 or state.physics.angular_damping > 0.0:
@@ -60,7 +60,7 @@ def why_not_exact(state: State, schedule: Schedule) -> str | None:
     return None
 
 
-def _foreign(state: State, schedule: Schedule) -> str | None:
+def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
     """Return what acts within a step that is neither uniform gravity nor the contact step, or ``None``."""
     for needed in _CONTACT_STEP:
         if schedule.find(needed) is None:
@@ -73,15 +73,15 @@ def _foreign(state: State, schedule: Schedule) -> str | None:
                 return (
                     "bodies attract each other"
                     if attracts
-                    else f"the force of {system.name} bends the flights"
+                    else f"the force of {system.name} is no uniform acceleration"
                 )
-        elif not (system.is_engine or type(system).marked().keys() <= _LOOKING):
+        elif not (system.is_engine or type(system).marked().keys() <= _OBSERVING):
             return f"{system.name} acts within the step"
     return None
 
 
 def turning_boxes(state: State) -> NDArray[np.int64]:
-    """Return the rows of boxes that turn, or would if they were struck beside the middle."""
+    """Return the rows of boxes that turn, or would after an impact off their centre."""
     moving = state.batch(Shape, Transform, Velocity).rows
     boxes = moving[state.table(Shape)["kind"][moving] == BOX]
     turns = (state.bodies.inverse_inertia[boxes] > 0.0) | (state.table(Velocity)["angular"][boxes] != 0.0)
@@ -127,9 +127,9 @@ def why_not_worthwhile(state: State, schedule: Schedule) -> str | None:
 def _why_at_rest(
     state: State, schedule: Schedule, moving: NDArray[np.int64], pairs: NDArray[np.int64]
 ) -> str | None:
-    """Return what already lies on what, as far as boxes along the axes around all bodies can tell."""
+    """Return whether bodies rest on each other, or all rest, judged by their axis-aligned bounding boxes."""
     if not schedule.forces:
-        return None  # nothing presses
+        return None  # nothing presses bodies together
     low, high, size = _boxes(state)
     a, b, wall = pairs.T
     apart = np.maximum(low[b] - high[a], low[a] - high[b]).max(axis=1)
@@ -142,12 +142,12 @@ def _why_at_rest(
     velocity = state.table(Velocity)["linear"]
     fall = float(state.physics.gravity.magnitude) * state.simulation.dt
     slow = np.hypot(*(velocity[b] - velocity[a]).T) <= fall
-    lies = slow & (apart <= _NEAR * np.minimum(size[a], size[b]))
+    touching = slow & (apart <= _CONTACT_DISTANCE * np.minimum(size[a], size[b]))
     free = state.bodies.inverse_mass > 0.0
-    if (lies & free[a] & free[b]).any():
+    if (touching & free[a] & free[b]).any():
         return "bodies rest on each other"
-    proximity_count = np.unique(np.concatenate((a[lies & free[a]], b[lies & free[b]])))
-    if len(moving) and len(proximity_count) == int(free[moving].sum()):
+    resting = np.unique(np.concatenate((a[touching & free[a]], b[touching & free[b]])))
+    if len(moving) and len(resting) == int(free[moving].sum()):
         return "everything rests"
     return None
 

@@ -20,8 +20,8 @@ __all__ = ["Contact"]
 class Contact:
     """Goes through the stages of every substep and calls the systems of each, from Python.
 
-    It can advance any world, so it is the last of the list. What springs and drag act on may move by a method
-    of its own within it (:class:`physicslab.stepping.split_forces.SplitForces`).
+    It can advance any world, so it is the last of the list. Bodies that springs and drag act on may be moved
+    by a method of their own within it (:class:`physicslab.stepping.split_forces.SplitForces`).
     """
 
     name: ClassVar[str] = "contact"
@@ -40,11 +40,11 @@ class Contact:
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
-        """There is no world that cannot be stepped so."""
+        """None: any world can be stepped so."""
         return None
 
     def holds(self, state: State) -> bool:
-        """Whether what a method of its own moves is still the same."""
+        """Whether the sub-integrated bodies and their forces are still the same."""
         return self._split is None or not self._split.outdated(state)
 
     def ready(self, state: State, h: float) -> bool:
@@ -65,7 +65,7 @@ class Contact:
         return Advance(1, parts)
 
     def begin(self, state: State) -> None:
-        """Begin new records of impacts, and take forces and masses as they are now."""
+        """Begin new records of impacts, and take the present forces and masses."""
         if self._contact is not None:
             self._contact.begin_step(state)
         if self._split is not None:

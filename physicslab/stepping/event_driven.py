@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from physicslab.components import Material, Shape, Transform, Velocity
 from physicslab.contacts.near_pairs import list_all
 from physicslab.kernels.broad import near_pairs
-from physicslab.kernels.events import events, flight
+from physicslab.kernels.events import events, path
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
@@ -30,23 +30,23 @@ type _State = list[NDArray[np.float64]]
 """Copies of the columns below."""
 
 _COLUMNS = ((Transform, "position"), (Transform, "angle"), (Velocity, "linear"), (Velocity, "angular"))
-_FELT = ("approach_speed", "impact_normal", "impact_tangent")
-_PULL = slice(8, 10)
-"""The columns of a flight's acceleration."""
+_IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
+_ACCELERATION = slice(8, 10)
+"""The columns of a path's acceleration."""
 _SHORT = 1e-6
-"""Share of a step that is too short for what rests to move."""
+"""Share of a step that is too short for resting bodies to move."""
 _MAX_PARTS = 1000
-"""After so many interruptions within a step all bodies are left to the contact step."""
+"""Largest number of parts of a step; after it all bodies are left to the contact step."""
 
 
 class EventDriven:
     """Advances bodies in closed form from impact to impact.
 
     One that comes to rest on another is handed over to the contact step, together with all others that rest,
-    and comes back when nothing presses on it or when a ballistic body strikes it: the step is then divided at
-    the time of the blow.
+    and comes back when nothing presses on it or when a ballistic body hits it: the step is then divided at
+    the time of the impact.
 
-    What rests follows from the contacts of the last step, so that nothing here needs to be saved.
+    Which bodies rest follows from the contacts of the last step, so that nothing here needs to be saved.
     """
 
     name: ClassVar[str] = "event_driven"
@@ -62,19 +62,21 @@ class EventDriven:
         self._pairs = pairs_that_may_meet(state)
         self._listed = False
         self._urgent = -1
-        self._paths = np.zeros((rows, flight.FIELDS))
+        self._paths = np.zeros((rows, path.FIELDS))
         moving = state.table(Velocity).present & state.table(Transform).present
         free = moving & (state.bodies.inverse_mass > 0.0)
-        self._unpressed = np.where(free, events.BALLISTIC, np.where(moving, events.KINEMATIC, events.FIXED))
-        self._mode = self._unpressed.copy()
+        self._initial_mode = np.where(
+            free, events.BALLISTIC, np.where(moving, events.KINEMATIC, events.FIXED)
+        )
+        self._mode = self._initial_mode.copy()
         self._face = np.zeros(len(self._pairs), np.int64)
         self._due = np.zeros((len(self._pairs), 5))
-        self._struck_at = np.full((len(self._pairs), 2), np.nan)
+        self._impact_positions = np.full((len(self._pairs), 2), np.nan)
         self._bounds = np.array(state.physics.bounds or (0.0, 0.0, 0.0, 0.0))
         uniform = [force.uniform_acceleration(state) for force in schedule.forces]
         self._gravity = np.array([(g.x, g.y) for g in uniform if g is not None] or [(0.0, 0.0)]).sum(axis=0)
-        looked_after = (*schedule.forces, schedule.find(ContactSystem), schedule.find(ResolveSystem))
-        self._within = [system.name for system in looked_after if system is not None]
+        internal = (*schedule.forces, schedule.find(ContactSystem), schedule.find(ResolveSystem))
+        self._within = [system.name for system in internal if system is not None]
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
@@ -100,7 +102,7 @@ class EventDriven:
         return Advance(steps, parts)
 
     def _step(self, state: State, dt: float) -> None:
-        """Make one step, and let those systems look at its impacts that do."""
+        """Make one step, and call the systems that observe its impacts."""
         self._begin(state)
         self._begin_contact_step(state)
         self._advance(state, dt, dt, 0.0)
@@ -119,7 +121,7 @@ class EventDriven:
                     return
                 whole = min(int(gone / dt), steps - done - 1)
                 done, gone = done + whole, gone - whole * dt
-            # What rests from here on is moved by the contact step, which goes by whole steps.
+            # Resting bodies are moved by the contact step from here on, which makes whole steps.
             self._begin_contact_step(state)
             self._advance(state, dt - gone, dt, done * dt + gone)
             done += 1
@@ -130,7 +132,7 @@ class EventDriven:
             contact.begin_step(state)
 
     def _begin(self, state: State) -> None:
-        """Find out what each row does, and forget the impacts of the step before."""
+        """Find the mode of each row, and clear the impacts of the step before."""
         contacts = state.contacts
         if contacts.stale or not self._listed:
             list_all(state, self._pairs, len(self._pairs))
@@ -140,21 +142,21 @@ class EventDriven:
         if near["impact_count"].any():
             near["impact_count"] = 0
             points = contacts.points[: 2 * contacts.recorded]
-            for name in _FELT:
+            for name in _IMPACT_FIELDS:
                 points[name] = 0.0
-            self._struck_at[:] = np.nan
-        self._mode[:] = self._unpressed
+            self._impact_positions[:] = np.nan
+        self._mode[:] = self._initial_mode
         if contacts.count:
-            self._mode[self._held_by_contacts(state) & (self._unpressed == events.BALLISTIC)] = (
+            self._mode[self._held_by_contacts(state) & (self._initial_mode == events.BALLISTIC)] = (
                 events.IN_CONTACT
             )
 
     def _point_to_impacts(self, state: State) -> None:
-        """Let the arms of what was struck in flight lead from where B is now to where the impact was."""
-        pairs = np.flatnonzero(np.isfinite(self._struck_at[:, 0]) & ~self._left_to_contacts())
+        """Make the arms of ballistic impacts lead from the present place of B to that of the impact."""
+        pairs = np.flatnonzero(np.isfinite(self._impact_positions[:, 0]) & ~self._left_to_contacts())
         if len(pairs):
             points = state.contacts.points
-            moved = self._struck_at[pairs] - state.table(Transform)["position"][self._pairs[pairs, 1]]
+            moved = self._impact_positions[pairs] - state.table(Transform)["position"][self._pairs[pairs, 1]]
             for k in range(2):
                 points["arm_bx"][2 * pairs + k] += moved[:, 0]
                 points["arm_by"][2 * pairs + k] += moved[:, 1]
@@ -166,7 +168,7 @@ class EventDriven:
         contacts.touching[: len(touching)] = touching
 
     def _held_by_contacts(self, state: State) -> NDArray[np.bool_]:
-        """Return which rows the contact step has left with a contact that holds them."""
+        """Return which rows have a contact that holds them after the contact step."""
         contacts = state.contacts
         near = contacts.manifolds[: contacts.recorded]
         points = contacts.points[: 2 * contacts.recorded].reshape(-1, 2)
@@ -196,7 +198,7 @@ class EventDriven:
             left = left - elapsed if elapsed < left else 0.0
 
     def _both(self, state: State, span: float, dt: float, offset: float) -> float:
-        """Let some bodies rest and the others fly until the flights break off; return the time gone by."""
+        """Advance resting and ballistic bodies together until an event; return the time that passed."""
         in_contact = self._mode == events.IN_CONTACT
         pairs = np.flatnonzero(self._left_to_contacts())
         before, kept = _copied(state), _contacts(state, pairs)
@@ -204,10 +206,10 @@ class EventDriven:
         after = self._rest(state, pairs, state.time + offset, span, dt)
         elapsed = span
         if (self._mode == events.BALLISTIC).any():
-            # To those that fly, what rests moves as it will: from where, how fast and to where is known.
+            # For ballistic bodies, resting ones follow a path from their known start, velocity and end.
             way = after[0] - before[0] - span * before[2]
-            self._paths[:, _PULL] = self._gravity
-            self._paths[in_contact, _PULL] = (
+            self._paths[:, _ACCELERATION] = self._gravity
+            self._paths[in_contact, _ACCELERATION] = (
                 2.0 * way[in_contact] / (span * span) if span > _SHORT * dt else 0.0
             )
             impact_count = state.collisions - collisions
@@ -230,14 +232,14 @@ class EventDriven:
         return elapsed
 
     def _left_to_contacts(self) -> NDArray[np.bool_]:
-        """Return of which pairs the contact step takes care: one rests, and the other does not fly."""
+        """Return which pairs the contact step handles: one body rests, and the other is not ballistic."""
         one, other = self._mode[self._pairs[:, 0]], self._mode[self._pairs[:, 1]]
         in_contact = (one == events.IN_CONTACT) | (other == events.IN_CONTACT)
         left: NDArray[np.bool_] = in_contact & (one != events.BALLISTIC) & (other != events.BALLISTIC)
         return left
 
     def _rest(self, state: State, pairs: NDArray[np.int64], began: float, span: float, dt: float) -> _State:
-        """Let the contact step move everything for ``span`` s, with these contacts alone; return where to."""
+        """Advance all by the contact step for ``span`` s, with these contacts alone; return the new state."""
         if span <= _SHORT * dt:
             return _copied(state)
         contacts = state.contacts
@@ -245,53 +247,53 @@ class EventDriven:
         points = contacts.points[: 2 * contacts.recorded]
         others = np.ones(len(near), np.bool_)
         others[pairs] = False
-        near["count"][others] = -1  # the contact step passes over them
-        impact_count, felt = near["impact_count"].copy(), [points[name].copy() for name in _FELT]
+        near["count"][others] = -1  # the contact step skips them
+        impact_count, earlier = near["impact_count"].copy(), [points[name].copy() for name in _IMPACT_FIELDS]
         substeps, run = state.simulation.substeps, self._schedule.run
-        # What the stages call is compiled at its first call: most of it is not called here.
+        # Kernels of the stages are compiled at their first call: most are not called here.
         for substep in range(substeps):
             state.moment = began + (substep + 0.5) * span / substeps
             for stage, share in self._stages:
                 if stage is not Stage.BROAD_PHASE:
                     run(stage, state, share * span / substeps)
         near["count"][others] = 0
-        # The step's first look at contacts has begun a new record; what they felt in flight belongs to it.
+        # The contact stage has cleared the records of impacts; those of the ballistic part are added again.
         new = impact_count > near["impact_count"]
         near["impact_count"][new] += impact_count[new]
         both = np.repeat(new, 2)
-        for name, before in zip(_FELT, felt, strict=True):
+        for name, before in zip(_IMPACT_FIELDS, earlier, strict=True):
             joined = np.maximum if name == "approach_speed" else np.add
             points[name][both] = joined(points[name][both], before[both])
         return _copied(state)
 
     def _run_events(self, state: State, span: float, dt: float, offset: float) -> tuple[float, int]:
-        """Let bodies fly for ``span`` s, or until one comes to rest or is woken; return how long, and why."""
+        """Move bodies from impact to impact for ``span`` s, or until an event; return the time and why."""
         began = time.perf_counter_ns()
         contacts, bodies, physics = state.contacts, state.bodies, state.physics
         transform, velocity = state.table(Transform), state.table(Velocity)
         shape, material = state.table(Shape), state.table(Material)
         ballistic = self._mode == events.BALLISTIC
-        self._paths[:, _PULL] = np.where(
+        self._paths[:, _ACCELERATION] = np.where(
             (self._mode == events.IN_CONTACT)[:, None],
-            self._paths[:, _PULL],
+            self._paths[:, _ACCELERATION],
             ballistic[:, None] * self._gravity,
         )
         elapsed, impacts, why, pair = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,
-            self._paths, self._mode, self._face, self._due, self._struck_at,
+            self._paths, self._mode, self._face, self._due, self._impact_positions,
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
             shape["kind"], shape["radius"], shape["width"], shape["height"],
             material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
             self._bounds, physics.bounds_restitution, physics.bounds_friction,
             contacts.log, contacts.logged, state.time + offset, span, dt, self._urgent,
         )  # fmt: skip
-        # What is woken has its impact before anything else, or it would come to rest again at once.
+        # The impact of a woken body is resolved first, or the body would come to rest again at once.
         self._urgent = pair if why == events.WOKEN else -1
         contacts.logged += impacts
         state.collisions += impacts
         self._schedule.note(IntegrateSystem.__name__, 1, time.perf_counter_ns() - began)
         for name in self._within:
-            self._schedule.note(name, 1, 0)  # their time is within the loop's
+            self._schedule.note(name, 1, 0)  # their time is part of the loop's
         return elapsed, why
 
 

@@ -36,7 +36,7 @@ class Flow:
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
-        """Return what else than forces acts, or ``None``."""
+        """Return what acts besides forces, or ``None``."""
         return None if plan.smooth else plan.obstacle
 
     def holds(self, state: State) -> bool:
@@ -74,5 +74,5 @@ class Flow:
         ode.scatter(state, h * steps)
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - start)
         for system in ode.forces:
-            self._schedule.note(system.name, made, 0)  # their time is within the loop's
+            self._schedule.note(system.name, made, 0)  # their time is part of the loop's
         state.force_evaluations += made

@@ -11,9 +11,9 @@ __all__ = ["add_up_forces"]
 
 
 def add_up_forces(state: State, schedule: Schedule) -> None:
-    """Let ``bodies.force`` and ``.torque`` hold the forces that act now; nothing that moves is changed."""
+    """Set ``bodies.force`` and ``.torque`` to the present forces, without changing the state of motion."""
     acting = [s for s in schedule.systems if isinstance(s, AccelerateSystem)] + list(schedule.forces)
     for system in acting:
         state.compile(system.kernels_for(state))
         getattr(system, system.marked()[Stage.FORCE])(state, 0.0)
-    state.force_evaluations -= state.has_forces  # looking at them is no work of the method
+    state.force_evaluations -= state.has_forces  # not an evaluation of the method

@@ -1,4 +1,4 @@
-"""The contact step of whole steps in one compiled call, for scenes in which nothing looks at substeps."""
+"""The contact step of whole steps in one compiled call, for scenes in which no system observes substeps."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ __all__ = ["FusedContact"]
 
 _NEEDED = (AccelerateSystem, IntegrateSystem, BroadPhaseSystem, ContactSystem, ResolveSystem)
 _MAX_STEPS = 4096
-"""So many steps are one call: a run that is to stop waits for it."""
+"""Largest number of steps of one call: a run that is stopped waits for its end."""
 _SUBSTEP = [stage for stage, _ in LEAPFROG.substep]
 
 
@@ -52,7 +52,7 @@ class FusedContact:
     """Makes steps in a compiled loop, with the bits of the contact step.
 
     The loop comes back where Python is needed: to list the near pairs, to make the first blocks or room for
-    more, to wake what is touched, to let fall asleep what has rested, to report a divergence.
+    more, to wake touched bodies, to put rested islands to sleep, to report a divergence.
     """
 
     name: ClassVar[str] = "fused_contact"
@@ -104,7 +104,7 @@ class FusedContact:
         return None
 
     def holds(self, state: State) -> bool:
-        """Nothing that it is made from can change without a change of structure or laws."""
+        """Return True: all that it is made from changes only with structure or laws."""
         return True
 
     def ready(self, state: State, h: float) -> bool:
@@ -150,25 +150,25 @@ class FusedContact:
     def _advance(
         self, state: State, made: int, steps: int, substep: int, stage: int, h: float
     ) -> tuple[int, int, int]:
-        """Let the loop go as far as it gets; return why it came back, after how many steps, and where."""
+        """Run the loop as far as it goes; return why it ended, after how many steps, and where."""
         began = time.perf_counter_ns()
         contacts, substeps = state.contacts, state.substeps
         self._cost[:] = 0
         plan = (substeps, state.simulation.iterations or 1, h / substeps, h, state.time + made * h)
-        why, done, substep, struck_before, struck, contacts.impulse_dt = fused.advance(
+        why, done, substep, finished_impacts, impacts, contacts.impulse_dt = fused.advance(
             steps, substep, stage, plan, *self._arguments(state, h / substeps)
         )
         contacts.changed()
-        state.collisions += struck_before
+        state.collisions += finished_impacts
         if done:
             state.force_evaluations += done * substeps * state.has_forces
             state.checkpoint.counts = state.counts
-        state.collisions += struck - struck_before
+        state.collisions += impacts - finished_impacts
         self._note(state, done, time.perf_counter_ns() - began)
         return why, done, substep
 
     def _arguments(self, state: State, h: float) -> tuple[Any, ...]:
-        """Return what the loop works on; what only a change of structure or laws changes is kept."""
+        """Return the arguments of the loop; those that change only with structure or laws are kept."""
         contacts, sleep, kept = state.contacts, state.sleep, state.checkpoint.columns
         if self._kept is not kept or self._h != h:
             self._kept, self._h, self._fixed = kept, h, self._fixed_arguments(state, h)
@@ -198,7 +198,7 @@ class FusedContact:
         return columns, laws, np.zeros_like(state.sleep.asleep)
 
     def _note(self, state: State, steps: int, nanoseconds: int) -> None:
-        """Note as many calls as the stages would make; the time is shared out by the loop's own clock."""
+        """Note as many calls as the stages would make; the time is divided by the loop's own clock."""
         costs: list[int] = self._cost.tolist()
         total = max(1, sum(costs))
         for place, name, calls, once in self._calls:
@@ -224,5 +224,5 @@ def _place(system: System) -> int | None:
 
 def _found[S: System](schedule: Schedule, kind: type[S]) -> S:
     found = schedule.find(kind)
-    assert found is not None  # else why_not would have said so
+    assert found is not None  # else why_not would have returned a reason
     return found

@@ -26,16 +26,16 @@ from physicslab.systems.system import ForceSystem, Stage
 __all__ = ["StepPlan", "choose_plan", "default_plan", "why_not_smooth"]
 
 _CROWD = 200
-"""From so many attracting bodies on, sampling their forces costs more than accuracy is worth."""
+"""Number of attracting bodies from which sampling their forces takes longer than the accuracy is worth."""
 _WELL_RESOLVED = 0.5
-"""omega h that blanes_moan is given: beyond about 1 its order does not show."""
+"""omega h of the steps of blanes_moan: above about 1 it does not reach its order."""
 _MAX_STEPS = 1000
-"""Into how many steps a step of the world may be divided of the method's own accord."""
+"""Largest number of steps of a method that ``auto`` makes of a step of the world."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepPlan:
-    """A method, and why it.
+    """A method, and the reason for it.
 
     Attributes
     ----------
@@ -48,16 +48,16 @@ class StepPlan:
     smooth : bool
         Whether nothing but forces acts, so that the method's flow advances the world.
     refused : str
-        Why it is not the one that was asked for; empty if it is.
+        Why it is not the one that was configured; empty if it is.
     collisions : str
-        ``"exact"`` (contact times located, flights in between in closed form), ``"step"`` (found and resolved
+        ``"exact"`` (contact times located, paths in between in closed form), ``"step"`` (found and resolved
         within steps) or ``"none"`` (nothing can touch).
     collision_reason : str
-        Why so, for people.
+        The reason, for people.
     obstacle : str
-        What else than forces acts within a step, where anything does.
+        What acts within a step besides forces, if anything does.
     stages : Integrator
-        The method by whose stages the contact step goes; where collisions are exact, only for what rests.
+        The method whose stages the contact step uses; where collisions are exact, only for resting bodies.
     split_forces : Integrator, optional
         What moves the bodies that springs and drag act on between contacts; ``None`` where kicks do.
     split_steps : int
@@ -85,7 +85,7 @@ class StepPlan:
 
 
 def default_plan(simulation: SimulationConfig) -> StepPlan:
-    """Return the choice for a world of which nothing is known yet."""
+    """Return the plan of a world before its contents are known."""
     name = simulation.integrator
     if name == "auto":
         return StepPlan(LEAPFROG, "nothing moves", simulation.substeps, smooth=False)
@@ -95,7 +95,7 @@ def default_plan(simulation: SimulationConfig) -> StepPlan:
 
 
 def choose_plan(state: State, schedule: Schedule) -> StepPlan:
-    """Return the method for what a world holds, or the one that its configuration asks for if it can."""
+    """Return the method for what a world holds, or the configured one if it can advance it."""
     if not schedule.runs(Stage.CONTACT):
         return _mover(state, schedule)
     wish = state.simulation.collisions
@@ -106,16 +106,16 @@ def choose_plan(state: State, schedule: Schedule) -> StepPlan:
         if obstacle is not None:
             reason = f"exact was asked for, and {obstacle}"
             return replace(_mover(state, schedule), collisions="step", collision_reason=reason)
-        return _flights(state, "asked for")
+        return _event_driven_plan(state, "asked for")
     obstacle = obstacle or why_not_worthwhile(state, schedule)
     if obstacle is not None:
         return replace(_mover(state, schedule), collisions="step", collision_reason=obstacle)
-    return _flights(state, "few bodies, which bounce")
+    return _event_driven_plan(state, "few bodies, which bounce")
 
 
-def _flights(state: State, reason: str) -> StepPlan:
-    """Return the choice for bodies whose collisions are exact."""
-    method = "between impacts bodies fly in closed form; what rests goes by leapfrog"
+def _event_driven_plan(state: State, reason: str) -> StepPlan:
+    """Return the plan for bodies whose collisions are exact."""
+    method = "between impacts bodies move in closed form; resting ones by leapfrog"
     return StepPlan(
         EXACT, method, state.simulation.substeps, smooth=False, collisions="exact", collision_reason=reason
     )
@@ -180,9 +180,9 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
 
 
 def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPlan:
-    """Return the choice where more than forces acts within a step: kicks, or a method for what is tethered.
+    """Return the plan where more than forces acts within a step: kicks, or sub-integrated bodies.
 
-    Other stages than those of leapfrog know of no flow.
+    Only the stages of leapfrog can be combined with a flow.
     """
     substeps = state.simulation.substeps
     kicks = StepPlan(LEAPFROG, obstacle, substeps, smooth=False, obstacle=obstacle)
@@ -204,7 +204,7 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
         method, needed, how = DOP853, 1, "the step follows the motion"
     else:
         method, how = BLANES_MOAN, f"steps of omega h = {rate * half / needed:.2g}"
-    reason = f"{obstacle}; between contacts what springs or drag act on goes by {method.name}: {how}"
+    reason = f"{obstacle}; between contacts bodies with springs or drag move by {method.name}: {how}"
     return replace(
         kicks, reason=reason, stages=LEAPFROG_WITH_SPLIT_FORCES, split_forces=method, split_steps=needed
     )
@@ -217,7 +217,7 @@ def _fastest(state: State, forces: Sequence[ForceSystem]) -> float:
 
 
 def _steps(rate: float, h: float) -> int:
-    """Return into how many steps a time h must be divided for a rate, of no more than need be told apart."""
+    """Return the number of steps of a time h that a rate needs, up to a limit."""
     phase = rate * h / _WELL_RESOLVED
     return max(1, math.ceil(phase)) if phase <= _MAX_STEPS else _MAX_STEPS + 1
 
@@ -231,7 +231,7 @@ def _sees_velocity(state: State, forces: Sequence[ForceSystem]) -> bool:
 
 
 def _too_fast(rate: float) -> str:
-    return f"{rate:.3g} rad/s is too fast to be followed: what it does between steps is not shown"
+    return f"{rate:.3g} rad/s is too fast to be followed: the motion between steps is lost"
 
 
 _WITHIN = {Stage.FORCE, Stage.KICK, Stage.DRIFT}
@@ -239,7 +239,7 @@ _WITHIN = {Stage.FORCE, Stage.KICK, Stage.DRIFT}
 
 
 def why_not_smooth(state: State, schedule: Schedule) -> str | None:
-    """Return what else than forces acts on bodies within a step, or ``None``."""
+    """Return what acts on bodies within a step besides forces, or ``None``."""
     if schedule.runs(Stage.BROAD_PHASE) or schedule.runs(Stage.CONTACT):
         return "bodies can touch"
     if schedule.find(IntegrateSystem) is None:

@@ -1,4 +1,4 @@
-"""What springs and drag act on in a world whose bodies can touch: how it moves between contacts."""
+"""Split forces: sub-integration, between contacts, of bodies that springs and drag act on."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from physicslab.systems.system import ForceSystem, Stage
 
 __all__ = ["SplitForces", "sub_integrated_rows"]
 
-_GENTLE = 1.0
-"""omega h up to which a force hardly changes within a substep, and contacts are told what it will do."""
+_MAX_PREDICTABLE = 1.0
+"""omega h up to which a force hardly changes within a substep, so that contacts get its prediction."""
 _TOLERANCE = 1e-12
-"""Smallest relative error of a step that methods are given that choose their steps."""
+"""Smallest tolerance of methods that choose their steps."""
 
 
 def sub_integrated_rows(state: State, forces: Sequence[ForceSystem]) -> NDArray[np.bool_]:
-    """Return for each row whether a force acts on it that tells bodies apart, or it is an end of one.
+    """Return for each row whether a force acts on it that is not the same for all, or it is an end of one.
 
     Where another force couples any body with any, all are.
     """
@@ -42,15 +42,15 @@ def sub_integrated_rows(state: State, forces: Sequence[ForceSystem]) -> NDArray[
 
 
 class SplitForces:
-    """Moves what springs and drag act on, under all forces, by a method that follows them.
+    """Moves the bodies that springs and drag act on, under all forces, by a method that follows these.
 
     A substep is half a flow, the contacts, half a flow. That is the leapfrog of the contact step, in which
-    the flow of the forces takes the place of drift and kick: reversible, of second order in what contacts
-    do, and as exact between them as the method is. What is not sub-integrated drifts and is kicked.
+    the flow of the forces takes the place of drift and kick: reversible, of second order in the contact
+    impulses, and as exact between them as the method is. All other bodies drift and are kicked.
 
-    Contacts hold up what presses on them only if they see the velocity that it would get by the end of the
-    substep. For rows that are pulled gently that is predicted from the forces, as a kick is, and taken back
-    once the contacts are solved; what oscillates within a substep has no such velocity.
+    Contacts support a load only if the solver has the velocity that it would cause by the end of the substep.
+    For rows under slowly changing forces it is predicted from these, as a kick, and removed once the contacts
+    are solved; a body that oscillates within a substep has no such velocity.
 
     Parameters
     ----------
@@ -65,23 +65,23 @@ class SplitForces:
 
     Attributes
     ----------
-    gentle : bool array (rows,)
-        What is pulled so gently that contacts are shown its velocity ahead.
+    predictable : bool array (rows,)
+        The rows whose velocity is predicted for the contacts.
     """
 
     def __init__(self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int) -> None:
         self._forces, self._method, self._steps = forces, method, steps
         rows = sub_integrated_rows(state, forces)
         self._ode = OdeSystem(state, forces, rows)
-        # Contacts are good to far fewer digits than a free flight: more would only cost time.
+        # Contacts are accurate to far fewer digits than free motion: more would only take time.
         self._ode.tolerance = max(state.simulation.tolerance, _TOLERANCE)
         state.bodies.sub_integrated[:] = rows & state.table(Velocity).present
         h = state.simulation.dt / state.simulation.substeps
-        self.gentle: NDArray[np.bool_] = state.bodies.sub_integrated & (state.bodies.inverse_mass > 0.0)
+        self.predictable: NDArray[np.bool_] = state.bodies.sub_integrated & (state.bodies.inverse_mass > 0.0)
         for force in forces:
             rates = force.rates(state)
             if rates is not None:
-                self.gentle &= rates * h <= _GENTLE
+                self.predictable &= rates * h <= _MAX_PREDICTABLE
         state.compile((*method.kernels, motion.predict))
 
     def outdated(self, state: State) -> bool:
@@ -89,18 +89,18 @@ class SplitForces:
         return self._ode.outdated(state)
 
     def begin(self, state: State) -> None:
-        """Take the forces and masses as they are now; they stay for a step."""
+        """Take the present forces and masses; they are kept for a step."""
         self._ode.gather(state)
 
     def take_part(self, stage: Stage, state: State, h: float) -> None:
-        """Do what a stage of a substep wants, if anything."""
+        """Do the work of a stage of a substep, if there is any."""
         if stage is Stage.DRIFT:
             self._move(state, h)
         elif stage is Stage.PREDICT:
             bodies, velocity = state.bodies, state.table(Velocity)
             motion.predict(
                 velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
-                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, self.gentle, h,
+                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, self.predictable, h,
             )  # fmt: skip
 
     def _move(self, state: State, h: float) -> None:

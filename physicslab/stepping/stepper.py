@@ -13,9 +13,9 @@ from physicslab.systems.schedule import Schedule
 __all__ = ["Advance", "Stepper", "divisions"]
 
 _MAX_DIVISIONS = 100_000
-"""Into so many parts a step may be divided that is longer than the scene's own."""
+"""Largest number of parts of a step that is longer than the scene's own."""
 _TOLERATED = 0.01
-"""By which share a step may exceed the scene's own undivided: the last one of a run may take in a rest."""
+"""Share by which an undivided step may exceed the scene's own: the last of a run may include a remainder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,14 +30,14 @@ class Stepper(Protocol):
     """One way to advance a state, made for its structure and remade when that changes.
 
     To add one, write its file, and name it in the list of :mod:`physicslab.stepping.select`, before those
-    that it is better than.
+    over which it is preferred.
 
     Attributes
     ----------
     name, title : str
         For reports (``run --json``), and for people (the HUD).
     reason : str
-        Why this one, for people.
+        The reason for it, for people.
     kernels : tuple of kernels
         What it calls; compiled before it first advances, and not before.
     leaps : bool

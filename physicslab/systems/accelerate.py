@@ -17,7 +17,7 @@ class AccelerateSystem(System):
     kernels = (motion.clear, motion.kick, motion.find_not_finite)
 
     def attach(self, state: State) -> None:
-        """Forget the forces of systems that may run no more."""
+        """Clear the forces of systems that may not run any more."""
         state.bodies.pull[:] = 0.0
 
     def why_left_out(self, state: State) -> str | None:
@@ -28,7 +28,7 @@ class AccelerateSystem(System):
 
     @at(Stage.FORCE)
     def clear(self, state: State, h: float) -> None:
-        """Begin to add up from zero, with the state packed for the forces that want it so."""
+        """Begin to add up from zero, with the state packed for the forces that need it."""
         if state.has_forces:
             bodies, transform, velocity = state.bodies, state.table(Transform), state.table(Velocity)
             rows = len(bodies.torque)

@@ -16,7 +16,7 @@ from physicslab.systems.system import Stage, System, at
 __all__ = ["BroadPhaseSystem"]
 
 _MAX_LOOKAHEAD = 8.0
-"""At most so many times as far as usual the margin of a moving body reaches."""
+"""Largest factor by which the margin of a moving body is increased."""
 
 
 def nothing_to_touch(state: State) -> str | None:
@@ -32,9 +32,9 @@ def nothing_to_touch(state: State) -> str | None:
 
 
 def _lookahead(sleepers: int, awake: int) -> float:
-    """Return how many times as far as usual the margins of awake bodies reach.
+    """Return the factor by which the margins of awake bodies are increased.
 
-    Among many sleepers a new list costs more than the pairs that an old one has too many.
+    Among many sleeping bodies a new list takes longer than the surplus pairs of an old one.
     """
     return min(max(1.0, sleepers / max(1, awake)), _MAX_LOOKAHEAD)
 
@@ -42,7 +42,7 @@ def _lookahead(sleepers: int, awake: int) -> float:
 class BroadPhaseSystem(System):
     """Keeps the list of near pairs: those whose fat boxes overlap, found with a uniform grid.
 
-    The list holds, and nothing is done, until a body leaves the fat box that was made for it.
+    The list is valid, and nothing is done, until a body leaves the fat box that was made for it.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class BroadPhaseSystem(System):
         self.bounds: NDArray[np.float64] = np.zeros(4)
 
     def attach(self, state: State) -> None:
-        """Find the pairs anew: bodies came, went or changed."""
+        """Mark the list as stale: bodies came, went or changed."""
         state.contacts.stale = True
         if state.physics.bounds is not None:
             self.bounds[:] = state.physics.bounds
@@ -79,7 +79,7 @@ class BroadPhaseSystem(System):
         return reason
 
     def follow_rows(self, state: State) -> None:
-        """Have room for every row; where the list is stale, let no fat box hold."""
+        """Make room for every row; where the list is stale, invalidate every fat box."""
         rows = len(state.entity_index)
         if self.fat.shape[1] != rows:
             self.fat, self._boxes = np.zeros((5, rows)), np.zeros((rows, 4))
@@ -89,7 +89,7 @@ class BroadPhaseSystem(System):
 
     @at(Stage.BROAD_PHASE)
     def search(self, state: State, h: float) -> None:
-        """Bring the list of near pairs up to date, where it no longer holds."""
+        """Update the list of near pairs, where it is not valid any more."""
         self.follow_rows(state)
         position, angle, linear, _ = motion_of(state)
         if not grid.still_holds(position, angle, linear, *sizes_of(state), self.fat, h):

@@ -49,7 +49,7 @@ class ContactSystem(System):
 
     @at(Stage.CONTACT)
     def find(self, state: State, h: float) -> None:
-        """Find or refresh the points of every near pair; once a step, take what has settled into blocks."""
+        """Find or refresh the points of every near pair; once a step, put steady contacts into blocks."""
         if self._first:
             refill(state)
         entries.find_stage(
@@ -62,6 +62,6 @@ class ContactSystem(System):
         self._first = False
 
     def make_wide(self, state: State, h: float) -> None:
-        """Take what has settled into blocks."""
+        """Put steady contacts into blocks."""
         add_constraints(state, h)
         state.contacts.changed()

@@ -16,7 +16,7 @@ __all__ = ["DragSystem"]
 
 
 class DragSystem(ForceSystem):
-    """Slows every body that has Drag. It stores no energy: what it takes is gone."""
+    """Slows every body that has Drag. It dissipates energy and stores none."""
 
     needs = (Drag, Velocity, Mass)
     kernels = (packed_forces.drag,)
@@ -24,7 +24,7 @@ class DragSystem(ForceSystem):
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the drag for compiled integrators."""
         table, rows = state.table(Drag), state.batch(*self.needs).rows
-        rows = rows[layout.place[rows] >= 0]  # what rests may not take part, and has no coordinates
+        rows = rows[layout.place[rows] >= 0]  # rows that take no part have no coordinates
         parameters = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
         indices = np.concatenate(([len(rows)], layout.place[rows]))
         return PackedForce(packed_forces.drag, parameters, indices, drag_resistance)

@@ -76,7 +76,7 @@ class GravitySystem(ForceSystem):
         return PackedForce(packed_forces.planet_gravity, parameters, indices)
 
     def strongest_rate(self, state: State) -> float:
-        """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair as they stand; 0 for uniform gravity."""
+        """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair at present; 0 for uniform gravity."""
         physics = state.physics
         if physics.gravity_mode == "linear":
             return 0.0
@@ -102,7 +102,7 @@ class GravitySystem(ForceSystem):
     def summation(self, state: State) -> str:
         """Return how pairs are summed, as :mod:`physicslab.kernels.forces.gravity` decides by number."""
         n = self.attractors
-        if state.physics.gravity_mode != "planet" or n <= gravity.FEW:
+        if state.physics.gravity_mode != "planet" or n <= gravity.PLAIN_LIMIT:
             return ""
         if n < gravity.MANY:
             return f"each pair of {n} bodies, in vectors"

@@ -19,7 +19,7 @@ class IntegrateSystem(System):
 
     @at(Stage.DRIFT)
     def drift(self, state: State, h: float) -> None:
-        """Move at the present velocity for a time h, but for what a method of its own moves."""
+        """Move at the present velocity for a time h, except for sub-integrated bodies."""
         transform, velocity = state.table(Transform), state.table(Velocity)
         motion.drift(
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],

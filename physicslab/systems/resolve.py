@@ -12,19 +12,19 @@ from physicslab.systems.system import Stage, System, at
 __all__ = ["ResolveSystem"]
 
 _LIGHT_LOAD = 12.0
-"""So many times its own weight a body carries with the substeps that were asked for."""
+"""Multiple of its own weight that a body carries with the configured substeps."""
 
 
 class ResolveSystem(System):
-    """Resolves impacts, keeps apart what rests, and applies friction.
+    """Resolves impacts, keeps resting bodies apart, and applies friction.
 
     Parameters
     ----------
     hertz, damping_ratio : float
-        The contact spring that takes overlap away: frequency [Hz] (at most a quarter of the substep rate) and
+        The contact spring that corrects overlap: frequency [Hz] (at most a quarter of the substep rate) and
         damping ratio.
     max_push : float
-        Fastest [m/s] that overlap is taken away.
+        Largest speed [m/s] at which overlap is corrected.
     slop : float
         Overlap that is left alone, as a share of the smaller body's size.
     """
@@ -44,8 +44,8 @@ class ResolveSystem(System):
     def substep_factor(self, state: State) -> int:
         """Where bodies carry far heavier ones, the contact spring must be stiffer, and substeps shorter.
 
-        Its stiffness goes by the lighter body: what carries a hundred times its weight sinks in by as much
-        more. A frequency that is higher by the root of that takes it back.
+        Its stiffness is that for the lighter body: one that carries a hundred times its weight sinks in a
+        hundred times as deep. A frequency that is higher by the square root corrects that.
         """
         contacts, bodies = state.contacts, state.bodies
         if not (contacts.count and state.has_forces and bodies.unequal):
@@ -61,7 +61,7 @@ class ResolveSystem(System):
         return parts
 
     def softness(self, substep_factor: float) -> SoftnessTuple:
-        """Return the contact spring for substeps that are so many times as short as asked for."""
+        """Return the contact spring for substeps that are shorter by this factor than configured."""
         return self.hertz * substep_factor, self.damping_ratio, self.slop, self.max_push
 
     @at(Stage.IMPACT)
@@ -75,7 +75,7 @@ class ResolveSystem(System):
 
     @at(Stage.SOLVE)
     def solve(self, state: State, h: float) -> None:
-        """Find the impulses that keep bodies apart, taking some of the overlap away."""
+        """Find the impulses that keep bodies apart and correct some of the overlap."""
         state.contacts.impulse_dt = entries.solve_stage(
             near_in(state), motion_of(state), inverse_in(state), acting_in(state), self._softness_now(state),
             h, state.contacts.impulse_dt, state.simulation.iterations or 1,
@@ -83,7 +83,7 @@ class ResolveSystem(System):
 
     @at(Stage.RELAX)
     def relax(self, state: State, h: float) -> None:
-        """Take back the velocity that came from taking overlap away."""
+        """Remove the velocity that came from correcting overlap."""
         entries.relax_stage(
             near_in(state), motion_of(state), inverse_in(state), self._softness_now(state),
             h, state.simulation.iterations or 1,

@@ -15,7 +15,7 @@ __all__ = ["LeftOut", "Schedule", "Timing"]
 
 @dataclass(slots=True)
 class Timing:
-    """What a system has cost so far."""
+    """The calls and the cost of a system so far."""
 
     calls: int = 0
     nanoseconds: int = 0

@@ -1,4 +1,4 @@
-"""What has come to rest falls asleep, and wakes when it is touched or pushed."""
+"""Bodies at rest fall asleep, and wake when they are touched or pushed."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ __all__ = ["SleepSystem"]
 
 
 class SleepSystem(System):
-    """Lets islands of bodies that have rested fall asleep, and wakes those that something touches or pushes.
+    """Puts islands of bodies that have rested to sleep, and wakes those that are touched or pushed.
 
-    An island, bodies that touch each other, sleeps when all of it has been slower than 0.05 m/s for half a
-    second and not been getting faster, and something holds it that nothing moves. A body stays awake that
-    touches what moves by itself, or on which a spring or drag acts.
+    An island, bodies that touch each other, sleeps when all of them have been slower than 0.05 m/s for half a
+    second without getting faster, and a fixed body supports it. A body stays awake that touches a kinematic
+    one, or on which a spring or drag acts.
     """
 
     engine = True
@@ -56,9 +56,9 @@ class SleepSystem(System):
 
     @at(Stage.CONTACT)
     def wake_touched_islands(self, state: State, h: float) -> None:
-        """Wake what something touches that moves or is awake, and what other forces act on than before.
+        """Wake bodies that touch a moving or awake one, and those on which other forces act than before.
 
-        That is done before the impacts: no sleeper is struck as if nothing could move it.
+        This is done before the impacts, in which a sleeping body would otherwise count as fixed.
         """
         sleep, contacts, bodies = state.sleep, state.contacts, state.bodies
         if sleep.unverified:
@@ -76,7 +76,7 @@ class SleepSystem(System):
             self._take_part(state, wake(state, marked), h)
 
     def _take_part(self, state: State, woken: NDArray[np.bool_], h: float) -> None:
-        """Let what has just woken take part in the substep that has begun without it."""
+        """Include the bodies that have just woken in the substep at hand."""
         if not woken.any():
             return
         contacts, bodies, velocity = state.contacts, state.bodies, state.table(Velocity)
@@ -89,13 +89,13 @@ class SleepSystem(System):
         scalar = contacts.scalar[: contacts.scalar_count]
         near = contacts.manifolds[scalar]
         theirs = np.ascontiguousarray(scalar[woken[near["a"]] | woken[near["b"]]])
-        # Of these the masses are others now; no impact of this step can have been theirs.
+        # Their masses have changed; they had no impact in this step.
         awake = (bodies.awake_inverse_mass, bodies.awake_inverse_inertia)
         _find_among(state, theirs, contacts.touching, awake, h, first=True)
         contacts.active = _find_among(state, scalar, contacts.touching, awake, h, first=False)
 
     def count_rest(self, state: State, h: float) -> None:
-        """At the end of a step, count how long bodies have rested; put islands to sleep that are due."""
+        """Count at the end of a step how long bodies have rested; put islands to sleep where it is enough."""
         sleep, velocity, shape = state.sleep, state.table(Velocity), state.table(Shape)
         if sleep.has_external_writers:
             check_edits(state, within=True)
@@ -103,13 +103,13 @@ class SleepSystem(System):
             velocity["linear"], velocity["angular"],
             shape["kind"], shape["radius"], shape["width"], shape["height"],
             state.bodies.inverse_mass, state.bodies.sub_integrated, sleep.asleep, sleep.rest, sleep.slowest,
-            min(h, state.simulation.dt),  # of a step that was divided no more than the end is seen
+            min(h, state.simulation.dt),  # of a divided step only the end is observed
         ):  # fmt: skip
             self.put_islands_to_sleep(state, h)
         keep_places(state)
 
     def put_islands_to_sleep(self, state: State, h: float) -> None:
-        """Let the islands fall asleep that have rested long enough."""
+        """Put the islands to sleep that have rested long enough."""
         sleep = state.sleep
         state.contacts.sync()
         ready = (sleep.rest >= islands.READY) & ~sleep.asleep
@@ -128,9 +128,9 @@ class SleepSystem(System):
         return held
 
     def _verify(self, state: State) -> NDArray[np.bool_]:
-        """Find where sleepers touch as they lie now; wake those that nothing holds, and return which woke.
+        """Find where sleeping bodies touch; wake those without support, and return which woke.
 
-        A file may have it that a body sleeps in the air.
+        In a file that was edited, a body may sleep in the air.
         """
         sleep, contacts, bodies = state.sleep, state.contacts, state.bodies
         sleep.unverified = False

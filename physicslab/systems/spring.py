@@ -19,7 +19,7 @@ __all__ = ["SpringSystem"]
 
 
 _NOTHING = 1e-9
-"""A spring shorter than such a share of its rest length has no direction to push in."""
+"""Share of its rest length below which a spring has no direction."""
 
 
 class SpringSystem(ForceSystem):
@@ -77,12 +77,12 @@ class SpringSystem(ForceSystem):
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row a bound on its fastest oscillation or decay [rad/s].
 
-        Of a body's springs the stiffnesses add up, weighed with the masses at both ends; no eigenvalue of the
-        whole lies outside these sums (Gershgorin).
+        Of a body's springs the stiffnesses add up, weighted with the masses at both ends; no eigenvalue of
+        the whole is larger than these sums (Gershgorin).
         """
         spring, bodies = state.table(Spring), state.bodies
         stiff, damped = (np.zeros(len(bodies.inverse_mass)) for _ in range(2))
-        # What overflows is a rate beyond all bounds, and so is infinity that nothing can be turned by.
+        # An overflow is an unlimited rate, and so is infinity times zero inertia.
         with np.errstate(over="ignore", invalid="ignore"):
             for end, anchors in ((self._a, "anchor_a"), (self._b, "anchor_b")):
                 arm2 = np.square(spring[anchors][self._rows]).sum(axis=1)
@@ -99,9 +99,9 @@ class SpringSystem(ForceSystem):
         return float(self.rates(state).max())
 
     def why_singular(self, state: State) -> str | None:
-        """Say so where energy could press a spring together to nothing, where it has no direction.
+        """Return a reason if the energy could compress a spring to length zero, where it has no direction.
 
-        Reckoned with a margin of four: what moves, what springs store, and a fall by twice a spring's length.
+        Estimated with a margin of four: kinetic energy, energy of springs, a fall by twice a spring's length.
         """
         spring, bodies = state.table(Spring), state.bodies
         rest, stiffness = spring["rest_length"][self._rows], spring["stiffness"][self._rows]

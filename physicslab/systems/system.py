@@ -1,4 +1,4 @@
-"""What a system is: one thing that happens to a world, at which stage, and what it must say of itself."""
+"""What a system is: one thing that happens to a world, at which stage, and what it declares of itself."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Stage(Enum):
     BROAD_PHASE = "which bodies are near each other"
     CONTACT = "where they touch"
     IMPACT = "approaching bodies bounce"
-    PREDICT = "what forces will do to sub-integrated bodies is shown to the contacts, and taken back"
+    PREDICT = "velocities of sub-integrated bodies are predicted for the contacts, and restored"
     SOLVE = "contact impulses keep bodies apart, correcting overlap"
     RELAX = "contact impulses again, so that the correction leaves no velocity behind"
     FINISH = "once a step: what is recorded of it"
@@ -47,7 +47,7 @@ AROUND = frozenset({Stage.PREPARE, Stage.FINISH})
 def at[M: Callable[..., None]](stage: Stage) -> Callable[[M], M]:
     """Mark a system's method to be called as ``method(state, h)`` at ``stage``.
 
-    ``h`` is the time [s] that the call stands for: the substep, a part of it, or the step.
+    ``h`` is the time [s] that the call covers: the substep, a part of it, or the step.
 
     Raises
     ------
@@ -72,9 +72,9 @@ class System:
     1. Subclass ``System`` (or :class:`ForceSystem`) in a file of ``physicslab/systems``.
     2. Name the components it works on in ``needs``. While no entity has all of them, the system is left out.
     3. Mark a method ``@at(Stage. ...)``. It gets the world's :class:`~physicslab.state.state.State` and the
-       time that the call stands for, and reads and writes columns: ``state.batch(Velocity, Mass).rows`` are
+       time that the call covers, and reads and writes columns: ``state.batch(Velocity, Mass).rows`` are
        row numbers, ``state.table(Velocity)["linear"]`` a column.
-    4. Say in :meth:`why_left_out` what else makes it needless. What was left out is shown with that reason.
+    4. Return in :meth:`why_left_out` the reason if a world does not need it otherwise; reports show it.
     5. Add it to the list in ``physicslab/systems/standard.py``, in the order in which it runs within its
        stage.
 
@@ -117,7 +117,7 @@ class System:
         return self.kernels
 
     def substep_factor(self, state: State) -> int:
-        """Return how many times as many substeps as asked for the next step needs, at the end of one."""
+        """Return the factor by which the next step needs more substeps than configured, at the end of one."""
         return 1
 
     @property
@@ -160,7 +160,7 @@ class ForceSystem(System):
     Compiled: :meth:`packed` names a kernel and the numbers that it reads; every integrator calls it, and so
     does the contact step, so the law is written once.
 
-    It must also say what energy its force stores, so that the energy shown stays true when a force is added.
+    It must also return the energy that its force stores, so that the total stays right when a force is added.
     """
 
     potential: ClassVar[str | None] = None
@@ -175,19 +175,19 @@ class ForceSystem(System):
         return 0.0
 
     def summation(self, state: State) -> str:
-        """Return how the force is summed, where that bears on what it is worth; shown beside the figures."""
+        """Return how the force is summed, where its accuracy depends on that; shown beside the figures."""
         return ""
 
     def rates(self, state: State) -> NDArray[np.float64] | None:
         """Return for each row the fastest angular frequency [rad/s] or rate of decay [1/s] it is given.
 
-        ``None`` for a force that does not tell bodies apart. Where it does, and contacts act as well, the
+        ``None`` for a force that is the same for all bodies. Where it is not, and contacts act as well, the
         bodies it acts on are moved by a method that follows it, instead of a kick a substep.
         """
         return None
 
     def sees_velocity(self, state: State) -> bool:
-        """Return whether the force depends on velocities, as drag does; a method is chosen by that."""
+        """Return whether the force depends on velocities, as drag does, for the choice of a method."""
         return False
 
     def why_singular(self, state: State) -> str | None:
@@ -209,7 +209,7 @@ class ForceSystem(System):
     def settings(self, state: State) -> bytes:
         """Return the numbers, bit by bit, that the force has apart from the state of motion.
 
-        Where they change, the method that moves the bodies is chosen anew.
+        Where they change, the method that moves the bodies is chosen again.
         """
         return b""
 
@@ -235,7 +235,7 @@ class ForceSystem(System):
 
     @classmethod
     def packs(cls) -> bool:
-        """Whether :meth:`packed` speaks for this class's force, and not for one that it overrides."""
+        """Whether :meth:`packed` is of this class's force, and not of one that it overrides."""
         method = cls.marked()[Stage.FORCE]
         for base in cls.__mro__:
             if base is ForceSystem:

@@ -12,14 +12,14 @@ from physicslab.systems.system import Stage, System, at
 __all__ = ["TrailSystem"]
 
 SAMPLES = 128
-"""Places kept of each body."""
+"""Positions kept of each body."""
 
 
 class TrailSystem(System):
-    """Records where each body with a Trail has been, as far back as its Trail asks for.
+    """Records where each body with a Trail has been, as far back as its Trail is long.
 
     It reads positions and writes to nothing but its own record. A body has a ring of ``SAMPLES`` places, at
-    least ``length / (SAMPLES - 2)`` seconds apart, so memory and cost do not hang on how long a trail is. The
+    least ``length / (SAMPLES - 2)`` seconds apart, so memory and cost do not depend on a trail's length. The
     newest place is always that of now. The record goes with the body, or with its Trail.
 
     Attributes
@@ -57,7 +57,7 @@ class TrailSystem(System):
     def record(self, state: State, h: float) -> None:
         """Note where the bodies are at the end of the step."""
         now = state.time + h
-        if now <= self._now:  # the clock was set back: what was recorded lies in the future
+        if now <= self._now:  # the clock was set back: what was recorded is in the future
             self._time[:] = np.nan
         self._now = now
         self._length = state.table(Trail)["length"][self._rows]

@@ -29,14 +29,14 @@ def still_holds(
     fat: Vectors,
     h: float,
 ) -> bool:
-    """Whether every body, with what it moves in a time h, is still inside the fat box made for it.
+    """Whether every body, with its motion in a time h, is still inside the fat box made for it.
 
     ``fat`` (5, rows) holds where each body was (x, y, angle), its bounding radius then, and the margin around
     it.
     """
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)
     holds = True
-    for i in range(len(angle)):  # to the end, whatever comes: so it is done in vectors
+    for i in range(len(angle)):  # no early exit, so that LLVM vectorises the loop
         reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
         made_for = reach if kind[i] != 0 else 0.0
         moved_x = abs(places[2 * i] - fat[0, i]) + abs(velocities[2 * i]) * h
@@ -79,7 +79,7 @@ def fat_boxes(
             c, s = abs(math.cos(angle[i])), abs(math.sin(angle[i]))
             half_x = 0.5 * (c * width[i] + s * height[i])
             half_y = 0.5 * (s * width[i] + c * height[i])
-        # A slow body among fast ones is about to be struck.
+        # A slow body among fast ones is likely to be hit.
         speed = max(abs(linear[i, 0]), abs(linear[i, 1]), usual if inverse_mass[i] > 0.0 else 0.0)
         margin = 0.1 * min(half_x, half_y) + 14.0 * h * speed
         fat[0, i], fat[1, i], fat[2, i] = position[i, 0], position[i, 1], angle[i]
@@ -89,16 +89,16 @@ def fat_boxes(
 
 
 _CROWD = 32
-"""So many bodies of a body's own size, at the most, that overlap with it make pairs with it."""
+"""Largest number of overlapping bodies of a body's own size that make pairs with it."""
 _FARTHEST = 1e15
-"""Number of the farthest cell: beyond it, float64 does not tell one from the next."""
+"""Number of the farthest cell: beyond it, float64 does not resolve neighbouring cells."""
 _OWN_SIZE = 2.0
-"""What is no more than so many times larger is of a body's own size: beside it, few have room."""
+"""Ratio of sizes up to which two bodies are of the same size: few such bodies fit beside one."""
 
 
 @inlined
 def _overlap(these: Vectors, i: int, those: Vectors, j: int) -> bool:
-    # "&", not "and": one branch that is nearly always the same, not four that cannot be foretold.
+    # "&", not "and": one branch that is nearly always the same, not four that cannot be predicted.
     return bool(
         (these[i, 0] <= those[j, 2]) & (those[j, 0] <= these[i, 2])
         & (these[i, 1] <= those[j, 3]) & (those[j, 1] <= these[i, 3])
@@ -107,7 +107,7 @@ def _overlap(these: Vectors, i: int, those: Vectors, j: int) -> bool:
 
 @inlined
 def _meet(flat: Numbers, p: int, q: int) -> bool:
-    """Whether two boxes overlap, of those that lie one after the other."""
+    """Whether two boxes overlap, of those that are stored one after the other."""
     i, j = 4 * p, 4 * q
     return bool(
         (flat[i] <= flat[j + 2]) & (flat[j] <= flat[i + 2])
@@ -122,8 +122,8 @@ def _take(
 ) -> int:  # fmt: skip
     """Write the pair (i, j), if it can be moved and there is room; return how many there are now.
 
-    Of bodies that were put on one spot only so many pairs are taken that work and memory stay in proportion
-    to the bodies: whoever has a crowd in its ``company`` meets the others when some of those have gone.
+    Of bodies that were put on one spot only so many pairs are taken that work and memory stay proportional
+    to the bodies: a body whose ``company`` is full makes pairs with further ones when some have left.
     """
     if inverse_mass[i] + inverse_mass[j] == 0.0:
         return found
@@ -228,14 +228,13 @@ def _level(
         if dense:  # buckets one above the other are next to each other: two stretches hold all five cells
             at = (ix - low_x) * up + iy - low_y
             above, beside, end = first[at + 2], first[at + up - 1], first[at + up + 2]
-            most = above - (p + 1) + end - beside
+            candidates = above - (p + 1) + end - beside
             i = body[p]
-            if most <= 2 * _CROWD:
-                if 2 * (found + most) > len(couples):
-                    found += most
+            if candidates <= 2 * _CROWD:
+                if 2 * (found + candidates) > len(couples):
+                    found += candidates
                     continue
-                # Every neighbour is written down, and kept by counting: whether two overlap cannot be
-                # foretold.
+                # Every neighbour is written, and kept by counting: whether two overlap cannot be predicted.
                 for q in range(p + 1, above):
                     couples[2 * found], couples[2 * found + 1] = i, body[q]
                     found += _meet(flat, p, q)
@@ -317,6 +316,8 @@ def find_pairs(
             boxes, fat, members, count, 1.25 * count / inverse_sizes, inverse_mass, couples, found, larges,
             company,
         )  # fmt: skip
-        for k in range(count):  # one by one: for slices, numba compiles the text of an error that never comes
+        for k in range(
+            count
+        ):  # one by one: for slices, numba compiles the text of an error that cannot occur
             members[k] = larges[k]
     return found, walls

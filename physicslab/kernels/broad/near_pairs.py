@@ -1,4 +1,4 @@
-"""The list of near pairs: which have a record, and which lie idle until they come within reach.
+"""The list of near pairs: which have a record, and which are proximity pairs without one.
 
 Most near pairs of discs do not touch for long. They are kept as two rows and a distance each, so that looking
 at them all takes a nanosecond or two a pair; the record of a contact, of hundreds of bytes, is made when the
@@ -13,7 +13,7 @@ from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Poin
 __all__ = ["ACTIVATION_RATIO", "activate", "carry_over", "partition", "sort_scalar"]
 
 ACTIVATION_RATIO = 1.02
-"""So many times the sum of their radii apart, two discs are near enough to have points."""
+"""Distance within which two discs may have contact points, as a multiple of the sum of their radii."""
 _FREE = -1
 
 
@@ -26,7 +26,7 @@ def _place(table: Rows, mask: int, entity_a: int, entity_b: int, wall: int) -> i
 
 @inlined
 def _mask(count: int) -> int:
-    """Return one less than the places for so many records: a power of two, at least half of them free."""
+    """Return the table size less one for so many records: a power of two, at least half of it free."""
     places = 16
     while places < 2 * count:
         places *= 2
@@ -34,8 +34,8 @@ def _mask(count: int) -> int:
 
 
 @inlined
-def _is_remembered(manifold: Manifold) -> bool:
-    """Whether anything is known of a pair but that it is near."""
+def _has_contents(manifold: Manifold) -> bool:
+    """Whether the record of a pair holds more than that it is near."""
     return bool(
         (manifold.count != 0) | (manifold.impact_count != 0) | (manifold.found != 0) | (manifold.slot >= 0)
     )
@@ -56,12 +56,12 @@ def _known(table: Rows, mask: int, manifolds: Manifolds, entity_a: int, entity_b
 
 @inlined
 def _note_known(manifolds: Manifolds, count: int, table: Rows) -> None:
-    """Fill a table that leads from a pair of entities to its record, if that remembers anything."""
+    """Fill a table that leads from a pair of entities to its record, if that has contents."""
     mask = _mask(count)
     table[: mask + 1] = _FREE
     for q in range(count):
         old = manifolds[q]
-        if _is_remembered(old):
+        if _has_contents(old):
             place = _place(table, mask, old.entity_a, old.entity_b, old.wall)
             while table[place] != _FREE:
                 place = (place + 1) & mask
@@ -75,22 +75,22 @@ def partition(
     manifolds: Manifolds, known: int, stale: bool, table: Rows, proximity: Couples,
     activation_distance: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
-    """Part the pairs that were found: discs of which nothing is remembered lie idle, all others get records.
+    """Partition the pairs that were found: discs without a record so far get none, all others get one.
 
     The rows of those that were ``found`` are in ``couples``, in either order; where neither body can be moved
     they are dropped. In ``pairs`` are the first ``walls``, those of the bounds, and to these are added the
-    others with records, sorted; returns how many there are then, and how many lie idle. The first
-    ``known`` of ``manifolds`` are the records so far, whose rows are others now if they are ``stale``.
+    others with records, sorted; returns how many there are then, and how many proximity pairs. The first
+    ``known`` of ``manifolds`` are the records so far, whose rows have changed if they are ``stale``.
     ``table`` is filled for :func:`carry_over`.
     """
     _note_known(manifolds, known, table)
     mask, n = _mask(known), len(kind)
-    remembered = np.full(n, stale)
+    recorded = np.full(n, stale)
     if not stale:
         for q in range(known):
             old = manifolds[q]
-            if _is_remembered(old):
-                remembered[old.a] = remembered[old.b] = True
+            if _has_contents(old):
+                recorded[old.a] = recorded[old.b] = True
     kept, proximity_count = walls, 0
     for k in range(found):
         one, other = np.int64(couples[2 * k]), np.int64(couples[2 * k + 1])
@@ -98,7 +98,7 @@ def partition(
         if inverse_mass[a] + inverse_mass[b] == 0.0:
             continue
         if (kind[a] == 1) & (kind[b] == 1) and (
-            not (remembered[a] & remembered[b])
+            not (recorded[a] & recorded[b])
             or _known(table, mask, manifolds, entities[a], entities[b], -1) < 0
         ):
             proximity[2 * proximity_count], proximity[2 * proximity_count + 1] = a, b
@@ -159,7 +159,7 @@ def carry_over(
 
 @inlined
 def _make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
-    """Let a record tell of nothing that was."""
+    """Clear a record of all contents."""
     manifold = manifolds[p]
     manifold.count, manifold.found, manifold.impact_count, manifold.slot, manifold.size = 0, 0, 0, -1, 0.0
     for j in range(2 * p, 2 * p + 2):
@@ -176,16 +176,16 @@ def activate(
     scalar: Rows, scalar_count: int, entities: Rows, position: Vectors, linear: Vectors, h: float,
     speculative_margin: float,
 ) -> tuple[int, int, int]:  # fmt: skip
-    """Give records to the idle pairs that may touch within ``h`` seconds from now or before.
+    """Give records to the proximity pairs that may touch within ``h`` seconds from now or before.
 
-    Returns how many pairs lie idle, have records and are loose. Records come after those that are there, and
-    their numbers into ``scalar`` in the order of rows: so it does not matter when a pair got its own.
+    Returns how many pairs have no record, have one, and are scalar. New records are appended, and their
+    numbers put into ``scalar`` in the order of rows, so that the time of activation makes no difference.
     """
     if proximity_count == 0:
         return proximity_count, count, scalar_count
     near = np.empty(proximity_count, np.int64)
     came = 0
-    # Flat, and by numbers without a sign: else every index is multiplied by a stride and looked at.
+    # Flat, with unsigned indices: else every index is multiplied by a stride and tested for its sign.
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)
     for k in range(proximity_count):
         xa, xb = 2 * np.uint64(proximity[2 * k]), 2 * np.uint64(proximity[2 * k + 1])
@@ -193,7 +193,7 @@ def activate(
         dx, dy = places[xb] - places[xa], places[yb] - places[ya]
         moved = abs(velocities[xb] - velocities[xa]) + abs(velocities[yb] - velocities[ya])
         far = activation_distance[k] + moved * h + speculative_margin
-        near[came] = k  # kept by counting: which pair comes near cannot be foretold
+        near[came] = k  # kept by counting: which pair comes near cannot be predicted
         came += not (dx * dx + dy * dy > far * far)
     if came == 0:
         return proximity_count, count, scalar_count
@@ -251,7 +251,7 @@ def _merge_tail(manifolds: Manifolds, scalar: Rows, start: int, count: int, rows
 
 @kernel
 def sort_scalar(manifolds: Manifolds, scalar: Rows, count: int, rows: int) -> None:
-    """Put loose pairs in the order of rows and walls; as a rule all but the last few are."""
+    """Sort scalar pairs by rows and walls; as a rule all but the last few are in order."""
     start = min(count, 1)
     while start < count and _rank(manifolds, scalar[start - 1], rows) < _rank(manifolds, scalar[start], rows):
         start += 1

@@ -1,9 +1,8 @@
-"""One pair in flight: when it meets, how deep it overlaps, and where it touches when it does."""
+"""One pair in ballistic motion: when it meets, how deep it overlaps, and where it touches then."""
 
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined
-from physicslab.kernels.events.flight import place, seen_from, velocity
 from physicslab.kernels.events.meeting import (
     box_normal,
     meet_box_box,
@@ -11,6 +10,7 @@ from physicslab.kernels.events.meeting import (
     meet_circle_circle,
     meet_line,
 )
+from physicslab.kernels.events.path import place, seen_from, velocity
 from physicslab.kernels.narrow.manifold import circle_box
 from physicslab.kernels.narrow.pair import touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point
@@ -39,7 +39,7 @@ def _wall_gap(
 @inlined
 def meeting_of(
     manifold: Manifold, paths: Vectors, angle: Numbers, kind: Rows, radius: Numbers,
-    width: Numbers, height: Numbers, bounds: Numbers, now: float, low: float, span: float, quiet: float,
+    width: Numbers, height: Numbers, bounds: Numbers, now: float, low: float, span: float, min_speed: float,
 ) -> tuple[float, int]:  # fmt: skip
     """Return in how many seconds from ``now + low`` a pair meets, and along which normal of two boxes."""
     a, b = manifold.a, manifold.b
@@ -47,18 +47,18 @@ def meeting_of(
         x, x_low, y, y_low = place(paths, b, now, low)
         vx, vx_low, vy, vy_low = velocity(paths, b, now, low)
         gap, along_x, sign = _wall_gap(manifold, x, y, angle, kind, radius, width, height, bounds)
-        least = _ROUNDING * (abs(vx) + abs(vy)) + quiet
+        least = _ROUNDING * (abs(vx) + abs(vy)) + min_speed
         if along_x:
             return meet_line(gap + sign * x_low, sign * (vx + vx_low), sign * paths[b, 8], least), 0
         return meet_line(gap + sign * y_low, sign * (vy + vy_low), sign * paths[b, 9], least), 0
     dx, dy, ux, uy, wx, wy = seen_from(paths, a, b, now, low)
     half_ax, half_ay, half_bx, half_by = 0.5 * width[a], 0.5 * height[a], 0.5 * width[b], 0.5 * height[b]
     if kind[a] == 1 and kind[b] == 1:
-        return meet_circle_circle(dx, dy, ux, uy, wx, wy, radius[a] + radius[b], span, quiet), 0
+        return meet_circle_circle(dx, dy, ux, uy, wx, wy, radius[a] + radius[b], span, min_speed), 0
     if kind[a] == 2 and kind[b] == 2:
         return meet_box_box(
             dx, dy, ux, uy, wx, wy, math.cos(angle[a]), math.sin(angle[a]),
-            math.cos(angle[b]), math.sin(angle[b]), half_ax, half_ay, half_bx, half_by, quiet,
+            math.cos(angle[b]), math.sin(angle[b]), half_ax, half_ay, half_bx, half_by, min_speed,
         )  # fmt: skip
     if kind[a] == 2:
         c, s, half_x, half_y, reach = math.cos(angle[a]), math.sin(angle[a]), half_ax, half_ay, radius[b]
@@ -66,7 +66,7 @@ def meeting_of(
         c, s, half_x, half_y, reach = -math.cos(angle[b]), -math.sin(angle[b]), half_bx, half_by, radius[a]
     return meet_circle_box(
         c * dx + s * dy, c * dy - s * dx, c * ux + s * uy, c * uy - s * ux, c * wx + s * wy, c * wy - s * wx,
-        half_x, half_y, reach, span, quiet,
+        half_x, half_y, reach, span, min_speed,
     ), 0  # fmt: skip
 
 
@@ -75,7 +75,7 @@ def gap_of(
     manifold: Manifold, paths: Vectors, angle: Numbers, kind: Rows, radius: Numbers,
     width: Numbers, height: Numbers, bounds: Numbers,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return how far apart a pair is when it begins to fly, and the size of the smaller body [m]."""
+    """Return the gap of a pair at the start of its paths, and the size of the smaller body [m]."""
     a, b = manifold.a, manifold.b
     size_b = 2.0 * radius[b] if kind[b] == 1 else min(width[b], height[b])
     if manifold.wall >= 0:
@@ -120,7 +120,7 @@ def touch_pair(
             _extent(-ny, nx, cb, sb, half_bx, half_by),
         )  # fmt: skip
     else:
-        # As near as they are: what touches is known.
+        # At any distance: the pair is known to touch.
         touch_with_circle(
             manifold, one, dx, dy, 0.0, 0.0, 0.0, 1e300, a_box, ca, sa, half_ax, half_ay, radius[a],
             b_box, cb, sb, half_bx, half_by, radius[b],
@@ -138,7 +138,7 @@ def _put_boxes(
     manifold: Manifold, point: Point, nx: float, ny: float, dx: float, dy: float,
     depth: float, side_a: float, side_b: float,
 ) -> None:  # fmt: skip
-    """Fill the one point of two boxes that do not turn: amid what they share of the plane of contact."""
+    """Fill the one point of two boxes that do not turn: the middle of their common contact line."""
     along = dy * nx - dx * ny
     middle = 0.5 * (max(-side_a, along - side_b) + min(side_a, along + side_b))
     manifold.normal_x, manifold.normal_y, manifold.count, manifold.swept = nx, ny, 1, 0

@@ -1,7 +1,7 @@
 """When shapes meet that do not turn against each other and move under constant accelerations.
 
 B's place against A is d + u t + w t^2 / 2. Two shapes meet at the first t >= 0 at which they touch or overlap
-*and* approach: a pair that has just bounced is not met again, however rounding has left its gap. Times are
+*and* approach: a pair that has just bounced does not meet again, however its gap was rounded. Times are
 roots of polynomials: of second degree for straight outlines, and for round ones where the relative
 acceleration is zero; else of fourth degree, found between the extrema, so that none is stepped over.
 """
@@ -21,9 +21,9 @@ left."""
 
 @inlined
 def meet_line(gap: float, speed: float, pull: float, least: float) -> float:
-    """Return the first t >= 0 at which gap + speed t + pull t^2 / 2 is not positive and falls, or infinity.
+    """Return the first t >= 0 at which gap + speed t + pull t^2 / 2 is <= 0 and decreases, or infinity.
 
-    Rates that fall no faster than ``least`` count as zero. Squares of what is not zero must not vanish.
+    Rates of at least -``least`` count as zero. Squares of numbers other than zero must not underflow.
     """
     square = speed * speed - 2.0 * pull * gap
     if speed < -least:
@@ -33,7 +33,7 @@ def meet_line(gap: float, speed: float, pull: float, least: float) -> float:
     if pull >= 0.0:
         return math.inf
     speed = max(speed, 0.0)
-    if square < 0.0:  # below all the time: it falls from where it turns
+    if square < 0.0:  # below all the time: it decreases from its maximum
         return -speed / pull
     return -(speed + math.sqrt(square)) / pull
 
@@ -125,15 +125,15 @@ def _extrema(
 @inlined
 def meet_circle_circle(
     dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, reach: float, span: float,
-    quiet: float,
+    min_speed: float,
 ) -> float:  # fmt: skip
     """Return when the centres of two circles come within ``reach``, up to ``span``, or infinity.
 
-    Here and below, approaches no faster than ``quiet`` [m/s] are none.
+    Here and below, approaches no faster than ``min_speed`` [m/s] are ignored.
     """
     height, rate = _height(dx, dy, ux, uy, wx, wy, reach, 0.0)
     distance = math.sqrt(dx * dx + dy * dy)
-    least = distance * (_ROUNDING * (abs(ux) + abs(uy)) + quiet)
+    least = distance * (_ROUNDING * (abs(ux) + abs(uy)) + min_speed)
     if height <= 0.0 and rate < -least:
         return 0.0
     if wx == 0.0 and wy == 0.0:
@@ -163,7 +163,7 @@ def meet_circle_circle(
 
 @inlined
 def _falling(gap: float, speed: float, pull: float, size: float, least: float) -> float:
-    """Return when a line is crossed from outside, or infinity: what lies beyond it does not cross it."""
+    """Return when a line is crossed from outside; infinity for a body beyond it, which does not cross it."""
     # It would have to come out before it can come in again.
     comes_out = speed > 0.0 and pull < 0.0 and speed * speed > 2.0 * pull * gap
     if gap < -_SEAM * size and not comes_out:
@@ -174,14 +174,14 @@ def _falling(gap: float, speed: float, pull: float, size: float, least: float) -
 @inlined
 def meet_circle_box(
     px: float, py: float, qx: float, qy: float, wx: float, wy: float,
-    half_x: float, half_y: float, radius: float, span: float, quiet: float,
+    half_x: float, half_y: float, radius: float, span: float, min_speed: float,
 ) -> float:  # fmt: skip
-    """Return when a circle meets a box, up to ``span``, or infinity; all is seen in the box's own frame."""
+    """Return when a circle meets a box, up to ``span``, or infinity; all in the frame of the box."""
     size = half_x + half_y + radius
-    least = _ROUNDING * (abs(qx) + abs(qy)) + quiet
+    least = _ROUNDING * (abs(qx) + abs(qy)) + min_speed
     out_x, out_y = max(abs(px) - half_x, 0.0), max(abs(py) - half_y, 0.0)
     out = math.sqrt(out_x * out_x + out_y * out_y)
-    if out < radius:  # they overlap: what counts is the nearest place of the outline
+    if out < radius:  # they overlap: the nearest place of the outline decides
         nx, ny = math.copysign(out_x, px), math.copysign(out_y, py)
         if out > 0.0:
             nx, ny = nx / out, ny / out
@@ -209,7 +209,7 @@ def meet_circle_box(
         corner_x = half_x if k < 2 else -half_x
         corner_y = half_y if k % 2 == 0 else -half_y
         horizon = min(best, span)
-        t = meet_circle_circle(px - corner_x, py - corner_y, qx, qy, wx, wy, radius, horizon, quiet)
+        t = meet_circle_circle(px - corner_x, py - corner_y, qx, qy, wx, wy, radius, horizon, min_speed)
         if t < best:
             x, y = px + t * (qx + 0.5 * t * wx), py + t * (qy + 0.5 * t * wy)
             beyond_x = (x - corner_x) * math.copysign(1.0, corner_x) >= -_SEAM * size
@@ -222,7 +222,7 @@ def meet_circle_box(
 def meet_box_box(
     dx: float, dy: float, ux: float, uy: float, wx: float, wy: float,
     ca: float, sa: float, cb: float, sb: float, ax: float, ay: float, bx: float, by: float,
-    quiet: float,
+    min_speed: float,
 ) -> tuple[float, int]:  # fmt: skip
     """Return when two boxes meet and which of eight normals then leads from A to B, or infinity and -1.
 
@@ -231,7 +231,7 @@ def meet_box_box(
     """
     best, face = math.inf, -1
     size = ax + ay + bx + by
-    least = _ROUNDING * (abs(ux) + abs(uy)) + quiet
+    least = _ROUNDING * (abs(ux) + abs(uy)) + min_speed
     gap, nearest = -math.inf, -1
     for k in range(8):
         nx, ny, reach = box_normal(k, ca, sa, cb, sb, ax, ay, bx, by)

@@ -1,14 +1,14 @@
 """Forces that compiled integrators call by address, so that one loop serves any set of forces.
 
 The smooth motion of a world is q' = v, v' = W f(q, v): ``q`` holds two coordinates a body [m] and the angles
-[rad] of those that forces can turn, ``v`` their rates, W the inverse masses. What is fixed in place follows
-behind in both arrays and has no inverse mass. A force is a C function that adds to f; it reads what it needs
+[rad] of those that forces can turn, ``v`` their rates, W the inverse masses. Fixed bodies follow at the
+end of both arrays and have no inverse mass. A force is a C function that adds to f; it reads what it needs
 from two arrays of its own.
 
-A force is asked for at an instant, or over a span of time in which the coordinates go steadily from
-q - span/2 v to q + span/2 v. Springs then answer with a discrete gradient of their energy V, a force f whose
-work is all that V loses: f . (span v) = V(start) - V(end) (Gonzalez, J. Nonlinear Sci. 6 (1996) 449). Other
-forces answer with their value at the middle.
+A force is evaluated at an instant, or over a span of time in which the coordinates change linearly from
+q - span/2 v to q + span/2 v. Springs then return a discrete gradient of their energy V, a force f whose work
+is all that V loses: f . (span v) = V(start) - V(end) (Gonzalez, J. Nonlinear Sci. 6 (1996) 449). Other forces
+return their value at the middle.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class ForceKernel:
         return list(self.overloads)
 
     def _interpret(self, q: Any, v: Any, span: float, force: Any, numbers: Any, whole: Any) -> None:
-        """Run the Python body on what lies behind pointers, or what is compiled of it by now."""
+        """Run the Python body on the memory behind pointers, or the compiled function if it exists by now."""
         if self.overloads:
             _C_FUNCTION(self.address)(q, v, span, force, numbers, whole)
             return
@@ -86,7 +86,7 @@ class ForceKernel:
 
     @property
     def address(self) -> int:
-        """Where the C function lies in memory, or one that runs the Python body while that stands in."""
+        """The address of the C function, or of one that runs the Python body while that is used instead."""
         if not self.overloads and self.stands_in:
             return self._address_of_python
         if not self.overloads:
@@ -95,7 +95,7 @@ class ForceKernel:
 
     @cached_property
     def _address_of_python(self) -> int:
-        # Kept for good: who was given its address may call it at any time.
+        # Never deleted: C code that has its address may call it at any time.
         self._c_function = _C_FUNCTION(self._interpret)
         address: int = ctypes.cast(self._c_function, ctypes.c_void_p).value or 0
         _KERNELS[address] = self
@@ -162,7 +162,7 @@ def add_forces(q: Numbers, v: Numbers, force: Numbers, calls: Calls) -> None:
 def accelerate(
     q: Numbers, v: Numbers, acceleration: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls
 ) -> None:
-    """Work out v' at an instant, as :func:`accelerate_over` does."""
+    """Compute v' at an instant, as :func:`accelerate_over` does."""
     accelerate_over(q, v, 0.0, acceleration, inverse_mass, damping, calls)
 
 
@@ -172,7 +172,7 @@ def accelerate_over(
     q: Numbers, v: Numbers, span: float,
     acceleration: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
 ) -> None:  # fmt: skip
-    """Work out v' about a state, over ``span`` seconds: every force called, weighed, and damping taken off.
+    """Compute v' about a state, over ``span`` seconds: all forces times the inverse masses, less damping.
 
     ``acceleration`` is as long as ``q``; only what has an inverse mass is meaningful. ``damping`` (n,) [1/s],
     of v' = -c v, may be empty where nothing is damped.

@@ -12,21 +12,28 @@ from physicslab.kernels.forces.pairwise import attract_pairwise, depth_of_pairs
 from physicslab.kernels.forces.tree_pull import attract_by_tree, depth_by_tree
 
 __all__ = [
-    "FEW", "MANY", "attract", "fastest_fall", "inverse_cube", "planet_potential",
-    "uniform_gravity", "uniform_potential",
+    "MANY",
+    "PLAIN_LIMIT",
+    "attract",
+    "fastest_fall",
+    "inverse_cube",
+    "planet_potential",
+    "uniform_gravity",
+    "uniform_potential",
 ]  # fmt: skip
 
-FEW = 100
-"""Up to so many bodies pairs are taken one by one, each rounded by itself.
+PLAIN_LIMIT = 100
+"""Largest number of bodies for which pairs are summed one by one, each rounded by itself.
 
-Vectors are faster from about 40 on (10 us instead of 20 for 100 bodies), which is not felt, and their roots
-are right to two units in the last place only.
+Vectors are faster from about 40 on (10 us instead of 20 for 100 bodies), which makes no difference in
+practice, and their roots are accurate to two units in the last place only.
 """
 MANY = 8_000
-"""From so many bodies on a tree sums their pulls.
+"""Number of bodies from which a tree sums the forces.
 
-The tree is as fast as every pair at 3,000 bodies that lie evenly and at 5,000 in a Plummer sphere, and at
-8,000 takes 1/2.4 and 1/1.4 of the time (``benchmarks/gravity.py``): until then digits and momentum count.
+The tree is as fast as every pair at 3,000 bodies that are spread evenly and at 5,000 in a Plummer sphere,
+and at 8,000 takes 1/2.4 and 1/1.4 of the time (``benchmarks/gravity.py``): for fewer bodies, accuracy and
+momentum matter more.
 """
 
 
@@ -86,7 +93,7 @@ def planet_potential(
     """
     total = 0.0
     n = len(rows)
-    if n > FEW:
+    if n > PLAIN_LIMIT:
         x, y, weight = position[rows, 0], position[rows, 1], mass[rows]
         if n >= MANY:
             return -G * depth_by_tree(x, y, weight, softening, plummer)

@@ -8,7 +8,7 @@ import numpy as np
 from physicslab.kernels import allocating
 from physicslab.kernels.forces.drag import drag_factor
 from physicslab.kernels.forces.force_calls import force_kernel
-from physicslab.kernels.forces.gravity import FEW, attract, inverse_cube
+from physicslab.kernels.forces.gravity import PLAIN_LIMIT, attract, inverse_cube
 from physicslab.kernels.forces.springs import mean_spring_pull, spring_pull, turn_over, turned
 
 __all__ = ["drag", "planet_gravity", "springs", "uniform_gravity"]
@@ -47,7 +47,7 @@ def planet_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-u
     """
     n, plummer = indices[0], indices[1] != 0
     G, softening = parameters[0], parameters[1]
-    if n > FEW:
+    if n > PLAIN_LIMIT:
         _attract_packed(q, force, parameters, indices)  # type: ignore[no-untyped-call]
         return
     softening2 = softening * softening

@@ -1,10 +1,10 @@
 """The inverse square between every two of many bodies, in loops that LLVM turns into vector instructions.
 
-Bodies are given as columns, so that eight lanes load eight bodies at once. Both softening laws are one
+Bodies are given as columns, so that a vector register loads eight bodies at once. Both softening laws are one
 formula without a branch: with d^2 = r^2 + ``added``, the pull on a unit mass per unit of G m is (1/d)
-min(1/d^2, ``cap``) times the way there. Plummer: ``added`` = s^2 and no cap; clamp: nothing added, and a
-``cap`` of 1/s^2. Bodies on one spot (within 1e-75 m) do not pull, so a body need not be left out of its own
-sum.
+min(1/d^2, ``cap``) times the vector there. Plummer: ``added`` = s^2 and no cap; clamp: nothing added, and a
+``cap`` of 1/s^2. Bodies on one spot (within 1e-75 m) do not attract each other, so no body is left out of
+its own sum.
 
 Square roots and divisions come out of one unit, at about 28 cycles for eight pairs on Zen 4, and more than
 half of the time went there. 1/sqrt is therefore guessed from the exponent's bits and refined by

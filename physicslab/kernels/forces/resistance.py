@@ -1,8 +1,8 @@
-"""What dampers and drag would answer to a velocity, at the place of a step: how the implicit method leans.
+"""The response of dampers and drag to a velocity within a step, for the implicit method.
 
 Each is a C function like a force of :mod:`physicslab.kernels.forces.packed_forces`, of the same numbers,
 behind how many coordinates there are. What it gets as ``v`` are three velocities one behind the other,
-each of so many numbers: y, to which it answers; u, the mean of the step; and v, that at the start. At the
+each of so many numbers: y, to which it responds; u, the mean of the step; and v, that at the start. At the
 end it is u + y.
 """
 
@@ -28,9 +28,9 @@ def drag_resistance(q, v, span, force, parameters, indices):  # type: ignore[no-
 
 @force_kernel
 def damper_resistance(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
-    """Add the pull of every damper, were y the velocity, less what is owed to the damper's turning.
+    """Add the pull of every damper, were y the velocity, less the part that is due to the damper's rotation.
 
-    The velocity of what goes round at the end of a damper changes along it, though its length stays: by
+    The velocity of a body that circles at the end of a damper changes along it, though its length stays: by
     a . d - (n1 . v1 - n0 . v0), where a is the mean direction, d the change of velocity, and n0 and n1 the
     directions at the start and at the end. Half of that is taken off, so that a rod that only turns is left
     to the midpoint rule: with the end's velocity along the mean direction it would lose speed.

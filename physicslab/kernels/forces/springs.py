@@ -21,7 +21,7 @@ def spring_pull(
     """Return the force on A [N], k (length - rest_length) + c (rate of lengthening) along A to B.
 
     (dx, dy) leads from A to B [m] and changes at (vx, vy) [m/s]. Ends that coincide have no line between
-    them; only then there is no force.
+    them; only then is there no force.
     """
     length = math.sqrt(dx * dx + dy * dy)
     if length == 0.0:
@@ -33,7 +33,7 @@ def spring_pull(
 
 @inlined
 def turn_over(angle: float) -> tuple[float, float]:
-    """Return by what an arm's mean and its mean rate are shorter over a turn by ``angle`` than at its middle.
+    """Return the ratio of an arm's mean, and of its mean rate, over a turn by ``angle`` to its middle.
 
     The mean is that of the arm at the start and at the end, the rate that at which one leads to the other.
     """

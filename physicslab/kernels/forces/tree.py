@@ -1,9 +1,9 @@
 """A tree of halves over bodies in a plane: every node is cut at the median of its longer side.
 
-It is as deep as the number of bodies asks for, wherever they are: bodies on one spot, or one at 1e9 m, make
+Its depth depends on the number of bodies alone, wherever they are: bodies on one spot, or one at 1e9 m, make
 it no deeper. With 2^L leaves, node k of level l holds the bodies from k n >> l to (k + 1) n >> l of
-``order``, and its halves are nodes 2 k and 2 k + 1 of level l + 1. Levels lie one behind the other, the root
-first.
+``order``, and its halves are nodes 2 k and 2 k + 1 of level l + 1. Levels are stored one after the other, the
+root first.
 """
 
 import math
@@ -67,7 +67,10 @@ def _measure(node: Numbers, x: Numbers, y: Numbers, mass: Numbers, order: Rows) 
     """Set the columns of a node that holds the bodies ``order``."""
     low_x, high_x, low_y, high_y = np.inf, -np.inf, np.inf, -np.inf
     total, mx, my = 0.0, 0.0, 0.0
-    x0, y0 = x[order[0]], y[order[0]]  # the centre is sought from here: far from the origin digits count
+    x0, y0 = (
+        x[order[0]],
+        y[order[0]],
+    )  # the centre is computed relative to this: far from the origin digits are lost
     for i in order:
         low_x, high_x = min(low_x, x[i]), max(high_x, x[i])
         low_y, high_y = min(low_y, y[i]), max(high_y, y[i])

@@ -1,12 +1,12 @@
 """Gravity of many bodies by a tree: near ones singly, far groups by their mass and second moments.
 
 After Barnes and Hut, Nature 324 (1986) 446. All bodies of a leaf share one list of what pulls on them: a
-node whose bodies lie within b of its centre of mass is taken whole if b < :data:`THETA` d, d being the least
+node whose bodies are within b of its centre of mass is taken whole if b < :data:`THETA` d, d being the least
 distance from there to the leaf's box, and, for the clamp law, if all its bodies are further off than the
 softening. With d^2 = r^2 + s^2 under Plummer's law (d = r under the other) and second moments S about the
-centre of mass, it pulls with x (M/d^3 + (7.5 x.S x/d^2 - 1.5 tr S)/d^5) - 3 S x/d^5, x being the way there.
+centre of mass, it pulls with x (M/d^3 + (7.5 x.S x/d^2 - 1.5 tr S)/d^5) - 3 S x/d^5, x leading there.
 
-How far off: against the direct sum, as shares of the mean pull, :data:`RMS_ERROR` at most by root mean square
+Accuracy: against the direct sum, as shares of the mean pull, :data:`RMS_ERROR` at most by root mean square
 and :data:`LARGEST_ERROR` for any one body, on squares filled evenly, on Plummer spheres and on two clusters
 (``benchmarks/gravity.py``; held by ``tests/test_tree.py``). These are measured: a bound that holds for any
 arrangement is 4 (b/d)^3 / (1 - b/d)^2 of M/d^2 for each node (Salmon and Warren, J. Comput. Phys. 111 (1994)

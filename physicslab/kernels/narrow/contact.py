@@ -10,7 +10,7 @@ from physicslab.kernels.records import Manifold, Manifolds, Points
 __all__ = ["CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "mix"]
 
 CACHE_TOLERANCE = 0.004
-"""Share of the smaller box's size that a pair of boxes may move before its points are found anew."""
+"""Share of the smaller box's size that a pair of boxes may move before its points are found again."""
 CACHE_TURN_TOLERANCE = 0.002
 """How far [rad] either may turn."""
 
@@ -82,9 +82,9 @@ def find_contacts(
     Their numbers are written to ``touching``, in order. A pair of boxes that has hardly moved keeps its
     points. The substep spans ``h`` seconds from ``start`` h before or after now: a pair that meets within it
     has points with the normal of that moment and the separation, along it, of now. Pairs whose count is
-    negative are somebody else's, and passed over. ``first`` marks the first substep of a step, in which
-    records of impacts begin anew; ``speculative_margin`` is how far [m] the forces may bring two bodies
-    together within the substep.
+    negative are moved by event-driven stepping, and passed over. ``first`` marks the first substep of a
+    step, in which records of impacts are cleared; ``speculative_margin`` is how far [m] the forces may bring
+    two bodies together within the substep.
     """
     found, held = 0, count
     for number in range(count):
@@ -103,12 +103,12 @@ def find_contacts(
         a_box, b_box = kind[a] == 2, kind[b] == 2
         had_points = manifold.count > 0
         if not (a_box or b_box or had_points or manifold.wall >= 0):
-            # Most near circles are too far apart for this substep: settle those without a call.
+            # Most near circles are too far apart for this substep: skip those without a call.
             reach = ACTIVATION_RATIO * (radius[a] + radius[b]) + abs(ux) + abs(uy) + speculative_margin
             if dx * dx + dy * dy > reach * reach:
                 continue
         elif manifold.wall >= 0 and not (b_box or had_points):
-            # So it is with circles near the bounds.
+            # The same for circles near the bounds.
             away = position[b, manifold.wall % 2] - bounds[manifold.wall]
             clear = (away if manifold.wall < 2 else -away) - radius[b]
             if clear > ACTIVATION_RATIO * CONTACT_MARGIN * radius[b] + abs(ux) + abs(uy) + speculative_margin:
@@ -125,7 +125,7 @@ def find_contacts(
             travel = abs(ux) + abs(uy)
             known = manifold.found == 2 and manifold.base_sizes == sizes
             if known and not had_points:
-                # Whatever they have done since, they cannot have come nearer than this.
+                # A lower bound of their gap now, however they have moved since.
                 turned = abs(turn_a) * (width[a] + height[a]) + abs(turn_b) * (width[b] + height[b])
                 nearest = manifold.gap - abs(moved_x) - abs(moved_y) - 0.5 * turned - 0.0025 * size
                 if nearest > CONTACT_MARGIN * size + travel + speculative_margin:
@@ -204,13 +204,13 @@ def find_contacts(
         elif had_points:
             one.feature = two.feature = 0
             one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
-    # Those of bodies that nothing moves stand at the end, the last first.
-    sleeping = count - held
-    for k in range(sleeping // 2):
+    # Pairs with fixed bodies were written from the end, the last first.
+    at_end = count - held
+    for k in range(at_end // 2):
         touching[held + k], touching[count - 1 - k] = touching[count - 1 - k], touching[held + k]
-    for k in range(sleeping):
+    for k in range(at_end):
         touching[found + k] = touching[held + k]
-    return found + sleeping
+    return found + at_end
 
 
 @inlined

@@ -11,7 +11,7 @@ __all__ = ["box_box", "circle_box", "circle_circle", "wall_corner"]
 def circle_circle(
     dx: float, dy: float, radius_a: float, radius_b: float, tie: int
 ) -> tuple[float, float, float]:
-    """Return the normal from A to B and the separation of two circles whose centres lie (dx, dy) apart.
+    """Return the normal from A to B and the separation of two circles whose centres are (dx, dy) apart.
 
     Coincident centres have no direction; ``tie`` gives each pair one of its own.
     """
@@ -126,7 +126,7 @@ def box_box(
         sign = 1.0 if toward_y >= 0.0 else -1.0
         nx, ny, depth, side = -sign * rs, sign * rc, ry, rx
         edge = 0 if sign > 0.0 else 2
-    # The incident edge is the one that looks most against the normal.
+    # The incident edge is the one whose outward normal is most opposed to the normal.
     local_nx, local_ny = -(ic * nx + is_ * ny), -(ic * ny - is_ * nx)
     sideways, upright = 3 if local_nx > 0.0 else 1, 0 if local_ny > 0.0 else 2
     incident = sideways if abs(local_nx) > abs(local_ny) else upright

@@ -1,7 +1,7 @@
 """When moving shapes first touch: for bodies so fast that they could step over each other.
 
 Each function returns the share of the displacement (ux, uy) of B against A, 0 to 1, at which they touch, or 2
-where they miss each other. Turning within the displacement is left out.
+where they miss each other. Rotation within the displacement is neglected.
 """
 
 import math

@@ -21,13 +21,13 @@ NOT_FINITE = -2
 EXHAUSTED = -3
 """What is returned where more force evaluations were made than are allowed."""
 _SAFETY, _MOST, _LEAST = 0.9, 6.0, 0.2
-"""How far a step keeps below what the estimate allows, and how much it may grow or shrink at once."""
+"""Safety factor of a step, and the limits of its growth and shrinkage at once."""
 _LEADS = 1e-4
-"""Such a share of the largest coordinate must be made in a step for the speed itself to be the measure."""
+"""Share of the largest coordinate that must be covered in a step for speeds to be measured by themselves."""
 _SHORTEST = 1e-13
-"""The shortest step, as a share of the time to go: what needs shorter ones has no end."""
+"""The shortest step, as a share of the time to go; shorter ones would never finish."""
 _NOISE = 1e6
-"""An estimate of more than so many times the tolerance is not taken for rounding."""
+"""Multiple of the tolerance above which an estimate is not taken for rounding."""
 
 
 @inlined
@@ -44,7 +44,7 @@ def make_stages(
     q: Numbers, v: Numbers, stage_q: Numbers, stage_v: Numbers, acceleration: Numbers, rates: Vectors,
     pushes: Vectors, inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float, first: int, end: int,
 ) -> None:  # fmt: skip
-    """Work out stages ``first`` to ``end - 1`` of a step from (q, v).
+    """Compute stages ``first`` to ``end - 1`` of a step from (q, v).
 
     ``rates`` and ``pushes`` (n, 16) take q' and v' of each stage; those of the stages before ``first`` are
     there. ``stage_q`` and ``stage_v`` are left at the last stage.
@@ -131,10 +131,10 @@ def dop853(
     q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
     span: float, tolerance: float, period: float, most: int,
 ) -> int:  # fmt: skip
-    """Advance by ``span`` seconds; return the number of force evaluations, or why it cannot be (negative).
+    """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
     Within any ``period`` seconds of it at most ``most`` force evaluations are made: a long span may take
-    many, but none of its parts may take for ever.
+    many, but none of its parts may run without end.
 
     A step is made again, shorter, where its error is estimated to be more than ``tolerance`` of the largest
     coordinate or speed. Sums are compensated.
@@ -170,7 +170,7 @@ def dop853(
         evaluations += LAST
         spent += LAST
         q_reach, v_reach = max(q_scale, largest(stage_q, n)), max(v_scale, largest(stage_v, n))
-        # Where all is at rest, what counts is how far an error of the speed leads within the step.
+        # Where all is at rest, the measure is the distance that an error of the speed makes within the step.
         error = step_error(rates, pushes, taken, q_reach, max(v_reach, _LEADS * q_reach / taken), tolerance)
         if not (math.isfinite(error) and _all_finite(stage_q, stage_v, n)):
             h, grow = _LEAST * taken, 1.0
@@ -178,7 +178,7 @@ def dop853(
             continue
         factor = min(max(_SAFETY * math.pow(error, -0.125), _LEAST), grow) if error > 0.0 else grow
         h = factor * taken
-        # Rounding falls no faster than the step, a kink of the force with its square: no step is better.
+        # Rounding decreases as the step, a kink of the force as its square: no shorter step is better.
         rounding = error < _NOISE and error > last_error * math.pow(taken / last_taken, 1.5)
         if error > 1.0 and not rounding:
             grow, last_error, last_taken = 1.0, error, taken

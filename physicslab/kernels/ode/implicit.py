@@ -1,4 +1,4 @@
-"""The implicit midpoint rule, leaning to the end where something resists, by Newton's method."""
+"""The implicit midpoint rule, more implicit where something resists motion, by Newton's method."""
 
 import math
 
@@ -13,13 +13,13 @@ __all__ = ["implicit_midpoint"]
 
 _MOST_ITERATIONS = 40
 _PARTS = 1024
-"""Into how many parts a step may be divided, by halves, where Newton's method finds no end."""
+"""Largest number of parts of a step that is halved where Newton's method does not converge."""
 _SLOW = 2
-"""After so many iterations with an old matrix it is worked out anew in each: stiff rods turn as they go."""
+"""Number of iterations with an old matrix, after which it is computed in each: stiff rods turn meanwhile."""
 _FAR = 1e-6
-"""Beyond such a change, as a share, the old matrix is not used again beside dampers: they turn as they go."""
+"""Relative change beyond which the old matrix is not reused with dampers: they turn meanwhile."""
 _SMALL = 1e-3
-"""The size of things [m] where all coordinates are zero."""
+"""The length scale [m] where all coordinates are zero."""
 _EPSILON = 2.220446049250313e-16
 
 
@@ -64,10 +64,10 @@ def _miss(
     q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
     inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
 ) -> None:  # fmt: skip
-    """Work out by how much ``x`` misses the equations of the step.
+    """Compute the residual of the equations of the step at ``x``.
 
-    It holds the mean velocity u; where something resists motion, behind it y, by which the end's is more.
-    ``stack`` holds y, u and v one behind the other, each as long as q.
+    It holds the mean velocity u; where something resists motion, then y, the end velocity less u.
+    ``stack`` holds y, u and v one after the other, each as long as q.
     """
     n, size = len(inverse_mass), len(q)
     mean = stack[size : 2 * size]
@@ -102,7 +102,7 @@ def _differentiate(
     # Places move by sqrt(epsilon) of themselves.
     shift = 1.5e-8 * max(largest(x, n) + largest(q, len(inverse_mass)) / h, _SMALL / h)
     stride = min(2 * band + 1, n)
-    # One that turns bends so much within the shift that strong dampers need both sides.
+    # A rotation curves so much within the shift that strong dampers need central differences.
     both = n > len(inverse_mass)
     moved, below = x.copy(), miss.copy()
     for first in range(stride):
@@ -132,9 +132,9 @@ def _newton(
     inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
     shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool,
 ) -> tuple[int, int]:  # fmt: skip
-    """Solve for ``x``, beginning with what is in it; return the iterations (-1: no end) and evaluations.
+    """Solve for ``x``, beginning with what is in it; return iterations (-1: no convergence) and evaluations.
 
-    ``known`` says that ``matrix`` and ``pivots`` hold factors that may still do.
+    ``known`` means that ``matrix`` and ``pivots`` hold factors that may still be good enough.
     """
     n = len(order)
     residual = shifted
@@ -154,7 +154,7 @@ def _newton(
         change = largest(residual, n)
         for i in range(n):
             x[order[i]] += residual[i]
-        # Below this times epsilon, places cannot tell.
+        # Below this times epsilon, coordinates cannot resolve a difference.
         size = largest(x, n) + largest(q, len(inverse_mass)) / h
         if change <= 4.0 * _EPSILON * size or (change >= 0.5 * before and change <= 1e-10 * size):
             return iteration, evaluations
@@ -172,8 +172,8 @@ def _search(
 ) -> tuple[int, int]:  # fmt: skip
     """Solve for ``x`` as :func:`_newton` does, from where there is a solution nearby.
 
-    Where a spring swings many times a step, v is another way at the end of each and leads far away: the
-    search begins where the bodies are. Where that finds nothing, v may, as on a rod that turns fast.
+    Where a spring oscillates many times a step, v has another direction at the end of each and leads far
+    away: the search begins where the bodies are. Where that fails, it begins with v, as on a fast rod.
     """
     evaluations = 0
     for guess in range(2):
@@ -201,7 +201,7 @@ def implicit_midpoint(
     from v to v + h a and the place from q to q + h u, where u - v = (1 + Z) (v + h a - u). Z = h W C is what
     ``resistances`` and ``damping`` make of the matrix C of damping and the inverse masses W; with none,
     u = v + h/2 a. ``order`` is the order of u, and of y = v + h a - u behind it where there is a Z, in which
-    those that hang together lie within ``band`` of each other. Sums are compensated.
+    coupled ones are within ``band`` of each other. Sums are compensated.
     """
     n, m = len(inverse_mass), len(order)
     stage_q, x, miss, shifted = q.copy(), np.zeros(m), np.empty(m), np.empty(m)

@@ -1,4 +1,4 @@
-"""Methods that move and push in turn: every one a list of drifts and kicks."""
+"""Splitting methods: each is a list of drifts and kicks."""
 
 import math
 
@@ -19,7 +19,7 @@ def split(
     """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
 
     A step is kick, drift, kick, ..., drift, kick, with the shares ``kicks`` (n + 1,) and ``drifts`` (n,) of
-    h. A kick where nothing has moved since the last one uses its forces again. Damping v' = -c v goes with
+    h. A kick with no motion since the last one reuses its forces. Damping v' = -c v goes with
     the kicks and is solved exactly: v(h) = v e^(-c h) + a (1 - e^(-c h)) / c. Sums are compensated.
     """
     n = len(inverse_mass)

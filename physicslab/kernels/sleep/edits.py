@@ -1,4 +1,4 @@
-"""What somebody has changed behind the back of those who sleep."""
+"""Which sleeping bodies were edited, overlapped or pushed from outside the steps."""
 
 import math
 
@@ -7,14 +7,14 @@ from physicslab.kernels import Flags, Numbers, Rows, Vectors, kernel
 __all__ = ["FIGURES", "INVERSE_MASS", "find_edited", "find_overlapped", "find_pushed", "note_figures"]
 
 FIGURES = 12
-"""So many numbers say where a body is and what it is made of."""
+"""How many numbers describe where a body is and what it is made of."""
 INVERSE_MASS = 9
-"""Where among them its inverse mass stands."""
+"""Index of the inverse mass among them."""
 _KIND, _MOVES = 3, 11
 _MARGIN = 1.05
-"""Circles around bodies that touch overlap, with so much room for rounding and gaps."""
+"""Factor by which circles around bodies are enlarged, for rounding and gaps."""
 _SAME = 1e-6
-"""Share of a force within which it is the same."""
+"""Relative change of a force below which it counts as the same."""
 
 
 @kernel
@@ -38,10 +38,10 @@ def find_edited(
     figures: Vectors, kept: Vectors, linear: Vectors, angular: Numbers, asleep: Flags, known: Flags,
     within: bool, edited: Flags,
 ) -> int:  # fmt: skip
-    """Mark what is not as it was kept: sleepers, and shapes that nothing moves; return how many there are.
+    """Mark sleeping bodies and fixed shapes that differ from what was ``kept``; return how many there are.
 
-    A sleeper must also have no velocity. What is awake and can be moved changes without end, and so does,
-    ``within`` a step, the place of what moves by itself. Rows that are not ``known`` are new, and no edit.
+    A sleeping body must also have no velocity. Awake bodies that can be moved change in every step, and so
+    does, ``within`` a step, the place of kinematic ones. Rows that are not ``known`` are new, and no edit.
     """
     found = 0
     for i in range(len(angular)):
@@ -67,7 +67,7 @@ def find_edited(
 
 @kernel
 def find_overlapped(figures: Vectors, causes: Rows, asleep: Flags, marked: Flags) -> None:
-    """Mark the sleepers that some of the bodies ``causes`` may touch, by the circles around them."""
+    """Mark the sleeping bodies that the bodies ``causes`` may touch, by the circles around them."""
     for k in range(len(causes)):
         c = causes[k]
         if figures[c, _KIND] == 0.0:
@@ -84,9 +84,9 @@ def find_overlapped(figures: Vectors, causes: Rows, asleep: Flags, marked: Flags
 
 @kernel
 def find_pushed(force: Vectors, torque: Numbers, kept: Vectors, asleep: Flags, pushed: Flags) -> int:
-    """Mark the sleepers on which other forces act than those kept (rows, 3); return how many there are.
+    """Mark the sleeping bodies on which other forces act than those ``kept`` (rows, 3); return how many.
 
-    A kept force that is no number is not known yet, as after a file was read, and is taken from now on.
+    A kept force that is NaN is not known yet, as after a file was read, and is replaced by the present one.
     """
     found = 0
     for i in range(len(torque)):

@@ -12,15 +12,15 @@ __all__ = ["READY", "REST", "SLOW", "count_rest", "find_held", "find_touched", "
 REST = 0.5
 """How long [s] a body must have been slow before it may sleep."""
 SLOW = 0.05
-"""Below which speed [m/s], of any of its points, it is."""
+"""Speed [m/s] of any point of a body below which it is slow."""
 _GAIN = 0.002
-"""What gets faster by so much [m/s] while it is slow is about to move: its rest begins anew."""
+"""Gain of speed [m/s] of a slow body by which its rest starts again: it is about to move."""
 _PERIOD = 0.1
-"""So often [s] islands are looked at, while some body has rested long enough."""
+"""Interval [s] at which islands are checked, while some body has rested long enough."""
 _ROUNDING = 1e-9
-"""Of a time that was added up step by step [s]."""
+"""Rounding [s] of a time that was added up step by step."""
 READY = REST - _ROUNDING
-"""So long [s] a body has rested that may sleep, as its steps add up."""
+"""Rest [s], as the sum of its steps, from which a body may sleep."""
 
 
 @kernel
@@ -28,10 +28,10 @@ def count_rest(
     linear: Vectors, angular: Numbers, kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     inverse_mass: Numbers, sub_integrated: Flags, asleep: Flags, rest: Numbers, slowest: Numbers, h: float,
 ) -> bool:  # fmt: skip
-    """Count for a step of h how long each body has been slow; return whether islands are to be looked at.
+    """Count for a step of h how long each body has been slow; return whether islands are to be checked.
 
-    ``slowest`` (rows,) is the lowest speed since its rest began. Islands are looked at when the longest rest
-    passes a multiple of a tenth of a second, which hangs on nothing but the rests.
+    ``slowest`` (rows,) is the lowest speed since its rest began. Islands are checked when the longest rest
+    passes a multiple of a tenth of a second, which depends on the rests alone.
     """
     longest = 0.0
     for i in range(len(rest)):
@@ -54,7 +54,7 @@ def count_rest(
 
 @inlined
 def _root(parent: Rows, i: int) -> int:
-    """Return the body that stands for the island of body i."""
+    """Return the root of the island of body i."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
         i = parent[i]
@@ -76,8 +76,8 @@ def find_held(
 ) -> int:  # fmt: skip
     """Mark the bodies of islands that may sleep; return how many there are.
 
-    All of its bodies are ``ready``, none was struck in this step, and something that nothing moves, and that
-    does not move, holds one of them and rubs: what slides on ice, or flies, goes on for ever.
+    All bodies of such an island are ``ready``, none had an impact in this step, and one of them is pressed
+    with friction against a fixed body at rest: without friction or support it would move on for ever.
     """
     parent = np.arange(len(inverse_mass))
     for p in range(pairs):
@@ -85,7 +85,7 @@ def find_held(
         if manifold.count > 0 and inverse_mass[manifold.a] > 0.0 and inverse_mass[manifold.b] > 0.0:
             _join(parent, manifold.a, manifold.b)
     restless = np.zeros(len(inverse_mass), np.bool_)
-    rubbed = np.zeros(len(inverse_mass), np.bool_)
+    supported = np.zeros(len(inverse_mass), np.bool_)
     for i in range(len(inverse_mass)):
         if inverse_mass[i] > 0.0 and not ready[i]:
             restless[_root(parent, i)] = True
@@ -106,13 +106,13 @@ def find_held(
         if linear[other, 0] != 0.0 or linear[other, 1] != 0.0 or angular[other] != 0.0:
             restless[island] = True
         elif manifold.friction > 0.0:
-            pressed = points[2 * p].normal_impulse > 0.0
-            if pressed or (manifold.count == 2 and points[2 * p + 1].normal_impulse > 0.0):
-                rubbed[island] = True
+            loaded = points[2 * p].normal_impulse > 0.0
+            if loaded or (manifold.count == 2 and points[2 * p + 1].normal_impulse > 0.0):
+                supported[island] = True
     found = 0
     for i in range(len(inverse_mass)):
         island = _root(parent, i)
-        held[i] = inverse_mass[i] > 0.0 and rubbed[island] and not restless[island]
+        held[i] = inverse_mass[i] > 0.0 and supported[island] and not restless[island]
         found += 1 if held[i] else 0
     return found
 
@@ -122,11 +122,11 @@ def find_touched(
     manifolds: Manifolds, points: Points, touching: Rows, count: int, inverse_mass: Numbers,
     linear: Vectors, angular: Numbers, asleep: Flags, touched: Flags,
 ) -> tuple[int, int]:  # fmt: skip
-    """Mark the sleepers that something touches which is awake or moves.
+    """Mark the sleeping bodies that touch one that is awake or moves.
 
-    ``inverse_mass`` is 0 for sleepers too. A sleeper and what nothing moves and stands still have nothing to
-    solve: they are taken out of ``touching``. Returns how many pairs are left there, and how many were found
-    that wake somebody.
+    ``inverse_mass`` is 0 for sleeping bodies too. Pairs of a sleeping and a fixed body at rest have nothing
+    to solve and are removed from ``touching``. Returns how many pairs are left there, and how many of them
+    wake a body.
     """
     kept, found = 0, 0
     for k in range(count):
@@ -134,13 +134,13 @@ def find_touched(
         manifold = manifolds[p]
         a, b = manifold.a, manifold.b
         if asleep[a] or asleep[b]:
-            sleeper, other = (a, b) if asleep[a] else (b, a)
+            sleeping, other = (a, b) if asleep[a] else (b, a)
             moves = linear[other, 0] != 0.0 or linear[other, 1] != 0.0 or angular[other] != 0.0
             if inverse_mass[other] == 0.0 and not moves:
                 for j in range(2 * p, 2 * p + manifold.count):
                     points[j].normal_mass = points[j].tangent_mass = 0.0  # and not infinite
                 continue
-            touched[sleeper] = True
+            touched[sleeping] = True
             found += 1
         touching[kept] = p
         kept += 1
@@ -149,7 +149,7 @@ def find_touched(
 
 @allocating_kernel
 def join_marked(a: Rows, b: Rows, count: Rows, asleep: Flags, marked: Flags) -> None:
-    """Mark all sleepers that touch marked ones, directly or through other sleepers.
+    """Mark all sleeping bodies that touch marked ones, directly or through other sleeping bodies.
 
     ``a`` and ``b`` are rows of near pairs, -1 for bodies that are gone, and ``count`` their points.
     """
@@ -168,7 +168,7 @@ def join_marked(a: Rows, b: Rows, count: Rows, asleep: Flags, marked: Flags) -> 
 
 @kernel
 def list_sleeping(manifolds: Manifolds, pairs: int, inactive: Flags, sleeping: Rows) -> int:
-    """Write the pairs of which both bodies are quiet, whether they touch or not; return how many."""
+    """Write the pairs of which both bodies are inactive, whether they touch or not; return how many."""
     found = 0
     for p in range(pairs):
         if inactive[manifolds[p].a] and inactive[manifolds[p].b]:

@@ -1,7 +1,7 @@
-"""What the stages of a substep work on: arrays of a world, in named tuples.
+"""The arguments of the stages of a substep: arrays of a world, in named tuples.
 
-Python hands them over as plain tuples: numba takes those in three times as fast (for the fused loop 4 us
-instead of 15), and :func:`named_motion` and the like give them names.
+Python passes them as plain tuples, which numba unpacks three times as fast (for the fused loop 4 us instead
+of 15), and :func:`named_motion` and the like convert them.
 """
 
 from typing import NamedTuple
@@ -70,7 +70,7 @@ class Bounds(NamedTuple):
 class Near(NamedTuple):
     """The near pairs: their records, points and counts, which are scalar, which of them touch.
 
-    Then the slots of discs and of boxes; the pairs without records, how near each must come to get one [m],
+    Then the slots of discs and of boxes; the pairs without records, the distance at which each gets one [m],
     and the entities of all rows.
     """
 
@@ -87,7 +87,7 @@ class Near(NamedTuple):
 
 
 class Log(NamedTuple):
-    """A ring of impacts, and the time [s] at which their moment is reckoned from."""
+    """A ring of impacts, and the time [s] from which theirs are counted."""
 
     impacts: Impacts
     time: float
@@ -113,7 +113,7 @@ class Plan(NamedTuple):
 
 
 class Gravity(NamedTuple):
-    """Masses [kg], inverse masses of sleepers too [1/kg], gravity [m/s^2], the speculative margin [m]."""
+    """Masses [kg], inverse masses (of all) [1/kg], gravity [m/s^2], the speculative margin [m]."""
 
     mass: Numbers
     inverse_mass: Numbers

@@ -44,7 +44,7 @@ from physicslab.kernels.solver.arguments import (
 )  # fmt: skip
 from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
 from physicslab.kernels.ticks import charge, ticks
-from physicslab.kernels.wide.graph_colour import ADDED, FEW, SPARSE, add_constraints
+from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_constraints
 from physicslab.kernels.wide.slots import ACTIVE, WIDE_COUNT
 
 __all__ = [
@@ -54,21 +54,21 @@ __all__ = [
 ]  # fmt: skip
 
 ALL, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING = range(6)
-"""Why the loop ended: all steps are made; the near pairs must be listed again; so many bodies touch that more
-blocks may be needed; the last step has left something that is not finite; a sleeper is touched; at the end
+"""Why the loop ended: all steps are done; the near pairs must be listed again; so many bodies touch that more
+blocks may be needed; the last step left a number that is not finite; a sleeping body is touched; at the end
 of a step, an island may fall asleep."""
 BEGIN, FIND, IMPACTS = range(3)
 """Where in a substep the loop begins: at its start; where bodies touch; at the impacts."""
 COSTS = 7
 ACCELERATE, GRAVITY, INTEGRATE, BROAD_PHASE, CONTACT, RESOLVE, SLEEP = range(COSTS)
-"""The systems whose work it is, in the order in which ``cost`` holds what each took."""
+"""The systems that do the same work in single stages, in the order of their times in ``cost``."""
 _TIMED = 8
-"""One of so many steps of a call is timed: reading the clock takes a twentieth of a step of ten bodies."""
+"""Every such step of a call is timed: reading the clock takes a twentieth of a step of ten bodies."""
 
 
 @inlined
 def _keep(motion: Motion, kept: Motion) -> None:
-    """Copy a state into arrays that are there."""
+    """Copy a state into existing arrays."""
     for i in range(len(motion.angle)):
         kept.position[i, 0], kept.position[i, 1] = motion.position[i, 0], motion.position[i, 1]
         kept.angle[i] = motion.angle[i]
@@ -104,10 +104,10 @@ def _made_wide(
     near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sleepers: Sleepers,
     opened: Rows, h: float,
 ) -> bool:  # fmt: skip
-    """Take what has settled into blocks; return whether that was possible without making room."""
-    if near.counts[WIDE_COUNT] == 0 and near.counts[ACTIVE] < FEW:
+    """Put steady contacts into blocks; return whether there was room for them."""
+    if near.counts[WIDE_COUNT] == 0 and near.counts[ACTIVE] < MIN_WIDE:
         return True
-    came = SPARSE  # the first blocks are Python's to make
+    came = SPARSE  # the first blocks are made in Python
     if near.counts[WIDE_COUNT] > 0:
         came = add_constraints(
             near.counts, near.discs, near.boxes, opened, near.manifolds, near.points, near.scalar,
@@ -125,11 +125,11 @@ def _advance(
     bounds: Bounds, near: Near, opened: Rows, softness: Softness, impulse_dt: float, impacts: Impacts,
     cost: Rows,
 ) -> tuple[int, int, int, int, int, float]:  # fmt: skip
-    """Make steps, beginning at a stage of a substep, as :func:`advance` says."""
+    """Advance by steps, beginning at a stage of a substep, as :func:`advance` describes."""
     position, angle, linear, angular = motion
     h, counts = plan.h, near.counts
     kicked = acting.any or damping[0] != 0.0 or damping[1] != 0.0
-    done, struck, struck_done = 0, 0, 0
+    done, impact_count, finished_impacts = 0, 0, 0
     now = ticks()
     while done < steps:
         if stage == BEGIN:
@@ -147,7 +147,7 @@ def _advance(
             )
             now = charge(cost, BROAD_PHASE, now)
             if not holds:
-                return PAIRS_STALE, done, substep, struck_done, struck, impulse_dt
+                return PAIRS_STALE, done, substep, finished_impacts, impact_count, impulse_dt
         if stage != IMPACTS:
             find_touching(
                 near, motion, sizes, materials, inverse, bounds, substep == 0, h, -0.5, gravity.margin
@@ -157,7 +157,7 @@ def _advance(
                 wide = _made_wide(near, motion, sizes, materials, inverse, sleepers, opened, h)
                 now = charge(cost, CONTACT, now)
                 if not wide:
-                    return BLOCKS_FULL, done, substep, struck_done, struck, impulse_dt
+                    return BLOCKS_FULL, done, substep, finished_impacts, impact_count, impulse_dt
             if sleepers.number:
                 counts[ACTIVE], found = find_touched(
                     near.manifolds, near.points, near.touching, counts[ACTIVE], inverse.mass, linear, angular,
@@ -165,10 +165,10 @@ def _advance(
                 )  # fmt: skip
                 now = charge(cost, SLEEP, now)
                 if found:
-                    return WAKE_PENDING, done, substep, struck_done, struck, impulse_dt
+                    return WAKE_PENDING, done, substep, finished_impacts, impact_count, impulse_dt
         stage = BEGIN
         moment = plan.time + done * plan.dt + (substep + 0.5) * h
-        struck += resolve_all_impacts(
+        impact_count += resolve_all_impacts(
             near, motion, inverse, acting, Log(impacts, moment), h, -0.5 * h, 0.5 * h
         )
         now = charge(cost, RESOLVE, now)
@@ -187,18 +187,18 @@ def _advance(
             failed = find_not_finite(position, angle) >= 0 or find_not_finite(linear, angular) >= 0
             now = charge(cost, ACCELERATE, now)
             if failed:
-                return DIVERGED, done, substep, struck_done, struck, impulse_dt
-            done, struck_done = done + 1, struck
+                return DIVERGED, done, substep, finished_impacts, impact_count, impulse_dt
+            done, finished_impacts = done + 1, impact_count
             if sleepers.on:
-                due = count_rest(
+                check = count_rest(
                     linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height,
                     gravity.inverse_mass, sub_integrated, sleepers.asleep, sleepers.rest, sleepers.slowest,
                     plan.dt,
                 )  # fmt: skip
                 now = charge(cost, SLEEP, now)
-                if due:
-                    return SLEEP_PENDING, done, substep, struck_done, struck, impulse_dt
-    return ALL, done, substep, struck_done, struck, impulse_dt
+                if check:
+                    return SLEEP_PENDING, done, substep, finished_impacts, impact_count, impulse_dt
+    return ALL, done, substep, finished_impacts, impact_count, impulse_dt
 
 
 @kernel
@@ -209,14 +209,14 @@ def advance(
     sleepers: SleepersTuple, damping: tuple[float, float], fat: Vectors, bounds: BoundsTuple,
     near: NearTuple, opened: Rows, softness: SoftnessTuple, impulse_dt: float, impacts: Impacts, cost: Rows,
 ) -> tuple[int, int, int, int, int, float]:  # fmt: skip
-    """Make ``steps`` steps, beginning at a stage of a substep.
+    """Advance by ``steps`` steps, beginning at a stage of a substep.
 
-    The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and what happens at each is what
-    the systems do there. ``kept`` is given the state in which the last step began, ``impacts`` is the log,
+    The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and each does what the systems
+    do there. ``kept`` receives the state in which the last step began, ``impacts`` is the log,
     and ``cost`` (7,) gets ticks added for each system.
 
     Returns why it ended, how many steps are done, the substep that it was in, the impacts in the steps that
-    are done and all impacts, and the time [s] that the points' impulses stand for.
+    are done and all impacts, and the time [s] over which the points' impulses act.
     """
     return _advance(
         steps, substep, stage, named_plan(plan), named_motion(motion), named_motion(kept),

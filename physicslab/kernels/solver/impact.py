@@ -9,8 +9,8 @@ from physicslab.kernels.solver.impulse import apply_impulse, follow_drift, relat
 
 __all__ = ["bounce", "friction_impulse", "resolve_impacts"]
 
-_SWEEPS = 32
-"""How often the impacts of a substep are gone through before what is left is treated as inelastic."""
+_MAX_SWEEPS = 32
+"""Largest number of sweeps over the impacts of a substep; those left are treated as inelastic."""
 
 
 @inlined
@@ -39,14 +39,14 @@ def _shift(
 
 @inlined
 def _meeting_time(
-    separation: float, v: float, pull: float, start: float, end: float, earliest: float, pressed: bool
+    separation: float, v: float, pull: float, start: float, end: float, earliest: float, loaded: bool
 ) -> float:
     """Return the t up to ``end`` at which separation + v t + pull t^2 / 2 = 0, for an approach v < 0.
 
     Infinity where that is later. Where it is earlier than ``start``, an impact with a third body has made
-    them approach too late to be seen in time, and they meet now. But if it is ``earliest``, or if they were
-    ``pressed`` together in the last substep, it is no impact but the pressing of others in a pile, which must
-    not bounce: minus infinity.
+    them approach too late to be found in time, and they meet now. But if it is ``earliest``, or if they were
+    in ``loaded`` contact in the last substep, it is not an impact but the load of other bodies in a pile,
+    which must not bounce: minus infinity.
     """
     root = v * v - 2.0 * pull * separation
     if root < 0.0 and separation > 0.0:  # the forces keep them apart
@@ -54,10 +54,10 @@ def _meeting_time(
     t = 2.0 * separation / (-v + math.sqrt(root)) if root >= 0.0 else -math.inf  # without cancellation
     if t > end:
         return math.inf
-    # A meeting at the very seam of two substeps belongs to the later one.
+    # A meeting at the boundary of two substeps belongs to the later one.
     if t >= start - 1e-6 * (end - start):
         return t
-    return -math.inf if pressed or t <= earliest else 0.0
+    return -math.inf if loaded or t <= earliest else 0.0
 
 
 @inlined
@@ -115,7 +115,7 @@ def bounce(
 
 @inlined
 def friction_impulse(manifold: Manifold, point: Point, j: float, sliding: float) -> float:
-    """Return the impulse that stops the sliding, mu times the normal impulse j at the most [N s]."""
+    """Return the impulse that stops the sliding, at most mu times the normal impulse j [N s]."""
     limit = manifold.friction * j
     along: float = min(max(-point.tangent_mass * sliding, -limit), limit)
     return along
@@ -132,7 +132,7 @@ def _hit(
     inverse_mass: Numbers,
     inverse_inertia: Numbers,
 ) -> None:
-    """Apply a normal impulse and its friction: what stops the sliding, mu times j at the most."""
+    """Apply a normal impulse and its friction: what stops the sliding, at most mu times j."""
     a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
     apply_impulse(point, j * nx, j * ny, a, b, linear, angular, inverse_mass, inverse_inertia)
     point.approach_speed = max(point.approach_speed, -v)
@@ -174,7 +174,7 @@ def _resolve_pair(
     moved_x = position[b, 0] - position[a, 0] - manifold.offset_x
     moved_y = position[b, 1] - position[a, 1] - manifold.offset_y
     moved = moved_x * nx + moved_y * ny
-    # Half-way through leapfrog's substep, positions lack what the forces have done to them so far.
+    # Half-way through leapfrog's substep, positions do not contain the effect of the forces yet.
     moved += 0.125 * pull * (end - start) * (end - start)
     t1 = t2 = -math.inf
     if v1 < -resting_speed:
@@ -190,7 +190,7 @@ def _resolve_pair(
     # The speeds at the time of contact, not those of now.
     v1, v2 = v1 + pull * t, v2 + pull * t
     before = (linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
-    felt = one.impact_normal + two.impact_normal, one.impact_tangent + two.impact_tangent
+    earlier = one.impact_normal + two.impact_normal, one.impact_tangent + two.impact_tangent
     j1, j2 = bounce(manifold, one, two, meets_1, meets_2, v1, v2, inverse_mass, inverse_inertia)
     if j1 > 0.0:
         _hit(manifold, one, j1, v1, linear, angular, inverse_mass, inverse_inertia)
@@ -199,7 +199,9 @@ def _resolve_pair(
     if j1 > 0.0 or j2 > 0.0:
         where, approach = (one, v1) if j1 >= j2 else (two, v2)
         x, y = position[b, 0] + t * before[3], position[b, 1] + t * before[4]
-        write_impact(log, number, manifold, one, two, where, time + t, x, y, -approach, felt[0], felt[1])
+        write_impact(
+            log, number, manifold, one, two, where, time + t, x, y, -approach, earlier[0], earlier[1]
+        )
     _shift(a, b, before, position, angle, linear, angular, t)
     if (
         manifold.swept == 1 and manifold.restitution > 0.0
@@ -220,8 +222,8 @@ def _forced(
     has_forces: bool,
     h: float,
 ) -> tuple[float, float]:
-    """Return how B accelerates against A along the normal, and up to which speed an approach is rest."""
-    # At the least, an approach must be more than rounding.
+    """Return how B accelerates against A along the normal, and the speed up to which an approach is rest."""
+    # An approach must at least exceed rounding.
     speed = abs(linear[a, 0]) + abs(linear[a, 1]) + abs(linear[b, 0]) + abs(linear[b, 1])
     if not has_forces:
         return 0.0, 1e-9 * speed
@@ -259,15 +261,15 @@ def resolve_impacts(
     would be had they bounced then: that is exact for constant forces, and keeps energy (e = 1), momentum and
     angular momentum.
 
-    A pair approaches if it is faster than what the forces can bring about in two substeps: less than that is
-    resting contact, which the solver handles. Pairs are taken one after the other, in order, until none is
-    left that meets; inelastic ones only once, for what is left of their approach the solver takes away.
+    A pair approaches if it is faster than what the forces can cause in two substeps: slower pairs are in
+    resting contact, which the solver handles. Pairs are resolved one after the other, in order, until none
+    meets any more; inelastic ones only once, for the solver removes what is left of their approach.
 
     Impacts go into ``log`` from number ``logged`` on, with times from ``time`` [s], which is now.
     """
     impacts, left = 0, count
-    earliest = start - 2.0 * (end - start) if has_forces else -math.inf  # without forces, nothing piles up
-    for sweep in range(_SWEEPS):
+    earliest = start - 2.0 * (end - start) if has_forces else -math.inf  # without forces there are no piles
+    for sweep in range(_MAX_SWEEPS):
         bounced, left = 0, 0
         for k in range(count):
             p = touching[k]
@@ -275,19 +277,19 @@ def resolve_impacts(
             if sweep > 0 and manifold.restitution == 0.0:
                 left += 1
                 continue
-            # Most pairs rest: what follows settles those without a call.
+            # Most pairs rest: these are handled here without a call.
             a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
             one, two = points[2 * p], points[2 * p + 1]
             one.ahead = two.ahead = 0
             vx, vy = relative_velocity(one, a, b, linear, angular)
             v1, v2 = vx * nx + vy * ny, 0.0
-            overlap, pressed = one.separation < 0.0, one.normal_impulse > 0.0
+            overlap, loaded = one.separation < 0.0, one.normal_impulse > 0.0
             if manifold.count == 2:
                 vx, vy = relative_velocity(two, a, b, linear, angular)
                 v2 = vx * nx + vy * ny
-                overlap, pressed = overlap or two.separation < 0.0, pressed or two.normal_impulse > 0.0
+                overlap, loaded = overlap or two.separation < 0.0, loaded or two.normal_impulse > 0.0
             if v1 >= 0.0 and v2 >= 0.0:
-                left += 1 if has_forces or overlap or pressed else 0
+                left += 1 if has_forces or overlap or loaded else 0
                 continue
             pull, resting_speed = _forced(a, b, nx, ny, linear, force, inverse_mass, has_forces, h)
             if v1 >= -resting_speed and v2 >= -resting_speed:

@@ -13,7 +13,7 @@ def write_impact(
 ) -> None:  # fmt: skip
     """Write an impact at the point ``where`` of B, whose centre is at (x, y) [m], into the log.
 
-    The two points of the pair had felt the impulses ``normal`` and ``tangent`` [N s] in this step before.
+    The two points of the pair had received the impulses ``normal`` and ``tangent`` [N s] in this step before.
     """
     record = log[k % len(log)]
     record.time, record.entity_a, record.entity_b = time, manifold.entity_a, manifold.entity_b

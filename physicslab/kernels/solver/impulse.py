@@ -1,4 +1,4 @@
-"""Impulses that keep resting bodies apart and rub sliding ones."""
+"""Impulses that keep resting bodies apart, and friction between sliding ones."""
 
 import math
 
@@ -13,11 +13,11 @@ __all__ = [
 
 
 _DEEP = 0.1
-"""Share beyond which overlap is taken away by moving."""
+"""Share beyond which overlap is resolved by moving bodies."""
 HEAVY_RATIO = 10.0
-"""From such a ratio of masses on, the lighter body of a pair may have to carry many times its weight."""
+"""Ratio of masses from which the lighter body of a pair may have to carry many times its weight."""
 MAX_SUBSTEP_FACTOR = 16
-"""So many times more substeps than asked for are made, at the most, where one does."""
+"""Largest factor by which substeps are increased for such a pair."""
 
 
 @inlined
@@ -66,7 +66,7 @@ def _sweep(
     slop: float,
     force_cap: float,
 ) -> None:
-    """Go once through all contacts; friction goes by the newest normal impulse."""
+    """Solve all contacts once; friction is limited by the newest normal impulse."""
     for k in range(count):
         p = touching[k]
         manifold = manifolds[p]
@@ -137,8 +137,8 @@ def solve(
 ) -> None:
     """Start from the last substep's impulses, then go through all contacts, correcting overlap.
 
-    ``warm_start_scale`` is how many times as long this substep is as the last one was: so many times the
-    impulses of what rests.
+    ``warm_start_scale`` is the ratio of this substep to the last one: the impulses of resting contacts grow
+    by that factor.
 
     The contact spring of frequency ``hertz`` is integrated implicitly over h (Catto, Soft Constraints, GDC
     2011): with omega = 2 pi hertz and q = 2 zeta + h omega, it takes omega / q of the overlap a second.
@@ -248,11 +248,11 @@ def separate(
     inverse_mass: Numbers,
     farthest: float,
 ) -> None:
-    """Move bodies that overlap deeply apart, six tenths of the way and by ``farthest`` [m] at the most.
+    """Move bodies that overlap deeply apart, six tenths of the way and by at most ``farthest`` [m].
 
-    Only positions change: however many bodies lie on one spot, coming apart gives them no speed. What is
-    beyond the world's bounds, or within what nothing moves, is put back at once: the heaviest body presses no
-    other through a floor.
+    Only positions change: however many bodies are on one spot, separating them gives them no speed. A body
+    beyond the world's bounds, or within a fixed body, is put back at once, so that the heaviest body cannot
+    press another one through a floor.
     """
     deep = False
     for k in range(count):
@@ -316,9 +316,9 @@ def deepest(manifolds: Manifolds, points: Points, touching: Rows, count: int) ->
 
 @kernel
 def worst_load_ratio(manifolds: Manifolds, pairs: int, force: Vectors, inverse_mass: Numbers) -> float:
-    """Return how many times its own weight a body carries, at the most, of one that is far heavier.
+    """Return the largest ratio of the load on a body by a far heavier one to the body's own weight.
 
-    By the forces that act on both, as they stand: whatever lies beside or below presses nothing.
+    By the present forces on both: a heavy body beside or below a light one is no load.
     """
     force_cap = 0.0
     for p in range(pairs):

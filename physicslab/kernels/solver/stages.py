@@ -48,7 +48,7 @@ def find_touching(
     near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
     first: bool, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
-    """Find where wide contacts touch now, which far pairs come near, then where the scalar ones touch.
+    """Find where wide contacts touch now, activate proximity pairs, then find where scalar ones touch.
 
     The substep spans ``h`` seconds from ``start`` h before or after now. ``first`` marks the first substep of
     a step; ``speculative_margin`` is how far [m] the forces may bring two bodies together within it.
@@ -121,16 +121,16 @@ def resolve_all_impacts(
 
 @inlined
 def _warm_start_scale(h: float, impulse_dt: float) -> float:
-    """Return how many times as long a substep is as the time that the points' impulses stand for.
+    """Return the ratio of a substep to the time over which the points' impulses act.
 
-    What an instant left behind is mostly rounding, which is not to be blown up.
+    It is limited: the impulses of a very short time are mostly rounding, which must not be magnified.
     """
     return h / max(impulse_dt, h / MAX_SUBSTEP_FACTOR) if impulse_dt > 0.0 else 1.0
 
 
 @fused
 def _solved(near: Near) -> Solved:
-    """Return what the solver wants to know of the blocks."""
+    """Return the arrays of the blocks that the solver takes."""
     discs, boxes = near.discs, near.boxes
     return (
         discs[0], near.counts[DISC_BLOCKS], discs[6], discs[1], discs[2],
@@ -143,9 +143,9 @@ def press(
     near: Near, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
     h: float, impulse_dt: float, iterations: int,
 ) -> float:  # fmt: skip
-    """Find the impulses that keep bodies apart, taking some of the overlap away.
+    """Find the impulses that keep bodies apart and correct some of the overlap.
 
-    ``impulse_dt`` is the time [s] that the points' impulses stand for; returns the one that they do now.
+    ``impulse_dt`` is the time [s] over which the points' impulses act; returns the new one.
     """
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return impulse_dt
@@ -162,7 +162,7 @@ def press(
 def relax(
     near: Near, motion: Motion, inverse: Inverse, softness: Softness, h: float, iterations: int
 ) -> None:
-    """Take back the velocity that came from taking overlap away, ``h`` seconds after :func:`press`."""
+    """Remove the velocity that came from correcting overlap, ``h`` seconds after :func:`press`."""
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return
     impulse.relax(

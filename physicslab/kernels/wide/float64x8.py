@@ -2,7 +2,7 @@
 
 A formula over :class:`Wide` numbers reads like one over plain ones. LLVM turns each operation into vector
 instructions of whatever width the machine has, and need not find out for itself that a loop may be
-vectorised. Only kernels make such numbers: they live in registers, and lie in arrays eight in a row.
+vectorised. Only kernels make such numbers: they are in registers, and in arrays eight in a row.
 """
 
 from __future__ import annotations
@@ -20,13 +20,25 @@ from physicslab.kernels import Numbers, Rows, Vectors
 from physicslab.kernels.wide.layout import WIDE
 
 __all__ = [
-    "Mask", "Wide", "choose", "greater", "least", "put", "put_numbers", "put_vectors", "root",
-    "size_of", "take", "take_numbers", "take_vectors", "true_lanes",
+    "Mask",
+    "Wide",
+    "choose",
+    "greater",
+    "least",
+    "mask_bits",
+    "put",
+    "put_numbers",
+    "put_vectors",
+    "root",
+    "size_of",
+    "take",
+    "take_numbers",
+    "take_vectors",
 ]  # fmt: skip
 
 
 class Wide:
-    """Eight float64 values. A plain number beside one stands for eight that are alike."""
+    """Eight float64 values. A plain number beside one is used eight times."""
 
     if TYPE_CHECKING:
 
@@ -44,7 +56,7 @@ class Wide:
 
 
 class Mask:
-    """Eight answers, yes or no."""
+    """Eight booleans."""
 
     if TYPE_CHECKING:
 
@@ -52,7 +64,7 @@ class Mask:
         def __or__(self, other: Mask) -> Mask: ...
 
 
-# ---- what numba is told of them ----------------------------------------------------------------------------
+# ---- types for numba ---------------------------------------------------------------------------------------
 
 _DOUBLE, _PLACE = ir.DoubleType(), ir.IntType(32)
 _DOUBLES, _BITS = ir.VectorType(_DOUBLE, WIDE), ir.VectorType(ir.IntType(1), WIDE)
@@ -63,7 +75,7 @@ class _Numbers(types.Type):
         super().__init__(name="Wide")
 
 
-class _Answers(types.Type):
+class _Booleans(types.Type):
     def __init__(self) -> None:
         super().__init__(name="Mask")
 
@@ -74,13 +86,13 @@ class _NumbersModel(models.PrimitiveModel):
         super().__init__(manager, kind, _DOUBLES)
 
 
-@register_model(_Answers)
-class _AnswersModel(models.PrimitiveModel):
+@register_model(_Booleans)
+class _BooleansModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, _BITS)
 
 
-_wide, _mask = _Numbers(), _Answers()
+_wide, _mask = _Numbers(), _Booleans()
 _BOTH = (_wide, _wide), (_wide, float64), (float64, _wide)
 
 
@@ -95,7 +107,7 @@ def _spread(builder: Any, value: Any) -> Any:
 def _define(
     symbol: Any, result: Any, operands: tuple[tuple[Any, ...], ...], emit: Callable[..., Any]
 ) -> None:
-    """Let an operator of Python's take such operands; ``emit`` writes its instruction."""
+    """Define an operator of Python for such operands; ``emit`` writes its instruction."""
 
     class Template(ConcreteTemplate):
         key = symbol
@@ -127,17 +139,17 @@ _define(operator.or_, _mask, ((_mask, _mask),), lambda build, x, y: build.or_(x,
 
 
 def _least_type(context: Any, x: Any, y: Any) -> Any:
-    """Return the smaller of two, lane by lane."""
+    """Return the smaller of two, slot by slot."""
     return _of_kind(x, y)(x, y), lambda c, build, s, both: _picked(build, "<", *both)
 
 
 def _greater_type(context: Any, x: Any, y: Any) -> Any:
-    """Return the greater of two, lane by lane."""
+    """Return the greater of two, slot by slot."""
     return _of_kind(x, y)(x, y), lambda c, build, s, both: _picked(build, ">", *both)
 
 
 def _choose_type(context: Any, mask: Any, x: Any, y: Any) -> Any:
-    """Return x in the lanes where the mask says yes, and y in the others."""
+    """Return x in the slots where the mask is true, and y in the others."""
 
     def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
         return build.select(arguments[0], *_alike(build, *arguments[1:]))
@@ -146,7 +158,7 @@ def _choose_type(context: Any, mask: Any, x: Any, y: Any) -> Any:
 
 
 def _of_kind(x: Any, y: Any) -> Any:
-    """Return what comes of two numbers: a wide one, if either is."""
+    """Return the type of a result of two numbers: wide, if either is."""
     return _wide if _wide in (x, y) else float64
 
 
@@ -170,7 +182,7 @@ def _size_type(context: Any, x: Any) -> Any:
 
 
 def _intrinsic(name: str) -> Callable[..., Any]:
-    """Return what calls a function of LLVM's own."""
+    """Return a generator of a call to one of LLVM's intrinsics."""
 
     def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
         eight = ir.FunctionType(_DOUBLES, [_DOUBLES])
@@ -180,8 +192,8 @@ def _intrinsic(name: str) -> Callable[..., Any]:
     return generate
 
 
-def _true_lanes_type(context: Any, mask: Any) -> Any:
-    """Return the answers as the bits of a whole number: 0 where all say no."""
+def _mask_bits_type(context: Any, mask: Any) -> Any:
+    """Return a mask as the bits of an integer: 0 where all are false."""
 
     def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
         return build.zext(build.bitcast(arguments[0], ir.IntType(WIDE)), ir.IntType(64))
@@ -303,7 +315,7 @@ greater: Any = _inline(_greater_type)
 choose: Any = _inline(_choose_type)
 root: Callable[[Wide], Wide] = _inline(_root_type)
 size_of: Callable[[Wide], Wide] = _inline(_size_type)
-true_lanes: Callable[[Mask], int] = _inline(_true_lanes_type)
+mask_bits: Callable[[Mask], int] = _inline(_mask_bits_type)
 take: Callable[[Numbers, int], Wide] = _inline(_take_type)
 put: Callable[[Numbers, int, _Some], None] = _inline(_put_type)
 take_numbers: Callable[[Numbers, Rows, int], Wide] = _inline(_take_numbers_type)

@@ -1,4 +1,4 @@
-"""Which contacts get lanes: those that move little, each in a block that moves no body twice."""
+"""Which contacts get slots: those that move little, each in a block that moves no body twice."""
 
 import numpy as np
 
@@ -30,26 +30,26 @@ from physicslab.kernels.wide.slots import (
     list_scalar,
 )
 
-__all__ = ["ADDED", "FEW", "FULL", "SPARSE", "add_constraints", "sort_blocks"]
+__all__ = ["ADDED", "FULL", "MIN_WIDE", "SPARSE", "add_constraints", "sort_blocks"]
 
-FEW = 64
-"""So many contacts, at the least, are worth a block: fewer are done by the time that they are sorted."""
+MIN_WIDE = 64
+"""Smallest number of contacts for which blocks are made: solving fewer takes less time than sorting them."""
 ADDED, SPARSE, FULL = range(3)
-"""What came of settling: all that has settled has lanes; blocks are to be sorted anew; or made room for."""
+"""Results of :func:`add_constraints`: all steady contacts have slots; blocks must be rebuilt; or enlarged."""
 _SPARSE = 0.5
-"""Blocks less full than that are sorted anew."""
+"""Share of slots in use below which blocks are rebuilt."""
 _ENTRY = 0.25
-"""How slow a contact must be, of what is still: half of what sets it loose again."""
+"""Share of the sweep threshold below which a contact gets a slot: half of the share at which it loses it."""
 
 _OF_FIXED = 48
-"""The first colour of contacts with what nothing moves: they are solved last, and so hold best."""
+"""The first colour of contacts with fixed bodies: they are solved last, and so are the most exact."""
 
 
 @inlined
 def _is_steady(
     manifold: Manifold, one: Point, two: Point, linear: Vectors, h: float, still: float, near: float
 ) -> bool:
-    """Whether a contact may lie in a block: it is slow for its size, and overlaps little."""
+    """Whether a contact may be in a block: it is slow for its size, and overlaps little."""
     if manifold.swept != 0 or manifold.impact_count != 0 or one.ahead != 0:
         return False
     a, b, deep = manifold.a, manifold.b, -0.1 * manifold.size
@@ -64,7 +64,7 @@ def _is_steady(
 def _survey(blocks: int, pair: Rows, colour: Rows, opened: Rows) -> tuple[int, int]:
     """Find the first block of each colour that has room, the first empty one, and how many are needed.
 
-    Nothing of that hangs on what was before: a world read from a file goes on alike.
+    None of this depends on what was there before: a world read from a file continues alike.
     """
     opened[:] = -1
     last = 0
@@ -86,7 +86,7 @@ def _survey(blocks: int, pair: Rows, colour: Rows, opened: Rows) -> tuple[int, i
 
 @inlined
 def _free_slot(home: int, blocks: int, c: int, pair: Rows, colour: Rows) -> int:
-    """Return the first free lane of the blocks of a colour from ``home`` on, or -1."""
+    """Return the first free slot of the blocks of a colour from ``home`` on, or -1."""
     for k in range(home, blocks):
         if colour[k] == c:
             for slot in range(k * WIDE, (k + 1) * WIDE):
@@ -103,12 +103,12 @@ def _assign_colour(
     inverse_mass: Numbers, inverse_inertia: Numbers, asleep: Flags,
     h: float, still: float, near: float,
 ) -> tuple[int, int]:  # fmt: skip
-    """Take the settled contacts of one kind into blocks; return how many there are, and how many came.
+    """Put the steady contacts of one kind into blocks; return how many blocks there are, and how many came.
 
     Two contacts of a body never share a block: each has one of ``COLOURS``, the first that neither of its
     bodies has been given. ``used`` (rows,) are the colours of each body's contacts, ``opened`` (COLOURS,) the
-    block of each colour that may have room. What finds no room in ``data`` stays loose, and so does what
-    touches somebody ``asleep``: it is about to wake him.
+    block of each colour that may have room. A contact for which ``data`` has no room stays scalar, and so
+    does one with a body that is ``asleep``, which it is about to wake.
     """
     rows, came = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
     blocks, empty = _survey(blocks, pair, colour, opened)
@@ -156,7 +156,7 @@ def _assign_colour(
 def sort_blocks(blocks: int, colour: Rows, order: Rows) -> None:
     """Write the blocks in the order of their colours.
 
-    Blocks of one colour share no body that moves: one need not wait for what the last one came to.
+    Blocks of one colour share no body that moves: none has to wait for the result of the one before.
     """
     found = 0
     for c in range(-1, COLOURS):
@@ -168,7 +168,7 @@ def sort_blocks(blocks: int, colour: Rows, order: Rows) -> None:
 
 @inlined
 def _keep_scalar(manifolds: Manifolds, touching: Rows, count: int) -> int:
-    """Take the pairs that have lanes out of the list of those that touch; return how many are left."""
+    """Remove the pairs that have slots from the list of those that touch; return how many are left."""
     kept = 0
     for k in range(count):
         p = touching[k]
@@ -191,7 +191,7 @@ def _trimmed(blocks: int, pair: Rows) -> int:
 
 @inlined
 def _has_room(slots: Slots, blocks: int, active: int) -> bool:
-    """Whether so many contacts find room, whatever colours they get."""
+    """Whether there is room for so many contacts, whatever colours they get."""
     return blocks + active // WIDE + COLOURS <= len(slots[4])
 
 
@@ -203,11 +203,11 @@ def add_constraints(
     shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
     inverse_mass: Numbers, inverse_inertia: Numbers, h: float,
 ) -> int:  # fmt: skip
-    """Take what has settled into blocks, and say what must be done first if that cannot be.
+    """Put steady contacts into blocks; return what must be done first if that is not possible.
 
     ``counts`` are those of :mod:`physicslab.kernels.wide.slots`. Returns ``ADDED``, or ``SPARSE`` where
-    too many lanes stand empty, or ``FULL`` where there is no room for those that may come. Empty blocks at
-    the end are dropped in any case: what was there once makes no difference.
+    too many slots are empty, or ``FULL`` where there is no room for those that may come. Empty blocks at
+    the end are dropped in any case, so that the result does not depend on the past.
     """
     before = counts[DISC_BLOCKS], counts[BOX_BLOCKS]
     counts[DISC_BLOCKS] = _trimmed(counts[DISC_BLOCKS], discs[3])
@@ -216,7 +216,7 @@ def add_constraints(
     if room > 2 * COLOURS * WIDE and counts[WIDE_COUNT] < _SPARSE * room:
         return SPARSE
     came = 0
-    if active > 0 and (counts[WIDE_COUNT] > 0 or active >= FEW):
+    if active > 0 and (counts[WIDE_COUNT] > 0 or active >= MIN_WIDE):
         if not (
             _has_room(discs, counts[DISC_BLOCKS], active) and _has_room(boxes, counts[BOX_BLOCKS], active)
         ):

@@ -44,7 +44,7 @@ def _size_of(x: _Lanes) -> _Lanes:
     return np.abs(x)
 
 
-@stands_in_for(float64x8.true_lanes)
+@stands_in_for(float64x8.mask_bits)
 def _true_lanes(mask: NDArray[np.bool_]) -> int:
     return int(np.packbits(mask, bitorder="little")[0])
 
@@ -66,7 +66,7 @@ def _take_numbers(numbers: _Lanes, rows: NDArray[np.int64], first: int) -> _Lane
 
 @stands_in_for(float64x8.put_numbers)
 def _put_numbers(numbers: _Lanes, rows: NDArray[np.int64], first: int, value: _Lanes) -> None:
-    numbers[rows[first : first + WIDE]] = value  # of lanes with one row the last counts, as in compiled code
+    numbers[rows[first : first + WIDE]] = value  # of slots with one row the last counts, as in compiled code
 
 
 @stands_in_for(float64x8.take_vectors)

@@ -1,8 +1,8 @@
-"""How settled contacts lie in memory: eight side by side, so that the processor works on all of them at once.
+"""How wide contacts are laid out in memory: eight side by side, so that the processor solves them at once.
 
 A block holds eight contacts of which no two move the same body. Every quantity is a row of eight float64
-values, one cache line; all rows of a block stand in one array at constant offsets, or LLVM would not see that
-they do not overlap, and not vectorise the loops over its lanes.
+values, one cache line; all rows of a block are in one array at constant offsets: else LLVM cannot prove that
+they do not overlap, and does not vectorise the loops over its slots.
 """
 
 __all__ = [
@@ -13,7 +13,7 @@ __all__ = [
 ]  # fmt: skip
 
 WIDE = 8
-"""Lanes of a block."""
+"""Slots of a block."""
 DISC, BOX = 0, 1
 """The kinds of blocks: pairs of discs, with one point, and pairs of boxes, with two."""
 
@@ -25,15 +25,15 @@ NORMAL_X, NORMAL_Y, FRICTION, MASS_A, MASS_B, INERTIA_A, INERTIA_B, SIZE = (WIDE
 IMPULSE, TANGENT_IMPULSE, MASS, TANGENT_MASS, SEPARATION = (WIDE * i for i in range(5))
 ARM_AX, ARM_AY, ARM_BX, ARM_BY, FOUND = (WIDE * i for i in range(5, 10))
 ONE = 8 * WIDE
-"""Where the first point stands."""
+"""Offset of the first point."""
 
-# The arms of discs lie along the normal.
+# The arms of discs are along the normal.
 RADIUS_A, RADIUS_B = ONE + 5 * WIDE, ONE + 6 * WIDE
 DISC_ROWS = ONE + 7 * WIDE
 """Numbers in a block of discs."""
 
 TWO = ONE + 10 * WIDE
-"""Where the second point of boxes stands."""
+"""Offset of the second point of boxes."""
 BASE_X, BASE_Y, ANGLE_A, ANGLE_B = (TWO + WIDE * i for i in range(10, 14))
 BOX_ROWS = TWO + 14 * WIDE
 """Numbers in a block of boxes."""

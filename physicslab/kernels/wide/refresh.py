@@ -1,17 +1,17 @@
-"""Where settled contacts touch now, eight at a time; those that have settled no longer are set loose."""
+"""Where wide contacts touch now, eight at a time; those that are not steady any more become scalar."""
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.wide.float64x8 import (
     Wide,
     choose,
+    mask_bits,
     put,
     root,
     size_of,
     take,
     take_numbers,
     take_vectors,
-    true_lanes,
 )
 from physicslab.kernels.wide.layout import (
     ANGLE_A,
@@ -37,12 +37,12 @@ from physicslab.kernels.wide.layout import (
     TWO,
     WIDE,
 )  # fmt: skip
-from physicslab.kernels.wide.slots import Masks, give_up, store_slot
+from physicslab.kernels.wide.slots import Masks, empty_slot, store_slot
 
 __all__ = ["deepest_wide", "refresh"]
 
 _DEEP = 0.1
-"""Share of the smaller size: what overlaps more is taken apart by moving, which lanes know nothing of."""
+"""Share of the smaller size: deeper overlap is resolved by moving bodies, which only scalar contacts do."""
 _ONE_SPOT = 1e-300
 """Distance [m] below which there is no direction."""
 
@@ -51,11 +51,11 @@ _ONE_SPOT = 1e-300
 def _restless(
     data: Numbers, at: int, a: Rows, b: Rows, slot: int, linear: Vectors, still: float, h: float
 ) -> int:
-    """Return which lanes' bodies move too fast for their size, ``still`` of it a substep, bit by bit."""
+    """Return the slots whose bodies move more than ``still`` of their size a substep, as bits."""
     vax, vay = take_vectors(linear, a, slot)
     vbx, vby = take_vectors(linear, b, slot)
     ux, uy, limit = (vbx - vax) * h, (vby - vay) * h, still * take(data, at + SIZE)
-    return true_lanes(ux * ux + uy * uy > limit * limit)
+    return mask_bits(ux * ux + uy * uy > limit * limit)
 
 
 @fused
@@ -81,7 +81,7 @@ def _refresh_discs(
     put(data, at + NORMAL_Y, dy * scale)
     put(data, at + ONE + SEPARATION, separation)
     apart, on_one_spot = separation > 0.5 * near * size + speculative_margin, distance < _ONE_SPOT
-    return true_lanes((apart | on_one_spot | (separation < -_DEEP * size)) & (ra > 0.0))
+    return mask_bits((apart | on_one_spot | (separation < -_DEEP * size)) & (ra > 0.0))
 
 
 @fused
@@ -103,7 +103,7 @@ def _refresh_boxes(
     data: Numbers, at: int, a: Rows, b: Rows, slot: int, position: Vectors, angle: Numbers,
     keep: float, keep_turn: float,
 ) -> int:  # fmt: skip
-    """Update the separations of a block of boxes; return which points must be found anew."""
+    """Update the separations of a block of boxes; return which points must be found again."""
     xa, ya = take_vectors(position, a, slot)
     xb, yb = take_vectors(position, b, slot)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
@@ -119,7 +119,7 @@ def _refresh_boxes(
         | (size_of(turn_b) > keep_turn)
     )
     deep = -_DEEP * size
-    return true_lanes(moved | (one < deep) | (two < deep))
+    return mask_bits(moved | (one < deep) | (two < deep))
 
 
 @inlined
@@ -130,10 +130,10 @@ def refresh(
     first: bool, h: float, still: float, near: float, speculative_margin: float, keep: float,
     keep_turn: float,
 ) -> int:  # fmt: skip
-    """Find where the contacts of all blocks of a kind touch now; return how many pairs are loose.
+    """Find where the contacts of all blocks of a kind touch now; return how many pairs are scalar.
 
     What is too fast (looked at in the ``first`` substep of a step), has come apart, overlaps deeply, or whose
-    points must be found anew is written to its records and added to ``scalar``.
+    points must be found again is written to its records and added to ``scalar``.
     """
     rows = DISC_ROWS if kind == DISC else BOX_ROWS
     slow = 0.5 * still if kind == DISC else 0.5 * near
@@ -156,7 +156,7 @@ def _set_scalar(
     data: Numbers, rows: int, k: int, lost: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int,
 ) -> int:  # fmt: skip
-    """Give the lanes of a block that are ``lost`` back to their records; return how many pairs are loose."""
+    """Write the slots of a block that are ``lost`` to their records; return how many pairs are scalar."""
     for slot in range(WIDE):
         p = pair[k * WIDE + slot]
         if p >= 0 and (lost >> slot) & 1:
@@ -164,7 +164,7 @@ def _set_scalar(
             manifolds[p].slot = -1
             scalar[scalar_count] = p
             scalar_count += 1
-            give_up(data, rows, k * WIDE + slot, a, b, pair, colour, used)
+            empty_slot(data, rows, k * WIDE + slot, a, b, pair, colour, used)
     return scalar_count
 
 

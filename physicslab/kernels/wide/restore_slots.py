@@ -1,4 +1,4 @@
-"""What a lane holds of its pair: filled in from the records, and whether that still is so."""
+"""What a slot holds of its pair: filled in from the records, and whether it is still up to date."""
 
 import math
 
@@ -76,7 +76,7 @@ def fill_slot(
     radius: Numbers, restitution: Numbers, friction: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers,
 ) -> None:  # fmt: skip
-    """Put a pair into a free lane of a block of that colour."""
+    """Put a pair into a free slot of a block of that colour."""
     rows = DISC_ROWS if kind == DISC else BOX_ROWS
     at = slot // WIDE * rows + slot % WIDE
     manifold, one, two = manifolds[p], points[2 * p], points[2 * p + 1]
@@ -117,9 +117,9 @@ def restore_slots(
     shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
-    """Put the pairs whose records name a lane back there; return how many blocks there are, and lanes.
+    """Put the pairs whose records name a slot back there; return how many blocks and slots there are.
 
-    What has no business there, as a file may say that was written by hand, stays loose.
+    A pair that cannot be there, as in a file that was edited by hand, stays scalar.
     """
     rows, blocks, restored = (DISC_ROWS if kind == DISC else BOX_ROWS), 0, 0
     for p in range(pairs):
@@ -155,7 +155,7 @@ def remember(
     made_of: Vectors, inverse_mass: Numbers, inverse_inertia: Numbers, restitution: Numbers,
     friction: Numbers, radius: Numbers, width: Numbers, height: Numbers,
 ) -> None:  # fmt: skip
-    """Write what lanes hold of each body into ``made_of`` (rows, 7)."""
+    """Write what slots hold of each body into ``made_of`` (rows, 7)."""
     for i in range(len(made_of)):
         made_of[i, 0], made_of[i, 1], made_of[i, 2] = inverse_mass[i], inverse_inertia[i], restitution[i]
         made_of[i, 3], made_of[i, 4] = friction[i], radius[i]

@@ -1,4 +1,4 @@
-"""Which settled contact has which lane of which block: taking contacts in, giving them back."""
+"""Which wide contact is in which slot of which block: filling, storing and emptying slots."""
 
 import math
 from typing import Annotated
@@ -32,13 +32,33 @@ from physicslab.kernels.wide.layout import (
 )  # fmt: skip
 
 __all__ = [
-    "ACTIVE", "BOX_BLOCKS", "COLOURS", "COUNTED", "DISC_BLOCKS", "LEFT", "LOGGED", "PROXIMITY", "RECORDED",
-    "SCALAR", "SLEEPING", "UNORDERED", "WIDE_COUNT", "Masks", "Slots", "clear_slot", "follow_pairs",
-    "give_up", "list_scalar", "release", "store", "store_slot", "wake",
+    "ACTIVE",
+    "BOX_BLOCKS",
+    "COLOURS",
+    "COUNTED",
+    "DISC_BLOCKS",
+    "LEFT",
+    "LOGGED",
+    "PROXIMITY",
+    "RECORDED",
+    "SCALAR",
+    "SLEEPING",
+    "UNORDERED",
+    "WIDE_COUNT",
+    "Masks",
+    "Slots",
+    "clear_slot",
+    "empty_slot",
+    "follow_pairs",
+    "list_scalar",
+    "release",
+    "store",
+    "store_slot",
+    "wake",
 ]  # fmt: skip
 
 COLOURS = 64
-"""So many blocks, at the most, may move one body; what is left over stays loose."""
+"""Largest number of blocks that may move one body; its further contacts stay scalar."""
 Masks = Annotated[NDArray[np.uint64], uint64[::1]]
 """A uint64 array (n,), bit by bit."""
 Slots = tuple[Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
@@ -48,14 +68,14 @@ COUNTED = 11
     PROXIMITY, RECORDED, SCALAR, SLEEPING, ACTIVE, LEFT, WIDE_COUNT, DISC_BLOCKS, BOX_BLOCKS, UNORDERED,
     LOGGED,
 ) = range(COUNTED)  # fmt: skip
-"""What kernels count that change it: near pairs without records; those with records; of these the scalar
-ones, those that sleep, those that touch, those that impacts have left to the solver; slots in use; blocks of
-discs and of boxes; whether scalar pairs are out of order; and impacts ever logged."""
+"""Counts that kernels keep: near pairs without records; those with records; of these the scalar ones, those
+that sleep, those that touch, those that impacts have left to the solver; slots in use; blocks of discs and of
+boxes; whether scalar pairs are out of order; and all impacts logged so far."""
 
 
 @inlined
 def clear_slot(data: Numbers, rows: int, k: int, slot: int, a: Rows, b: Rows, pair: Rows) -> None:
-    """Let lane number ``slot`` of block k stand for nothing: it moves nobody, and is never of interest."""
+    """Empty slot number ``slot`` of block k: it moves no body, and no check ever selects it."""
     block = data[k * rows : (k + 1) * rows]
     for row in range(0, rows, WIDE):
         block[row + slot] = 0.0
@@ -70,7 +90,7 @@ def clear_slot(data: Numbers, rows: int, k: int, slot: int, a: Rows, b: Rows, pa
 
 @inlined
 def store_slot(data: Numbers, rows: int, slot: int, p: int, manifolds: Manifolds, points: Points) -> None:
-    """Write what the lane holds, impulses above all, into the records of its pair."""
+    """Write what the slot holds, impulses above all, into the records of its pair."""
     at = slot // WIDE * rows + slot % WIDE
     manifold = manifolds[p]
     for j in range(manifold.count):
@@ -87,7 +107,7 @@ def store_slot(data: Numbers, rows: int, slot: int, p: int, manifolds: Manifolds
 
 @kernel
 def store(data: Numbers, rows: int, blocks: int, pair: Rows, manifolds: Manifolds, points: Points) -> None:
-    """Write what every lane holds into the records of its pair; the lanes stay."""
+    """Write what every slot holds into the records of its pair; the slots stay in use."""
     for slot in range(blocks * WIDE):
         if pair[slot] >= 0:
             store_slot(data, rows, slot, pair[slot], manifolds, points)
@@ -97,10 +117,10 @@ def store(data: Numbers, rows: int, blocks: int, pair: Rows, manifolds: Manifold
 def list_scalar(
     manifolds: Manifolds, pairs: int, inactive: Flags, scalar: Rows, sleeping: Rows
 ) -> tuple[int, int]:
-    """Write the pairs that have no lane, in the order of their records; return how many there are.
+    """Write the pairs that have no slot, in the order of their records; return how many there are.
 
-    Where both bodies are ``inactive`` (rows,), none of which there may be, nothing is to be found out: of
-    such pairs those with points are written to ``sleeping``; how many is returned as well.
+    Pairs of which both bodies are ``inactive`` (rows,), an array that may be empty, need no work: those with
+    points are written to ``sleeping``; their number is returned as well.
     """
     found, rest = 0, 0
     for p in range(pairs):
@@ -121,14 +141,14 @@ def release(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, points: Points, asleep: Flags,
 ) -> int:  # fmt: skip
-    """Give the contacts of sleepers back to their records; return how many."""
+    """Write the slots of sleeping bodies to their records and empty them; return how many."""
     rows, released = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
     for slot in range(blocks * WIDE):
         p = pair[slot]
         if p >= 0 and (asleep[a[slot]] or asleep[b[slot]]):
             store_slot(data, rows, slot, p, manifolds, points)
             manifolds[p].slot = -1
-            give_up(data, rows, slot, a, b, pair, colour, used)
+            empty_slot(data, rows, slot, a, b, pair, colour, used)
             released += 1
     return released
 
@@ -138,9 +158,9 @@ def follow_pairs(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, pairs: int,
 ) -> int:  # fmt: skip
-    """After pairs were listed anew, find those of the lanes; return how many lanes are in use.
+    """Find the new numbers of the slots' pairs after a broad phase; return how many slots are in use.
 
-    A lane whose pair is near no longer is given up.
+    A slot whose pair is not near any more is emptied.
     """
     rows, kept = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
     before = pair[: blocks * WIDE].copy()
@@ -153,15 +173,15 @@ def follow_pairs(
             kept += 1
     for slot in range(blocks * WIDE):
         if before[slot] >= 0 and pair[slot] < 0:
-            give_up(data, rows, slot, a, b, pair, colour, used)
+            empty_slot(data, rows, slot, a, b, pair, colour, used)
     return kept
 
 
 @inlined
-def give_up(
+def empty_slot(
     data: Numbers, rows: int, slot: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks
 ) -> None:
-    """Empty a lane, for others to use."""
+    """Empty a slot, and free its colour for the bodies."""
     k = slot // WIDE
     bit = np.uint64(1) << np.uint64(colour[k])
     used[a[slot]] &= ~bit
@@ -171,12 +191,12 @@ def give_up(
 
 @inlined
 def _resting_speed(a: int, b: int, linear: Vectors, force: Vectors, inverse_mass: Numbers, h: float) -> float:
-    """Return up to which speed an approach is rest: what forces bring about in two substeps [m/s]."""
+    """Return the speed up to which an approach counts as rest: what forces cause in two substeps [m/s]."""
     speed = abs(linear[a, 0]) + abs(linear[a, 1]) + abs(linear[b, 0]) + abs(linear[b, 1])
     pull_a = math.sqrt(force[a, 0] * force[a, 0] + force[a, 1] * force[a, 1]) * inverse_mass[a]
     pull_b = math.sqrt(force[b, 0] * force[b, 0] + force[b, 1] * force[b, 1]) * inverse_mass[b]
-    sleeping: float = 1e-9 * speed + 2.0 * h * max(pull_a, pull_b)
-    return sleeping
+    limit: float = 1e-9 * speed + 2.0 * h * max(pull_a, pull_b)
+    return limit
 
 
 @allocating
@@ -185,19 +205,19 @@ def wake(
     manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int, touching: Rows, count: int,
     linear: Vectors, angular: Numbers, force: Vectors, inverse_mass: Numbers, h: float,
 ) -> tuple[int, int]:  # fmt: skip
-    """Set loose what touches a struck body, may bounce, and approaches faster than rest.
+    """Make those contacts scalar that may bounce, approach faster than rest, and have a body with an impact.
 
-    Returns how many pairs are loose, and how many of them touch.
+    Returns how many pairs are scalar, and how many of them touch.
     """
     rows = DISC_ROWS if kind == DISC else BOX_ROWS
-    impact_count = np.zeros(len(angular), np.bool_)
+    had_impact = np.zeros(len(angular), np.bool_)
     for k in range(count):
         manifold = manifolds[touching[k]]
         if manifold.impact_count > 0:
-            impact_count[manifold.a] = impact_count[manifold.b] = True
+            had_impact[manifold.a] = had_impact[manifold.b] = True
     for slot in range(blocks * WIDE):
         p = pair[slot]
-        if p < 0 or not (impact_count[a[slot]] | impact_count[b[slot]]) or manifolds[p].restitution == 0.0:
+        if p < 0 or not (had_impact[a[slot]] | had_impact[b[slot]]) or manifolds[p].restitution == 0.0:
             continue
         at, i, j = slot // WIDE * rows + slot % WIDE, a[slot], b[slot]
         nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
@@ -218,5 +238,5 @@ def wake(
             manifolds[p].slot = -1
             scalar[scalar_count], touching[count] = p, p
             scalar_count, count = scalar_count + 1, count + 1
-            give_up(data, rows, slot, a, b, pair, colour, used)
+            empty_slot(data, rows, slot, a, b, pair, colour, used)
     return scalar_count, count

@@ -1,4 +1,4 @@
-"""Impulses at settled contacts, eight at a time, by the formulas of ``kernels/solver/impulse.py``."""
+"""Impulses at wide contacts, eight at a time, by the formulas of ``kernels/solver/impulse.py``."""
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
 from physicslab.kernels.wide.float64x8 import (
@@ -43,12 +43,12 @@ from physicslab.kernels.wide.layout import (
 __all__ = ["DEEPER", "SOFT", "soft_normal_impulse", "sweep_wide", "warm_start_wide"]
 
 SOFT = 0.01
-"""Share of the smaller body's size that the contact spring takes away at its full rate; the load on it comes
-on top."""
+"""Share of the smaller body's size that the contact spring corrects at its full rate, in addition to what the
+load causes."""
 _ROUNDING = 1e-12
-"""Share that is no overlap: of the corners of a box that is put on a floor, one may lie in it by rounding."""
+"""Share that does not count as overlap: rounding may put a corner of a box on a floor below its surface."""
 DEEPER = 0.15
-"""Share beyond which overlap is not taken away by impulses."""
+"""Share beyond which overlap is not corrected by impulses."""
 
 
 @fused
@@ -56,15 +56,15 @@ def soft_normal_impulse[N: (float, Wide)](
     impulse: N, mass: N, v: N, separation: N, size: N, inverse_h: float, push_rate: float,
     mass_scale: float, impulse_scale: float, slop: float, force_cap: float,
 ) -> N:  # fmt: skip
-    """Return the normal impulse [N s] after one more look at a point that approaches at -v [m/s].
+    """Return the normal impulse [N s] after one more iteration at a point that approaches at -v [m/s].
 
-    Below the slop the contact is a stiff, overdamped spring that takes ``push_rate`` of the overlap a second;
-    no faster than what balances twice the load, or a pile of overlapping bodies would fly apart. What is
-    apart may close the separation within the time that the impulses stand for, and not more.
+    Below the slop the contact is a stiff, overdamped spring that corrects ``push_rate`` of the overlap a
+    second, no faster than balances twice the load: else a pile of overlapping bodies would burst. Bodies
+    that are apart may close the separation within the substep, and not more.
     """
     load = least(impulse, force_cap) * (2.0 * impulse_scale / mass_scale)
-    most = mass * size * (push_rate * SOFT) + load
-    push = greater(mass * push_rate * least(separation + slop * size, 0.0), -most)
+    limit = mass * size * (push_rate * SOFT) + load
+    push = greater(mass * push_rate * least(separation + slop * size, 0.0), -limit)
     push = choose(separation < -DEEPER * size, 0.0, push)
     soft = impulse - mass_scale * (mass * v + push) - impulse_scale * impulse
     hard = impulse - mass * (v + separation * inverse_h)
@@ -77,7 +77,7 @@ def _update_normal(
     data: Numbers, point: int, size: Wide, v: Wide, drift: float, inverse_h: float,
     push_rate: float, mass_scale: float, impulse_scale: float, slop: float, force_cap: float,
 ) -> Wide:  # fmt: skip
-    """Let the separations follow the velocity, set the normal impulses anew; return their change [N s]."""
+    """Update separations by the velocity, then the normal impulses; return the change of these [N s]."""
     separation = take(data, point + SEPARATION)
     if drift != 0.0:
         separation = separation + drift * v
@@ -92,7 +92,7 @@ def _update_normal(
 
 @fused
 def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide:
-    """Set the impulses across anew, mu times the normal ones at the most; return their change [N s]."""
+    """Update the tangential impulses, at most mu times the normal ones; return their change [N s]."""
     limit, friction_impulse = friction * take(data, point + IMPULSE), take(data, point + TANGENT_IMPULSE)
     total: Wide = least(greater(friction_impulse - take(data, point + TANGENT_MASS) * v, -limit), limit)
     put(data, point + TANGENT_IMPULSE, total)
@@ -105,7 +105,7 @@ def _sweep_discs(
     drift: float, inverse_h: float, push_rate: float,
     mass_scale: float, impulse_scale: float, slop: float, force_cap: float,
 ) -> None:  # fmt: skip
-    """Go through a block of discs; pushes turn no disc, so that friction sees nothing of them."""
+    """Solve a block of discs; normal impulses turn no disc, so friction does not depend on them."""
     vax, vay = take_vectors(linear, a, slot)
     vbx, vby = take_vectors(linear, b, slot)
     wa, wb = take_numbers(angular, a, slot), take_numbers(angular, b, slot)
@@ -128,7 +128,7 @@ def _sweep_discs(
 
 @fused
 def _levers(data: Numbers, point: int, nx: Wide, ny: Wide) -> tuple[Wide, Wide, Wide, Wide]:
-    """Return how far normal and tangent pass by both centres [m]: r_a x n, r_b x n, r_a x t, r_b x t."""
+    """Return lever arms of normal and tangent about both centres [m]: r_a x n, r_b x n, r_a x t, r_b x t."""
     ax, ay = take(data, point + ARM_AX), take(data, point + ARM_AY)
     bx, by = take(data, point + ARM_BX), take(data, point + ARM_BY)
     return ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny
@@ -140,10 +140,10 @@ def _sweep_boxes(
     drift: float, inverse_h: float, push_rate: float,
     mass_scale: float, impulse_scale: float, slop: float, force_cap: float,
 ) -> None:  # fmt: skip
-    """Go through a block of boxes: both pushes, then both points' friction.
+    """Solve a block of boxes: both normal impulses, then both points' friction.
 
-    Velocities at the points are worked out once; what an impulse does to the next point's is added to it (the
-    effective masses between them), for a processor waits less for that than for the bodies' velocities.
+    Velocities at the points are computed once; the effect of one point's impulse on the other's velocity is
+    added (by the effective mass between them), which is a shorter dependency than the bodies' velocities.
     """
     vax, vay = take_vectors(linear, a, slot)
     vbx, vby = take_vectors(linear, b, slot)
@@ -160,21 +160,21 @@ def _sweep_boxes(
         data, at + ONE, size, along + wb * n1b - wa * n1a, drift, inverse_h, push_rate, mass_scale,
         impulse_scale, slop, force_cap,
     )  # fmt: skip
-    felt = push1 * (ma + mb + ia * n1a * n2a + ib * n1b * n2b)
+    coupled = push1 * (ma + mb + ia * n1a * n2a + ib * n1b * n2b)
     push2 = _update_normal(
-        data, at + TWO, size, along + wb * n2b - wa * n2a + felt, drift, inverse_h, push_rate,
+        data, at + TWO, size, along + wb * n2b - wa * n2a + coupled, drift, inverse_h, push_rate,
         mass_scale, impulse_scale, slop, force_cap,
     )  # fmt: skip
     wa, wb = wa - ia * (n1a * push1 + n2a * push2), wb + ib * (n1b * push1 + n2b * push2)
-    rub1 = _update_friction(data, at + ONE, friction, across + wb * t1b - wa * t1a)
-    felt = rub1 * (ma + mb + ia * t1a * t2a + ib * t1b * t2b)
-    rub2 = _update_friction(data, at + TWO, friction, across + wb * t2b - wa * t2a + felt)
-    push, friction_impulse = push1 + push2, rub1 + rub2
+    friction1 = _update_friction(data, at + ONE, friction, across + wb * t1b - wa * t1a)
+    coupled = friction1 * (ma + mb + ia * t1a * t2a + ib * t1b * t2b)
+    friction2 = _update_friction(data, at + TWO, friction, across + wb * t2b - wa * t2a + coupled)
+    push, friction_impulse = push1 + push2, friction1 + friction2
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
     put_vectors(linear, a, slot, vax - ma * px, vay - ma * py)
     put_vectors(linear, b, slot, vbx + mb * px, vby + mb * py)
-    put_numbers(angular, a, slot, wa - ia * (t1a * rub1 + t2a * rub2))
-    put_numbers(angular, b, slot, wb + ib * (t1b * rub1 + t2b * rub2))
+    put_numbers(angular, a, slot, wa - ia * (t1a * friction1 + t2a * friction2))
+    put_numbers(angular, b, slot, wb + ib * (t1b * friction1 + t2b * friction2))
 
 
 @inlined
@@ -184,7 +184,7 @@ def sweep_wide(
     linear: Vectors, angular: Numbers, drift: float, inverse_h: float, push_rate: float,
     mass_scale: float, impulse_scale: float, slop: float, force_cap: float,
 ) -> None:  # fmt: skip
-    """Go once through all blocks. Separations first follow ``drift`` s of the velocities that are found."""
+    """Solve all blocks once. Separations are first advanced by ``drift`` s at the present velocities."""
     for number in range(disc_blocks):
         k = disc_order[number]
         _sweep_discs(
@@ -203,7 +203,7 @@ def sweep_wide(
 def _warm_start(
     data: Numbers, point: int, nx: Wide, ny: Wide, warm_start_scale: float
 ) -> tuple[Wide, Wide, Wide]:
-    """Carry over the impulses of a point; return both together [N s], and the one across."""
+    """Scale the impulses of a point; return their sum [N s], and the tangential one."""
     impulse, friction_impulse = take(data, point + IMPULSE), take(data, point + TANGENT_IMPULSE)
     if warm_start_scale != 1.0:
         impulse, friction_impulse = warm_start_scale * impulse, warm_start_scale * friction_impulse

@@ -1,8 +1,8 @@
-"""Flights of bodies under constant accelerations, each from a place and time of its own, nothing lost.
+"""Ballistic paths: motion under constant accelerations, with the rounding remainders kept.
 
-A flight is a row of numbers: place, velocity and start, each with the remainder that rounding would drop,
-and the acceleration. Only an impact begins a new one: however many impacts others have, a body's flight is
-evaluated, and never added up.
+A path is a row of numbers: place, velocity and start, each with the remainder that rounding would drop, and
+the acceleration. Only an impact of the body begins a new path; between impacts it is evaluated in closed
+form, so that no error adds up, however many impacts other bodies have.
 """
 
 from physicslab.kernels import Numbers, Vectors, inlined
@@ -11,7 +11,7 @@ from physicslab.kernels.ode.compensated import add_pair, multiply
 __all__ = ["FIELDS", "advance_to", "begin", "place", "push", "seen_from", "velocity"]
 
 FIELDS = 12
-"""Numbers of a flight."""
+"""Numbers of a path."""
 _X, _VX, _A, _T = (
     0,
     4,
@@ -22,7 +22,7 @@ _X, _VX, _A, _T = (
 
 @inlined
 def begin(paths: Vectors, i: int, x: float, y: float, vx: float, vy: float) -> None:
-    """Let row i fly from time 0; its acceleration stays."""
+    """Begin the path of row i at time 0; its acceleration stays."""
     paths[i, _X], paths[i, _X + 1], paths[i, _X + 2], paths[i, _X + 3] = x, 0.0, y, 0.0
     paths[i, _VX], paths[i, _VX + 1], paths[i, _VX + 2], paths[i, _VX + 3] = vx, 0.0, vy, 0.0
     paths[i, _T], paths[i, _T + 1] = 0.0, 0.0
@@ -30,7 +30,7 @@ def begin(paths: Vectors, i: int, x: float, y: float, vx: float, vy: float) -> N
 
 @inlined
 def _advanced(paths: Vectors, i: int, now: float, low: float) -> float:
-    """Return how long row i has flown at the time ``now + low`` [s]."""
+    """Return the time since the start of row i's path at the time ``now + low`` [s]."""
     advanced: float = (now - paths[i, _T]) + (low - paths[i, _T + 1])
     return advanced
 
@@ -73,7 +73,7 @@ def seen_from(
 
 @inlined
 def advance_to(paths: Vectors, i: int, angle: Numbers, angular: Numbers, now: float, low: float) -> None:
-    """Begin a new flight of row i where the old one is at the time ``now + low``."""
+    """Begin a new path of row i where the old one is at the time ``now + low``."""
     angle[i] += _advanced(paths, i, now, low) * angular[i]
     x, x_low, y, y_low = place(paths, i, now, low)
     vx, vx_low, vy, vy_low = velocity(paths, i, now, low)
@@ -84,7 +84,7 @@ def advance_to(paths: Vectors, i: int, angle: Numbers, angular: Numbers, now: fl
 
 @inlined
 def push(paths: Vectors, i: int, inverse_mass: float, px: float, py: float) -> None:
-    """Change the velocity with which row i began its flight by an impulse (px, py) [N s]."""
+    """Change the velocity with which row i began its path by an impulse (px, py) [N s]."""
     x, x_low = multiply(inverse_mass, px)
     y, y_low = multiply(inverse_mass, py)
     paths[i, _VX], paths[i, _VX + 1] = add_pair(paths[i, _VX], paths[i, _VX + 1], x, x_low)

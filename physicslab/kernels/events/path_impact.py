@@ -1,7 +1,7 @@
-"""The impulse of an impact, as it changes two flights, with nothing lost to rounding."""
+"""The impulse of an impact, as it changes two paths, with rounding compensated."""
 
 from physicslab.kernels import Numbers, Vectors, inlined
-from physicslab.kernels.events.flight import push
+from physicslab.kernels.events.path import push
 from physicslab.kernels.ode.compensated import add_pair, multiply
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.impact import bounce, friction_impulse
@@ -15,7 +15,7 @@ def _speed_against(
 ) -> tuple[float, float]:
     """Return how fast B's contact point moves against A's along a direction, and the remainder.
 
-    The flights begin now.
+    The paths begin now.
     """
     vx, x_low = add_pair(paths[b, 4], paths[b, 5], -paths[a, 4], -paths[a, 5])
     vy, y_low = add_pair(paths[b, 6], paths[b, 7], -paths[a, 6], -paths[a, 7])
@@ -27,8 +27,8 @@ def _speed_against(
 @inlined
 def _short_of(v: float, v_low: float, before: float, before_low: float, restitution: float) -> float:
     """Return by how much a speed after an impact misses -e times that before."""
-    wanted, wanted_low = multiply(restitution, before)
-    missed, low = add_pair(v, v_low, wanted, wanted_low + restitution * before_low)
+    target, target_low = multiply(restitution, before)
+    missed, low = add_pair(v, v_low, target, target_low + restitution * before_low)
     return missed + low
 
 
@@ -37,7 +37,7 @@ def _hit(
     manifold: Manifold, point: Point, j: float, v: float, paths: Vectors, angular: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers,
 ) -> None:  # fmt: skip
-    """Apply a normal impulse and its friction to the flights of A and B, and note them."""
+    """Apply a normal impulse and its friction to the paths of A and B, and record them."""
     a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
     along = 0.0
     if manifold.friction > 0.0:
@@ -59,7 +59,7 @@ def resolve_ballistic_impacts(
     manifold: Manifold, one: Point, two: Point, paths: Vectors, angular: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers,
 ) -> None:  # fmt: skip
-    """Bounce a pair whose flights begin now and whose points are filled."""
+    """Bounce a pair whose paths begin now and whose points are filled."""
     a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
     v1, low1 = _speed_against(paths, angular, a, b, one, nx, ny)
     if manifold.count == 2:
@@ -72,8 +72,7 @@ def resolve_ballistic_impacts(
     if j1 > 0.0:
         _hit(manifold, one, j1, v1, paths, angular, inverse_mass, inverse_inertia)
     if manifold.count == 1 and j1 > 0.0:
-        # The rounding of j is the same at every impact of a pair and would add up: what it has left is made
-        # good.
+        # The rounding of j is the same at every impact of a pair and would add up: it is corrected.
         v, low = _speed_against(paths, angular, a, b, one, nx, ny)
         left = -_short_of(v, low, v1, low1, manifold.restitution) * one.normal_mass
         push(paths, a, -inverse_mass[a], left * nx, left * ny)
