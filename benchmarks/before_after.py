@@ -34,9 +34,8 @@ BLOCK, ONE_CALL = 10, 200
 CHILD = """
 import gc, hashlib, json, sys, time
 from dataclasses import replace
-from physicslab import load_scene
+from physicslab import Vector2, load_scene
 from physicslab.components import Transform
-from physicslab.ecs.vector import Vector2
 
 path, one_call, gravities = json.loads(sys.stdin.readline())
 world = load_scene(path)

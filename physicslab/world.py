@@ -84,6 +84,7 @@ class World(State):
         self.steppers = Steppers((), ())
         self.stepper: Stepper | None = None
         self._stepping = False
+        self._motion = motion_of(self)
 
     # ---- time ----------------------------------------------------------------------------------------------
 
@@ -113,7 +114,7 @@ class World(State):
         """
         if self._stepping:
             raise RuntimeError("a system cannot step the world that is calling it")
-        self.checkpoint.take(motion_of(self), self.counts)
+        self.checkpoint.take(self._motion, self.counts)
         self._stepping = True
         try:
             self.schedule.run(Stage.PREPARE, self, h)
@@ -252,6 +253,7 @@ class World(State):
         while True:
             self._stale = True  # and stays so if a system refuses what it finds
             self.generation += 1
+            self._motion = motion_of(self)
             follow_rows(self)
             derive_masses(self)
             check_edits(self)

@@ -9,12 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
+from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.state.masses import Diverged
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
-from physicslab.systems.system import ForceSystem, Stage, at
+from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import ForceSystem, Stage, System, at
 from physicslab.world import World
 
 NO_GRAVITY = PhysicsConfig(gravity_mode="none")
@@ -50,6 +52,32 @@ def test_presence_decides_what_a_body_weighs() -> None:
     assert weights(Transform(), Mass(2.0), Shape.box(1, 1)) == (0.0, 0.0)  # static
     assert weights(Transform(), Velocity(), Shape.box(1, 1)) == (0.0, 0.0)  # kinematic
     assert weights(Transform(), Velocity(), Mass(2.0), Held()) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("name", "size"), [("radius", -1.0), ("radius", 0.0), ("radius", float("nan"))])
+def test_a_size_that_is_written_to_its_column_is_checked(name: str, size: float) -> None:
+    world = World(*standard_systems())
+    world.spawn(Transform((0, 2)), Velocity(), Mass(1.0), Shape.circle(0.5), name="ball")
+    world.spawn(Transform(), Shape.box(9.0, 1.0))
+    world.step()
+    world.table(Shape)[name][1] = size
+    with pytest.raises(InvalidValue, match=r"ball: Shape\.radius"):
+        world.step()
+
+
+def test_a_step_that_is_broken_off_is_taken_back() -> None:
+    class Broken(System):
+        @at(Stage.FINISH)
+        def fail(self, world: World, h: float) -> None:
+            raise KeyboardInterrupt
+
+    world = World(*standard_systems(), Broken())
+    ball = world.spawn(Transform((0, 2)), Velocity((1, 0)), Mass(1.0))
+    with pytest.raises(KeyboardInterrupt):
+        world.step()
+    assert (world.time, world.steps) == (0.0, 0)
+    assert world.component(ball, Transform).position == Vector2(0, 2)
+    assert world.component(ball, Velocity).linear == Vector2(1, 0)
 
 
 def test_forces_and_torques_change_velocities() -> None:

@@ -49,6 +49,8 @@ class Output:
 
     def is_same_as(self, path: str) -> bool:
         """Whether this is the same file as ``path``, under whatever name; ``-`` is stdout."""
+        if "\0" in path:  # no file has such a name: opening it is refused in words
+            return False
         if os.path.realpath(self.path) == os.path.realpath(path):
             return True
         own, other, nowhere = map(_identity, (self.path, path, os.devnull))

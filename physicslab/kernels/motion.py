@@ -13,17 +13,27 @@ def derive_masses(
     mass: Numbers, inertia: Numbers, inertia_given: Flags, fixed_rotation: Flags,
     kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
-) -> tuple[float, int]:  # fmt: skip
+    asleep: Flags, awake_inverse_mass: Numbers, awake_inverse_inertia: Numbers,
+) -> tuple[float, int, int]:  # fmt: skip
     """Compute each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
 
     Returns the ratio of the greatest mass that can be moved to the least, of what has a shape, 1 if none has;
-    and the first row of which the moment of inertia is not finite, or -1.
+    and the first row of which the moment of inertia is not finite, or -1; and the first row of
+    which a size is not above 0, or -1.
 
     A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. A body without velocity or mass, or one that is
     held, has infinite mass; one too small to have an inverse inertia does not turn.
     """
-    lightest, heaviest, infinite = 0.0, math.inf, -1
+    lightest, heaviest, infinite, sizeless = 0.0, math.inf, -1, -1
     for i in range(len(mass)):
+        if kind[i] == 1:
+            sized = 0.0 < radius[i] < math.inf
+        elif kind[i] == 2:
+            sized = 0.0 < width[i] < math.inf and 0.0 < height[i] < math.inf
+        else:
+            sized = True
+        if sizeless < 0 and not sized:
+            sizeless = i
         if not inertia_given[i]:
             if kind[i] == 1:
                 inertia[i] = 0.5 * mass[i] * radius[i] * radius[i]
@@ -36,13 +46,15 @@ def derive_masses(
         turns_freely = moves_freely and inertia[i] > 0.0 and not fixed_rotation[i]
         inverse = 1.0 / inertia[i] if turns_freely else 0.0
         inverse_inertia[i] = inverse if math.isfinite(inverse) else 0.0  # too small to be turned
+        awake_inverse_mass[i] = 0.0 if asleep[i] else inverse_mass[i]
+        awake_inverse_inertia[i] = 0.0 if asleep[i] else inverse_inertia[i]
         if fixed_rotation[i]:
             angular[i] = 0.0
         if inverse_mass[i] > 0.0 and kind[i] != 0:
             lightest, heaviest = max(lightest, inverse_mass[i]), min(heaviest, inverse_mass[i])
         if infinite < 0 and not math.isfinite(inertia[i]):
             infinite = i
-    return (lightest / heaviest if lightest > 0.0 else 1.0), infinite
+    return (lightest / heaviest if lightest > 0.0 else 1.0), infinite, sizeless
 
 
 @kernel

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
+from physicslab.components.shape import CIRCLE
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels import motion
 from physicslab.kernels.solver import impulse
@@ -23,24 +26,36 @@ def derive_masses(state: State) -> None:
     Raises
     ------
     InvalidValue
-        If a body is so large and heavy that its moment of inertia is not finite.
+        If a body is so large and heavy that its moment of inertia is not finite, or a size is not above 0.
     """
     bodies = state.bodies
     if len(bodies.torque) != len(state.entity_index):
         bodies.resize(len(state.entity_index))
         state.compile((motion.derive_masses,))
     mass, shape, velocity = state.table(Mass), state.table(Shape), state.table(Velocity)
-    ratio, infinite = motion.derive_masses(
+    ratio, infinite, sizeless = motion.derive_masses(
         velocity.present, mass.present, state.table(Held).present,
         mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
         shape["kind"], shape["radius"], shape["width"], shape["height"], velocity["angular"],
         bodies.inverse_mass, bodies.inverse_inertia,
+        state.sleep.asleep, bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
     )  # fmt: skip
+    if sizeless >= 0:
+        _refuse_size(state, sizeless)
     if infinite >= 0:
         inertia, allowed = float(mass["inertia"][infinite]), f"{_INERTIA.allowed}, of mass and Shape too"
         raise InvalidValue(f"{state.label_of_row(infinite)}: Mass", "inertia", inertia, allowed)
     bodies.unequal = ratio > impulse.HEAVY_RATIO
-    bodies.set_inactive(state.sleep.asleep)
+
+
+def _refuse_size(state: State, row: int) -> None:
+    """Refuse a size that was written to a column and would keep a kernel from ever returning."""
+    shape = state.table(Shape)
+    needed = ("radius",) if shape["kind"][row] == CIRCLE else ("width", "height")
+    for spec in Shape.FIELDS:
+        size = float(shape[spec.name][row]) if spec.name in needed else 1.0
+        if not 0.0 < size < math.inf:
+            raise InvalidValue(f"{state.label_of_row(row)}: Shape", spec.name, size, spec.allowed)
 
 
 def check_finite(state: State, time: float) -> None:

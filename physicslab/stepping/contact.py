@@ -25,7 +25,7 @@ class Contact:
     """
 
     name: ClassVar[str] = "contact"
-    title: ClassVar[str] = "Steps stage by stage, each system called"
+    title: ClassVar[str] = "Steps stage by stage, contacts within them"
     leaps: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = True
 

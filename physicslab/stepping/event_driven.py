@@ -50,7 +50,7 @@ class EventDriven:
     """
 
     name: ClassVar[str] = "event_driven"
-    title: ClassVar[str] = "From impact to impact, at their own times"
+    title: ClassVar[str] = "Impacts at their exact times"
     leaps: ClassVar[bool] = True
     leaves_forces: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)

@@ -56,7 +56,7 @@ class FusedContact:
     """
 
     name: ClassVar[str] = "fused_contact"
-    title: ClassVar[str] = "Whole steps in one compiled loop"
+    title: ClassVar[str] = "Compiled steps, contacts within them"
     leaps: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = True
     kernels: tuple[Any, ...] = (

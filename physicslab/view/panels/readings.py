@@ -79,18 +79,10 @@ def method_lines(world: World) -> list[Line]:
         Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
         Line(world.plan.integrator.title, kind="remark"),
         Line(f"because: {world.plan.reason}", kind="remark"),
-        *_stepper_lines(world),
         *_division_lines(world),
         *(Line(f"{_plain(name)} is computed by Python: slower", kind="remark") for name in world.interpreted),
-        *_collision_lines(world),
+        *_stepper_lines(world),
     ]
-
-
-def _stepper_lines(world: World) -> list[Line]:
-    stepper = world.stepper
-    if stepper is None or stepper.reason == world.plan.reason:
-        return [] if stepper is None else [Line(stepper.title, kind="remark")]
-    return [Line(stepper.title, kind="remark"), Line(f"because: {stepper.reason}", kind="remark")]
 
 
 def _division_lines(world: World) -> list[Line]:
@@ -99,15 +91,15 @@ def _division_lines(world: World) -> list[Line]:
     return [Line(f"the last step was divided into {world.step_divisions}", kind="remark")]
 
 
-def _collision_lines(world: World) -> list[Line]:
-    method = world.plan
-    if method.collisions == "none":
+def _stepper_lines(world: World) -> list[Line]:
+    """Say which stepper makes the steps, and why so."""
+    if world.stepper is None:
         return []
-    words = {"exact": "Impacts at their exact times", "step": "Contacts found within steps"}
-    return [
-        Line(words[method.collisions], kind="remark"),
-        Line(f"because: {method.collision_reason}", kind="remark"),
-    ]
+    reasons = [world.plan.collision_reason] if world.plan.collisions != "none" else []
+    if world.stepper.reason not in (world.plan.reason, *reasons):
+        reasons.append(world.stepper.reason)
+    lines = [Line(world.stepper.title, kind="remark")]
+    return lines + [Line(f"because: {'; '.join(reasons)}", kind="remark")] * bool(reasons)
 
 
 def _plain(name: str) -> str:
