@@ -1,15 +1,19 @@
 """What springs and drag act on beside contacts moves as their forces have it, however stiff they are."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from desk import bits
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physicslab.components import Drag, Held, Mass, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import read_scene, write_scene
 from physicslab.integrators.blanes_moan import BLANES_MOAN
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
@@ -202,3 +206,23 @@ def test_what_rests_on_a_heavy_body_makes_no_substep_shorter() -> None:
     world.run(steps=10)
     assert world.substeps == world.simulation.substeps
     assert world.component(2, Mass).mass == 1e6
+
+
+def test_drag_that_grows_weak_is_the_same_after_a_file_was_read() -> None:
+    """Which velocities are predicted depends on the present speed, not on that when the method was chosen."""
+
+    def scene() -> World:
+        world = open_space()
+        world.physics = PhysicsConfig(gravity=Vector2(3.0, -0.001))
+        world.simulation = replace(world.simulation, substeps=2, tolerance=1e-17)
+        box(world, (-5.7, 8.3), width=1.06, height=0.53, mass=0.33, velocity=(20.9, 0.0))
+        slowed = box(world, (-2.5, 7.35), width=0.93, height=0.53, mass=0.26, velocity=(0.0, 18.5))
+        world.add(slowed, Drag(linear=0.16, quadratic=1.64))
+        return world
+
+    whole, first = scene(), scene()
+    whole.run(steps=120)
+    first.run(steps=60)
+    again = read_scene(write_scene(first))
+    again.run(steps=60)
+    assert bits(again) == bits(whole)

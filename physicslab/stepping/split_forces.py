@@ -70,27 +70,33 @@ class SplitForces:
     """
 
     def __init__(self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int) -> None:
-        self._forces, self._method, self._steps = forces, method, steps
+        self._method, self._steps = method, steps
         rows = sub_integrated_rows(state, forces)
         self._ode = OdeSystem(state, forces, rows)
         # Contacts are accurate to far fewer digits than free motion: more would only take time.
         self._ode.tolerance = max(state.simulation.tolerance, _TOLERANCE)
         state.bodies.sub_integrated[:] = rows & state.table(Velocity).present
-        h = state.simulation.dt / state.simulation.substeps
-        self.predictable: NDArray[np.bool_] = state.bodies.sub_integrated & (state.bodies.inverse_mass > 0.0)
-        for force in forces:
-            rates = force.rates(state)
-            if rates is not None:
-                self.predictable &= rates * h <= _MAX_PREDICTABLE
+        self._find_predictable(state)
         state.compile((*method.kernels, motion.predict))
 
     def outdated(self, state: State) -> bool:
         """Whether a number was changed that the layout, or the choice of a method, depends on."""
         return self._ode.outdated(state)
 
+    def _find_predictable(self, state: State) -> None:
+        """Find what is pulled gently at its present speed: a file must not need to remember that."""
+        h = state.simulation.dt / state.simulation.substeps
+        bodies = state.bodies
+        self.predictable: NDArray[np.bool_] = bodies.sub_integrated & (bodies.inverse_mass > 0.0)
+        for force in self._ode.forces:
+            rates = force.rates(state)
+            if rates is not None:
+                self.predictable &= rates * h <= _MAX_PREDICTABLE
+
     def begin(self, state: State) -> None:
         """Take the present forces and masses; they are kept for a step."""
         self._ode.gather(state)
+        self._find_predictable(state)
 
     def take_part(self, stage: Stage, state: State, h: float) -> None:
         """Do the work of a stage of a substep, if there is any."""
@@ -110,7 +116,7 @@ class SplitForces:
         try:
             made = self._method.flow(state, ode, h / self._steps, self._steps)
         except StepTooSmall as error:
-            what = f"{fastest_body(state, self._forces)}: Velocity changes too fast: {error}"
+            what = f"{fastest_body(state, self._ode.forces)}: Velocity changes too fast: {error}"
             raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error
         ode.scatter(state, h)
         state.force_evaluations += made
