@@ -9,7 +9,7 @@ from desk import bits
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from physicslab.components import Drag, Held, Mass, Spring, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
@@ -215,9 +215,18 @@ def test_drag_that_grows_weak_is_the_same_after_a_file_was_read() -> None:
         world = open_space()
         world.physics = PhysicsConfig(gravity=Vector2(3.0, -0.001))
         world.simulation = replace(world.simulation, substeps=2, tolerance=1e-17)
-        box(world, (-5.7, 8.3), width=1.06, height=0.53, mass=0.33, velocity=(20.9, 0.0))
-        slowed = box(world, (-2.5, 7.35), width=0.93, height=0.53, mass=0.26, velocity=(0.0, 18.5))
-        world.add(slowed, Drag(linear=0.16, quadratic=1.64))
+        place_a, place_b = (-5.683359695054904, 8.313973959108061), (-2.4772582822726985, 7.352490614885854)
+        world.spawn(
+            Transform(place_a), Velocity((20.94073693253929, 0.0), 1.430870345505193),
+            Mass(0.32792148824543155, inertia=0.017708834973736542),
+            Shape.box(1.0625406781016786, 0.5283128537814351),
+        )  # fmt: skip
+        world.spawn(
+            Transform(place_b), Velocity((0.0, 18.537204971876044)),
+            Mass(0.2620544512615156, inertia=0.01401296614622271, fixed_rotation=True),
+            Shape.box(0.9313780570931447, 0.5283128537814351),
+            Drag(linear=0.1563714654652965, quadratic=1.6433704962900513),
+        )  # fmt: skip
         return world
 
     whole, first = scene(), scene()
