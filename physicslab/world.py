@@ -17,7 +17,7 @@ from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.forces import add_up_forces
 from physicslab.stepping.plan import StepPlan, choose_plan, default_plan
-from physicslab.stepping.run import RunLength, run_length
+from physicslab.stepping.run import go_on, run_length
 from physicslab.stepping.select import Steppers, select_steppers
 from physicslab.stepping.stepper import Stepper
 from physicslab.systems.accelerate import AccelerateSystem
@@ -28,6 +28,7 @@ __all__ = ["World"]
 
 _quiet = np.errstate(all="ignore")
 """An overflow becomes infinite, which is found and raised as :class:`Diverged`: numpy need not warn."""
+_go_on = _quiet(go_on)
 _STEP = Field("dt", "number", minimum=SHORTEST, unit="s", owner="step")
 _STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 
@@ -104,13 +105,13 @@ class World(State):
         h = self.simulation.dt if dt is None else _STEP.check(dt)
         with self.active():
             self._synchronise()
-            self._advance(h, 1)
+            self.advance(h, 1)
         self.time += h
 
-    def _advance(self, h: float, steps: int) -> int:
+    def advance(self, h: float, steps: int) -> int:
         """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many.
 
-        Where that fails or is broken off, the world goes back to before the step.
+        The clock is the caller's. Where that fails or is broken off, the world goes back to before the step.
         """
         if self._stepping:
             raise RuntimeError("a system cannot step the world that is calling it")
@@ -132,6 +133,10 @@ class World(State):
         self.steps += made.steps
         self.step_divisions = made.divisions
         return made.steps
+
+    def stepper_for(self, h: float) -> Stepper:
+        """Return the best stepper for a coming step of ``h`` seconds."""
+        return self.steppers.ready(self, h)
 
     def _best(self, h: float) -> Stepper:
         """Return the best stepper for the coming step, with its kernels compiled."""
@@ -171,54 +176,13 @@ class World(State):
             before = self.steps
             try:
                 with self.active():
-                    done += self._advance_run(length, done, stride)
+                    done += _go_on(self, length, done, stride)
             except Diverged:
                 self.time = start + (done + self.steps - before) * length.dt
                 raise
             self.time = start + length.elapsed(done)
             if done % stride == 0 or done == length.steps:
                 yield done
-
-    @_quiet
-    def _advance_run(self, length: RunLength, done: int, stride: int) -> int:
-        """Go on with a run of which ``done`` steps are made, as far as one call goes; return how many."""
-        self._synchronise()
-        h = length.dt if done < length.whole else length.rest
-        if self.schedule.observer is not None:
-            return self._advance(h, 1)
-        wanted = stride - done % stride
-        count = max(1, min(wanted, length.whole - done))
-        best = self.steppers.ready(self, h)
-        if not best.leaps:
-            return self._advance(h, count)
-        if isinstance(best, Flow) and best.whole and wanted >= length.steps - done:
-            return self._leap(length.seconds - length.elapsed(done), 1, length.steps - done)
-        return self._leap(h, count, count)
-
-    def _leap(self, h: float, parts: int, steps: int) -> int:
-        """Advance by ``parts`` times ``h`` at once, which count as ``steps``; return those.
-
-        Where that fails it is halved, until the one step that cannot be made is found; the world is then
-        as it was before that step.
-        """
-        try:
-            made = self._advance(h, parts)
-            self.steps += steps - made
-            return steps
-        except Diverged:
-            if steps == 1:
-                raise
-        first, start = steps // 2, self.time
-        halves = ((h, first, first), (h, parts - first, steps - first))
-        if parts == 1:
-            own = first * self.simulation.dt
-            halves = ((own, 1, first), (h - own, 1, steps - first))
-        for span, count, counted in halves:
-            self._synchronise()
-            self._leap(span, count, counted)
-            self.time += span * count
-        self.time = start
-        return steps
 
     # ---- structure -----------------------------------------------------------------------------------------
 
@@ -280,11 +244,6 @@ class World(State):
         self.event_driven = self.plan.collisions == "exact"
         self.steppers = select_steppers(self, self.schedule, self.plan)
         self.contacts.stale |= before or self.event_driven
-        others = [system for system in self.schedule.running if not system.is_engine]
-        self.sleep.acted_upon = any(system.acts_within_step() for system in others)
-        self.sleep.has_external_writers = any(
-            system.acts_within_step() or system.observes() for system in others
-        )
 
     def edited(self) -> None:
         """Note that columns or components were changed from outside.

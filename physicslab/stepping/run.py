@@ -1,16 +1,21 @@
-"""How long a run is: whole steps, and a shorter one that makes up the rest."""
+"""A run: how long it is, in whole steps and a rest, and how it goes on, a call of a stepper at a time."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 from physicslab.ecs.component import InvalidValue
-from physicslab.ecs.config import SHORTEST
+from physicslab.ecs.config import SHORTEST, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.state.masses import Diverged
 from physicslab.state.state import State
+from physicslab.stepping.flow import Flow
+from physicslab.stepping.stepper import Stepper
+from physicslab.systems.schedule import Schedule
 
-__all__ = ["RunLength", "run_length"]
+__all__ = ["RunLength", "Stepped", "go_on", "run_length"]
 
 _STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
 _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
@@ -86,3 +91,66 @@ def _whole_steps(seconds: float, dt: float) -> tuple[int, float]:
     if whole and seconds - whole * dt < 0.001 * dt:
         whole -= 1
     return whole, seconds - whole * dt
+
+
+class Stepped(Protocol):
+    """What a run wants of a world."""
+
+    time: float
+    steps: int
+    schedule: Schedule
+
+    @property
+    def simulation(self) -> SimulationConfig:
+        """Return how the world is stepped."""
+
+    def synchronise(self) -> None:
+        """Follow the present entities and components."""
+
+    def advance(self, h: float, steps: int) -> int:
+        """Make steps of ``h`` seconds; return how many."""
+
+    def stepper_for(self, h: float) -> Stepper:
+        """Return the best stepper for a coming step of ``h`` seconds."""
+
+
+def go_on(world: Stepped, length: RunLength, done: int, stride: int) -> int:
+    """Go on with a run of which ``done`` steps are made, as far as one call goes; return how many it made."""
+    world.synchronise()
+    h = length.dt if done < length.whole else length.rest
+    if world.schedule.observer is not None:
+        return world.advance(h, 1)
+    wanted = stride - done % stride
+    count = max(1, min(wanted, length.whole - done))
+    best = world.stepper_for(h)
+    if not best.leaps:
+        return world.advance(h, count)
+    if isinstance(best, Flow) and best.whole and wanted >= length.steps - done:
+        return _leap(world, length.seconds - length.elapsed(done), 1, length.steps - done)
+    return _leap(world, h, count, count)
+
+
+def _leap(world: Stepped, h: float, parts: int, steps: int) -> int:
+    """Advance by ``parts`` times ``h`` at once, which count as ``steps``; return those.
+
+    Where that fails it is halved, until the one step that cannot be made is found; the world is then as it
+    was before that step.
+    """
+    try:
+        made = world.advance(h, parts)
+        world.steps += steps - made
+        return steps
+    except Diverged:
+        if steps == 1:
+            raise
+    first, start = steps // 2, world.time
+    halves = ((h, first, first), (h, parts - first, steps - first))
+    if parts == 1:
+        own = first * world.simulation.dt
+        halves = ((own, 1, first), (h - own, 1, steps - first))
+    for span, count, counted in halves:
+        world.synchronise()
+        _leap(world, span, count, counted)
+        world.time += span * count
+    world.time = start
+    return steps

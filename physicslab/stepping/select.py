@@ -46,6 +46,11 @@ def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Stepper
     state.bodies.sub_integrated[:] = False
     state.window = plan.stages.window
     state.kick_before_contacts = plan.kick_before_contacts
+    others = [system for system in schedule.running if not system.is_engine]
+    state.sleep.acted_upon = any(system.acts_within_step() for system in others)
+    state.sleep.has_external_writers = any(
+        system.acts_within_step() or system.observes() for system in others
+    )
     usable: list[Stepper] = []
     left_out: list[LeftOut] = []
     for kind in STEPPERS:
