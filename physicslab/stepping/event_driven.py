@@ -218,7 +218,8 @@ class EventDriven:
             advanced = _copied(state)
             if elapsed < span:
                 state.collisions -= impact_count
-                state.contacts.forget_impacts(logged, impact_count)
+                if state.contacts.read:
+                    state.contacts.forget_impacts(logged, impact_count)
                 _restore(state, before)
                 _restore_contacts(state, pairs, kept)
                 after = self._rest(state, pairs, state.time + offset, elapsed, dt)

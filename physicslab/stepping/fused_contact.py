@@ -180,7 +180,7 @@ class FusedContact:
         damping, bounds = laws
         return (
             *motion, sleepers, damping, self._broad_phase.fat, bounds, near_in(state), contacts.opened,
-            self._resolve.softness(1.0), contacts.impulse_dt, contacts.log, self._cost,
+            self._resolve.softness(1.0), contacts.impulse_dt, contacts.step_log, self._cost,
         )  # fmt: skip
 
     def _fixed_arguments(self, state: State, h: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:

@@ -70,7 +70,7 @@ class ResolveSystem(System):
         start, end = state.window
         state.collisions += entries.impact_stage(
             near_in(state), motion_of(state), inverse_in(state), acting_in(state),
-            state.contacts.log, state.moment, h, start * h, end * h,
+            state.contacts.step_log, state.moment, h, start * h, end * h,
         )  # fmt: skip
 
     @at(Stage.SOLVE)

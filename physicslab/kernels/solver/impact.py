@@ -196,7 +196,7 @@ def _resolve_pair(
         _hit(manifold, one, j1, v1, linear, angular, inverse_mass, inverse_inertia)
     if j2 > 0.0:
         _hit(manifold, two, j2, v2, linear, angular, inverse_mass, inverse_inertia)
-    if j1 > 0.0 or j2 > 0.0:
+    if (j1 > 0.0 or j2 > 0.0) and len(log) > 0:
         where, approach = (one, v1) if j1 >= j2 else (two, v2)
         x, y = position[b, 0] + t * before[3], position[b, 1] + t * before[4]
         write_impact(
@@ -265,7 +265,8 @@ def resolve_impacts(
     resting contact, which the solver handles. Pairs are resolved one after the other, in order, until none
     meets any more; inelastic ones only once, for the solver removes what is left of their approach.
 
-    Impacts go into ``log`` from number ``logged`` on, with times from ``time`` [s], which is now.
+    Impacts go into ``log``, unless it has no length, from number ``logged`` on, with times from ``time`` [s],
+    which is now.
     """
     impacts, left = 0, count
     earliest = start - 2.0 * (end - start) if has_forces else -math.inf  # without forces there are no piles

@@ -102,7 +102,7 @@ def resolve_all_impacts(
             log.impacts, counts[LOGGED], log.time,
         )  # fmt: skip
         impacts += came
-        counts[LOGGED] += came
+        counts[LOGGED] += came if len(log.impacts) > 0 else 0
         before = counts[ACTIVE]
         if came > 0 and counts[WIDE_COUNT] > 0:
             for kind in (DISC, BOX):

@@ -36,6 +36,7 @@ class ImpactReader:
         """Begin with the next impact of ``state``, unless it is the world that is read already."""
         if state is not self._state:
             self._state, self._read = state, state.contacts.logged
+            state.contacts.read = True
 
     def new(self, state: State) -> NDArray[Any]:
         """Return the impacts since the last call, oldest first: an array of IMPACT (n,).
