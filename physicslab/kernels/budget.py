@@ -21,10 +21,12 @@ from physicslab.kernels.keys import platform_key
 from physicslab.kernels.loading import load, prepare
 from physicslab.kernels.warm import load_all, mark_warm, name_of, rank_of
 
-__all__ = ["LIMIT_EACH_S", "LIMIT_TOTAL_S", "check", "measure", "table"]
+__all__ = ["LIMIT_EACH_S", "LIMIT_TOTAL_S", "NOISE", "check", "measure", "table"]
 
 LIMIT_TOTAL_S = 50.0
 LIMIT_EACH_S = 5.0
+NOISE = 1.3
+"""On a busy machine the same kernel has taken up to so many times the processor time: only more fails."""
 
 
 def measure() -> list[tuple[float, str]]:
