@@ -171,8 +171,7 @@ def chain(masses: list[float], places: list[float], speeds: list[float], seconds
     m = np.array(masses)
     while True:
         gap, closing = np.diff(x), -np.diff(v)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            with np.errstate(over="ignore"):  # of speeds near the smallest number
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # some speeds are all but none
             due = np.where(closing > 1e-13, np.maximum(gap, 0.0) / closing, np.inf)
         k = int(np.argmin(due))
         if due[k] > left:
@@ -195,7 +194,7 @@ def test_chains_of_unequal_masses(bodies: list[tuple[float, float, float]]) -> N
     discs = [
         disc(world, x + i, v, mass=m) for i, (m, x, v) in enumerate(zip(masses, places, speeds, strict=True))
     ]
-    seconds = 1.987654321  # an impact at the very end belongs to the next step, and to this one in the reference
+    seconds = 1.987654321  # an impact at the very end is of the next step here, of this one in the reference
     world.run(seconds=seconds)
     after = chain(masses, places.tolist(), speeds, seconds)
     assert [speed(world, each) for each in discs] == pytest.approx(after, abs=1e-10)
