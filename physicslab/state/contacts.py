@@ -152,14 +152,7 @@ class Contacts:
         """Write slots into the records of their pairs, if they are newer."""
         if not self._synced:
             for constraints in self.wide.kinds:
-                slots.store(
-                    constraints.data,
-                    constraints.rows,
-                    constraints.count,
-                    constraints.pair,
-                    self.manifolds,
-                    self.points,
-                )
+                slots.store(constraints.slots, constraints.count, self.manifolds, self.points)
             self._synced = True
 
     def dissolve(self, rows: int) -> None:
@@ -198,7 +191,7 @@ class Contacts:
         """Write the slots of sleeping bodies to their records and empty them."""
         if self.wide.filled:
             self.wide.filled -= sum(
-                slots.release(*constraints.layout, self.manifolds, self.points, asleep)
+                slots.release(constraints.slots, constraints.count, self.manifolds, self.points, asleep)
                 for constraints in self.wide.kinds
             )
 

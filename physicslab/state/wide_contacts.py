@@ -6,12 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels.wide import graph_colour, refresh, restore_slots, slots
-from physicslab.kernels.wide.layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE
-from physicslab.kernels.wide.slots import Slots
+from physicslab.kernels.wide.layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE, SlotsTuple
 
 __all__ = ["WideConstraints", "WideContacts"]
 
-type _Numbers = NDArray[np.float64]
 type _Rows = NDArray[np.int64]
 
 
@@ -72,19 +70,9 @@ class WideConstraints:
         graph_colour.sort_blocks(self.count, self.colour, self.order)
 
     @property
-    def slots(self) -> Slots:
-        """The arguments of kernels that count the blocks themselves."""
-        return self.data, self.a, self.b, self.pair, self.colour, self.used, self.order
-
-    @property
-    def layout(self) -> tuple[int, _Numbers, int, _Rows, _Rows, _Rows, _Rows, NDArray[np.uint64]]:
-        """The arguments of kernels that fill or empty slots."""
-        return self.kind, self.data, self.count, self.a, self.b, self.pair, self.colour, self.used
-
-    @property
-    def solved(self) -> tuple[_Numbers, int, _Rows, _Rows, _Rows]:
-        """The arguments of kernels that only change impulses."""
-        return self.data, self.count, self.order, self.a, self.b
+    def slots(self) -> SlotsTuple:
+        """The arguments of kernels."""
+        return self.kind, self.data, self.a, self.b, self.pair, self.colour, self.used, self.order
 
 
 class WideContacts:
