@@ -10,11 +10,11 @@ from physicslab.stepping.contact import Contact
 from physicslab.stepping.event_driven import EventDriven
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.fused_contact import FusedContact
-from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.plan import StepPlan, choose_plan
 from physicslab.stepping.stepper import Stepper
 from physicslab.systems.schedule import LeftOut, Schedule
 
-__all__ = ["STEPPERS", "Steppers", "select_steppers"]
+__all__ = ["STEPPERS", "Steppers", "choose", "remake", "select_steppers"]
 
 STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, FusedContact, Contact)
 """All of them, the best first. The last can advance any world."""
@@ -35,6 +35,12 @@ class Steppers:
         """Return the best of them for awake bodies and steps of the scene's own length, for reports."""
         awake = [stepper for stepper in self.usable if not isinstance(stepper, Asleep)]
         return next(stepper for stepper in awake if stepper.ready(state, state.simulation.dt))
+
+    @property
+    def interpreted(self) -> tuple[str, ...]:
+        """The forces that Python computes, step for step, where a compiled loop could run."""
+        flows = (stepper for stepper in self.usable if isinstance(stepper, Flow))
+        return next((flow.interpreted for flow in flows), ())
 
     def hold(self, state: State) -> bool:
         """Whether the numbers that they were made from are still the same."""
@@ -62,3 +68,23 @@ def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Stepper
         if kind in (Flow, EventDriven) and reason is None:
             break
     return Steppers(tuple(usable), tuple(left_out))
+
+
+def choose(state: State, schedule: Schedule) -> tuple[StepPlan, Steppers]:
+    """Choose the method and the steppers for the systems that run."""
+    before = state.event_driven
+    plan = choose_plan(state, schedule)
+    state.event_driven = plan.collisions == "exact"
+    state.contacts.stale |= before or state.event_driven
+    return plan, select_steppers(state, schedule, plan)
+
+
+def remake(state: State, schedule: Schedule) -> tuple[StepPlan, Steppers]:
+    """Choose systems, method and steppers; whether bodies may sleep depends on how collisions are found."""
+    while True:
+        before = state.event_driven
+        schedule.remake(state)
+        state.has_forces = bool(schedule.forces)
+        chosen = choose(state, schedule)
+        if state.event_driven == before:
+            return chosen

@@ -79,7 +79,7 @@ def _too_far(
     return bool(clear > margin + speculative_margin)
 
 
-@inlined
+@fused
 def _look_up(
     manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, sizes: Sizes,
     speculative_margin: float,
@@ -120,7 +120,7 @@ def _look_up(
     return _OUTDATED
 
 
-@inlined
+@fused
 def _touch(
     manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, sizes: Sizes, bounds: Bounds,
     h: float, start: float, speculative_margin: float,
@@ -152,7 +152,7 @@ def _put_last(touching: Rows, found: int, held: int, count: int) -> int:
     return found + at_end
 
 
-@inlined
+@fused
 def find_contacts(
     near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
     first: bool, h: float, start: float, speculative_margin: float,

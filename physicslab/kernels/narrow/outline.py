@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, inlined
+from physicslab.kernels import Numbers, fused
 from physicslab.kernels.arguments import Sizes
 
 __all__ = ["Outline", "Way", "outline_of"]
@@ -29,7 +29,7 @@ class Way(NamedTuple):
     uy: float
 
 
-@inlined
+@fused
 def outline_of(i: int, angle: Numbers, sizes: Sizes) -> Outline:
     """Return the outline of row i."""
     box = sizes.kind[i] == 2

@@ -3,12 +3,11 @@
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import inlined
-from physicslab.kernels.arguments import Acting, Inverse, Log, Motion, Near
+from physicslab.kernels import fused, inlined
+from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.impact_log import write_impact
 from physicslab.kernels.solver.impulse import apply_impulse, follow_drift, relative_velocity
-from physicslab.kernels.wide.slots import ACTIVE
 
 __all__ = ["bounce", "friction_impulse", "resolve_impacts"]
 
@@ -199,7 +198,7 @@ def _resolve_pair(
     return j1 > 0.0 or j2 > 0.0
 
 
-@inlined
+@fused
 def _forced(
     manifold: Manifold, motion: Motion, inverse: Inverse, acting: Acting, h: float
 ) -> tuple[float, float]:
@@ -216,9 +215,9 @@ def _forced(
     return pull, 1e-9 * speed + 2.0 * h * strongest
 
 
-@inlined
+@fused
 def _resolve_once(
-    near: Near, motion: Motion, inverse: Inverse, acting: Acting, log: Log, logged: int, h: float,
+    contacts: Contacts, motion: Motion, inverse: Inverse, acting: Acting, log: Log, logged: int, h: float,
     window: Window, again: bool,
 ) -> tuple[int, int]:  # fmt: skip
     """Resolve the pairs one after the other; return how many bounced, and how many are left to the solver.
@@ -226,15 +225,15 @@ def _resolve_once(
     Inelastic ones are resolved once, and not ``again``.
     """
     bounced, left = 0, 0
-    for k in range(near.counts[ACTIVE]):
-        p = near.touching[k]
-        manifold = near.manifolds[p]
+    for k in range(contacts.count):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         if again and manifold.restitution == 0.0:
             left += 1
             continue
         # Most pairs rest: these are handled here without a call.
         a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-        one, two = near.points[2 * p], near.points[2 * p + 1]
+        one, two = contacts.points[2 * p], contacts.points[2 * p + 1]
         one.ahead = two.ahead = 0
         vx, vy = relative_velocity(one, a, b, motion)
         v1, v2 = vx * nx + vy * ny, 0.0
@@ -262,7 +261,7 @@ def _resolve_once(
 
 @inlined
 def resolve_impacts(
-    near: Near, motion: Motion, inverse: Inverse, acting: Acting, log: Log, logged: int,
+    contacts: Contacts, motion: Motion, inverse: Inverse, acting: Acting, log: Log, logged: int,
     h: float, start: float, end: float,
 ) -> tuple[int, int]:  # fmt: skip
     """Bounce the pairs that meet in this substep, each at its own time.
@@ -279,33 +278,33 @@ def resolve_impacts(
     Impacts go into ``log``, unless it has no length, from number ``logged`` on. Returns how many there were,
     and how many pairs are left to the solver.
     """
-    impacts, left = 0, near.counts[ACTIVE]
+    impacts, left = 0, contacts.count
     # Without forces there are no piles.
     window = Window(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     for sweep in range(_MAX_SWEEPS):
         bounced, left = _resolve_once(
-            near, motion, inverse, acting, log, logged + impacts, h, window, sweep > 0
+            contacts, motion, inverse, acting, log, logged + impacts, h, window, sweep > 0
         )
         impacts += bounced
         if bounced == 0:
             break
     if impacts:
-        _measure_again(near, motion)
+        _measure_again(contacts, motion)
     if left == 0:
-        follow_drift(near, motion, end)
+        follow_drift(contacts, motion, end)
     return impacts, left
 
 
 @inlined
-def _measure_again(near: Near, motion: Motion) -> None:
+def _measure_again(contacts: Contacts, motion: Motion) -> None:
     """Bring separations up to date after impacts have moved bodies."""
     position = motion.position
-    for k in range(near.counts[ACTIVE]):
-        p = near.touching[k]
-        manifold = near.manifolds[p]
+    for k in range(contacts.count):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         x = position[manifold.b, 0] - position[manifold.a, 0]
         y = position[manifold.b, 1] - position[manifold.a, 1]
         moved = (x - manifold.offset_x) * manifold.normal_x + (y - manifold.offset_y) * manifold.normal_y
         for j in range(2 * p, 2 * p + manifold.count):
-            near.points[j].separation += moved
+            contacts.points[j].separation += moved
         manifold.offset_x, manifold.offset_y = x, y

@@ -2,10 +2,10 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
-from physicslab.kernels.arguments import Acting, Inverse, Motion, Near, Softness
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, fused, inlined, kernel
+from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
-from physicslab.kernels.wide.slots import ACTIVE
+from physicslab.kernels.wide.slots import WIDE_COUNT
 from physicslab.kernels.wide.solve import SoftConstraint, soft_normal_impulse, sweep_wide, warm_start_wide
 
 __all__ = [
@@ -46,12 +46,12 @@ def relative_velocity(point: Point, a: int, b: int, motion: Motion) -> tuple[flo
 
 
 @inlined
-def _sweep(near: Near, motion: Motion, inverse: Inverse, soft: SoftConstraint) -> None:
+def _sweep(contacts: Contacts, motion: Motion, inverse: Inverse, soft: SoftConstraint) -> None:
     """Solve all contacts once; friction is limited by the newest normal impulse."""
-    points, linear, angular = near.points, motion.linear, motion.angular
-    for k in range(near.counts[ACTIVE]):
-        p = near.touching[k]
-        manifold = near.manifolds[p]
+    points, linear, angular = contacts.points, motion.linear, motion.angular
+    for k in range(contacts.count):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         a, b = manifold.a, manifold.b
         nx, ny = manifold.normal_x, manifold.normal_y
         ma, mb, ia, ib = inverse.mass[a], inverse.mass[b], inverse.inertia[a], inverse.inertia[b]
@@ -87,15 +87,15 @@ def _sweep(near: Near, motion: Motion, inverse: Inverse, soft: SoftConstraint) -
         linear[b, 0], linear[b, 1], angular[b] = vbx, vby, wb
 
 
-@inlined
-def _warm_start(near: Near, motion: Motion, inverse: Inverse, warm_start_scale: float) -> None:
+@fused
+def _warm_start(contacts: Contacts, motion: Motion, inverse: Inverse, warm_start_scale: float) -> None:
     """Apply the impulses of the last substep, ``warm_start_scale`` times as large, at scalar contacts."""
-    for k in range(near.counts[ACTIVE]):
-        p = near.touching[k]
-        manifold = near.manifolds[p]
+    for k in range(contacts.count):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         nx, ny = manifold.normal_x, manifold.normal_y
         for j in range(2 * p, 2 * p + manifold.count):
-            point = near.points[j]
+            point = contacts.points[j]
             if point.ahead:
                 point.normal_impulse = point.tangent_impulse = 0.0
                 continue
@@ -106,7 +106,7 @@ def _warm_start(near: Near, motion: Motion, inverse: Inverse, warm_start_scale: 
             apply_impulse(point, px, py, manifold.a, manifold.b, motion, inverse)
 
 
-@inlined
+@fused
 def _soft_constraint(softness: Softness, acting: Acting, h: float) -> SoftConstraint:
     """Return the contact spring of :class:`Softness`, integrated implicitly over h.
 
@@ -126,9 +126,9 @@ def _soft_constraint(softness: Softness, acting: Acting, h: float) -> SoftConstr
     )
 
 
-@inlined
+@fused
 def solve(
-    near: Near, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
+    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
     h: float, warm_start_scale: float, iterations: int,
 ) -> None:  # fmt: skip
     """Start from the last substep's impulses, then go through all contacts, correcting overlap.
@@ -136,37 +136,42 @@ def solve(
     ``warm_start_scale`` is the ratio of this substep to the last one: the impulses of resting contacts grow
     by that factor.
     """
-    _warm_start(near, motion, inverse, warm_start_scale)
-    warm_start_wide(near, motion, warm_start_scale)
+    _warm_start(contacts, motion, inverse, warm_start_scale)
+    if near.counts[WIDE_COUNT] > 0:
+        warm_start_wide(near, motion, warm_start_scale)
     soft = _soft_constraint(softness, acting, h)
     for _ in range(iterations):
-        _sweep(near, motion, inverse, soft)
-        sweep_wide(near, motion, 0.0, soft)
+        _sweep(contacts, motion, inverse, soft)
+        if near.counts[WIDE_COUNT] > 0:
+            sweep_wide(near, motion, 0.0, soft)
 
 
 @inlined
-def follow_drift(near: Near, motion: Motion, h: float) -> None:
+def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
     """Bring separations up to date for a drift of h at the present velocities."""
-    for k in range(near.counts[ACTIVE]):
-        p = near.touching[k]
-        manifold = near.manifolds[p]
+    for k in range(contacts.count):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         for j in range(2 * p, 2 * p + manifold.count):
-            point = near.points[j]
+            point = contacts.points[j]
             vx, vy = relative_velocity(point, manifold.a, manifold.b, motion)
             point.separation += h * (vx * manifold.normal_x + vy * manifold.normal_y)
 
 
-@inlined
-def relax(near: Near, motion: Motion, inverse: Inverse, h: float, iterations: int) -> None:
+@fused
+def relax(
+    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: float, iterations: int
+) -> None:
     """Go through all contacts without correction, so that pushing bodies apart leaves no velocity behind.
 
     ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call.
     """
-    follow_drift(near, motion, h)
+    follow_drift(contacts, motion, h)
     rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0), h
     for _ in range(iterations):
-        _sweep(near, motion, inverse, rigid)
-        sweep_wide(near, motion, drift, rigid)
+        _sweep(contacts, motion, inverse, rigid)
+        if near.counts[WIDE_COUNT] > 0:
+            sweep_wide(near, motion, drift, rigid)
         drift = 0.0
 
 
@@ -178,17 +183,17 @@ def _lowest(manifold: Manifold, points: Points, p: int) -> float:
 
 
 @inlined
-def _push_apart(near: Near, position: Vectors, before: Vectors, inverse_mass: Numbers) -> None:
+def _push_apart(contacts: Contacts, position: Vectors, before: Vectors, inverse_mass: Numbers) -> None:
     """Move the bodies of each pair that overlaps deeply apart, the lighter one further."""
-    for k in range(near.counts[ACTIVE]):
-        p = near.touching[k]
-        manifold = near.manifolds[p]
+    for k in range(contacts.count):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         if manifold.swept == 1:
             continue
         a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
         moved_x = position[b, 0] - before[b, 0] - position[a, 0] + before[a, 0]
         moved_y = position[b, 1] - before[b, 1] - position[a, 1] + before[a, 1]
-        depth = -(_lowest(manifold, near.points, p) + moved_x * nx + moved_y * ny) - _DEEP * manifold.size
+        depth = -(_lowest(manifold, contacts.points, p) + moved_x * nx + moved_y * ny) - _DEEP * manifold.size
         if depth > 0.0:
             share = 0.6 * depth / (inverse_mass[a] + inverse_mass[b])
             position[a, 0] -= share * inverse_mass[a] * nx
@@ -198,24 +203,24 @@ def _push_apart(near: Near, position: Vectors, before: Vectors, inverse_mass: Nu
 
 
 @inlined
-def _put_back(near: Near, position: Vectors, before: Vectors, inverse_mass: Numbers) -> None:
+def _put_back(contacts: Contacts, position: Vectors, before: Vectors, inverse_mass: Numbers) -> None:
     """Move what overlaps a fixed body, or the world's bounds, out of it."""
-    for k in range(near.counts[ACTIVE]):
-        p = near.touching[k]
-        manifold = near.manifolds[p]
+    for k in range(contacts.count):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
         if manifold.swept == 1 or (inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0):
             continue
         i, sign = (b, 1.0) if inverse_mass[b] > 0.0 else (a, -1.0)
         moved = sign * ((position[i, 0] - before[i, 0]) * nx + (position[i, 1] - before[i, 1]) * ny)
-        depth = -(_lowest(manifold, near.points, p) + moved) - _DEEP * manifold.size
+        depth = -(_lowest(manifold, contacts.points, p) + moved) - _DEEP * manifold.size
         if depth > 0.0:
             position[i, 0] += sign * depth * nx
             position[i, 1] += sign * depth * ny
 
 
 @allocating
-def separate(near: Near, position: Vectors, inverse_mass: Numbers, farthest: float) -> None:
+def separate(contacts: Contacts, position: Vectors, inverse_mass: Numbers, farthest: float) -> None:
     """Move bodies that overlap deeply apart, six tenths of the way and by at most ``farthest`` [m].
 
     Only positions change: however many bodies are on one spot, separating them gives them no speed. A body
@@ -223,22 +228,22 @@ def separate(near: Near, position: Vectors, inverse_mass: Numbers, farthest: flo
     press another one through a floor.
     """
     deep = False
-    for k in range(near.counts[ACTIVE]):
-        p = near.touching[k]
-        manifold = near.manifolds[p]
+    for k in range(contacts.count):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         for j in range(2 * p, 2 * p + manifold.count):
-            deep = deep or near.points[j].separation < -_DEEP * manifold.size
+            deep = deep or contacts.points[j].separation < -_DEEP * manifold.size
     if not deep:
         return
     before = position.copy()
-    _push_apart(near, position, before, inverse_mass)
+    _push_apart(contacts, position, before, inverse_mass)
     for i in range(len(inverse_mass)):
         x, y = position[i, 0] - before[i, 0], position[i, 1] - before[i, 1]
         way = math.sqrt(x * x + y * y)
         if way > farthest:
             position[i, 0] = before[i, 0] + x * farthest / way
             position[i, 1] = before[i, 1] + y * farthest / way
-    _put_back(near, position, before, inverse_mass)
+    _put_back(contacts, position, before, inverse_mass)
 
 
 @kernel

@@ -3,10 +3,11 @@
 Systems call them one by one through :mod:`physicslab.kernels.solver.entries`.
 """
 
-from physicslab.kernels import inlined
+from physicslab.kernels import fused, inlined
 from physicslab.kernels.arguments import (
     Acting,
     Bounds,
+    Contacts,
     Inverse,
     Log,
     Materials,
@@ -34,6 +35,12 @@ from physicslab.kernels.wide.slots import (
 )
 
 __all__ = ["find_touching", "press", "relax", "resolve_all_impacts"]
+
+
+@fused
+def _contacts(near: Near) -> Contacts:
+    """Return the scalar pairs that touch now."""
+    return Contacts(near.manifolds, near.points, near.touching, near.counts[ACTIVE])
 
 
 @inlined
@@ -79,7 +86,7 @@ def resolve_all_impacts(
     counts[LEFT] = 0
     while counts[ACTIVE] > 0:
         came, counts[LEFT] = resolve_impacts(
-            near, motion, inverse, acting, log, counts[LOGGED], h, start, end
+            _contacts(near), motion, inverse, acting, log, counts[LOGGED], h, start, end
         )
         impacts += came
         counts[LOGGED] += came if len(log.impacts) > 0 else 0
@@ -115,7 +122,7 @@ def press(
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return impulse_dt
     scale = _warm_start_scale(h, impulse_dt)
-    impulse.solve(near, motion, inverse, acting, softness, h, scale, iterations)
+    impulse.solve(_contacts(near), near, motion, inverse, acting, softness, h, scale, iterations)
     return h
 
 
@@ -126,5 +133,6 @@ def relax(
     """Remove the velocity that came from correcting overlap, ``h`` seconds after :func:`press`."""
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return
-    impulse.relax(near, motion, inverse, h, iterations)
-    impulse.separate(near, motion.position, inverse.mass, softness.max_push * h)
+    contacts = _contacts(near)
+    impulse.relax(contacts, near, motion, inverse, h, iterations)
+    impulse.separate(contacts, motion.position, inverse.mass, softness.max_push * h)
