@@ -3,7 +3,7 @@
 Systems call them one by one through :mod:`physicslab.kernels.solver.entries`.
 """
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import fused
 from physicslab.kernels.arguments import (
     Acting,
     Bounds,
@@ -43,7 +43,7 @@ def _contacts(near: Near) -> Contacts:
     return Contacts(near.manifolds, near.points, near.touching, near.counts[ACTIVE])
 
 
-@inlined
+@fused
 def find_touching(
     near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
     first: bool, h: float, start: float, speculative_margin: float,
@@ -74,7 +74,7 @@ def find_touching(
     )
 
 
-@inlined
+@fused
 def resolve_all_impacts(
     near: Near, motion: Motion, inverse: Inverse, acting: Acting, log: Log, h: float, start: float, end: float
 ) -> int:
@@ -101,7 +101,7 @@ def resolve_all_impacts(
     return impacts
 
 
-@inlined
+@fused
 def _warm_start_scale(h: float, impulse_dt: float) -> float:
     """Return the ratio of a substep to the time over which the points' impulses act.
 
@@ -110,7 +110,7 @@ def _warm_start_scale(h: float, impulse_dt: float) -> float:
     return h / max(impulse_dt, h / MAX_SUBSTEP_FACTOR) if impulse_dt > 0.0 else 1.0
 
 
-@inlined
+@fused
 def press(
     near: Near, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
     h: float, impulse_dt: float, iterations: int,
@@ -126,7 +126,7 @@ def press(
     return h
 
 
-@inlined
+@fused
 def relax(
     near: Near, motion: Motion, inverse: Inverse, softness: Softness, h: float, iterations: int
 ) -> None:
