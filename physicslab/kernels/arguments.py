@@ -94,7 +94,7 @@ class Contacts(NamedTuple):
     manifolds: Manifolds
     points: Points
     touching: Rows
-    count: int
+    number: int
 
 
 class Log(NamedTuple):

@@ -225,7 +225,7 @@ def _resolve_once(
     Inelastic ones are resolved once, and not ``again``.
     """
     bounced, left = 0, 0
-    for k in range(contacts.count):
+    for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         if again and manifold.restitution == 0.0:
@@ -278,7 +278,7 @@ def resolve_impacts(
     Impacts go into ``log``, unless it has no length, from number ``logged`` on. Returns how many there were,
     and how many pairs are left to the solver.
     """
-    impacts, left = 0, contacts.count
+    impacts, left = 0, contacts.number
     # Without forces there are no piles.
     window = Window(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     for sweep in range(_MAX_SWEEPS):
@@ -299,7 +299,7 @@ def resolve_impacts(
 def _measure_again(contacts: Contacts, motion: Motion) -> None:
     """Bring separations up to date after impacts have moved bodies."""
     position = motion.position
-    for k in range(contacts.count):
+    for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         x = position[manifold.b, 0] - position[manifold.a, 0]

@@ -49,7 +49,7 @@ def relative_velocity(point: Point, a: int, b: int, motion: Motion) -> tuple[flo
 def _sweep(contacts: Contacts, motion: Motion, inverse: Inverse, soft: SoftConstraint) -> None:
     """Solve all contacts once; friction is limited by the newest normal impulse."""
     points, linear, angular = contacts.points, motion.linear, motion.angular
-    for k in range(contacts.count):
+    for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         a, b = manifold.a, manifold.b
@@ -90,7 +90,7 @@ def _sweep(contacts: Contacts, motion: Motion, inverse: Inverse, soft: SoftConst
 @fused
 def _warm_start(contacts: Contacts, motion: Motion, inverse: Inverse, warm_start_scale: float) -> None:
     """Apply the impulses of the last substep, ``warm_start_scale`` times as large, at scalar contacts."""
-    for k in range(contacts.count):
+    for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         nx, ny = manifold.normal_x, manifold.normal_y
@@ -149,7 +149,7 @@ def solve(
 @inlined
 def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
     """Bring separations up to date for a drift of h at the present velocities."""
-    for k in range(contacts.count):
+    for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         for j in range(2 * p, 2 * p + manifold.count):
@@ -185,7 +185,7 @@ def _lowest(manifold: Manifold, points: Points, p: int) -> float:
 @inlined
 def _push_apart(contacts: Contacts, position: Vectors, before: Vectors, inverse_mass: Numbers) -> None:
     """Move the bodies of each pair that overlaps deeply apart, the lighter one further."""
-    for k in range(contacts.count):
+    for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         if manifold.swept == 1:
@@ -205,7 +205,7 @@ def _push_apart(contacts: Contacts, position: Vectors, before: Vectors, inverse_
 @inlined
 def _put_back(contacts: Contacts, position: Vectors, before: Vectors, inverse_mass: Numbers) -> None:
     """Move what overlaps a fixed body, or the world's bounds, out of it."""
-    for k in range(contacts.count):
+    for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
@@ -228,7 +228,7 @@ def separate(contacts: Contacts, position: Vectors, inverse_mass: Numbers, farth
     press another one through a floor.
     """
     deep = False
-    for k in range(contacts.count):
+    for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         for j in range(2 * p, 2 * p + manifold.count):
