@@ -152,7 +152,7 @@ def _put_last(touching: Rows, found: int, held: int, count: int) -> int:
     return found + at_end
 
 
-@fused
+@inlined
 def find_contacts(
     near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
     first: bool, h: float, start: float, speculative_margin: float,

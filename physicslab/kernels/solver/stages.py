@@ -3,7 +3,7 @@
 Systems call them one by one through :mod:`physicslab.kernels.solver.entries`.
 """
 
-from physicslab.kernels import fused
+from physicslab.kernels import fused, inlined
 from physicslab.kernels.arguments import (
     Acting,
     Bounds,
@@ -43,7 +43,7 @@ def _contacts(near: Near) -> Contacts:
     return Contacts(near.manifolds, near.points, near.touching, near.counts[ACTIVE])
 
 
-@fused
+@inlined
 def find_touching(
     near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
     first: bool, h: float, start: float, speculative_margin: float,
@@ -74,7 +74,7 @@ def find_touching(
     )
 
 
-@fused
+@inlined
 def resolve_all_impacts(
     near: Near, motion: Motion, inverse: Inverse, acting: Acting, log: Log, h: float, start: float, end: float
 ) -> int:
