@@ -251,7 +251,7 @@ class State:
         return self.entity_index.table(component)
 
     def batch(self, *components: type[Any]) -> Batch:
-        """Return the rows of the entities that have all of ``components`` now; within a step, at its start."""
+        """Return the rows of the entities that have all of ``components``; within a step, at its start."""
         if not self._stepping:
             with self.active():
                 self._follow()
