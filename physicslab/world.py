@@ -83,7 +83,6 @@ class World(State):
         self.plan: StepPlan = default_plan(self.simulation)
         self.steppers = Steppers((), ())
         self.stepper: Stepper | None = None
-        self._stepping = False
         self._motion = motion_of(self)
 
     # ---- time ----------------------------------------------------------------------------------------------
@@ -186,18 +185,24 @@ class World(State):
 
     def _synchronise(self) -> None:
         """Do so where this world's context is active and numpy gives no warnings."""
-        self._follow()
-        if not self._stepping:
-            self.generation += 1
-            derive_masses(self)
-            if not self.steppers.hold(self):
-                self._choose()
-            check_edits(self)
+        self._follow(numbers=True)
 
-    def _follow(self) -> None:
-        """Follow what changed in the structure of the world since the last call, if anything did."""
-        if not self._stepping and (self.entity_index.synchronise() or self._stale):
-            self._adapt()
+    def _follow(self, *, numbers: bool = False) -> None:
+        """Follow what changed in the structure of the world since the last call; in the numbers as well."""
+        if self._stepping:
+            return
+        self._stepping = True  # a batch that is taken meanwhile follows nothing
+        try:
+            if self.entity_index.synchronise() or self._stale:
+                self._adapt()
+            if numbers:
+                self.generation += 1
+                derive_masses(self)
+                if not self.steppers.hold(self):
+                    self._choose()
+                check_edits(self)
+        finally:
+            self._stepping = False
 
     @_quiet
     def _adapt(self) -> None:
@@ -235,7 +240,7 @@ class World(State):
 
     @property
     def interpreted(self) -> tuple[str, ...]:
-        """The forces that Python computes, step for step, where a compiled loop could run."""
+        """The forces that Python computes, call by call, where a compiled loop could run."""
         return self.steppers.interpreted
 
     @_quiet
