@@ -241,7 +241,7 @@ class World(State):
     @property
     def interpreted(self) -> tuple[str, ...]:
         """The forces that Python computes, call by call, where a compiled loop could run."""
-        return self.steppers.interpreted
+        return self.schedule.interpreted
 
     @_quiet
     def add_up_forces(self) -> None:

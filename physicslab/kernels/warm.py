@@ -27,6 +27,7 @@ _FIRST = (
     "raster",
     "motion",
     "energy",
+    "fat_boxes",
     "grid",
     "contact",
     "impact",

@@ -36,12 +36,6 @@ class Steppers:
         awake = [stepper for stepper in self.usable if not isinstance(stepper, Asleep)]
         return next(stepper for stepper in awake if stepper.ready(state, state.simulation.dt))
 
-    @property
-    def interpreted(self) -> tuple[str, ...]:
-        """The forces that Python computes, step for step, where a compiled loop could run."""
-        flows = (stepper for stepper in self.usable if isinstance(stepper, Flow))
-        return next((flow.interpreted for flow in flows), ())
-
     def hold(self, state: State) -> bool:
         """Whether the numbers that they were made from are still the same."""
         return all(stepper.holds(state) for stepper in self.usable)

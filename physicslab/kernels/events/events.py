@@ -9,7 +9,7 @@ are resolved one after the other until no pair approaches: a row of touching dis
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Rows, Vectors, inlined, kernel
+from physicslab.kernels import Rows, Vectors, fused, inlined, kernel
 from physicslab.kernels.arguments import (
     Bounds,
     BoundsTuple,
@@ -116,7 +116,7 @@ def _first(due: Vectors, count: int) -> int:
     return best
 
 
-@inlined
+@fused
 def _begin_all(flight: Flight, materials: Materials) -> tuple[int, float]:
     """Begin all paths; return OVERLAP if bodies overlap too deeply, and the speed that counts as none."""
     paths, mode, due, (position, angle, linear, _) = flight.paths, flight.mode, flight.due, flight.motion
@@ -137,7 +137,7 @@ def _begin_all(flight: Flight, materials: Materials) -> tuple[int, float]:
     return why, _MIN_SPEED_RATIO * fastest
 
 
-@inlined
+@fused
 def _meet(
     flight: Flight, p: int, log: Impacts, number: int, start: float, now: float, low: float, dt: float
 ) -> tuple[int, int]:
@@ -177,7 +177,7 @@ def _meet(
     return why, 1
 
 
-@inlined
+@fused
 def _end_all(flight: Flight, now: float, low: float) -> None:
     """Move all bodies to where they are at the time ``now + low``."""
     paths, (position, angle, linear, angular) = flight.paths, flight.motion
@@ -238,7 +238,7 @@ def run_events(
 
 
 @endless
-@inlined
+@fused
 def _predict_pairs(
     flight: Flight, first: int, second: int, now: float, low: float, span: float, min_speed: float
 ) -> None:

@@ -27,7 +27,7 @@ from physicslab.kernels.arguments import (
     SoftnessTuple,
     named_near,
 )
-from physicslab.kernels.broad.grid import still_holds
+from physicslab.kernels.broad.fat_boxes import still_holds
 from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.motion import clear, drift, find_not_finite, kick
 from physicslab.kernels.records import Impacts
