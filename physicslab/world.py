@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import sys
+import time
 from collections.abc import Iterator
 
 import numpy as np
@@ -162,13 +164,20 @@ class World(State):
             pass
 
     def stepping(
-        self, *, seconds: float | None = None, steps: int | None = None, stride: int = 1
+        self,
+        *,
+        seconds: float | None = None,
+        steps: int | None = None,
+        stride: int = 1,
+        patience: float = math.inf,
     ) -> Iterator[int]:
         """Advance like :meth:`run`, yielding the number of steps done after every ``stride`` steps.
 
-        The steps in between are one compiled loop where possible.
+        The steps in between are one compiled loop where possible. Where they are several calls, it yields
+        also after the first that ends more than ``patience`` seconds of wall clock after the last yield.
         """
         _STRIDE.check(stride)
+        due = time.monotonic() + patience
         length, start, done = run_length(self, seconds, steps), self.time, 0
         if not length.steps:
             self.time += length.seconds  # which is nothing, or too short for anything to move
@@ -181,8 +190,9 @@ class World(State):
                 self.time = start + (done + self.steps - before) * length.dt
                 raise
             self.time = start + length.elapsed(done)
-            if done % stride == 0 or done == length.steps:
+            if done % stride == 0 or done == length.steps or time.monotonic() >= due:
                 yield done
+                due = time.monotonic() + patience
 
     # ---- structure -----------------------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@ import pytest
 
 from physicslab.cli import main
 from physicslab.commands.step_watch import StepWatch
+from physicslab.components import Transform
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene
 from physicslab.world import World
@@ -52,6 +53,25 @@ def test_a_run_within_its_budget_is_as_any_other(capsys: pytest.CaptureFixture[s
     one, two = (json.loads(Path(name).read_text()) for name in ("0.json", "2.json"))
     assert one["entities"] == two["entities"] and one["steps"] == two["steps"] == 180
     assert "stopped" not in two
+
+
+def test_it_stops_within_a_second_however_long_the_run_is() -> None:
+    load_scene("gas").run(steps=2)  # kernels are there
+    assert main(["run", "gas", "--seconds", "1e8", "--at-most", "0.5", "--json", "o.json"]) == 1
+    report = json.loads(Path("o.json").read_text())
+    assert 0.3 < report["wall_s"] < 1.5
+    world = load_scene("gas")
+    world.run(steps=report["steps"])
+    places = [report["entities"][world.label(entity)]["position"] for entity in world.entities()]
+    assert places == [list(world.component(entity, Transform).position) for entity in world.entities()]
+
+
+@pytest.mark.parametrize(("scene", "seconds"), [("pendulum", "50"), ("drop", "50"), ("stack", "30")])
+def test_a_budget_changes_no_bit(scene: str, seconds: str) -> None:
+    for name, budget in (("none", []), ("some", ["--at-most", "100"])):
+        assert main(["run", scene, "--seconds", seconds, "--json", f"{name}.json", *budget]) == 0
+    none, some = (json.loads(Path(f"{name}.json").read_text()) for name in ("none", "some"))
+    assert none["entities"] == some["entities"] and none["energy"] == some["energy"]
 
 
 @pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "soon"])

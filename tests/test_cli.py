@@ -18,7 +18,8 @@ import pytest
 
 import physicslab
 from physicslab import cli, load_scene, save_scene
-from physicslab.commands import COMMANDS, progress, run
+from physicslab.commands import COMMANDS, progress
+from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
 from physicslab.diagnostics.run_report import find_not_finite
 from physicslab.lab.accuracy.catalogue import PROBLEMS
@@ -51,9 +52,9 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
     assert list(report) == [
         "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason",
         "collision_method", "collision_reason", "summation", "interpreted", "force_evaluations", "wall_s",
-        "compile_s", "stepper", "steppers_left_out", "systems", "left_out", "energy", "momentum",
-        "angular_momentum", "candidate_pairs", "contacts", "asleep", "collisions", "max_penetration",
-        "divided", "advice", "entities",
+        "compile_s", "interpreted_steps", "interpreted_s", "stepper", "steppers_left_out",
+        "systems", "left_out", "energy", "momentum", "angular_momentum", "candidate_pairs", "contacts",
+        "asleep", "collisions", "max_penetration", "divided", "advice", "entities",
     ]  # fmt: skip
     assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
     assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "exact")
@@ -314,7 +315,7 @@ def test_an_interrupted_run_ends_quietly(
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(run, "_measure", interrupt)
+    monkeypatch.setattr(MeasuredRun, "_measure", interrupt)
     path = tmp_path / "run.json"
     assert complaint(capsys, "run", "drop", "--json", str(path), status=130) == "interrupted"
     assert os.listdir(tmp_path) == []

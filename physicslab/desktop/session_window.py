@@ -90,7 +90,7 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
     while not window.closing:
         sandbox.frame(elapsed)
         compiling.advance(window.theme)
-        window.pace.max_dt = compiling.scenes.made_up_for(window.config.max_dt)
+        window.pace.max_dt = compiling.time_for_steps(window.config.max_dt)
         display.title = _title(sandbox.world)
         if window.wants_screenshot:
             window.wants_screenshot = False
