@@ -11,9 +11,9 @@ as a user does, and prints for each run and as medians, wall and CPU time [s] si
 - slowest: the longest time [ms] between two pictures from then on, and how many exceeded 33 ms
 
 ``--cold`` gives each run a cache of its own that is empty, as on the first launch: of kernels, and of
-Python's bytecode, numba's included; wall times are those of an idle machine only where the load average
-[processes], which is printed before each run, is near 0. Without it a run before the counted ones fills both. SDL's dummy driver
-takes the picture unless SDL_VIDEODRIVER says otherwise.
+Python's bytecode, numba's included. Without it a run before the counted ones fills both. SDL's dummy driver
+takes the picture unless SDL_VIDEODRIVER says otherwise. The load average before each run is printed: wall
+times are those of an idle machine only where it is near 0, CPU times nearly so.
 """
 
 from __future__ import annotations

@@ -151,7 +151,8 @@ class Compiling:
         """Show in a corner how far it is, and load a kernel if this frame has time left for it."""
         self._frames += 1
         self._theme = theme
-        if self._warmup is not None and not self._warmup.finished and self._frames >= _UNDISTURBED:
+        compiles = self._started or self._frames >= _UNDISTURBED
+        if self._warmup is not None and compiles and not self._warmup.finished:
             self._progress = self._start().poll()
             self._warmup.yield_to_others(True)
             share = self._progress.done / self._progress.total

@@ -123,7 +123,7 @@ class FusedContact:
         self._broad_phase.follow_rows(state)
         self._contact.begin_step(state)
         made, substep, stage, wanted = 0, 0, fused.BEGIN, steps
-        steps, began = min(steps, self._max_steps), working_ns()
+        steps, began = min(steps, self._max_steps), working_ns() if steps > 1 else 0
         try:
             while made < steps:
                 why, done, substep = self._advance(state, made, steps - made, substep, stage, h)
