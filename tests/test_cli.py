@@ -309,6 +309,12 @@ def test_how_collisions_are_found_is_said_with_the_reason(
     assert (report["collision_method"], report["collision_reason"]) == ("none", "nothing can touch")
 
 
+def test_a_run_of_no_steps_writes_the_start(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    table = tmp_path / "run.csv"
+    assert document(capsys, "run", "drop", "--steps", "0", "--csv", str(table))["steps"] == 0
+    assert table.read_text().count("\n") == 3
+
+
 def test_an_interrupted_run_ends_quietly(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -88,8 +88,9 @@ class MeasuredRun:
         stride = 1 if self._trajectory is not None else self._stride(whole)
         patience = math.inf if self._at_most is None else _PATIENCE_S
         stepping = world.stepping(seconds=seconds, steps=steps, stride=stride, patience=patience)
-        often = _SAMPLES if self._trajectory is None else whole
-        self._measure_every, self._look_every = (max(1, whole // (stride * n)) for n in (often, _LOOKS))
+        self._measure_every, self._look_every = (max(1, whole // (stride * n)) for n in (_SAMPLES, _LOOKS))
+        if self._trajectory is not None:
+            self._measure_every = 1
         progress = Progress(self._label, sys.stderr)
         try:
             self._write()
