@@ -286,6 +286,16 @@ def test_what_is_waited_for_is_there_before_the_rest(mark: Path, monkeypatch: py
         assert DARK.panel in corner
 
 
+def test_a_worker_that_ends_before_it_is_given_anything_is_no_error(mark: Path) -> None:
+    warmup = Warmup(1, (sys.executable, "-c", "pass"))
+    process = subprocess.Popen(
+        (sys.executable, "-c", "pass"), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
+    )
+    process.wait()
+    warmup._employ(process)
+    assert process.stdin is not None and process.stdin.closed
+
+
 def test_nothing_is_compiled_before_the_first_frames(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """On two processors two compilers would make the first picture that moves half as fast again."""
     monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, ASLEEP))
