@@ -16,7 +16,7 @@ from physicslab.state.masses import Diverged, derive_masses
 from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.forces import add_up_forces
-from physicslab.stepping.plan import StepPlan, choose_plan, default_plan
+from physicslab.stepping.plan import StepPlan, choose_plan, default_plan, resumed_plan
 from physicslab.stepping.run import go_on, run_length
 from physicslab.stepping.select import Steppers, select_steppers
 from physicslab.stepping.stepper import Stepper
@@ -150,7 +150,8 @@ class World(State):
         self.force_evaluations, self.collisions, self.contacts.logged = self.checkpoint.counts
         self.contacts.clear()  # what a failed step left there may not be finite either
         wake_all(self)  # no contact supports any body now
-        self._stale = True  # steppers hold numbers of the step that failed
+        # Steppers hold numbers of the step that failed.
+        self._stale = self.entity_index.motion_edited = True
 
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.
@@ -223,7 +224,8 @@ class World(State):
             check_edits(self)
             self._remake()
             self.revision += 1
-            self._stale = False
+            self.motion_edits += self.entity_index.motion_edited
+            self._stale = self.entity_index.motion_edited = False
             if not self.entity_index.synchronise():
                 return
 
@@ -233,14 +235,24 @@ class World(State):
             event_driven = self.event_driven
             self.schedule.remake(self)
             self.has_forces = bool(self.schedule.forces)
-            self._choose()
+            self._choose(again=self.entity_index.motion_edited)
             if event_driven == self.event_driven:
                 return
 
-    def _choose(self) -> None:
-        """Choose method and steppers for what there is."""
+    def _choose(self, *, again: bool = True) -> None:
+        """Choose steppers for what there is, and the method, if it is to be chosen ``again``."""
+        if again:
+            self.plan = choose_plan(self, self.schedule)
+        self._take_plan()
+
+    def resume(self, collisions: str, method: str, steps: int) -> None:
+        """Go on with what was chosen before this world was saved (:attr:`StepPlan.kept`), where possible."""
+        self.plan = resumed_plan(self, self.schedule, (collisions, method, steps))
+        self._take_plan()
+
+    def _take_plan(self) -> None:
+        """Choose the steppers that the plan allows."""
         before = self.event_driven
-        self.plan = choose_plan(self, self.schedule)
         self.event_driven = self.plan.collisions == "exact"
         self.steppers = select_steppers(self, self.schedule, self.plan)
         self.contacts.stale |= before or self.event_driven
@@ -252,6 +264,7 @@ class World(State):
         again.
         """
         self.revision += 1
+        self.motion_edits += 1
 
     def install(self, *systems: System) -> None:
         """Add systems to this world, after those of the same stage.
@@ -260,6 +273,7 @@ class World(State):
         """
         self.schedule.extend(systems)
         self._stale = True
+        self.entity_index.motion_edited |= any(system.acts_within_step() for system in systems)
 
     # ---- looking -------------------------------------------------------------------------------------------
 

@@ -1,6 +1,7 @@
 """What an entity is called."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from physicslab.ecs.text import has_width, is_line
 
@@ -12,6 +13,7 @@ _LONGEST = 200
 class Name:
     """The id of an entity in scene files and reports. A plain esper component: words have no column."""
 
+    physical: ClassVar[bool] = False
     id: str
 
 

@@ -81,14 +81,18 @@ def scene_pieces(frozen: WorldSnapshot) -> Generator[None, None, dict[str, Any]]
 
 
 def _solver(frozen: WorldSnapshot) -> dict[str, Any]:
-    """Return for what time impulses stand, and how much finer the next step is, where not as asked."""
+    """Return the time over which impulses act, how much finer the next step is, and what was chosen before.
+
+    Each only where a world would not start so.
+    """
     contacts, simulation = frozen.contacts, frozen.simulation
     span = (
         {"span": contacts.impulse_dt}
         if contacts.impulse_dt not in (0.0, simulation.dt / simulation.substeps)
         else {}
     )
-    return span | ({"finer": contacts.substep_factor} if contacts.substep_factor != 1 else {})
+    finer = {"finer": contacts.substep_factor} if contacts.substep_factor != 1 else {}
+    return span | finer | ({"chosen": list(frozen.chosen)} if frozen.chosen is not None else {})
 
 
 def _saved(frozen: WorldSnapshot, entity: int) -> list[Component]:
