@@ -188,9 +188,10 @@ def _run(
                 record.warnings.add(watch.warnings)
                 return record, stopped
             samples += 1
-            if (slow := watch.note(done - record.steps, taken)) and sys.stderr is not None:
-                progress.clear()
-                print(f"physicslab: {label}: {slow}", file=sys.stderr, flush=True)
+            for line in (watch.note(done - record.steps, taken), watch.note_impacts()):
+                if line and sys.stderr is not None:
+                    progress.clear()
+                    print(f"physicslab: {label}: {line}", file=sys.stderr, flush=True)
             record.steps = done
             progress.show((world.time - start) / length)
             if arguments.at_most is not None and clock.seconds >= arguments.at_most:
