@@ -45,7 +45,10 @@ def _body(rng: random.Random, number: int, width: float, spread: float) -> dict[
         box = {"kind": "box", "width": rng.choice(sizes), "height": rng.choice(sizes)}
         body["Shape"] = rng.choice((circle, box))
     if rng.random() < 0.8:
-        bounciness, friction = rng.choice((0.0, 0.3, 0.8, 1.0, rng.random())), rng.choice((0.0, 0.3, 0.6, 10.0))
+        bounciness, friction = (
+            rng.choice((0.0, 0.3, 0.8, 1.0, rng.random())),
+            rng.choice((0.0, 0.3, 0.6, 10.0)),
+        )
         body["Material"] = {"restitution": bounciness, "friction": friction}
     if rng.random() < 0.05 and "Mass" in body:
         body["Drag"] = {"linear": rng.uniform(0.0, 3.0), "quadratic": rng.uniform(0.0, 3.0)}

@@ -7,7 +7,14 @@ from physicslab.kernels.broad.near_pairs import ACTIVATION_RATIO
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
-__all__ = ["CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "follow_pose", "mix"]
+__all__ = [
+    "CACHE_TOLERANCE",
+    "CACHE_TURN_TOLERANCE",
+    "effective_masses",
+    "find_contacts",
+    "follow_pose",
+    "mix",
+]
 
 CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found again."""
