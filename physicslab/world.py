@@ -9,7 +9,7 @@ import numpy as np
 
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows, wake_all
-from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
+from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import Diverged, derive_masses
@@ -29,7 +29,7 @@ __all__ = ["World"]
 _quiet = np.errstate(all="ignore")
 """An overflow becomes infinite, which is found and raised as :class:`Diverged`: numpy need not warn."""
 _go_on = _quiet(go_on)
-_STEP = Field("dt", "number", minimum=SHORTEST, unit="s", owner="step")
+_STEP = Field("dt", "number", minimum=MIN_TIME, unit="s", owner="step")
 _STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 
 

@@ -60,7 +60,7 @@ def test_a_budget_that_is_no_time_is_refused(value: str, capsys: pytest.CaptureF
     assert f"argument --at-most: '{value}': must be a finite number > 0 s" in capsys.readouterr().err
 
 
-def test_a_slow_step_is_told_once_with_its_place_and_its_reason() -> None:
+def test_a_slow_step_is_reported_once_with_its_place_and_its_reason() -> None:
     world = World(simulation=SimulationConfig(collisions="exact"))
     world.synchronise()
     watch = StepWatch(world)
@@ -99,7 +99,7 @@ def narrow() -> dict[str, Any]:
     }  # fmt: skip
 
 
-def test_run_tells_of_a_storm_of_impacts_within_one_of_many_compiled_steps(
+def test_run_reports_a_storm_of_impacts_within_one_of_many_compiled_steps(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     Path("narrow.json").write_text(json.dumps(narrow()))

@@ -14,7 +14,7 @@ from contextlib import nullcontext
 from pathlib import Path
 
 from physicslab.commands.command_error import FAILED, CommandError
-from physicslab.commands.numbers import MOST_STEPS, count, duration, positive_count, positive_duration
+from physicslab.commands.numbers import STEP_LIMIT, count, duration, positive_count, positive_duration
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.commands.step_watch import StepWatch
@@ -123,7 +123,7 @@ def _outputs(arguments: Namespace) -> dict[str, Output]:
 
 
 def _configure(world: World, arguments: Namespace) -> None:
-    """Step the world as the command line says, and prepare it, so that only the run itself is timed."""
+    """Configure the world by the command line, and prepare it, so that only the run itself is timed."""
     changes = {name: getattr(arguments, name) for name in ("dt", "substeps", "integrator")}
     changes = {name: value for name, value in changes.items() if value is not None}
     scene = shown(arguments.scene)
@@ -141,8 +141,8 @@ def _configure(world: World, arguments: Namespace) -> None:
             f"--steps {arguments.steps}: must take a finite time at {world.simulation.dt:g} s each"
         )
     seconds = _DEFAULT_S if arguments.seconds is None else arguments.seconds
-    if arguments.steps is None and seconds / world.simulation.dt > MOST_STEPS:
-        raise CommandError(f"--seconds {seconds:g}: must be at most {MOST_STEPS:g} steps of dt")
+    if arguments.steps is None and seconds / world.simulation.dt > STEP_LIMIT:
+        raise CommandError(f"--seconds {seconds:g}: must be at most {STEP_LIMIT:g} steps of dt")
 
 
 def _run(

@@ -21,7 +21,7 @@ _EVALUATIONS = 10_000.0
 
 
 class StepWatch:
-    """Notes how long steps take and how many impacts they hold; says where the first bad one is, and why.
+    """Notes how long steps take and how many impacts they hold; reports where the first bad one is, and why.
 
     Parameters
     ----------

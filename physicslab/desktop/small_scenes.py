@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["LARGEST", "LONGEST", "SmallScenes"]
+__all__ = ["ENTITY_LIMIT", "INTERPRETING_LIMIT", "SmallScenes"]
 
-LARGEST = 40
-"""So many entities a scene may have: forty boxes in a heap take 30 ms a step, ten bodies on ten springs 16,
+ENTITY_LIMIT = 40
+"""Largest number of entities of a scene: forty boxes in a heap take 30 ms a step, ten bodies on ten springs 16,
 alone on a core. Where bodies attract each other each counts twice: twenty take 26 ms, forty 300."""
-LONGEST = 0.5
+INTERPRETING_LIMIT = 0.5
 """What takes longer than this [s] to interpret, a call or several frames in turn, is waited for: until then
 slow frames, as on a machine that is busy, are better than half a minute without any."""
 _STEPS = 0.05
@@ -23,7 +23,7 @@ _IN_TURN = 4
 
 
 class SmallScenes:
-    """Says which kernels run as Python until they are compiled: those of a scene that is small.
+    """Finds which kernels run as Python until they are compiled: those of a scene that is small.
 
     It takes 0.2 to 30 ms a step, and no one need wait. What turns out to be slow, as a method that chooses
     its steps may be with few bodies too, is waited for from then on, until another scene is shown.
@@ -51,7 +51,7 @@ class SmallScenes:
         if world is None or self._slow:
             return False
         weight = 2 if world.physics.gravity_mode == "planet" else 1
-        return weight * len(list(world.entities())) <= LARGEST
+        return weight * len(list(world.entities())) <= ENTITY_LIMIT
 
     def interpret(self, missing: Sequence[Any]) -> Sequence[Any]:
         """Return which of the missing kernels are to be interpreted: all, or none."""
@@ -72,7 +72,7 @@ class SmallScenes:
 
     def notice(self, left: float) -> bool:
         """Return whether frames are too long, after one that was done ``left`` seconds before it was due."""
-        self._late = self._late + 1 if self.pending() and left < -LONGEST else 0
+        self._late = self._late + 1 if self.pending() and left < -INTERPRETING_LIMIT else 0
         return self._late >= _IN_TURN
 
     def made_up_for(self, longest: float) -> float:

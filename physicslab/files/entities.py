@@ -172,7 +172,7 @@ def _entity_of(name: object, ids: Mapping[str, int], where: str) -> int:
 
 
 def _check_together(components: Sequence[Component], entity: Mapping[str, Any], where: str) -> None:
-    """Check what no component can know of the others."""
+    """Check what concerns several components."""
     for kind in _NEED_TRANSFORM:
         name = kind.__name__
         if name in entity and Transform.__name__ not in entity:

@@ -10,7 +10,7 @@ import esper
 from physicslab.contacts.islands import restore_rests
 from physicslab.contacts.memory import restore_contacts
 from physicslab.ecs.component import Component, InvalidValue
-from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig, field_names
+from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.fields import Field
 from physicslab.files.checks import (
     SceneError,
@@ -32,11 +32,11 @@ from physicslab.world import World
 __all__ = ["FORMAT", "SceneDraft", "check_scene", "read_scene"]
 
 FORMAT = "physicslab-scene/1"
-"""What the key ``format`` of a scene says."""
+"""What the key ``format`` of a scene holds."""
 
-LONGEST_NAME = 1_000
+NAME_LIMIT = 1_000
 """Characters that the name of a scene may have."""
-LONGEST_TITLE = 200
+TITLE_LIMIT = 200
 """Characters that its title may have: it stands over the window, and on a line of the menu."""
 
 _KEYS = (
@@ -62,7 +62,7 @@ class SceneDraft:
     contacts : list of lists of numbers
         The contact solver's memory; the first two numbers of a row are entities, 0 for the bounds.
     rests : list of lists of numbers
-        Who sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
+        What sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
     solver : tuple of float, int and tuple
         The time over which the contacts' impulses act [s], the factor by which the coming step needs more
         substeps than configured, and what was chosen for an earlier state of motion, if anything was.
@@ -140,8 +140,8 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
     ids = check_ids(scene["entities"], source)
     simulation = _config(SimulationConfig, scene.get("simulation", {}), source)
     return SceneDraft(
-        name=checked_title(scene.get("name", ""), f"{source}: name", LONGEST_NAME),
-        title=checked_title(scene.get("title", ""), f"{source}: title", LONGEST_TITLE),
+        name=checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
+        title=checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
         description=checked_text(scene.get("description", ""), f"{source}: description", lines=True),
         time=_time(scene.get("time", 0.0), f"{source}: time"),
         physics=_config(PhysicsConfig, scene.get("physics", {}), source),
@@ -153,14 +153,14 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
     )
 
 
-_SPAN = Field("span", "number", unit="s", minimum=SHORTEST, owner="solver")
+_SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, owner="solver")
 _FINER = Field("finer", "whole", minimum=1, maximum=MAX_SUBSTEP_FACTOR, owner="solver")
 
 
 def _solver(
     value: Any, simulation: SimulationConfig, where: str
 ) -> tuple[float, int, tuple[str, str, int] | None]:
-    """Return what the solver takes from the last step; what is left out is as the simulation asks."""
+    """Return what the solver takes from the last step; what is left out is as configured."""
     found = checked_object(value, where, 'an object {"span": ..., "finer": ...}')
     checked_keys(found, f"{where}: ", "key", ("span", "finer", "chosen"))
     given: dict[str, Any] = {"span": simulation.dt / simulation.substeps, "finer": 1, **found}

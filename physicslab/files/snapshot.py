@@ -38,7 +38,7 @@ class WorldSnapshot:
     contacts : Contacts
         What the contact solver remembers.
     rests : list of lists
-        Who sleeps, and how long the others have rested.
+        What sleeps, and how long the others have rested.
     chosen : tuple, optional
         What was chosen for the motion as it once was, where it would not be chosen now.
     texts : dict of str to str
