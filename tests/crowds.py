@@ -1,4 +1,4 @@
-"""Random scenes of crowds: mixed shapes and materials in a small box, with fields, springs, drag and damping."""
+"""Random scenes of crowds: mixed shapes and materials in a small box, springs, drag and damping."""
 
 from __future__ import annotations
 

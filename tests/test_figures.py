@@ -138,7 +138,7 @@ def test_what_only_changes_the_picture_is_no_edit() -> None:
 def test_trails_are_no_edit_of_the_motion_and_its_energy_goes_on_being_measured() -> None:
     world = empty_world()
     circle(world, (0, 5))
-    desk, canvas = recorded(world)
+    desk, _ = recorded(world)
     desk.frames(30)
     plan, edits = world.plan, world.motion_edits
     watch = EnergyWatch()

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 __all__ = ["ENTITY_LIMIT", "INTERPRETING_LIMIT", "SmallScenes"]
 
 ENTITY_LIMIT = 40
-"""Largest number of entities of a scene: forty boxes in a heap take 30 ms a step, ten bodies on ten springs 16,
-alone on a core. Where bodies attract each other each counts twice: twenty take 26 ms, forty 300."""
+"""Largest number of entities of a scene: forty boxes in a heap take 30 ms a step, ten bodies on ten springs
+16, alone on a core. Where bodies attract each other each counts twice: twenty take 26 ms, forty 300."""
 INTERPRETING_LIMIT = 0.5
 """What takes longer than this [s] to interpret, a call or several frames in turn, is waited for: until then
 slow frames, as on a machine that is busy, are better than half a minute without any."""
