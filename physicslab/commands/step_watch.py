@@ -41,6 +41,7 @@ class StepWatch:
         self._worst = 0.0
         self._slow: ModelWarning | None = None
         self._storm: ModelWarning | None = None
+        self._most_impacts = 0
 
     @property
     def warnings(self) -> tuple[ModelWarning, ...]:
@@ -87,9 +88,9 @@ class StepWatch:
         counts = np.searchsorted(times, times + world.simulation.dt) - np.arange(len(times))
         begin = int(np.argmax(counts))
         count = int(counts[begin])
-        if count < max(STORM_LIMIT, self._storm.value + 1 if self._storm and self._storm.value else 0):
+        if count <= max(STORM_LIMIT, self._most_impacts):
             return ""
-        first, start = self._storm is None, float(times[begin])
+        first, start, self._most_impacts = self._storm is None, float(times[begin]), count
         within = (log["time"] >= start) & (log["time"] < start + world.simulation.dt)
         entities, often = np.unique(log["entity_b"][within], return_counts=True)
         name = world.label(int(entities[np.argmax(often)]))
