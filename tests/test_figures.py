@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from desk import FRAME, Desk, empty_world
+from recording import RecordingCanvas
 from test_hud import frame, recorded, row
 
 from physicslab.components import Drag, Mass, Spring, Trail, Transform, Velocity
@@ -14,7 +15,6 @@ from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle, pendulum
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.quantities import length_of, percentage, quantity, vector_quantity
 from physicslab.view.panels.figures import EnergyWatch
 from physicslab.view.panels.scale_bar import draw_scale_bar
