@@ -14,7 +14,6 @@ from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import Diverged, derive_masses
 from physicslab.state.state import State
-from physicslab.stepping.flow import Flow
 from physicslab.stepping.forces import add_up_forces
 from physicslab.stepping.plan import StepPlan, choose_plan, default_plan, resumed_plan
 from physicslab.stepping.run import go_on, run_length
@@ -84,7 +83,6 @@ class World(State):
         self.plan: StepPlan = default_plan(self.simulation)
         self.steppers = Steppers((), ())
         self.stepper: Stepper | None = None
-        self._stepping = False
         self._motion = motion_of(self)
 
     # ---- time ----------------------------------------------------------------------------------------------
@@ -199,18 +197,24 @@ class World(State):
 
     def _synchronise(self) -> None:
         """Do so where this world's context is active and numpy gives no warnings."""
-        self._follow()
-        if not self._stepping:
-            self.generation += 1
-            derive_masses(self)
-            if not self.steppers.hold(self):
-                self._choose()
-            check_edits(self)
+        self._follow(numbers=True)
 
-    def _follow(self) -> None:
-        """Follow what changed in the structure of the world since the last call, if anything did."""
-        if not self._stepping and (self.entity_index.synchronise() or self._stale):
-            self._adapt()
+    def _follow(self, *, numbers: bool = False) -> None:
+        """Follow what changed in the structure of the world since the last call; in the numbers as well."""
+        if self._stepping:
+            return
+        self._stepping = True  # a batch that is taken meanwhile follows nothing
+        try:
+            if self.entity_index.synchronise() or self._stale:
+                self._adapt()
+            if numbers:
+                self.generation += 1
+                derive_masses(self)
+                if not self.steppers.hold(self):
+                    self._choose()
+                check_edits(self)
+        finally:
+            self._stepping = False
 
     @_quiet
     def _adapt(self) -> None:
@@ -279,9 +283,8 @@ class World(State):
 
     @property
     def interpreted(self) -> tuple[str, ...]:
-        """The forces that Python computes, step for step, where a compiled loop could run."""
-        flows = (stepper for stepper in self.steppers.usable if isinstance(stepper, Flow))
-        return next((flow.interpreted for flow in flows), ())
+        """The forces that Python computes, call by call, where a compiled loop could run."""
+        return self.schedule.interpreted
 
     @_quiet
     def add_up_forces(self) -> None:

@@ -1,5 +1,6 @@
 """The accuracy lab: references, orders, verdicts, thresholds reached, and the command."""
 
+import dataclasses
 import json
 import math
 from collections.abc import Callable
@@ -16,6 +17,7 @@ from physicslab.lab.accuracy.chaos import crowd
 from physicslab.lab.accuracy.document import document
 from physicslab.lab.accuracy.figures import digits, number, record
 from physicslab.lab.accuracy.measure import measure
+from physicslab.lab.accuracy.plot import method_styles
 from physicslab.lab.accuracy.settings import Setting, ladder, refusal
 from physicslab.lab.accuracy.study import Study, rounding_floor, study
 from physicslab.lab.accuracy.verdict import Verdict, measured_order, verdict
@@ -369,6 +371,18 @@ def test_the_document_holds_finite_numbers_alone(capsys: pytest.CaptureFixture[s
     }  # fmt: skip
     for curve in problem["integrators"]:
         assert all(set(row) == wanted for row in curve["rows"])
+
+
+def test_every_method_has_a_style_and_an_entry_in_the_legend() -> None:
+    found = studied("free_fall")
+    curve = next(curve for curve in found.curves if curve.rows)
+    new = [
+        dataclasses.replace(curve, integrator=dataclasses.replace(curve.integrator, name=name))
+        for name in ("new", "newer")
+    ]
+    styles = method_styles([dataclasses.replace(found, curves=[*found.curves, *new])])
+    assert set(styles) == {curve.integrator.name for curve in found.curves if curve.rows} | {"new", "newer"}
+    assert len(set(styles.values())) == len(styles), "told apart"
 
 
 @pytest.mark.plot

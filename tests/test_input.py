@@ -187,7 +187,7 @@ def test_escape_and_the_close_button_close(desk: Desk) -> None:
     assert desk.window.closing
 
 
-def test_the_table_of_controls_is_what_works() -> None:
+def test_the_table_of_controls_is_what_works(desk: Desk) -> None:
     assert len({control.label for control in CONTROLS}) == len(CONTROLS)
     assert all(control.label and control.does for control in CONTROLS)
     names = [key.removeprefix("ctrl+") for key in (*KEYS, *RELEASES)]

@@ -8,10 +8,12 @@ from physicslab.diagnostics.run_report import RunRecord, run_report, run_summary
 from physicslab.ecs import config
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.integrators import INTEGRATORS
+from physicslab.prefabs import box
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import ForceSystem, Stage, at
+from physicslab.view.panels.readings import method_lines
 from physicslab.world import World
 
 
@@ -134,6 +136,17 @@ def test_a_force_written_in_python_works_with_every_method_and_is_named(name: st
     report = run_report(world, RunRecord("wind", Drift(world)))
     assert report["interpreted"] == ["Wind"]
     assert "Wind: computed by Python" in run_summary(report, "")
+
+
+def test_a_force_written_in_python_is_named_beside_contacts_too() -> None:
+    world = World(*standard_systems(), Wind())
+    box(world, (0, -0.5), width=20, height=1, static=True)
+    box(world, (0, 0.5), width=1, height=1)
+    world.step()
+    assert world.stepper is not None and world.stepper.name == "contact"
+    assert world.interpreted == ("Wind",)
+    assert run_report(world, RunRecord("wind", Drift(world)))["interpreted"] == ["Wind"]
+    assert "Wind is computed by Python: slower" in [line.label for line in method_lines(world)]
 
 
 def test_auto_keeps_to_one_evaluation_where_a_force_is_written_in_python() -> None:

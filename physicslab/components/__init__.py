@@ -11,4 +11,15 @@ from physicslab.components.trail import Trail
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 
-__all__ = ["Drag", "Held", "Mass", "Material", "Name", "Shape", "Spring", "Trail", "Transform", "Velocity"]
+__all__ = [
+    "Drag",
+    "Held",
+    "Mass",
+    "Material",
+    "Name",
+    "Shape",
+    "Spring",
+    "Trail",
+    "Transform",
+    "Velocity",
+]

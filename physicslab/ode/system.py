@@ -28,8 +28,7 @@ class OdeSystem:
     fixed); q'' = ``inverse_mass`` * force - ``damping`` * v.
 
     A force system that packs its force (:meth:`ForceSystem.packed`) is called without Python. One that does
-    not is called back at its ``Stage.FORCE``, with the state that it reads in the world's tables: slower, and
-    named in ``interpreted``.
+    not is called back at its ``Stage.FORCE``, with the state that it reads in the world's tables: slower.
 
     Attributes
     ----------
@@ -50,8 +49,6 @@ class OdeSystem:
         Relative error a step for methods that choose their steps.
     forces : tuple of ForceSystem
         What acts.
-    interpreted : tuple of str
-        The names of those that are not compiled.
 
     Parameters
     ----------
@@ -67,9 +64,8 @@ class OdeSystem:
         self, state: State, forces: Sequence[ForceSystem], part: NDArray[np.bool_] | None = None
     ) -> None:
         self.forces = tuple(forces)
-        interpreted = [system for system in self.forces if not type(system).packs()]
-        self.interpreted = tuple(system.name for system in interpreted)
-        self.layout = StateLayout(state, part, all_turn=bool(interpreted))
+        interpreted = any(not type(system).packs() for system in self.forces)
+        self.layout = StateLayout(state, part, all_turn=interpreted)
         self.near: tuple[NDArray[np.int64], int] | None = None
         self.tolerance = state.simulation.tolerance
         self._error: BaseException | None = None

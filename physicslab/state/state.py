@@ -93,7 +93,7 @@ class State:
         self.checkpoint = Checkpoint()
         # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
         self._names: set[str] = set()
-        self._stale = True
+        self._stale, self._stepping = True, False
         self.context = f"physicslab-{next(_numbers)}"
         self.activate()
         weakref.finalize(self, _forget, self.context)
@@ -246,11 +246,17 @@ class State:
     # ---- columns -------------------------------------------------------------------------------------------
 
     def table(self, component: type[Any]) -> Table:
-        """Return the columns of a component; rows are numbered alike in every table."""
+        """Return the columns of a component; rows are numbered alike in every table.
+
+        They follow what was spawned or removed where a :meth:`batch` or a component is taken, or a step made.
+        """
         return self.entity_index.table(component)
 
     def batch(self, *components: type[Any]) -> Batch:
-        """Return the rows of the entities that have all of ``components``."""
+        """Return the rows of the entities that have all of ``components``; within a step, at its start."""
+        if not self._stepping:
+            with self.active():
+                self._follow()
         return self.entity_index.batch(*components)
 
     # ---- configuration -------------------------------------------------------------------------------------

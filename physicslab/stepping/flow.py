@@ -30,7 +30,6 @@ class Flow:
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator
         self._ode = OdeSystem(state, schedule.forces)
-        self.interpreted = self._ode.interpreted
         self.kernels: tuple[Any, ...] = self._method.kernels
         self.reason = plan.reason
 

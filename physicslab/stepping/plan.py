@@ -187,7 +187,7 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
     """Return the method for a world in which nothing but forces acts."""
     substeps, h = state.simulation.substeps, state.simulation.dt
     forces = schedule.forces
-    python = [system.name for system in forces if not type(system).packs()]
+    python = schedule.interpreted
     if python:
         return StepPlan(LEAPFROG, f"the force of {python[0]} has no compiled kernel", substeps, smooth=True)
     try:
@@ -226,7 +226,7 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     moved = schedule.find(IntegrateSystem) is not None
     if not moved or not sub_integrated_rows(state, forces).any():
         return kicks
-    python = [system.name for system in forces if not type(system).packs()]
+    python = schedule.interpreted
     if python:
         return replace(kicks, reason=f"{obstacle}, and the force of {python[0]} has no compiled kernel")
     attractors = max((force.attractors for force in forces), default=0)

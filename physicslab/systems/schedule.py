@@ -47,6 +47,8 @@ class Schedule:
         The others, each with the reason.
     forces : tuple of ForceSystem
         The force systems among those that run.
+    interpreted : tuple of str
+        The names of those that no kernel computes, and Python does.
     observer : System, optional
         The first of them that looks at every step.
     timings : dict of str to Timing
@@ -60,6 +62,7 @@ class Schedule:
         self.running: tuple[System, ...] = ()
         self.left_out: tuple[LeftOut, ...] = ()
         self.forces: tuple[ForceSystem, ...] = ()
+        self.interpreted: tuple[str, ...] = ()
         self.observer: System | None = None
         self.timings: dict[str, Timing] = {}
         self._calls: dict[Stage, list[tuple[Callable[[State, float], None], Timing]]] = {}
@@ -87,6 +90,7 @@ class Schedule:
                 left_out.append(LeftOut(system.name, reason))
         self.running, self.left_out = tuple(running), tuple(left_out)
         self.forces = tuple(system for system in running if isinstance(system, ForceSystem))
+        self.interpreted = tuple(force.name for force in self.forces if not type(force).packs())
         self.observer = next((system for system in running if system.observes()), None)
         self._calls = {stage: [] for stage in Stage}
         for system in running:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from physicslab.lab.accuracy.measure import Measurement
@@ -13,9 +14,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["work_precision"]
+__all__ = ["method_styles", "work_precision"]
 
-_STYLES: dict[str, tuple[str, str, Any]] = {
+type _Style = tuple[str, str, Any]
+_STYLES: dict[str, _Style] = {
     "symplectic_euler": (COLOURS["grey"], "v", ":"),
     "leapfrog": (COLOURS["blue"], "o", "-"),
     "rk4": (COLOURS["orange"], "s", "--"),
@@ -24,6 +26,8 @@ _STYLES: dict[str, tuple[str, str, Any]] = {
     "exact": (COLOURS["black"], "*", ""),
     "implicit_midpoint": (COLOURS["purple"], "X", (0, (1, 1))),
 }
+_FURTHER = [(COLOURS["sky"], marker, line) for line in ("-", "--") for marker in "Ph<>dp8"]
+"""The styles of methods that have none of their own above."""
 _ERROR_FLOOR = 1e-17
 """Where an error of zero is drawn."""
 _ROUNDING_COLOUR = "#f3ead9"
@@ -39,21 +43,33 @@ def work_precision(*studies: Study) -> bytes:
     """
     figure = new_figure(11.0, 0.9 + 4.4 * len(studies))
     panels = figure.subplots(len(studies), 2, squeeze=False, sharey="row")
+    styles = method_styles(studies)
     for study, (by_time, by_work) in zip(studies, panels, strict=True):
-        _panel(by_time, study, "CPU time [ms]", lambda found: 1e3 * found.cpu_s)
-        _panel(by_work, study, "force evaluations", lambda found: float(found.evaluations))
+        _panel(by_time, study, styles, "CPU time [ms]", lambda found: 1e3 * found.cpu_s)
+        _panel(by_work, study, styles, "force evaluations", lambda found: float(found.evaluations))
         by_time.set_ylabel(f"{study.problem.measure}", fontsize=9)
         by_time.set_title(study.problem.name, loc="left", fontweight="bold")
         by_work.set_title(f"after {study.problem.seconds:.4g} s", loc="right", fontsize=10)
-    _legend(figure, studies)
+    _legend(figure, styles, floor=any(study.floor for study in studies))
     return png(figure)
 
 
-def _panel(axes: Axes, study: Study, label: str, work: Callable[[Measurement], float]) -> None:
+def method_styles(studies: Sequence[Study]) -> dict[str, _Style]:
+    """Return the colour, marker and line of every method that is drawn, in the order of the legend."""
+    drawn = {curve.integrator.name: None for study in studies for curve in study.curves if curve.rows}
+    further = [name for name in drawn if name not in _STYLES]
+    styles = _STYLES | dict(zip(further, itertools.cycle(_FURTHER), strict=False))
+    return {name: style for name, style in styles.items() if name in drawn}
+
+
+def _panel(
+    axes: Axes, study: Study, styles: dict[str, _Style], label: str, work: Callable[[Measurement], float]
+) -> None:
     prepare_axes(axes, logarithmic=True)
     axes.set_xlabel(label)
     for curve in study.curves:
-        _line(axes, curve, work)
+        if curve.rows:
+            _line(axes, curve, styles[curve.integrator.name], work)
     auto = study.auto.measurement
     if auto.error is not None and work(auto) > 0.0:
         axes.plot(
@@ -80,36 +96,33 @@ def _range(study: Study) -> tuple[float, float]:
     return 0.3 * low, 5.0 * high
 
 
-def _line(axes: Axes, curve: Curve, work: Callable[[Measurement], float]) -> None:
+def _line(axes: Axes, curve: Curve, style: _Style, work: Callable[[Measurement], float]) -> None:
     points = [
         (work(row.measurement), max(row.measurement.error, _ERROR_FLOOR))
         for row in curve.rows
         if row.measurement.error is not None and work(row.measurement) > 0.0
     ]
     if points:
-        colour, marker, line = _STYLES.get(curve.integrator.name, (COLOURS["sky"], "P", "-"))
+        colour, marker, line = style
         axes.plot(
             *zip(*points, strict=True), color=colour, marker=marker, linestyle=line, linewidth=1.4,
             markersize=9 if marker == "*" else 5,
         )  # fmt: skip
 
 
-def _legend(figure: Figure, studies: tuple[Study, ...]) -> None:
+def _legend(figure: Figure, styles: dict[str, _Style], *, floor: bool) -> None:
     """Put the legend below the plots, where no line is."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    handles: list[Line2D | Patch] = []
-    shown = {curve.integrator.name for study in studies for curve in study.curves if curve.rows}
-    for name, (colour, marker, line) in _STYLES.items():
-        if name in shown:
-            handles.append(
-                Line2D([], [], color=colour, marker=marker, linestyle=line, label=name, linewidth=1.4)
-            )
+    handles: list[Line2D | Patch] = [
+        Line2D([], [], color=colour, marker=marker, linestyle=line, label=name, linewidth=1.4)
+        for name, (colour, marker, line) in styles.items()
+    ]
     handles.append(
         Line2D([], [], marker="o", markersize=12, markerfacecolor="none", markeredgecolor="#222222",
                linestyle="", label="auto")
     )  # fmt: skip
-    if any(study.floor for study in studies):
+    if floor:
         handles.append(Patch(color=_ROUNDING_COLOUR, label="one rounding at the start"))
     figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=9)
