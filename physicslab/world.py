@@ -11,13 +11,13 @@ import numpy as np
 
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows, wake_all
-from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
+from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import Diverged, derive_masses
 from physicslab.state.state import State
 from physicslab.stepping.forces import add_up_forces
-from physicslab.stepping.plan import StepPlan, choose_plan, default_plan
+from physicslab.stepping.plan import StepPlan, choose_plan, default_plan, resumed_plan
 from physicslab.stepping.run import go_on, run_length
 from physicslab.stepping.select import Steppers, select_steppers
 from physicslab.stepping.stepper import Stepper
@@ -30,7 +30,7 @@ __all__ = ["World"]
 _quiet = np.errstate(all="ignore")
 """An overflow becomes infinite, which is found and raised as :class:`Diverged`: numpy need not warn."""
 _go_on = _quiet(go_on)
-_STEP = Field("dt", "number", minimum=SHORTEST, unit="s", owner="step")
+_STEP = Field("dt", "number", minimum=MIN_TIME, unit="s", owner="step")
 _STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 
 
@@ -150,7 +150,8 @@ class World(State):
         self.force_evaluations, self.collisions, self.contacts.logged = self.checkpoint.counts
         self.contacts.clear()  # what a failed step left there may not be finite either
         wake_all(self)  # no contact supports any body now
-        self._stale = True  # steppers hold numbers of the step that failed
+        # Steppers hold numbers of the step that failed.
+        self._stale = self.entity_index.motion_edited = True
 
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.
@@ -237,7 +238,8 @@ class World(State):
             check_edits(self)
             self._remake()
             self.revision += 1
-            self._stale = False
+            self.motion_edits += self.entity_index.motion_edited
+            self._stale = self.entity_index.motion_edited = False
             if not self.entity_index.synchronise():
                 return
 
@@ -247,14 +249,24 @@ class World(State):
             event_driven = self.event_driven
             self.schedule.remake(self)
             self.has_forces = bool(self.schedule.forces)
-            self._choose()
+            self._choose(again=self.entity_index.motion_edited)
             if event_driven == self.event_driven:
                 return
 
-    def _choose(self) -> None:
-        """Choose method and steppers for what there is."""
+    def _choose(self, *, again: bool = True) -> None:
+        """Choose steppers for what there is, and the method, if it is to be chosen ``again``."""
+        if again:
+            self.plan = choose_plan(self, self.schedule)
+        self._take_plan()
+
+    def resume(self, collisions: str, method: str, steps: int) -> None:
+        """Go on with what was chosen before this world was saved (:attr:`StepPlan.kept`), where possible."""
+        self.plan = resumed_plan(self, self.schedule, (collisions, method, steps))
+        self._take_plan()
+
+    def _take_plan(self) -> None:
+        """Choose the steppers that the plan allows."""
         before = self.event_driven
-        self.plan = choose_plan(self, self.schedule)
         self.event_driven = self.plan.collisions == "exact"
         self.steppers = select_steppers(self, self.schedule, self.plan)
         self.contacts.stale |= before or self.event_driven
@@ -266,6 +278,7 @@ class World(State):
         again.
         """
         self.revision += 1
+        self.motion_edits += 1
 
     def install(self, *systems: System) -> None:
         """Add systems to this world, after those of the same stage.
@@ -274,6 +287,7 @@ class World(State):
         """
         self.schedule.extend(systems)
         self._stale = True
+        self.entity_index.motion_edited |= any(system.acts_within_step() for system in systems)
 
     # ---- looking -------------------------------------------------------------------------------------------
 

@@ -22,7 +22,7 @@ from desk import bits
 
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.desktop import compiling
-from physicslab.desktop.small_scenes import LONGEST, SmallScenes
+from physicslab.desktop.small_scenes import INTERPRETING_LIMIT, SmallScenes
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
@@ -423,5 +423,5 @@ def test_the_window_hands_over_what_is_small_and_hurries_it(monkeypatch: pytest.
         started.scenes.follow(load_scene("drop"))
         assert started._ask([motion.drift]) == [motion.drift]
         assert hurried == ["physicslab.kernels.motion.drift"]
-        assert interpreter._limit(motion.drift) == LONGEST
+        assert interpreter._limit(motion.drift) == INTERPRETING_LIMIT
     assert interpreter._limit(motion.drift) == math.inf

@@ -11,13 +11,13 @@ from typing import Any
 
 import pygame
 import pytest
+from recording import RecordingCanvas
 
 from physicslab.desktop import app, compiling
 from physicslab.desktop.compiling import Compiling, Left
 from physicslab.ecs.config import WindowConfig
 from physicslab.kernels import cache, keys, motion, warm
 from physicslab.kernels.warm import Progress, Warmup, is_warm, load_all, mark_warm, name_of
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.display import Display, wants_to_leave
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.panels.progress import draw_progress

@@ -131,9 +131,10 @@ class MeasuredRun:
             record.interpreted_steps += made
             record.interpreted_s += self._tiers.interpreted_s - interpreted
             taken = 0.0  # what is slow as Python need not be slow
-        if (slow := self._watch.note(made, taken)) and sys.stderr is not None:
-            progress.clear()
-            print(f"physicslab: {self._label}: {slow}", file=sys.stderr, flush=True)
+        for line in (self._watch.note(made, taken), self._watch.note_impacts()):
+            if line and sys.stderr is not None:
+                progress.clear()
+                print(f"physicslab: {self._label}: {line}", file=sys.stderr, flush=True)
         record.steps = done
         return True
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.measured_run import MeasuredRun
-from physicslab.commands.numbers import MOST_STEPS, count, duration, positive_count, positive_duration
+from physicslab.commands.numbers import STEP_LIMIT, count, duration, positive_count, positive_duration
 from physicslab.commands.output import Output
 from physicslab.desktop.rescue import save_last_good
 from physicslab.diagnostics.run_report import find_not_finite, run_report, run_summary
@@ -121,7 +121,7 @@ def _outputs(arguments: Namespace) -> dict[str, Output]:
 
 
 def _configure(world: World, arguments: Namespace) -> None:
-    """Step the world as the command line says, and prepare it, so that only the run itself is timed."""
+    """Configure the world by the command line, and prepare it, so that only the run itself is timed."""
     changes = {name: getattr(arguments, name) for name in ("dt", "substeps", "integrator")}
     changes = {name: value for name, value in changes.items() if value is not None}
     scene = shown(arguments.scene)
@@ -139,8 +139,8 @@ def _configure(world: World, arguments: Namespace) -> None:
             f"--steps {arguments.steps}: must take a finite time at {world.simulation.dt:g} s each"
         )
     seconds = _DEFAULT_S if arguments.seconds is None else arguments.seconds
-    if arguments.steps is None and seconds / world.simulation.dt > MOST_STEPS:
-        raise CommandError(f"--seconds {seconds:g}: must be at most {MOST_STEPS:g} steps of dt")
+    if arguments.steps is None and seconds / world.simulation.dt > STEP_LIMIT:
+        raise CommandError(f"--seconds {seconds:g}: must be at most {STEP_LIMIT:g} steps of dt")
 
 
 def _picture(world: World) -> bytes:

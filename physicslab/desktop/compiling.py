@@ -7,7 +7,7 @@ from collections.abc import Hashable, Sequence
 from types import TracebackType
 from typing import Any
 
-from physicslab.desktop.small_scenes import LONGEST, SmallScenes
+from physicslab.desktop.small_scenes import INTERPRETING_LIMIT, SmallScenes
 from physicslab.kernels import KERNELS, ask_before_compiling, interpreter, load
 from physicslab.kernels.solver import fused_contact
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
@@ -21,7 +21,7 @@ _ROOM = 0.008
 """Time [s] that must be left of a frame to load a kernel in it; most take 2 to 4 ms, few more than 8."""
 _UNDISTURBED = 4
 """So many frames are made before other processes start to compile: the first that moves is among them."""
-_AT_LEAST = 30
+_LOAD_EVERY = 30
 """One frame in so many loads a kernel, whatever is left of it: a busy scene would never load any."""
 
 
@@ -44,7 +44,7 @@ class Compiling:
     Attributes
     ----------
     scenes : SmallScenes
-        What says whether the scene that is shown may be interpreted.
+        What finds whether the scene that is shown may be interpreted.
     """
 
     def __init__(self, display: Display) -> None:
@@ -61,7 +61,7 @@ class Compiling:
     def __enter__(self) -> Compiling:
         if self._warmup is not None:
             interpreter.prepare()
-            interpreter.limit(lambda _: LONGEST, self._catch_up)
+            interpreter.limit(lambda _: INTERPRETING_LIMIT, self._catch_up)
             ask_before_compiling(self._ask)
         elif not interpreter.is_forced():
             load(fused_contact.advance)  # 26 ms, for which no frame has room
@@ -164,7 +164,7 @@ class Compiling:
             self._catch_up(pending[0])
         elif pending:  # a frame that interprets them takes longer than one that loads one
             self._load_announced(pending)
-        elif self._display.left > _ROOM or self._frames % _AT_LEAST == 0:
+        elif self._display.left > _ROOM or self._frames % _LOAD_EVERY == 0:
             self._load_one(KERNELS)
 
     def time_for_steps(self, longest: float) -> float:

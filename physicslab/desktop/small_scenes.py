@@ -10,9 +10,9 @@ from physicslab.stepping.small import is_small
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["LONGEST", "SmallScenes"]
+__all__ = ["INTERPRETING_LIMIT", "SmallScenes"]
 
-LONGEST = 0.5
+INTERPRETING_LIMIT = 0.5
 """What takes longer than this [s] to interpret, a call or several frames in turn, is waited for: until then
 slow frames, as on a machine that is busy, are better than half a minute without any."""
 _STEPS = 0.05
@@ -24,7 +24,7 @@ _IN_TURN = 4
 
 
 class SmallScenes:
-    """Says which kernels run as Python until they are compiled: those of a scene that is small.
+    """Finds which kernels run as Python until they are compiled: those of a scene that is small.
 
     It takes 0.2 to 30 ms a step, and no one need wait. What turns out to be slow, as a method that chooses
     its steps may be with few bodies too, is waited for from then on, until another scene is shown.
@@ -69,7 +69,7 @@ class SmallScenes:
 
     def notice(self, left: float) -> bool:
         """Return whether frames are too long, after one that was done ``left`` seconds before it was due."""
-        self._late = self._late + 1 if self.pending() and left < -LONGEST else 0
+        self._late = self._late + 1 if self.pending() and left < -INTERPRETING_LIMIT else 0
         return self._late >= _IN_TURN
 
     def made_up_for(self, longest: float, loads: bool = False) -> float:

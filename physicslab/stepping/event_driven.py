@@ -30,6 +30,8 @@ type _State = list[NDArray[np.float64]]
 """Copies of the columns below."""
 
 _COLUMNS = ((Transform, "position"), (Transform, "angle"), (Velocity, "linear"), (Velocity, "angular"))
+_WARM = ("feature", "normal_impulse", "tangent_impulse")
+"""What a contact starts the next substep from."""
 _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 _ACCELERATION = slice(8, 10)
 """The columns of a path's acceleration."""
@@ -246,6 +248,9 @@ class EventDriven:
         contacts = state.contacts
         near = contacts.manifolds[: contacts.recorded]
         points = contacts.points[: 2 * contacts.recorded]
+        lost = np.repeat(near["count"] <= 0, 2)  # a contact that comes again starts from no old impulse
+        for name in _WARM:
+            points[name][lost] = 0
         others = np.ones(len(near), np.bool_)
         others[pairs] = False
         near["count"][others] = -1  # the contact step skips them

@@ -7,7 +7,14 @@ from physicslab.kernels.broad.near_pairs import ACTIVATION_RATIO
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
-__all__ = ["CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "mix"]
+__all__ = [
+    "CACHE_TOLERANCE",
+    "CACHE_TURN_TOLERANCE",
+    "effective_masses",
+    "find_contacts",
+    "follow_pose",
+    "mix",
+]
 
 CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found again."""
@@ -16,7 +23,7 @@ CACHE_TURN_TOLERANCE = 0.002
 
 
 @inlined
-def _refresh(
+def follow_pose(
     manifold: Manifold, points: Points, p: int, dx: float, dy: float, turn_a: float, turn_b: float
 ) -> None:
     """Update the separations of kept points for how far the pair has moved and turned, to second order."""
@@ -138,7 +145,7 @@ def find_contacts(
                 and abs(turn_b) <= CACHE_TURN_TOLERANCE
                 and travel <= 0.5 * CONTACT_MARGIN * size
             ):
-                _refresh(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
+                follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
                 if inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0:
                     touching[found] = p
                     found += 1

@@ -110,7 +110,8 @@ def resolve_all_impacts(
                 counts[SCALAR], counts[ACTIVE] = wake(
                     kind, data, counts[DISC_BLOCKS if kind == DISC else BOX_BLOCKS], a, b, pair, colour, used,
                     near.manifolds, near.points, near.scalar, counts[SCALAR], near.touching, counts[ACTIVE],
-                    motion.linear, motion.angular, acting.force, inverse.mass, h,
+                    motion.position, motion.angle, motion.linear, motion.angular, acting.force,
+                    inverse.mass, h,
                 )  # fmt: skip
         if counts[ACTIVE] == before:
             break

@@ -212,6 +212,11 @@ def add_constraints(
     before = counts[DISC_BLOCKS], counts[BOX_BLOCKS]
     counts[DISC_BLOCKS] = _trimmed(counts[DISC_BLOCKS], discs[3])
     counts[BOX_BLOCKS] = _trimmed(counts[BOX_BLOCKS], boxes[3])
+    # At once: where this returns early, the next call finds nothing to drop.
+    if counts[DISC_BLOCKS] != before[0]:
+        sort_blocks(counts[DISC_BLOCKS], discs[4], discs[6])
+    if counts[BOX_BLOCKS] != before[1]:
+        sort_blocks(counts[BOX_BLOCKS], boxes[4], boxes[6])
     active, room = counts[ACTIVE], WIDE * (counts[DISC_BLOCKS] + counts[BOX_BLOCKS])
     if room > 2 * COLOURS * WIDE and counts[WIDE_COUNT] < _SPARSE * room:
         return SPARSE
@@ -230,11 +235,9 @@ def add_constraints(
                 asleep, h, _ENTRY * SWEEP_THRESHOLD, _ENTRY * CONTACT_MARGIN,
             )  # fmt: skip
             came += more
-    if came > 0 or counts[DISC_BLOCKS] != before[0]:
-        sort_blocks(counts[DISC_BLOCKS], discs[4], discs[6])
-    if came > 0 or counts[BOX_BLOCKS] != before[1]:
-        sort_blocks(counts[BOX_BLOCKS], boxes[4], boxes[6])
     if came > 0:
+        sort_blocks(counts[DISC_BLOCKS], discs[4], discs[6])
+        sort_blocks(counts[BOX_BLOCKS], boxes[4], boxes[6])
         counts[WIDE_COUNT] += came
         counts[ACTIVE] = _keep_scalar(manifolds, touching, active)
         counts[SCALAR], counts[SLEEPING] = list_scalar(

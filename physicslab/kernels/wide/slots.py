@@ -8,6 +8,7 @@ from numba import uint64
 from numpy.typing import NDArray
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
+from physicslab.kernels.narrow.contact import follow_pose
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.wide.layout import (
     ARM_AX,
@@ -19,6 +20,7 @@ from physicslab.kernels.wide.layout import (
     DISC_ROWS,
     FOUND,
     IMPULSE,
+    MASS,
     NORMAL_X,
     NORMAL_Y,
     ONE,
@@ -27,6 +29,7 @@ from physicslab.kernels.wide.layout import (
     SEPARATION,
     SIZE,
     TANGENT_IMPULSE,
+    TANGENT_MASS,
     TWO,
     WIDE,
 )  # fmt: skip
@@ -103,6 +106,7 @@ def store_slot(data: Numbers, rows: int, slot: int, p: int, manifolds: Manifolds
         manifold.normal_x, manifold.normal_y = nx, ny
         point.arm_ax, point.arm_ay = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
         point.arm_bx, point.arm_by = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny
+        point.normal_mass, point.tangent_mass = data[at + ONE + MASS], data[at + ONE + TANGENT_MASS]
 
 
 @kernel
@@ -199,11 +203,33 @@ def _resting_speed(a: int, b: int, linear: Vectors, force: Vectors, inverse_mass
     return limit
 
 
+@inlined
+def _measure_now(
+    kind: int, data: Numbers, at: int, manifolds: Manifolds, points: Points, p: int,
+    position: Vectors, angle: Numbers,
+) -> None:  # fmt: skip
+    """Bring the separations of a pair that had a slot up to date after impacts have moved bodies.
+
+    A slot has no offset: that of the record is as old as the contact.
+    """
+    manifold, one = manifolds[p], points[2 * p]
+    i, j = manifold.a, manifold.b
+    dx, dy = position[j, 0] - position[i, 0], position[j, 1] - position[i, 1]
+    if kind == DISC:
+        along = dx * manifold.normal_x + dy * manifold.normal_y
+        one.separation = along - data[at + RADIUS_A] - data[at + RADIUS_B]
+    else:
+        turn_a, turn_b = angle[i] - manifold.base_angle_a, angle[j] - manifold.base_angle_b
+        follow_pose(manifold, points, p, dx - manifold.base_x, dy - manifold.base_y, turn_a, turn_b)
+    manifold.offset_x, manifold.offset_y = dx, dy
+
+
 @allocating
 def wake(
     kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
     manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int, touching: Rows, count: int,
-    linear: Vectors, angular: Numbers, force: Vectors, inverse_mass: Numbers, h: float,
+    position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers, force: Vectors,
+    inverse_mass: Numbers, h: float,
 ) -> tuple[int, int]:  # fmt: skip
     """Make those contacts scalar that may bounce, approach faster than rest, and have a body with an impact.
 
@@ -235,6 +261,7 @@ def wake(
             lowest = min(lowest, vx * nx + vy * ny)
         if lowest < 0.0 and lowest < -_resting_speed(i, j, linear, force, inverse_mass, h):
             store_slot(data, rows, slot, p, manifolds, points)
+            _measure_now(kind, data, at, manifolds, points, p, position, angle)
             manifolds[p].slot = -1
             scalar[scalar_count], touching[count] = p, p
             scalar_count, count = scalar_count + 1, count + 1
