@@ -5,12 +5,15 @@ as a user does, and prints for each run and as medians, wall and CPU time [s] si
 
 - window: the first picture is in the window, a bar of progress or the scene
 - first step: a picture of the world is shown that has made a step
+- moves after: how long after the window that is
+- all kernels: every kernel is compiled, and in the cache (with ``--cold``, which waits for it)
 - all CPU: of all processes until the window is closed, those that compile included
 - slowest: the longest time [ms] between two pictures from then on, and how many exceeded 33 ms
 
 ``--cold`` gives each run a cache of its own that is empty, as on the first launch: of kernels, and of
 Python's bytecode, numba's included. Without it a run before the counted ones fills both. SDL's dummy driver
-takes the picture unless SDL_VIDEODRIVER says otherwise.
+takes the picture unless SDL_VIDEODRIVER says otherwise. The load average before each run is printed: wall
+times are those of an idle machine only where it is near 0, CPU times nearly so.
 """
 
 from __future__ import annotations
@@ -32,6 +35,7 @@ import atexit, importlib.abc, importlib.machinery, json, os, sys, time
 
 moments, state = {"flips": []}, {"stepped": False, "until": None}
 SECONDS = float(os.environ["STARTUP_SECONDS"])
+PATIENCE = float(os.environ["STARTUP_PATIENCE"])
 
 def now():
     return time.time() - float(os.environ["STARTUP_BEGAN"]), time.process_time()
@@ -46,7 +50,8 @@ def watch_display():
         if state["stepped"]:
             moments.setdefault("first_step", (wall, cpu))
             moments["flips"].append(wall)
-            if wall > moments["first_step"][0] + SECONDS:
+            done = "all_kernels" in moments or wall > PATIENCE
+            if done and wall > moments["first_step"][0] + SECONDS:
                 pygame.event.post(pygame.Event(pygame.QUIT))
     pygame.display.flip = watched
 
@@ -58,7 +63,18 @@ def watch_world():
         return step(self, *arguments, **named)
     world.step = watched
 
-HOOKS = {"physicslab.view.canvas.display": watch_display, "physicslab.world": watch_world}
+def watch_kernels():
+    warm = sys.modules["physicslab.kernels.warm"]
+    mark = warm.mark_warm
+    def watched():
+        mark()
+        moments["all_kernels"] = now()
+    warm.mark_warm = watched
+
+HOOKS = {
+    "physicslab.view.canvas.display": watch_display, "physicslab.world": watch_world,
+    "physicslab.kernels.warm": watch_kernels,
+}
 
 class Finder(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path, target=None):
@@ -78,7 +94,7 @@ atexit.register(lambda: json.dump(moments, open(os.environ["STARTUP_FILE"], "w")
 """Put into the started program as its ``sitecustomize``: it notes when pictures are shown."""
 
 
-def start(scene: str, cache: Path, seconds: float) -> dict[str, float]:
+def start(scene: str, cache: Path, seconds: float, patience: float = 0.0) -> dict[str, float]:
     """Start the program once; return the times [s] of its first pictures and its slowest frame [ms]."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "sitecustomize.py").write_text(HOOK)
@@ -87,7 +103,7 @@ def start(scene: str, cache: Path, seconds: float) -> dict[str, float]:
             "PYTHONPATH": folder, "XDG_CACHE_HOME": str(cache), "XDG_STATE_HOME": folder,
             "PYTHONPYCACHEPREFIX": str(cache / "bytecode"), "PYTHONDONTWRITEBYTECODE": "",
             "STARTUP_BEGAN": repr(time.time()), "STARTUP_FILE": str(reported),
-            "STARTUP_SECONDS": str(seconds),
+            "STARTUP_SECONDS": str(seconds), "STARTUP_PATIENCE": str(patience),
         }  # fmt: skip
         command = (sys.executable, str(ROOT / "main.py"), scene)
         before = _children_cpu()
@@ -101,6 +117,9 @@ def start(scene: str, cache: Path, seconds: float) -> dict[str, float]:
         "window CPU": moments["window"][1],
         "first step": moments["first_step"][0],
         "first step CPU": moments["first_step"][1],
+        "moves after": moments["first_step"][0] - moments["window"][0],
+        "moves after, CPU": moments["first_step"][1] - moments["window"][1],
+        **({"all kernels": moments["all_kernels"][0]} if "all_kernels" in moments else {}),
         "all CPU": cpu,
         "slowest, ms": max(gaps),
         "above 33 ms": sum(gap > 33.4 for gap in gaps),
@@ -120,6 +139,7 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=5, help="how many are counted")
     parser.add_argument("--seconds", type=float, default=3.0, help="how long each simulates")
     parser.add_argument("--cold", action="store_true", help="with an empty cache, as on a first launch")
+    parser.add_argument("--patience", type=float, default=600.0, help="how long --cold waits for all kernels")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as kept:
         if not options.cold:
@@ -130,7 +150,10 @@ def main() -> None:
         rows = []
         for number in range(options.runs):
             cache = Path(kept) / f"run-{number}" if options.cold else Path(kept)
-            rows.append(start(options.scene, cache, options.seconds))
+            print(f"load {os.getloadavg()[0]:.1f}  ", end="")
+            rows.append(
+                start(options.scene, cache, options.seconds, options.patience if options.cold else 0.0)
+            )
             print("  ".join(f"{name} {value:.3f}" for name, value in rows[-1].items()), flush=True)
     print(
         "median:  " + "  ".join(f"{name} {statistics.median(r[name] for r in rows):.3f}" for name in rows[0])

@@ -18,7 +18,7 @@ from physicslab.scenes import SCENES
 
 __all__ = ["main"]
 
-_LONGEST_LINE = 4_000
+_LINE_LIMIT = 4_000
 """Characters of what is said on stderr: names of files and values come from outside."""
 _INTERRUPTED = 130
 _PIPE_CLOSED = 141
@@ -112,7 +112,7 @@ def _open(arguments: list[str]) -> int:
 
 
 def _complain(message: str, status: int) -> int:
-    print(f"physicslab: {shortened(printable(message), _LONGEST_LINE)}", file=sys.stderr)
+    print(f"physicslab: {shortened(printable(message), _LINE_LIMIT)}", file=sys.stderr)
     return status
 
 

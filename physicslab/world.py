@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import math
 import sys
+import time
 from collections.abc import Iterator
 
 import numpy as np
 
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows
-from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
+from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import Diverged, derive_masses
 from physicslab.state.state import State
 from physicslab.stepping.forces import add_up_forces
-from physicslab.stepping.plan import StepPlan, default_plan
+from physicslab.stepping.plan import StepPlan, default_plan, resumed_plan
 from physicslab.stepping.run import go_on, run_length
 from physicslab.stepping.select import Steppers, choose, remake
 from physicslab.stepping.stepper import Advance, Stepper
@@ -29,7 +31,7 @@ __all__ = ["World"]
 _quiet = np.errstate(all="ignore")
 """An overflow becomes infinite, which is found and raised as :class:`Diverged`: numpy need not warn."""
 _go_on = _quiet(go_on)
-_STEP = Field("dt", "number", minimum=SHORTEST, unit="s", owner="step")
+_STEP = Field("dt", "number", minimum=MIN_TIME, unit="s", owner="step")
 _STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 
 
@@ -120,7 +122,8 @@ class World(State):
             self.schedule.run(Stage.FINISH, self, h * steps)
         except BaseException:
             go_back(self)
-            self._stale = True  # steppers hold numbers of the step that failed
+            # Steppers hold numbers of the step that failed.
+            self._stale = self.entity_index.motion_edited = True
             raise
         finally:
             self._stepping = False
@@ -156,10 +159,20 @@ class World(State):
             pass
 
     def stepping(
-        self, *, seconds: float | None = None, steps: int | None = None, stride: int = 1
+        self,
+        *,
+        seconds: float | None = None,
+        steps: int | None = None,
+        stride: int = 1,
+        patience: float = math.inf,
     ) -> Iterator[int]:
-        """Advance like :meth:`run`, yielding the number of steps done after every ``stride`` steps."""
+        """Advance like :meth:`run`, yielding the number of steps done after every ``stride`` steps.
+
+        The steps in between are one compiled loop where possible. Where they are several calls, it yields
+        also after the first that ends more than ``patience`` seconds of wall clock after the last yield.
+        """
         _STRIDE.check(stride)
+        due = time.monotonic() + patience
         length, start, done = run_length(self, seconds, steps), self.time, 0
         if not length.steps:
             self.time += length.seconds  # which is nothing, or too short for anything to move
@@ -172,8 +185,9 @@ class World(State):
                 self.time = start + (done + self.steps - before) * length.dt
                 raise
             self.time = start + length.elapsed(done)
-            if done % stride == 0 or done == length.steps:
+            if done % stride == 0 or done == length.steps or time.monotonic() >= due:
                 yield done
+                due = time.monotonic() + patience
 
     # ---- structure -----------------------------------------------------------------------------------------
 
@@ -214,9 +228,11 @@ class World(State):
             follow_rows(self)
             derive_masses(self)
             check_edits(self)
-            self.plan, self.steppers = remake(self, self.schedule)
+            plan = None if self.entity_index.motion_edited else self.plan
+            self.plan, self.steppers = remake(self, self.schedule, plan)
             self.revision += 1
-            self._stale = False
+            self.motion_edits += self.entity_index.motion_edited
+            self._stale = self.entity_index.motion_edited = False
             if not self.entity_index.synchronise():
                 return
 
@@ -224,9 +240,15 @@ class World(State):
         """Choose method and steppers again, for the same systems."""
         self.plan, self.steppers = choose(self, self.schedule)
 
+    def resume(self, collisions: str, method: str, steps: int) -> None:
+        """Go on with what was chosen before this world was saved (:attr:`StepPlan.kept`), where possible."""
+        kept = resumed_plan(self, self.schedule, (collisions, method, steps))
+        self.plan, self.steppers = choose(self, self.schedule, kept)
+
     def edited(self) -> None:
         """Note that columns or components were changed from outside: measurements over time begin again."""
         self.revision += 1
+        self.motion_edits += 1
 
     def install(self, *systems: System) -> None:
         """Add systems to this world, after those of the same stage.
@@ -235,6 +257,7 @@ class World(State):
         """
         self.schedule.extend(systems)
         self._stale = True
+        self.entity_index.motion_edited |= any(system.acts_within_step() for system in systems)
 
     # ---- looking -------------------------------------------------------------------------------------------
 

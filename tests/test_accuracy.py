@@ -215,7 +215,7 @@ def test_problems_are_in_order() -> None:
     for problem in PROBLEMS.values():
         assert problem.excellent < problem.good, problem.name
         assert list(problem.times) == sorted(problem.times), problem.name
-        assert record(problem.source)["method"]
+        assert record(problem.family)["method"]
     assert not set(PROBLEMS) & {left.name for left in LEFT_OUT}
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pygame
 import pytest
 from desk import FRAME, Desk, bits, empty_world
+from recording import RecordingCanvas
 
 from physicslab import cli
 from physicslab.components import Transform, Velocity
@@ -19,7 +20,6 @@ from physicslab.desktop.sandbox import Sandbox
 from physicslab.files.scene import SceneError, load_scene
 from physicslab.prefabs import box, circle
 from physicslab.systems.system import Stage, System, at
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.display import Display
 from physicslab.view.window.window import Window
 from physicslab.world import World

@@ -8,12 +8,12 @@ import numpy as np
 import pygame
 import pytest
 from desk import Desk, bits, empty_world
+from recording import RecordingCanvas
 from test_hud import MeasuringCanvas
 
 from physicslab.components import Velocity
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,

@@ -11,6 +11,7 @@ from pathlib import Path
 import pygame
 import pytest
 from desk import FRAME, Desk, bits, empty_world
+from recording import RecordingCanvas
 
 from physicslab.components import Transform
 from physicslab.desktop.app import open_window
@@ -19,7 +20,6 @@ from physicslab.desktop.sandbox import Sandbox
 from physicslab.desktop.sessions import Session, session_folder
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import circle
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.window import Window

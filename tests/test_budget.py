@@ -11,6 +11,7 @@ import pytest
 
 from physicslab.cli import main
 from physicslab.commands.step_watch import StepWatch
+from physicslab.components import Transform
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene
 from physicslab.world import World
@@ -54,13 +55,32 @@ def test_a_run_within_its_budget_is_as_any_other(capsys: pytest.CaptureFixture[s
     assert "stopped" not in two
 
 
+def test_it_stops_within_a_second_however_long_the_run_is() -> None:
+    load_scene("gas").run(steps=2)  # kernels are there
+    assert main(["run", "gas", "--seconds", "1e8", "--at-most", "0.5", "--json", "o.json"]) == 1
+    report = json.loads(Path("o.json").read_text())
+    assert 0.3 < report["wall_s"] < 1.5
+    world = load_scene("gas")
+    world.run(steps=report["steps"])
+    places = [report["entities"][world.label(entity)]["position"] for entity in world.entities()]
+    assert places == [list(world.component(entity, Transform).position) for entity in world.entities()]
+
+
+@pytest.mark.parametrize(("scene", "seconds"), [("pendulum", "50"), ("drop", "50"), ("stack", "30")])
+def test_a_budget_changes_no_bit(scene: str, seconds: str) -> None:
+    for name, budget in (("none", []), ("some", ["--at-most", "100"])):
+        assert main(["run", scene, "--seconds", seconds, "--json", f"{name}.json", *budget]) == 0
+    none, some = (json.loads(Path(f"{name}.json").read_text()) for name in ("none", "some"))
+    assert none["entities"] == some["entities"] and none["energy"] == some["energy"]
+
+
 @pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "soon"])
 def test_a_budget_that_is_no_time_is_refused(value: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "drop", "--at-most", value]) == 2
     assert f"argument --at-most: '{value}': must be a finite number > 0 s" in capsys.readouterr().err
 
 
-def test_a_slow_step_is_told_once_with_its_place_and_its_reason() -> None:
+def test_a_slow_step_is_reported_once_with_its_place_and_its_reason() -> None:
     world = World(simulation=SimulationConfig(collisions="exact"))
     world.synchronise()
     watch = StepWatch(world)
@@ -82,6 +102,35 @@ def test_a_storm_of_impacts_is_called_so() -> None:
     assert "one impact follows another (5e+03 impacts)" in watch.note(1, 2.0)
     (advice,) = watch.warnings
     assert advice.setting == 'simulation.collisions = "step"'
+
+
+def narrow() -> dict[str, Any]:
+    """Return a scene in which a ball leaves a slot hardly wider than itself, to and fro, within a step."""
+    smooth = {"restitution": 1.0, "friction": 0.0}
+    wall = {"Shape": {"kind": "box", "width": 2.0, "height": 1.0}, "Material": smooth}
+    walls = [{"id": f"wall {x}", "Transform": {"position": [x, 0]}} | wall for x in (-1.500001, 1.500001)]
+    ball = {
+        "id": "ball", "Transform": {"position": [0, 0.45]}, "Velocity": {"linear": [0.3, -60]}, "Mass": {},
+        "Shape": {"kind": "circle", "radius": 0.5}, "Material": smooth,
+    }  # fmt: skip
+    return {
+        "format": "physicslab-scene/1", "physics": {"gravity_mode": "none"},
+        "simulation": {"collisions": "exact"}, "entities": [*walls, ball],
+    }  # fmt: skip
+
+
+def test_run_reports_a_storm_of_impacts_within_one_of_many_compiled_steps(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    Path("narrow.json").write_text(json.dumps(narrow()))
+    assert main(["run", "narrow.json", "--steps", "20000", "--json", "o.json"]) == 0
+    report = json.loads(Path("o.json").read_text())
+    (advice,) = report["advice"]
+    assert advice["entity"] == "ball" and "storm of impacts" in advice["what"] and advice["value"] >= 1000
+    line = capsys.readouterr().err
+    assert line.count("\n") == 1 and line.startswith("physicslab: narrow: at t = ") and "ball" in line
+    assert main(["run", "drop", "--seconds", "60", "--json", "o.json"]) == 0
+    assert json.loads(Path("o.json").read_text())["advice"] == [] and capsys.readouterr().err == ""
 
 
 def test_run_says_where_it_is_slow(

@@ -6,8 +6,9 @@ import numpy as np
 import pygame
 import pytest
 from numpy.typing import NDArray
+from recording import RecordingCanvas
 
-from physicslab.view.canvas.canvas import RecordingCanvas, Rect, TextStyle, TextSurface
+from physicslab.view.canvas.canvas import Rect, TextStyle, TextSurface
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.rounded import rounded
 from physicslab.view.panels.refresh_timer import RefreshTimer

@@ -6,8 +6,9 @@ import numpy as np
 import pygame
 import pytest
 from numpy.typing import NDArray
+from recording import RecordingCanvas
 
-from physicslab.view.canvas.canvas import Canvas, Look, RecordingCanvas, TextStyle
+from physicslab.view.canvas.canvas import Canvas, Look, TextStyle
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import Colour
 

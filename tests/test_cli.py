@@ -18,7 +18,8 @@ import pytest
 
 import physicslab
 from physicslab import cli, load_scene, save_scene
-from physicslab.commands import COMMANDS, progress, run
+from physicslab.commands import COMMANDS, progress
+from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
 from physicslab.diagnostics.run_report import find_not_finite
 from physicslab.lab.accuracy.catalogue import PROBLEMS
@@ -51,9 +52,9 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
     assert list(report) == [
         "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason",
         "collision_method", "collision_reason", "summation", "interpreted", "force_evaluations", "wall_s",
-        "compile_s", "stepper", "steppers_left_out", "systems", "left_out", "energy", "momentum",
-        "angular_momentum", "candidate_pairs", "contacts", "asleep", "collisions", "max_penetration",
-        "divided", "advice", "entities",
+        "compile_s", "interpreted_steps", "interpreted_s", "stepper", "steppers_left_out",
+        "systems", "left_out", "energy", "momentum", "angular_momentum", "candidate_pairs", "contacts",
+        "asleep", "collisions", "max_penetration", "divided", "advice", "entities",
     ]  # fmt: skip
     assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
     assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "exact")
@@ -308,13 +309,19 @@ def test_how_collisions_are_found_is_said_with_the_reason(
     assert (report["collision_method"], report["collision_reason"]) == ("none", "nothing can touch")
 
 
+def test_a_run_of_no_steps_writes_the_start(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    table = tmp_path / "run.csv"
+    assert document(capsys, "run", "drop", "--steps", "0", "--csv", str(table))["steps"] == 0
+    assert table.read_text().count("\n") == 3
+
+
 def test_an_interrupted_run_ends_quietly(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(run, "_measure", interrupt)
+    monkeypatch.setattr(MeasuredRun, "_measure", interrupt)
     path = tmp_path / "run.json"
     assert complaint(capsys, "run", "drop", "--json", str(path), status=130) == "interrupted"
     assert os.listdir(tmp_path) == []

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from desk import Desk, empty_world
+from recording import RecordingCanvas
 
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import pendulum
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.panels.error_study import ErrorStudy
 
 

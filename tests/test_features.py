@@ -6,6 +6,7 @@ import numpy as np
 import pygame
 import pytest
 from desk import FRAME, Desk, empty_world
+from recording import RecordingCanvas
 from test_arrows import lines_in
 from test_hud import row
 
@@ -14,7 +15,6 @@ from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.world import World

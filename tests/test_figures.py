@@ -5,16 +5,16 @@ from dataclasses import replace
 
 import pytest
 from desk import FRAME, Desk, empty_world
+from recording import RecordingCanvas
 from test_hud import frame, recorded, row
 
-from physicslab.components import Drag, Mass, Spring, Transform, Velocity
+from physicslab.components import Drag, Mass, Spring, Trail, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle, pendulum
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.quantities import length_of, percentage, quantity, vector_quantity
 from physicslab.view.panels.figures import EnergyWatch
 from physicslab.view.panels.scale_bar import draw_scale_bar
@@ -133,6 +133,28 @@ def test_what_only_changes_the_picture_is_no_edit() -> None:
         desk.key(name)
         desk.frames(2)
     assert world.revision == before
+
+
+def test_trails_are_no_edit_of_the_motion_and_its_energy_goes_on_being_measured() -> None:
+    world = empty_world()
+    circle(world, (0, 5))
+    desk, _ = recorded(world)
+    desk.frames(30)
+    plan, edits = world.plan, world.motion_edits
+    watch = EnergyWatch()
+    watch.sample(world)
+    for on in (True, False):
+        before = world.revision
+        desk.key("t")
+        desk.frames(10)
+        assert world.revision > before and bool(len(world.batch(Trail))) == on
+        assert world.motion_edits == edits and world.plan is plan
+        watch.follow(world)
+        assert watch.since < world.time - 0.1, "it has not begun again"
+    world.add(circle(world, (3, 5)), Trail())
+    desk.frames(2)
+    watch.follow(world)
+    assert world.motion_edits > edits and watch.since == world.time
 
 
 def with_drag(world: World) -> None:

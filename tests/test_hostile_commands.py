@@ -13,7 +13,7 @@ import pytest
 from deadline import deadline
 from forked import ForkedProgram
 
-from physicslab.files.scene import LARGEST_FILE, SceneError, load_scene
+from physicslab.files.scene import FILE_LIMIT, SceneError, load_scene
 
 MAIN = Path(__file__).parents[1] / "main.py"
 WARNINGS = {"SDL_VIDEODRIVER": "dummy", "PYTHONWARNINGS": "error"}
@@ -109,7 +109,7 @@ def test_a_file_that_grows_while_it_is_read_is_read_no_further_than_the_limit(
 
     def grow(file: int) -> os.stat_result:
         seen = fstat(file)
-        os.truncate(path, 2 * LARGEST_FILE)  # after it was looked at, before it is read
+        os.truncate(path, 2 * FILE_LIMIT)  # after it was looked at, before it is read
         return seen
 
     monkeypatch.setattr("physicslab.files.scene.os.fstat", grow)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from physicslab.files.scene import LARGEST_FILE, MOST_BRACKETS, SceneError, load_scene
+from physicslab.files.scene import BRACKET_LIMIT, FILE_LIMIT, SceneError, load_scene
 
 START, END = b'{"format": "physicslab-scene/1", ', b"}"
 MEMORY = 1_500_000_000
@@ -39,7 +39,7 @@ HOSTILE_FILES = {
     "cut short": (START + b'"name": "caf\xc3', "is not UTF-8"),
     "null characters": (b"\0" * 1000, "is not JSON"),
     "null in a text": (START + b'"name": "a\0b", "entities": []' + END, "is not JSON"),
-    "brackets": (b"[" * (MOST_BRACKETS + 1), f"must have at most {MOST_BRACKETS:,} objects and lists"),
+    "brackets": (b"[" * (BRACKET_LIMIT + 1), f"must have at most {BRACKET_LIMIT:,} objects and lists"),
 }
 
 
@@ -78,7 +78,7 @@ def test_what_is_no_plain_file_is_refused_at_once(tmp_path: Path) -> None:
 def test_a_file_beyond_the_limit_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "scene.json"
     with path.open("wb") as file:
-        file.truncate(LARGEST_FILE + 1)
+        file.truncate(FILE_LIMIT + 1)
     assert refused(path) == "is too large: a scene file must have at most 104,857,600 bytes"
 
 
@@ -108,7 +108,7 @@ def test_memory_is_bounded_for_the_largest_file(
     start: bytes, filling: bytes, end: bytes, tmp_path: Path
 ) -> None:
     path = tmp_path / "scene.json"
-    path.write_bytes(start + filling * ((LARGEST_FILE - 10) // len(filling)) + end)
+    path.write_bytes(start + filling * ((FILE_LIMIT - 10) // len(filling)) + end)
     done = subprocess.run(
         [sys.executable, "-c", MEASURED, str(path)], capture_output=True, text=True, timeout=60, check=False
     )

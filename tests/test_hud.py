@@ -6,12 +6,13 @@ from typing import Any
 import pygame
 import pytest
 from desk import FRAME, Desk, empty_world
+from recording import RecordingCanvas
 
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig, WindowConfig
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle, pendulum
-from physicslab.view.canvas.canvas import Align, RecordingCanvas, Rect, TextStyle
+from physicslab.view.canvas.canvas import Align, Rect, TextStyle
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.controls import CONTROLS

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from desk import FRAME, Desk, empty_world
+from recording import RecordingCanvas
 
 from physicslab.prefabs import circle
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.overlay.impacts import ImpactReader, RecentImpacts
 from physicslab.world import World

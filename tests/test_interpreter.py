@@ -22,7 +22,7 @@ from desk import bits
 
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.desktop import compiling
-from physicslab.desktop.small_scenes import LONGEST, SmallScenes
+from physicslab.desktop.small_scenes import INTERPRETING_LIMIT, SmallScenes
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
@@ -273,7 +273,7 @@ def test_what_would_be_interpreted_for_too_long_is_compiled_first(
     world.synchronise()
     interpreter._set_aside(jitted)
     stand_in(jitted)
-    interpreter.limit(0.0, compile_now)
+    interpreter.limit(lambda _: 1e-9, compile_now)
     ask_before_compiling(lambda missing: missing)
     try:
         for _ in range(3):
@@ -281,7 +281,7 @@ def test_what_would_be_interpreted_for_too_long_is_compiled_first(
     finally:
         ask_before_compiling(None)
         interpreter.unlimited()
-        interpreter._stand_back(jitted)
+        interpreter.stand_back(jitted)
     assert late == [jitted]
     assert bits(world) == bits(expected)
 
@@ -423,5 +423,5 @@ def test_the_window_hands_over_what_is_small_and_hurries_it(monkeypatch: pytest.
         started.scenes.follow(load_scene("drop"))
         assert started._ask([motion.drift]) == [motion.drift]
         assert hurried == ["physicslab.kernels.motion.drift"]
-        assert interpreter._limit == LONGEST
-    assert interpreter._limit == math.inf
+        assert interpreter._limit(motion.drift) == INTERPRETING_LIMIT
+    assert interpreter._limit(motion.drift) == math.inf

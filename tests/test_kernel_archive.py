@@ -243,8 +243,10 @@ def test_bad_usage_is_one_line(
     root: Path, compiled: None, capsys: pytest.CaptureFixture[str], arguments: list[str], reason: str
 ) -> None:
     assert cli.main(["kernels", *arguments]) == 2
-    *_, last = capsys.readouterr().err.splitlines()
+    *before, last = capsys.readouterr().err.splitlines()
     assert reason in last and last.startswith("physicslab: ")
+    assert not any("programs" in line for line in before), "no warning of a file that cannot be read"
+    assert not before or "usage" in before[0]
 
 
 def test_what_does_not_fit_ends_with_2(root: Path, packed: Path, capsys: pytest.CaptureFixture[str]) -> None:

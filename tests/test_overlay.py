@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 from desk import Desk, bits, empty_world
+from recording import RecordingCanvas
 from test_arrows import lines_in, shown
 
 from physicslab.components import Mass, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.impacts import SHOWN

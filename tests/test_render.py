@@ -7,6 +7,7 @@ import numpy as np
 import pygame
 import pytest
 from desk import FRAME, Desk, bits, empty_world
+from recording import RecordingCanvas
 
 from physicslab.components import Held, Mass, Spring, Transform, Velocity
 from physicslab.files.scene import load_scene
@@ -14,7 +15,6 @@ from physicslab.prefabs import box, circle, pendulum
 from physicslab.scenes import SCENES
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.picture.backdrop import grid_spacing

@@ -151,7 +151,7 @@ SECTIONS = [
     ({"contacts": [[None, None, math.nan]]}, "contacts[0][2] = NaN: must be a finite number"),
     ({"contacts": [[None, None, 0]]}, "contacts: a contact has"),
     ({"rests": {}}, "rests = {}: must be a list of lists"),
-    ({"rests": ["ball"]}, 'rests[0] = "ball": must be an id for a sleeper, or an id, a time s and a speed'),
+    ({"rests": ["ball"]}, 'rests[0] = "ball": must be an id for a sleeper, which a force'),
     ({"rests": [["ball", 1.0]]}, 'rests[0] = ["ball", 1.0]: must be an id for a sleeper'),
     ({"rests": [["ball"]]}, 'rests[0][0] = "ball": must be the id of an entity with Velocity, Mass, Shape'),
     ({"rests": [[None]]}, "rests[0][0] = null: must be the id of an entity with Velocity, Mass, Shape"),

@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab import SceneError, World, load_scene, save_scene
-from physicslab.components import Held, Mass, Name, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Name, Shape, Spring, Trail, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.text import unique_name
 from physicslab.ecs.vector import Vector2
@@ -320,6 +320,51 @@ def test_a_pile_that_was_edited_goes_on_with_the_same_bits(
                 )
 
 
+def fast_on_a_spring(world: World) -> int:
+    ball = circle(world, (0, 3), velocity=(0, -60))
+    world.spawn(Spring(ball, anchor_b=(0, 5), rest_length=4.5, stiffness=500.0))
+    return ball
+
+
+def fast_with_drag(world: World) -> int:
+    ball = circle(world, (0, 3), velocity=(500, 0))
+    world.add(ball, Drag(quadratic=900.0))
+    return ball
+
+
+def in_the_air(world: World) -> int:
+    return circle(world, (0, 3), radius=0.5, restitution=0.5)
+
+
+@pytest.mark.parametrize("make", [fast_on_a_spring, fast_with_drag, in_the_air])
+def test_what_was_chosen_for_an_earlier_motion_is_kept(make: Callable[[World], int]) -> None:
+    """The method was chosen by how a body moved; the world that is loaded meets it nearly at rest."""
+    world = World(*standard_systems())
+    box(world, (0, -0.5), width=50, height=1, static=True, restitution=0.5)
+    body = make(world)
+    world.synchronise()
+    plan, row = world.plan, world.entity_index.row_of[body]
+    world.table(Velocity)["linear"][row] = 1e-6, 0.0
+    world.table(Transform)["position"][row] = 0.0, 0.5
+    document = json.loads(json_text(write_scene(world)))
+    again = read_scene(document)
+    again.synchronise()
+    assert world.plan is plan and again.plan.kept == plan.kept != fresh(document).plan.kept
+    for each in (world, again):
+        each.run(steps=20)
+    assert bits(again) == bits(world)
+    again.physics = dataclasses.replace(again.physics, G=2.0)
+    again.synchronise()
+    assert again.plan.kept == fresh(write_scene(again)).plan.kept, "an edit is a reason to choose again"
+
+
+def fresh(document: dict[str, Any]) -> World:
+    """Return the world of a document that keeps nothing of the solver."""
+    world = read_scene({key: value for key, value in document.items() if key != "solver"})
+    world.synchronise()
+    return world
+
+
 @pytest.mark.parametrize(
     ("solver", "words"),
     [
@@ -327,6 +372,12 @@ def test_a_pile_that_was_edited_goes_on_with_the_same_bits(
         ({"finer": 17}, "scene: solver.finer = 17: must be"),
         ({"finer": 1.5}, "scene: solver.finer = 1.5: must be"),
         ({"spin": 1}, "scene: solver: spin = 1: unknown key"),
+        ({"chosen": ["step", "dop853"]}, 'scene: solver.chosen = ["step", "dop853"]: must be [how'),
+        ({"chosen": ["step", "magic", 1]}, 'scene: solver.chosen = ["step", "magic", 1]: must be'),
+        ({"chosen": ["step", ["rk4"], 1]}, "scene: solver.chosen = "),
+        ({"chosen": ["later", "rk4", 1]}, "scene: solver.chosen = "),
+        ({"chosen": ["step", "rk4", 0]}, "scene: solver.chosen = "),
+        ({"chosen": ["step", "rk4", 1.0]}, "scene: solver.chosen = "),
         ([], "scene: solver = []: must be"),
     ],
 )

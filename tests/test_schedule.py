@@ -1,11 +1,14 @@
 """Schedule: order, what runs, what is left out and why, and what it costs."""
 
+import time
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import pytest
 
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.kernels import ask_before_compiling
 from physicslab.state.state import State
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
@@ -217,6 +220,34 @@ def test_timings_count_calls() -> None:
         "Onlooker": 3 * 4 * 2,
     }
     assert all(0 < timing.ms < 1000 for timing in timings.values())
+
+
+def test_a_world_counts_the_time_that_its_kernels_take_and_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+
+    def wait(missing: Sequence[Any]) -> None:
+        asked.extend(missing)
+        time.sleep(0.02)
+
+    world = World(GravitySystem(), IntegrateSystem(), simulation=SimulationConfig(integrator="leapfrog"))
+    world.spawn(Transform(), Velocity(), Mass())
+    world.run(steps=1)
+    assert world.stepper is not None and world.stepper.kernels
+    before = world.compile_s
+    world.run(steps=1)
+    assert world.compile_s == before, "all are loaded"
+    for jitted in world.stepper.kernels:  # as in a process that has not called them yet
+        monkeypatch.setattr(jitted, "compiled", False)
+        monkeypatch.setattr(jitted, "compile", lambda _: None)
+    ask_before_compiling(wait)
+    try:
+        world.run(steps=1)
+    finally:
+        ask_before_compiling(None)
+    assert set(asked) >= set(world.stepper.kernels)
+    assert world.compile_s - before >= 0.02
+    later = World(GravitySystem())
+    assert later.compile_s == 0.0, "what others waited for before"
 
 
 def test_in_a_compiled_run_the_loop_is_timed_and_the_forces_are_counted() -> None:

@@ -207,7 +207,7 @@ def test_without_a_home_the_window_works_and_says_so(monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("way", ["full", "taken"])
-def test_a_screenshot_is_whole_or_told_as_failed(
+def test_a_screenshot_is_whole_or_reported_as_failed(
     way: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

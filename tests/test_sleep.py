@@ -496,7 +496,7 @@ def test_a_fresh_world_has_no_rests_in_its_file() -> None:
     world.run(steps=3)
     assert [len(rest) for rest in write_scene(world)["rests"]] == [3]
     world.run(seconds=1.0)
-    assert [len(rest) for rest in write_scene(world)["rests"]] == [1]
+    assert [len(rest) for rest in write_scene(world)["rests"]] == [4]
 
 
 def test_a_body_that_sleeps_in_the_air_in_a_file_wakes() -> None:

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from desk import FRAME, Desk, empty_world
+from recording import RecordingCanvas
 
 from physicslab.components import Velocity
 from physicslab.prefabs import box, circle, stack
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.picture.sparks import Sparks

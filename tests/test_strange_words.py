@@ -6,10 +6,11 @@ import pygame
 import pytest
 from deadline import deadline
 from desk import Desk, empty_world
+from recording import RecordingCanvas
 
 from physicslab.components import Spring
 from physicslab.prefabs import circle
-from physicslab.view.canvas.canvas import RecordingCanvas, TextStyle
+from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.canvas.display import Display
 from physicslab.view.canvas.drawable_text import MAX_LETTERS
 from physicslab.view.canvas.pygame_canvas import PygameCanvas

@@ -101,7 +101,7 @@ def test_bodies_and_arrows_stand_out_from_the_background(theme: Theme) -> None:
     assert contrast(theme.friction_cone, theme.background) >= 3.0
 
 
-def test_no_two_arrows_are_told_apart_by_colour_alone() -> None:
+def test_no_two_arrows_are_distinguished_by_colour_alone() -> None:
     assert len({kind.head for kind in ARROWS}) == len(ARROWS)
 
 

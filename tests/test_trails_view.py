@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from desk import FRAME, Desk, bits, empty_world
+from recording import RecordingCanvas
 
 from physicslab.components import Trail, Velocity
 from physicslab.files.scene import load_scene
@@ -12,7 +13,6 @@ from physicslab.prefabs import box, circle
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
 from physicslab.systems.trail import TrailSystem
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.theme import DARK, mixed
 from physicslab.view.window.window import Window
 from physicslab.world import World

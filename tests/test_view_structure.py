@@ -7,13 +7,13 @@ import graphlib
 import grimp
 import pytest
 from desk import Desk
+from recording import RecordingCanvas
 
 from physicslab.files.scene import load_scene
 from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage, System
-from physicslab.view.canvas.canvas import RecordingCanvas
 
 
 @pytest.mark.parametrize("folder", ["physicslab.view", "physicslab.systems.frame"])

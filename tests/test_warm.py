@@ -11,13 +11,13 @@ from typing import Any
 
 import pygame
 import pytest
+from recording import RecordingCanvas
 
 from physicslab.desktop import app, compiling
 from physicslab.desktop.compiling import Compiling, Left
 from physicslab.ecs.config import WindowConfig
 from physicslab.kernels import cache, keys, motion, warm
 from physicslab.kernels.warm import Progress, Warmup, is_warm, load_all, mark_warm, name_of
-from physicslab.view.canvas.canvas import RecordingCanvas
 from physicslab.view.canvas.display import Display, wants_to_leave
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.panels.progress import draw_progress
@@ -284,6 +284,47 @@ def test_what_is_waited_for_is_there_before_the_rest(mark: Path, monkeypatch: py
         waiting.advance(DARK)
         corner = {tuple(display.canvas.surface.get_at((x, 690)))[:3] for x in range(1000, 1270)}
         assert DARK.panel in corner
+
+
+def test_a_worker_that_ends_before_it_is_given_anything_is_no_error(mark: Path) -> None:
+    warmup = Warmup(1, (sys.executable, "-c", "pass"))
+    process = subprocess.Popen(
+        (sys.executable, "-c", "pass"), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
+    )
+    process.wait()
+    warmup._employ(process)
+    assert process.stdin is not None and process.stdin.closed
+
+
+def test_nothing_is_compiled_before_the_first_frames(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On two processors two compilers would make the first picture that moves half as fast again."""
+    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, ASLEEP))
+    with Display.open(WindowConfig(), "test") as display, Compiling(display) as started:
+        assert started._warmup is not None
+        for _ in range(3):
+            started.advance(DARK)
+            assert not started._warmup._processes
+        started.advance(DARK)
+        assert len(started._warmup._processes) == 1
+
+
+def test_a_frame_that_loads_a_kernel_makes_fewer_steps(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, ASLEEP))
+    monkeypatch.setattr(Compiling, "_is_kept", lambda *_: True)
+    monkeypatch.setattr(Display, "left", property(lambda self: 0.0))
+    with Display.open(WindowConfig(), "test") as display, Compiling(display) as started:
+        waiting: list[Any] = [Waiting("a"), Waiting("b")]
+        started.scenes.kernels = list(waiting)
+        usual = started.time_for_steps(0.1)
+        started.advance(DARK)
+        assert not waiting[0].compiled, "it comes in the next frame"
+        assert started.time_for_steps(0.1) < usual < 0.1
+        started.advance(DARK)
+        assert waiting[0].compiled and not waiting[1].compiled
+        started.advance(DARK)
+        assert waiting[1].compiled
+        started.advance(DARK)
+        assert started.time_for_steps(0.1) == 0.1
 
 
 def test_kernels_are_loaded_in_frames_that_have_time_left(

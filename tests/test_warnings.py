@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from desk import Desk, empty_world
+from recording import RecordingCanvas
 from test_hud import frame, recorded
 
 from physicslab.cli import main
@@ -17,7 +18,7 @@ from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import box, circle, stack
 from physicslab.scenes import SCENES
 from physicslab.systems.standard import standard_systems
-from physicslab.view.canvas.canvas import RecordingCanvas, TextStyle
+from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.panels.warnings import draw_advice
 from physicslab.world import World

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Mass, Name, Spring, Transform, Velocity
-from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig
+from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.systems.gravity import GravitySystem
@@ -292,7 +292,7 @@ def test_run_lands_on_the_very_time(dt: float, seconds: float, start: float) -> 
     assert times == sorted(times) and (not times or times[-1] == world.time)
     assert world.steps <= math.ceil(seconds / dt * (1 + 1e-12))
     # The bodies have moved for that time too, not only the clock.
-    assert world.component(ball, Transform).position.x == pytest.approx(seconds, rel=1e-13, abs=SHORTEST)
+    assert world.component(ball, Transform).position.x == pytest.approx(seconds, rel=1e-13, abs=MIN_TIME)
 
 
 @pytest.mark.parametrize(

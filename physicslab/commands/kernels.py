@@ -18,6 +18,9 @@ from physicslab.kernels.warm import Warmup, is_warm, load_all, mark_warm
 __all__ = ["add_arguments", "execute"]
 
 _LOOK_EVERY_S = 0.1
+_WARNING = (
+    "physicslab: compiled kernels are programs: import none from people whose programs you would not run"
+)
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -71,11 +74,9 @@ def _export(output: Output) -> int:
 
 
 def _import(file: str) -> int:
-    print(
-        "physicslab: compiled kernels are programs: import none from people whose programs you would not run",
-        file=sys.stderr,
-    )
     try:
+        with open(file, "rb"):  # before anything is said: a file that is not there needs no warning
+            print(_WARNING, file=sys.stderr)
         unpack(Path(file))
     except ArchiveError as error:
         raise CommandError(f"{file}: {error}") from error

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import math
 
-__all__ = ["MOST_STEPS", "count", "duration", "positive_count", "positive_duration"]
+__all__ = ["STEP_LIMIT", "count", "duration", "positive_count", "positive_duration"]
 
-MOST_STEPS = 10**15
+STEP_LIMIT = 10**15
 """More than any run will do; beyond it, times could no longer be counted exactly."""
 
 
@@ -49,8 +49,8 @@ def _whole(text: str, least: int) -> int:
         number = int(text)
     except ValueError:
         number = least - 1
-    if not least <= number <= MOST_STEPS:
+    if not least <= number <= STEP_LIMIT:
         raise argparse.ArgumentTypeError(
-            f"{text!r}: must be a whole number >= {least}, at most {MOST_STEPS:g}"
+            f"{text!r}: must be a whole number >= {least}, at most {STEP_LIMIT:g}"
         )
     return number

@@ -1,4 +1,4 @@
-"""One line on the terminal that says how far a long run is."""
+"""One line on the terminal: how far a long run is."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _INTERVAL_S = 0.1
 
 
 class Progress:
-    """Keeps one line of a terminal up to date; says nothing to a file, or in the first second.
+    """Keeps one line of a terminal up to date; writes nothing to a file, or in the first second.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Progress:
     stream : text stream or None
         Usually stderr, which a program may be started without.
     clock : callable, optional
-        Tells the time [s].
+        Returns the time [s].
     """
 
     def __init__(

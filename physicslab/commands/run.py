@@ -6,43 +6,33 @@ import dataclasses
 import io
 import math
 import os
-import sys
-import time
 from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
 from contextlib import nullcontext
 from pathlib import Path
 
 from physicslab.commands.command_error import FAILED, CommandError
-from physicslab.commands.numbers import MOST_STEPS, count, duration, positive_count, positive_duration
+from physicslab.commands.measured_run import MeasuredRun
+from physicslab.commands.numbers import STEP_LIMIT, count, duration, positive_count, positive_duration
 from physicslab.commands.output import Output
-from physicslab.commands.progress import Progress
-from physicslab.commands.step_watch import StepWatch
 from physicslab.desktop.rescue import save_last_good
-from physicslab.diagnostics.energy import Drift
-from physicslab.diagnostics.overflow import find_overflow
-from physicslab.diagnostics.run_report import RunRecord, find_not_finite, run_report, run_summary
+from physicslab.diagnostics.run_report import find_not_finite, run_report, run_summary
 from physicslab.diagnostics.trajectory import TrajectoryWriter
-from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import INTEGRATORS
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
 from physicslab.files.scene import SceneError, load_scene
+from physicslab.kernels.tiers import Tiers
 from physicslab.scenes import SCENES
 from physicslab.state.masses import Diverged
+from physicslab.stepping.small import is_small
 from physicslab.world import World
 
 __all__ = ["add_arguments", "execute"]
 
 _DEFAULT_S = 10.0
-_SAMPLES = 500
-"""How often a run without contacts is measured: what lies between is one compiled loop."""
-_LOOKS = 100
-"""How often warnings are looked for in a run: with thousands of contacts that takes a third of a step."""
-_BUDGETED = 100_000
-"""Into how many parts, at most, a run with a budget is divided: after each, it can be stopped."""
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -71,16 +61,24 @@ def execute(arguments: Namespace) -> int:
     """Run the scene and write what was asked for; a summary on stdout if nothing else goes there."""
     outputs = _outputs(arguments)
     world = load_scene(arguments.scene)
+    with Tiers(is_small(world)) as tiers:
+        return _execute(world, arguments, outputs, tiers)
+
+
+def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], tiers: Tiers) -> int:
+    """Run a world, and write what was asked for."""
     _configure(world, arguments)
     name = world.name or Path(arguments.scene).stem
     label = shortened(printable(name))
+    seconds = _DEFAULT_S if arguments.seconds is None and arguments.steps is None else arguments.seconds
     with outputs["csv"].stream() if "csv" in outputs else nullcontext() as stream:
         trajectory = None if stream is None else TrajectoryWriter(stream)
         try:
-            record, stopped = _run(world, name, arguments, trajectory)
+            run = MeasuredRun(world, name, tiers, arguments.at_most, trajectory)
+            run.go(seconds, arguments.steps)
         except Diverged as error:
             raise CommandError(f"{label}: {error}; {_rescue(world, name, outputs)}", FAILED) from error
-    report = run_report(world, record)
+    report, stopped = run_report(world, run.record), run.stopped
     place = find_not_finite(report)
     if place is not None:
         where = f"{place} is not finite at t = {world.time:.9g} s: the run diverged"
@@ -123,7 +121,7 @@ def _outputs(arguments: Namespace) -> dict[str, Output]:
 
 
 def _configure(world: World, arguments: Namespace) -> None:
-    """Step the world as the command line says, and prepare it, so that only the run itself is timed."""
+    """Configure the world by the command line, and prepare it, so that only the run itself is timed."""
     changes = {name: getattr(arguments, name) for name in ("dt", "substeps", "integrator")}
     changes = {name: value for name, value in changes.items() if value is not None}
     scene = shown(arguments.scene)
@@ -141,103 +139,8 @@ def _configure(world: World, arguments: Namespace) -> None:
             f"--steps {arguments.steps}: must take a finite time at {world.simulation.dt:g} s each"
         )
     seconds = _DEFAULT_S if arguments.seconds is None else arguments.seconds
-    if arguments.steps is None and seconds / world.simulation.dt > MOST_STEPS:
-        raise CommandError(f"--seconds {seconds:g}: must be at most {MOST_STEPS:g} steps of dt")
-
-
-def _run(
-    world: World, name: str, arguments: Namespace, trajectory: TrajectoryWriter | None
-) -> tuple[RunRecord, str]:
-    """Advance the world; between steps, outside the time that is counted, measure and record.
-
-    Returns
-    -------
-    record : RunRecord
-        What was gathered.
-    stopped : str
-        Where the run was stopped because its time was up; empty if it was not.
-    """
-    record, watch = RunRecord(name, Drift(world)), StepWatch(world)
-    _check_sums(world, record)
-    seconds = _DEFAULT_S if arguments.seconds is None and arguments.steps is None else arguments.seconds
-    length = arguments.steps * world.simulation.dt if seconds is None else seconds
-    label = shortened(printable(name))
-    start, progress = world.time, Progress(label, sys.stderr)
-    clock = _Stopwatch(world)
-    whole = round(length / world.simulation.dt)
-    parts = _SAMPLES if arguments.at_most is None else _BUDGETED
-    stride = 1 if trajectory is not None else max(1, whole // parts)
-    stepping = world.stepping(seconds=seconds, steps=arguments.steps, stride=stride)
-    measure_every = 1 if trajectory is not None else max(1, whole // (stride * _SAMPLES))
-    look_every = max(1, whole // (stride * _LOOKS))
-    samples, stopped = 0, ""
-    try:
-        while True:
-            if trajectory is not None:
-                trajectory.write(world)
-            before = clock.seconds
-            done = None if stopped else next(stepping, None)
-            taken = clock.seconds - before
-            record.wall_s += taken
-            ended = done is None
-            if ended or samples % measure_every == 0:
-                _measure(world, record)
-            if ended or samples % look_every == 0:
-                record.warnings.add(find_warnings(world))
-            if done is None:
-                record.warnings.add(watch.warnings)
-                return record, stopped
-            samples += 1
-            if (slow := watch.note(done - record.steps, taken)) and sys.stderr is not None:
-                progress.clear()
-                print(f"physicslab: {label}: {slow}", file=sys.stderr, flush=True)
-            record.steps = done
-            progress.show((world.time - start) / length)
-            if arguments.at_most is not None and clock.seconds >= arguments.at_most:
-                stopped = _where_stopped(world, record, arguments.at_most, start + length, whole)
-    finally:
-        progress.clear()
-
-
-class _Stopwatch:
-    """The time since it was made, without that in which kernels were compiled or loaded.
-
-    Parameters
-    ----------
-    world : World
-        Which counts what compiling takes.
-    """
-
-    def __init__(self, world: World) -> None:
-        self._world = world
-        self._start = time.perf_counter() - world.compile_s
-
-    @property
-    def seconds(self) -> float:
-        """How long it has been [s]."""
-        return time.perf_counter() - self._world.compile_s - self._start
-
-
-def _where_stopped(world: World, record: RunRecord, at_most: float, end: float, whole: int) -> str:
-    """Return in words where a run was stopped; nothing where it was at its end."""
-    if world.time >= end:
-        return ""
-    steps = f"after {record.steps} of {whole} steps"
-    return f"stopped after {at_most:g} s of wall clock (--at-most) at t = {world.time:.9g} s, {steps}"
-
-
-def _measure(world: World, record: RunRecord) -> None:
-    record.drift.sample(world)
-    record.max_penetration = max(record.max_penetration, world.contacts.max_penetration)
-    record.divided = max(record.divided, world.step_divisions)
-    _check_sums(world, record)
-
-
-def _check_sums(world: World, record: RunRecord) -> None:
-    """Stop a run whose energy or momentum is no longer finite, naming what and when."""
-    overflow = find_overflow(world, record.drift.latest)
-    if overflow is not None:
-        raise Diverged(f"{overflow} at t = {world.time:.9g} s")
+    if arguments.steps is None and seconds / world.simulation.dt > STEP_LIMIT:
+        raise CommandError(f"--seconds {seconds:g}: must be at most {STEP_LIMIT:g} steps of dt")
 
 
 def _picture(world: World) -> bytes:

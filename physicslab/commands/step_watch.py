@@ -1,22 +1,27 @@
-"""Steps that take long: which, and what takes the time in them."""
+"""Steps that take long, or hold a storm of impacts: which, and what takes the time in them."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from physicslab.diagnostics.warning_records import ModelWarning
 from physicslab.world import World
 
-__all__ = ["StepWatch"]
+__all__ = ["STORM_LIMIT", "StepWatch"]
 
 _SLOW_S = 1.0
 """Time [s] from which on a step is called slow: sixty times what the window has for one."""
 _STORM = 100.0
 """Impacts in a step from which on they are the reason; a gas of 2,000 discs has some twenty."""
+STORM_LIMIT = 1000
+"""Impacts within the time of one step from which on they are a storm, however fast it is computed: the bodies
+of a scene with exact collisions are few, and those that come to rest are taken out at the last bounces."""
 _EVALUATIONS = 10_000.0
 """Force evaluations in a step from which on the method is the reason: as many as substeps may be set."""
 
 
 class StepWatch:
-    """Notes how long steps take; says where the first slow one is and what takes the time.
+    """Notes how long steps take and how many impacts they hold; reports where the first bad one is, and why.
 
     Parameters
     ----------
@@ -26,14 +31,22 @@ class StepWatch:
     Attributes
     ----------
     warnings : tuple of ModelWarning
-        Of the slowest step, if one was slow.
+        Of the slowest step, if one was slow, and of the worst storm of impacts, if there was one.
     """
 
     def __init__(self, world: World) -> None:
         self._world = world
         self._collisions, self._evaluations = int(world.collisions), world.force_evaluations
+        self._logged = int(world.contacts.logged)
         self._worst = 0.0
-        self.warnings: tuple[ModelWarning, ...] = ()
+        self._slow: ModelWarning | None = None
+        self._storm: ModelWarning | None = None
+        self._most_impacts = 0
+
+    @property
+    def warnings(self) -> tuple[ModelWarning, ...]:
+        """What was found so far, one of each kind."""
+        return tuple(warning for warning in (self._slow, self._storm) if warning is not None)
 
     def note(self, steps: int, seconds: float) -> str:
         """Take note of so many steps, which took so many seconds without compiling.
@@ -50,11 +63,41 @@ class StepWatch:
         each = seconds / steps
         if each <= max(_SLOW_S, self._worst):
             return ""
-        first, self._worst = not self.warnings, each
+        first, self._worst = self._slow is None, each
         why, setting, figures = self._reason(impacts, evaluations)
-        self.warnings = (ModelWarning(None, f"a step takes long: {why}", each, "s", _SLOW_S, setting),)
+        self._slow = ModelWarning(None, f"a step takes long: {why}", each, "s", _SLOW_S, setting)
         line = f"slow: the step to t = {world.time:.9g} s took {each:.3g} s: {why} ({figures})"
         return line if first else ""
+
+    def note_impacts(self) -> str:
+        """Take note of the impacts that were located in time since the last call.
+
+        They are counted by their own times: a storm within one of many compiled steps shows as well.
+
+        Returns
+        -------
+        str
+            What there is to say, the first time that there are too many within a step; else empty.
+        """
+        world, contacts = self._world, self._world.contacts
+        new, self._logged = int(contacts.logged) - self._logged, int(contacts.logged)
+        if new < STORM_LIMIT or world.plan.collisions != "exact":
+            return ""
+        log = contacts.impacts[-new:]
+        times = np.sort(log["time"])
+        counts = np.searchsorted(times, times + world.simulation.dt) - np.arange(len(times))
+        begin = int(np.argmax(counts))
+        count = int(counts[begin])
+        if count <= max(STORM_LIMIT, self._most_impacts):
+            return ""
+        first, start, self._most_impacts = self._storm is None, float(times[begin]), count
+        within = (log["time"] >= start) & (log["time"] < start + world.simulation.dt)
+        entities, often = np.unique(log["entity_b"][within], return_counts=True)
+        name = world.label(int(entities[np.argmax(often)]))
+        what = "is part of a storm of impacts: so many follow each other within a step"
+        setting = 'simulation.collisions = "step"'
+        self._storm = ModelWarning(name, what, float(count), "", float(STORM_LIMIT), setting)
+        return f"at t = {start:.9g} s: {self._storm}" if first else ""
 
     def _reason(self, impacts: float, evaluations: float) -> tuple[str, str, str]:
         """Return in words what takes the time, what would help, and the figures."""

@@ -1,7 +1,7 @@
 """What a hand does to a body."""
 
 from physicslab.ecs.component import Component, Vector, component, field
-from physicslab.ecs.fields import LARGEST_LENGTH
+from physicslab.ecs.fields import LENGTH_LIMIT
 
 
 @component
@@ -11,6 +11,6 @@ class Held(Component):
     grip: Vector = field(
         default=(0.0, 0.0),
         unit="m",
-        limit=LARGEST_LENGTH,
+        limit=LENGTH_LIMIT,
         meaning="where it is held, in the body's own frame",
     )

@@ -2,7 +2,7 @@
 
 from physicslab.ecs.component import Component, Derived, component, field
 
-LEAST = 1e-300
+MIN_MASS = 1e-300
 """The smallest mass [kg] and moment of inertia [kg m^2]: of much smaller ones the inverse is infinite."""
 
 
@@ -10,11 +10,11 @@ LEAST = 1e-300
 class Mass(Component):
     """How a body resists forces and torques. A moving entity without it is kinematic: infinitely heavy."""
 
-    mass: float = field(default=1.0, unit="kg", minimum=LEAST, meaning="resistance to force")
+    mass: float = field(default=1.0, unit="kg", minimum=MIN_MASS, meaning="resistance to force")
     inertia: Derived = field(
         default=None,
         unit="kg m^2",
-        minimum=LEAST,
+        minimum=MIN_MASS,
         derived="from the Shape",
         meaning="moment of inertia about the centre of mass",
     )

@@ -1,10 +1,11 @@
 """What an entity is called."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from physicslab.ecs.text import has_width, is_line
 
-_LONGEST = 200
+_LENGTH_LIMIT = 200
 """Characters of an id: it stands in reports, in labels and in messages, which are a line each."""
 
 
@@ -12,6 +13,7 @@ _LONGEST = 200
 class Name:
     """The id of an entity in scene files and reports. A plain esper component: words have no column."""
 
+    physical: ClassVar[bool] = False
     id: str
 
 
@@ -27,4 +29,4 @@ def why_no_id(value: object) -> str | None:
         return "a text that is not empty"
     if not has_width(value):
         return "a text in which something can be seen"
-    return None if len(value) <= _LONGEST else f"a text of at most {_LONGEST} characters"
+    return None if len(value) <= _LENGTH_LIMIT else f"a text of at most {_LENGTH_LIMIT} characters"

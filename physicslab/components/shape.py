@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from physicslab.ecs.component import Component, InvalidValue, component, field
-from physicslab.ecs.fields import LARGEST_LENGTH
+from physicslab.ecs.fields import LENGTH_LIMIT
 
 CIRCLE = 1
 """Code of a circle in the ``kind`` column; 0 is no shape."""
@@ -17,20 +17,20 @@ class Shape(Component):
 
     kind: str = field(choices=("circle", "box"), fixed=True, meaning="what sort of outline")
     radius: float = field(
-        default=0.0, unit="m", minimum=0.0, limit=LARGEST_LENGTH, meaning="radius of a circle"
+        default=0.0, unit="m", minimum=0.0, limit=LENGTH_LIMIT, meaning="radius of a circle"
     )
     width: float = field(
         default=0.0,
         unit="m",
         minimum=0.0,
-        limit=LARGEST_LENGTH,
+        limit=LENGTH_LIMIT,
         meaning="extent of a box along its own x axis",
     )
     height: float = field(
         default=0.0,
         unit="m",
         minimum=0.0,
-        limit=LARGEST_LENGTH,
+        limit=LENGTH_LIMIT,
         meaning="extent of a box along its own y axis",
     )
 

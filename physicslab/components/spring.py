@@ -1,7 +1,7 @@
 """What pulls two points together."""
 
 from physicslab.ecs.component import Component, Vector, component, field
-from physicslab.ecs.fields import LARGEST_LENGTH
+from physicslab.ecs.fields import LENGTH_LIMIT
 
 OTHER_END = "another entity than a"
 """What ``b`` must be: a pull between two points of one body moves nothing."""
@@ -22,16 +22,16 @@ class Spring(Component):
         default=None, fixed=True, meaning="second body; a fixed point of the world where absent"
     )
     anchor_a: Vector = field(
-        default=(0.0, 0.0), unit="m", limit=LARGEST_LENGTH, meaning="where it holds A, in A's own frame"
+        default=(0.0, 0.0), unit="m", limit=LENGTH_LIMIT, meaning="where it holds A, in A's own frame"
     )
     anchor_b: Vector = field(
         default=(0.0, 0.0),
         unit="m",
-        limit=LARGEST_LENGTH,
+        limit=LENGTH_LIMIT,
         meaning="where it holds B, in B's own frame, or a point of the world",
     )
     rest_length: float = field(
-        default=1.0, unit="m", minimum=0.0, limit=LARGEST_LENGTH, meaning="length without force"
+        default=1.0, unit="m", minimum=0.0, limit=LENGTH_LIMIT, meaning="length without force"
     )
     stiffness: float = field(default=100.0, unit="N/m", minimum=0.0, meaning="force per metre of extension")
     damping: float = field(default=0.0, unit="N s/m", minimum=0.0, meaning="force per speed of lengthening")

@@ -1,5 +1,7 @@
 """How much of a body's path is shown."""
 
+from typing import ClassVar
+
 from physicslab.ecs.component import Component, component, field
 
 
@@ -7,4 +9,5 @@ from physicslab.ecs.component import Component, component, field
 class Trail(Component):
     """Makes the world record where the body has been."""
 
+    physical: ClassVar[bool] = False
     length: float = field(default=2.0, unit="s", above=0.0, meaning="how far back the record goes")

@@ -174,15 +174,17 @@ def _impulse_dt(state: State) -> float:
 def export_rests(state: State) -> list[list[Any]]:
     """Return lists: an entity that sleeps, or one with how long [s] and how slowly [m/s] it has rested.
 
-    Only bodies that a file can restore: those with a Shape that can be moved.
+    A sleeper is followed by the force [N] and the torque [N m] under which it fell asleep, where these are
+    known: others wake it. Only bodies that a file can restore: those with a Shape that can be moved.
     """
     sleep = state.sleep
     movable = (state.bodies.inverse_mass > 0.0) & (state.table(Shape)["kind"] != 0)
     rows = np.flatnonzero((sleep.asleep | (sleep.rest > 0.0)) & movable)
-    columns = (sleep.entities[rows], sleep.asleep[rows], sleep.rest[rows], sleep.slowest[rows])
+    columns = (sleep.entities, sleep.asleep, sleep.rest, sleep.slowest, sleep.forces)
+    values = zip(*(column[rows].tolist() for column in columns), strict=True)
     return [
-        [entity] if asleep else [entity, rest, slowest]
-        for entity, asleep, rest, slowest in zip(*(column.tolist() for column in columns), strict=True)
+        [entity, *(force if force[0] == force[0] else ())] if asleep else [entity, rest, slowest]
+        for entity, asleep, rest, slowest, force in values
     ]
 
 
@@ -191,15 +193,17 @@ def restore_rests(state: State, rows: Sequence[Sequence[Any]]) -> None:
     sleep = state.sleep
     if not (sleep.on and rows):
         return
+    sleep.forces[:] = np.nan
     for entity, *rested in rows:
         row = state.entity_index.row_of[entity]
-        if rested:
+        if len(rested) == 2:
             sleep.rest[row], sleep.slowest[row] = rested
-        else:
-            sleep.asleep[row] = True
+            continue
+        sleep.asleep[row] = True
+        if rested:
+            sleep.forces[row] = rested
     sleep.count = int(np.count_nonzero(sleep.asleep))
     sleep.unverified = sleep.count > 0
-    sleep.forces[:] = np.nan
     _begin(state)
     _set_inactive(state)
 

@@ -73,5 +73,5 @@ def _import(module: str) -> None:
             import_module(module)
             import_module("physicslab.kernels.warm").load_all()
             import_module("physicslab.kernels").prepare()
-    except Exception:  # it is raised once more where the window can be closed and the reason told
+    except Exception:  # it is raised once more where the window can be closed and the reason shown
         return

@@ -132,7 +132,7 @@ class Autosave:
         Parameters
         ----------
         world : World
-            What is saved; where that fails, ``failure`` says why, and the state saved before is left.
+            What is saved; where that fails, ``failure`` is the reason, and the state saved before is left.
         patience : float
             How long a saving that is under way is waited for [s].
         """
@@ -160,8 +160,8 @@ def _state(world: World) -> tuple[object, ...]:
     return id(world), world.time, world.steps, world.revision
 
 
-def _text(frozen: WorldSnapshot) -> Iterator[bytes | None]:
+def _text(snapshot: WorldSnapshot) -> Iterator[bytes | None]:
     """Yield a scene file piece by piece, and ``None`` where a pause is possible."""
-    document = yield from scene_pieces(frozen)
+    document = yield from scene_pieces(snapshot)
     for piece in json_pieces(document):
         yield piece.encode("utf-8")

@@ -7,7 +7,7 @@ from collections.abc import Hashable, Sequence
 from types import TracebackType
 from typing import Any
 
-from physicslab.desktop.small_scenes import LONGEST, SmallScenes
+from physicslab.desktop.small_scenes import INTERPRETING_LIMIT, SmallScenes
 from physicslab.kernels import KERNELS, ask_before_compiling, interpreter, load
 from physicslab.kernels.solver import fused_contact
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
@@ -19,7 +19,9 @@ __all__ = ["Compiling", "Left"]
 
 _ROOM = 0.008
 """Time [s] that must be left of a frame to load a kernel in it; most take 2 to 4 ms, few more than 8."""
-_AT_LEAST = 30
+_UNDISTURBED = 4
+"""So many frames are made before other processes start to compile: the first that moves is among them."""
+_LOAD_EVERY = 30
 """One frame in so many loads a kernel, whatever is left of it: a busy scene would never load any."""
 
 
@@ -42,7 +44,7 @@ class Compiling:
     Attributes
     ----------
     scenes : SmallScenes
-        What says whether the scene that is shown may be interpreted.
+        What finds whether the scene that is shown may be interpreted.
     """
 
     def __init__(self, display: Display) -> None:
@@ -50,15 +52,16 @@ class Compiling:
         self._display = display
         self._warmup = None if is_warm() or interpreter.is_forced() else Warmup()
         self._progress = Progress(0, 1)
+        self._started = False
+        self._coming: Any = None
         self._frames = 0
         self._theme: Theme = DARK
         self._drawn: Hashable = None
 
     def __enter__(self) -> Compiling:
         if self._warmup is not None:
-            self._warmup.__enter__()
             interpreter.prepare()
-            interpreter.limit(LONGEST, self._catch_up)
+            interpreter.limit(lambda _: INTERPRETING_LIMIT, self._catch_up)
             ask_before_compiling(self._ask)
         elif not interpreter.is_forced():
             load(fused_contact.advance)  # 26 ms, for which no frame has room
@@ -71,6 +74,14 @@ class Compiling:
         interpreter.unlimited()
         if self._warmup is not None:
             self._warmup.__exit__(kind, error, trace)
+
+    def _start(self) -> Warmup:
+        """Start the processes that compile, if they have not been started."""
+        assert self._warmup is not None
+        if not self._started:
+            self._started = True
+            self._warmup.__enter__()
+        return self._warmup
 
     @property
     def finished(self) -> bool:
@@ -102,8 +113,7 @@ class Compiling:
         Left
             If the user closes the window meanwhile.
         """
-        warmup = self._warmup
-        assert warmup is not None
+        warmup = self._start()
         names = [name_of(jitted) for jitted in missing]
         warmup.hurry(names)
         start, waits = time.perf_counter(), False
@@ -141,8 +151,9 @@ class Compiling:
         """Show in a corner how far it is, and load a kernel if this frame has time left for it."""
         self._frames += 1
         self._theme = theme
-        if self._warmup is not None and not self._warmup.finished:
-            self._progress = self._warmup.poll()
+        compiles = self._started or self._frames >= _UNDISTURBED
+        if self._warmup is not None and compiles and not self._warmup.finished:
+            self._progress = self._start().poll()
             self._warmup.yield_to_others(True)
             share = self._progress.done / self._progress.total
             draw_corner(self._display.canvas, theme, share)
@@ -152,9 +163,23 @@ class Compiling:
         if self.scenes.notice(self._display.left):
             self._catch_up(pending[0])
         elif pending:  # a frame that interprets them takes longer than one that loads one
-            self._load_one(pending)
-        elif self._display.left > _ROOM or self._frames % _AT_LEAST == 0:
+            self._load_announced(pending)
+        elif self._display.left > _ROOM or self._frames % _LOAD_EVERY == 0:
             self._load_one(KERNELS)
+
+    def time_for_steps(self, longest: float) -> float:
+        """Return how long [s] the steps of the coming frame may take, at most ``longest``.
+
+        Of a frame in which a kernel will be loaded the steps take less.
+        """
+        return self.scenes.made_up_for(longest, self._coming is not None)
+
+    def _load_announced(self, pending: Sequence[Any]) -> None:
+        """Load the kernel that this frame has left time for, and choose one for the next."""
+        if self._coming is not None:
+            load(self._coming)
+        ready = (jitted for jitted in pending if not jitted.compiled and self._is_kept(jitted))
+        self._coming = next(ready, None)
 
     def _load_one(self, kernels: Sequence[Any]) -> None:
         """Load the first of some kernels that is in the cache and not loaded yet, if there is one."""

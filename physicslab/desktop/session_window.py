@@ -21,7 +21,7 @@ from physicslab.world import World
 
 __all__ = ["run_window"]
 
-_LONGEST_TITLE = 200
+_TITLE_LIMIT = 200
 """Characters of the window's title that come from the scene."""
 
 
@@ -70,7 +70,7 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
 
 
 def _begin_session(window: Window) -> tuple[Session | None, list[Session]]:
-    """Begin a session and find those that were left; where that fails the window says so, and works."""
+    """Begin a session and find those that were left; where that fails the window shows it, and works."""
     abandoned: list[Session] = []
     try:
         folder = session_folder()
@@ -90,7 +90,7 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
     while not window.closing:
         sandbox.frame(elapsed)
         compiling.advance(window.theme)
-        window.pace.max_dt = compiling.scenes.made_up_for(window.config.max_dt)
+        window.pace.max_dt = compiling.time_for_steps(window.config.max_dt)
         display.title = _title(sandbox.world)
         if window.wants_screenshot:
             window.wants_screenshot = False
@@ -100,7 +100,7 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
 
 def _title(world: World) -> str:
     """Return what the window is called: a world made by a program may have a title of any length."""
-    return f"{shortened(printable(world.title or world.name or 'A scene'), _LONGEST_TITLE)} - PhysicsLab"
+    return f"{shortened(printable(world.title or world.name or 'A scene'), _TITLE_LIMIT)} - PhysicsLab"
 
 
 def _keep_screenshot(display: Display, window: Window) -> None:

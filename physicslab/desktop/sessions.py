@@ -32,7 +32,7 @@ _INTERVAL = 0.002
 
 
 def session_folder() -> Path:
-    """Return where the system wants a program's state to be kept; the folder need not exist.
+    """Return where the system expects a program's state to be kept; the folder need not exist.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def session_folder() -> Path:
         if sys.platform == "darwin":
             return Path.home() / "Library" / "Application Support" / "physicslab" / "sessions"
         given = os.environ.get("XDG_STATE_HOME", "")
-        # A path that is not absolute is to be passed over, says the XDG Base Directory Specification.
+        # A path that is not absolute is to be passed over (XDG Base Directory Specification).
         base = Path(given) if os.path.isabs(given) else Path.home() / ".local" / "state"
         return base / "physicslab" / "sessions"
     except RuntimeError as error:  # neither HOME nor a line in the list of users

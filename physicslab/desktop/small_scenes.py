@@ -5,25 +5,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from physicslab.stepping.small import is_small
+
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["LARGEST", "LONGEST", "SmallScenes"]
+__all__ = ["INTERPRETING_LIMIT", "SmallScenes"]
 
-LARGEST = 40
-"""So many entities a scene may have: forty boxes in a heap take 30 ms a step, ten bodies on ten springs 16,
-alone on a core. Where bodies attract each other each counts twice: twenty take 26 ms, forty 300."""
-LONGEST = 0.5
+INTERPRETING_LIMIT = 0.5
 """What takes longer than this [s] to interpret, a call or several frames in turn, is waited for: until then
 slow frames, as on a machine that is busy, are better than half a minute without any."""
 _STEPS = 0.05
 """So long [s] a frame may make steps while kernels are interpreted; the last may end later."""
+_STEPS_AND_LOADING = 0.02
+"""And so long [s] where it loads a kernel besides, which takes up to 30 ms."""
 _IN_TURN = 4
 """So many frames in turn: a single one is late for other reasons."""
 
 
 class SmallScenes:
-    """Says which kernels run as Python until they are compiled: those of a scene that is small.
+    """Finds which kernels run as Python until they are compiled: those of a scene that is small.
 
     It takes 0.2 to 30 ms a step, and no one need wait. What turns out to be slow, as a method that chooses
     its steps may be with few bodies too, is waited for from then on, until another scene is shown.
@@ -47,11 +48,7 @@ class SmallScenes:
     @property
     def small(self) -> bool:
         """Whether what is shown is small, and has not turned out to be slow."""
-        world = self._world
-        if world is None or self._slow:
-            return False
-        weight = 2 if world.physics.gravity_mode == "planet" else 1
-        return weight * len(list(world.entities())) <= LARGEST
+        return self._world is not None and not self._slow and is_small(self._world)
 
     def interpret(self, missing: Sequence[Any]) -> Sequence[Any]:
         """Return which of the missing kernels are to be interpreted: all, or none."""
@@ -72,9 +69,12 @@ class SmallScenes:
 
     def notice(self, left: float) -> bool:
         """Return whether frames are too long, after one that was done ``left`` seconds before it was due."""
-        self._late = self._late + 1 if self.pending() and left < -LONGEST else 0
+        self._late = self._late + 1 if self.pending() and left < -INTERPRETING_LIMIT else 0
         return self._late >= _IN_TURN
 
-    def made_up_for(self, longest: float) -> float:
-        """Return the time [s] that a frame makes up for at most, ``longest`` where nothing is interpreted."""
-        return min(longest, _STEPS) if self.pending() else longest
+    def made_up_for(self, longest: float, loads: bool = False) -> float:
+        """Return the time [s] that a frame makes up for at most, ``longest`` where nothing is interpreted.
+
+        It is less where the frame also loads a kernel.
+        """
+        return min(longest, _STEPS_AND_LOADING if loads else _STEPS) if self.pending() else longest

@@ -31,6 +31,10 @@ class RunRecord:
         Steps done.
     wall_s : float
         Seconds of stepping, without compiling and without measuring.
+    interpreted_steps : int
+        Steps in which kernels ran as plain Python, as they were not compiled: these take longer.
+    interpreted_s : float
+        Seconds that those kernels took, within ``wall_s``.
     max_penetration : float
         The deepest overlap after any step [m].
     divided : int
@@ -43,6 +47,8 @@ class RunRecord:
     drift: Drift
     steps: int = 0
     wall_s: float = 0.0
+    interpreted_steps: int = 0
+    interpreted_s: float = 0.0
     max_penetration: float = 0.0
     divided: int = 1
     warnings: WorstWarnings = field(default_factory=WorstWarnings)
@@ -79,6 +85,8 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "force_evaluations": world.force_evaluations,
         "wall_s": record.wall_s,
         "compile_s": world.compile_s,
+        "interpreted_steps": record.interpreted_steps,
+        "interpreted_s": record.interpreted_s,
         "stepper": {"name": stepper.name, "reason": stepper.reason},
         "steppers_left_out": [{"name": left.name, "reason": left.reason} for left in world.steppers.left_out],
         "systems": [
@@ -170,6 +178,11 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         lines.insert(-1, f"  asleep      {report['asleep']} of {len(report['entities'])} bodies, at rest")
     if report["summation"]:
         lines.append(f"  summed      {report['summation']}")
+    if report["interpreted_steps"]:
+        lines.append(
+            f"  interpreted {report['interpreted_s']:.3g} s of that, in {report['interpreted_steps']} of "
+            f"{report['steps']} steps: compiling would take longer, once"
+        )
     if report["interpreted"]:
         lines.append(f"  slower      {', '.join(report['interpreted'])}: computed by Python, call by call")
     lines += [f"  advice      {words}" for words in (ModelWarning(**found) for found in report["advice"])]

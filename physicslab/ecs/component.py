@@ -35,6 +35,8 @@ class Component:
     """
 
     __slots__ = ("_row", "_views")
+    physical: ClassVar[bool] = True
+    """Whether the motion may depend on it: adding or removing one then is an edit of the motion."""
     FIELDS: ClassVar[tuple[Field, ...]] = ()
     _makers: ClassVar[tuple[tuple[str, Maker], ...]] = ()
     _views: list[Any]

@@ -25,7 +25,7 @@ INTEGRATORS = (
     "implicit_midpoint",
 )
 COLLISIONS = ("auto", "step", "exact")
-SHORTEST = 1e-100
+MIN_TIME = 1e-100
 """The shortest step [s]: the parts of shorter ones, and their squares, would soon underflow to zero."""
 
 
@@ -143,7 +143,7 @@ class SimulationConfig:
 
     section: ClassVar[str] = "simulation"
     FIELDS: ClassVar[tuple[Field, ...]] = (
-        Field("dt", "number", unit="s", minimum=SHORTEST, meaning="length of a step"),
+        Field("dt", "number", unit="s", minimum=MIN_TIME, meaning="length of a step"),
         Field("substeps", "whole", minimum=1, maximum=10_000, meaning="parts that a step is divided into"),
         Field("iterations", "whole", minimum=1, maximum=1_000, derived="from the solver", meaning="sweeps"),
         Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),
@@ -171,7 +171,7 @@ class WindowConfig:
     pixels_per_metre : float
         Scale of the default camera.
     max_dt : float
-        The longest time [s] that one frame makes up for; the rest is dropped, and the HUD says so.
+        The longest time [s] that one frame makes up for; the rest is dropped, and the HUD shows it.
     throw_window : float
         How far back [s] the cursor's history counts for a throw.
     max_throw_speed : float

@@ -38,6 +38,9 @@ class EntityIndex:
         The row of each entity id, -1 where there is none; ``lookup[0]`` is 0, the world.
     newest : int
         The highest entity id there has ever been.
+    motion_edited : bool
+        Whether a change concerned the motion since this was last set to false: a component that is physical
+        came or went.
     """
 
     def __init__(self) -> None:
@@ -46,6 +49,7 @@ class EntityIndex:
         self.entities: NDArray[np.int64] = np.zeros(1, np.int64)
         self.lookup: NDArray[np.int64] = np.zeros(1, np.int64)
         self.newest = 0
+        self.motion_edited = True
         self.capacity = 16
         self._components: dict[int, tuple[Any, ...]] = {}
         self._seen: list[Any] | None = None
@@ -75,6 +79,7 @@ class EntityIndex:
             except Exception:  # a component of another program may define == in any way
                 pass
             changed[entity] = components
+            self._note_edit(entity, components)
         self._follow_components(changed)
         self._components.update(changed)
         self._seen = esper.get_component(_Nothing)
@@ -126,7 +131,17 @@ class EntityIndex:
                 if entity in table.handles:
                     table.release(entity)
             self.entities[self.row_of.pop(entity)] = 0
+            self._note_edit(entity, ())
             self._components.pop(entity, None)
+
+    def _note_edit(self, entity: int, components: tuple[Any, ...]) -> None:
+        """Note whether a change to the ``components`` that an entity has now concerns the motion."""
+        if self.motion_edited:
+            return
+        before = {id(part): part for part in self._components.get(entity, ())}
+        after = {id(part): part for part in components}
+        changed = [(before | after)[key] for key in before.keys() ^ after.keys()]
+        self.motion_edited = any(getattr(type(part), "physical", True) for part in changed)
 
     def _close_up(self) -> None:
         """Move the rows in use to the front."""

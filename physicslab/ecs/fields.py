@@ -12,15 +12,15 @@ import numpy as np
 
 from physicslab.ecs.vector import Vector2
 
-__all__ = ["FARTHEST", "LARGEST_LENGTH", "REQUIRED", "Field", "InvalidValue", "Kind", "field"]
+__all__ = ["FARTHEST", "LENGTH_LIMIT", "REQUIRED", "Field", "InvalidValue", "Kind", "field"]
 
 Kind = Literal["number", "whole", "vector", "flag", "entity", "choice"]
 
-_LONGEST = 100
+_SHOWN_LIMIT = 100
 """Characters of a value that a message shows."""
 FARTHEST = 1e300
 """The largest coordinate [m]: the difference of two is finite, and the product of one with a usual number."""
-LARGEST_LENGTH = 1e150
+LENGTH_LIMIT = 1e150
 """The largest extent, arm or length of a spring [m]: the squares of two can be added."""
 REQUIRED: Any = object()
 """The default of a field that has none."""
@@ -45,8 +45,8 @@ class InvalidValue(ValueError):
             shown = repr(value)
         except (ValueError, RecursionError):  # an integer of thousands of digits, or recursive lists
             shown = f"<{type(value).__name__}>"
-        if len(shown) > _LONGEST:
-            shown = f"{shown[: _LONGEST - 3]}..."
+        if len(shown) > _SHOWN_LIMIT:
+            shown = f"{shown[: _SHOWN_LIMIT - 3]}..."
         super().__init__(f"{component}.{field} = {shown}: must be {allowed}")
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -124,12 +124,12 @@ class Field:
     @property
     def lowest(self) -> float:
         """The smallest finite number in the field's range."""
-        return max(self.minimum, math.nextafter(self.above, math.inf), -_LARGEST)
+        return max(self.minimum, math.nextafter(self.above, math.inf), -_FINITE_LIMIT)
 
     @property
     def highest(self) -> float:
         """The largest finite number in the field's range."""
-        return min(self.maximum, self.limit, _LARGEST)
+        return min(self.maximum, self.limit, _FINITE_LIMIT)
 
     def check(self, value: object) -> Any:
         """Return ``value`` as a column stores it, or raise :class:`InvalidValue`.
@@ -155,7 +155,7 @@ def field(
     fixed: bool = False,
     limit: float = math.inf,
 ) -> Any:
-    """Describe one field of a component; :class:`Field` says what the values mean.
+    """Describe one field of a component; :class:`Field` describes the values.
 
     Name, kind and owner are filled in by :func:`physicslab.ecs.component.component`. Without ``default``
     the field is required. A ``derived`` field that is given as ``None`` is kept up to date by the world.
@@ -165,7 +165,7 @@ def field(
     )
 
 
-_LARGEST = float(np.finfo(np.float64).max)
+_FINITE_LIMIT = float(np.finfo(np.float64).max)
 
 
 def _finite(value: object) -> float | None:

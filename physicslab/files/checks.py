@@ -30,13 +30,13 @@ _BREAKS = dict.fromkeys(map(ord, "\n\t"), " ")
 
 
 class SceneError(ValueError):
-    """A scene that cannot be read, written or found; the message is one line that says where and why."""
+    """A scene that cannot be read, written or found; the message is one line: where and why."""
 
 
 class JsonObject(dict[str, Any]):
     """An object of a JSON text that remembers a key that stood in it twice.
 
-    A plain ``dict`` keeps the last of the two and says nothing.
+    A plain ``dict`` keeps the last of the two, without an error.
     """
 
     repeated: str | None = None
@@ -69,7 +69,7 @@ def shown(value: object) -> str:
     >>> shown([1, None, "two\nlines"])
     '[1, null, "two\\nlines"]'
     """
-    if isinstance(value, str) and value.isalnum() and len(value) < SHORT:  # as most ids are, and soon told
+    if isinstance(value, str) and value.isalnum() and len(value) < SHORT:  # as most ids are: a quick test
         return f'"{value}"'
     try:
         text = json.dumps(_beginning(value), ensure_ascii=False, default=repr)

@@ -113,8 +113,9 @@ def check_rests(
     seen: set[int] = set()
     for index, row in enumerate(rows):
         where = f"{source}: rests[{index}]"
-        if not isinstance(row, list) or len(row) not in (1, 3):
-            raise refusal(where, row, "an id for a sleeper, or an id, a time s and a speed m/s, in a list")
+        if not isinstance(row, list) or len(row) not in (1, 3, 4):
+            allowed = "an id for a sleeper, which a force of x and y N and a torque N m may follow; "
+            raise refusal(where, row, allowed + "or an id, a time s and a speed m/s; in a list")
         number = ids.get(row[0], 0) if isinstance(row[0], str) else 0
         if not number or not all(kind.__name__ in entities[number - 1] for kind in _MAY_REST):
             allowed = "the id of an entity with " + ", ".join(kind.__name__ for kind in _MAY_REST)
@@ -126,6 +127,8 @@ def check_rests(
             raise refusal(f"{where}[1]", row[1], "a finite number > 0 s")
         if len(row) == 3 and not (is_number(row[2]) and row[2] >= 0.0):
             raise refusal(f"{where}[2]", row[2], "a finite number >= 0 m/s")
+        if len(row) == 4 and not all(map(is_number, row[1:])):
+            raise refusal(where, row, "an id and three finite numbers N, N and N m")
         mapped.append([number, *row[1:]])
     return mapped
 
@@ -169,7 +172,7 @@ def _entity_of(name: object, ids: Mapping[str, int], where: str) -> int:
 
 
 def _check_together(components: Sequence[Component], entity: Mapping[str, Any], where: str) -> None:
-    """Check what no component can know of the others."""
+    """Check what concerns several components."""
     for kind in _NEED_TRANSFORM:
         name = kind.__name__
         if name in entity and Transform.__name__ not in entity:

@@ -12,7 +12,7 @@ from physicslab.world import World
 
 __all__ = ["file_stem", "save_new_scene"]
 
-_LONGEST = 100
+_NAME_LIMIT = 100
 """Bytes of the part of a file name that comes from a scene's name: systems allow 143 to 255 for the whole."""
 
 
@@ -22,8 +22,8 @@ def file_stem(name: str) -> str:
     >>> file_stem("a/b c"), file_stem("../.."), len(file_stem("x" * 1000))
     ('a-b-c', 'scene', 100)
     """
-    plain = re.sub(r"[^\w.-]+", "-", name[:_LONGEST])
-    return plain.encode("utf-8", "ignore")[:_LONGEST].decode("utf-8", "ignore").strip("-.") or "scene"
+    plain = re.sub(r"[^\w.-]+", "-", name[:_NAME_LIMIT])
+    return plain.encode("utf-8", "ignore")[:_NAME_LIMIT].decode("utf-8", "ignore").strip("-.") or "scene"
 
 
 def save_new_scene(world: World, paths: Iterable[Path]) -> Path:

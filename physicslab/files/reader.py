@@ -10,7 +10,7 @@ import esper
 from physicslab.contacts.islands import restore_rests
 from physicslab.contacts.memory import restore_contacts
 from physicslab.ecs.component import Component, InvalidValue
-from physicslab.ecs.config import SHORTEST, PhysicsConfig, SimulationConfig, field_names
+from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.fields import Field
 from physicslab.files.checks import (
     SceneError,
@@ -23,18 +23,20 @@ from physicslab.files.checks import (
     shown,
 )
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_rests
+from physicslab.integrators import INTEGRATORS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
+from physicslab.stepping.plan import MAX_STEPS
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
 __all__ = ["FORMAT", "SceneDraft", "check_scene", "read_scene"]
 
 FORMAT = "physicslab-scene/1"
-"""What the key ``format`` of a scene says."""
+"""What the key ``format`` of a scene holds."""
 
-LONGEST_NAME = 1_000
+NAME_LIMIT = 1_000
 """Characters that the name of a scene may have."""
-LONGEST_TITLE = 200
+TITLE_LIMIT = 200
 """Characters that its title may have: it stands over the window, and on a line of the menu."""
 
 _KEYS = (
@@ -60,10 +62,10 @@ class SceneDraft:
     contacts : list of lists of numbers
         The contact solver's memory; the first two numbers of a row are entities, 0 for the bounds.
     rests : list of lists of numbers
-        Who sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
-    solver : tuple of float and int
-        The time that the contacts' impulses stand for [s], and how many times as many substeps as asked for
-        the coming step needs.
+        What sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
+    solver : tuple of float, int and tuple
+        The time over which the contacts' impulses act [s], the factor by which the coming step needs more
+        substeps than configured, and what was chosen for an earlier state of motion, if anything was.
     """
 
     name: str
@@ -75,7 +77,7 @@ class SceneDraft:
     entities: list[tuple[str | None, list[Component]]]
     contacts: list[list[Any]]
     rests: list[list[Any]]
-    solver: tuple[float, int]
+    solver: tuple[float, int, tuple[str, str, int] | None]
 
 
 def read_scene(document: object, source: str = "scene") -> World:
@@ -111,8 +113,8 @@ def read_scene(document: object, source: str = "scene") -> World:
     for number, (id_, components) in enumerate(draft.entities, start=1):
         entity = world.spawn(*components, name=id_)
         assert entity == number, "a new world numbers its entities from 1"
-    world.contacts.impulse_dt, world.contacts.substep_factor = draft.solver
-    if draft.contacts or draft.rests:
+    world.contacts.impulse_dt, world.contacts.substep_factor, chosen = draft.solver
+    if draft.contacts or draft.rests or chosen:
         world.synchronise()
         try:
             restore_contacts(world.contacts, draft.contacts)
@@ -120,6 +122,8 @@ def read_scene(document: object, source: str = "scene") -> World:
             esper.switch_world(before)
             raise SceneError(f"{source}: contacts: {error}") from error
         restore_rests(world, draft.rests)
+    if chosen is not None:
+        world.resume(*chosen)
     return world
 
 
@@ -136,8 +140,8 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
     ids = check_ids(scene["entities"], source)
     simulation = _config(SimulationConfig, scene.get("simulation", {}), source)
     return SceneDraft(
-        name=checked_title(scene.get("name", ""), f"{source}: name", LONGEST_NAME),
-        title=checked_title(scene.get("title", ""), f"{source}: title", LONGEST_TITLE),
+        name=checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
+        title=checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
         description=checked_text(scene.get("description", ""), f"{source}: description", lines=True),
         time=_time(scene.get("time", 0.0), f"{source}: time"),
         physics=_config(PhysicsConfig, scene.get("physics", {}), source),
@@ -149,19 +153,33 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
     )
 
 
-_SPAN = Field("span", "number", unit="s", minimum=SHORTEST, owner="solver")
+_SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, owner="solver")
 _FINER = Field("finer", "whole", minimum=1, maximum=MAX_SUBSTEP_FACTOR, owner="solver")
 
 
-def _solver(value: Any, simulation: SimulationConfig, where: str) -> tuple[float, int]:
-    """Return what the solver takes from the last step; what is left out is as the simulation asks."""
+def _solver(
+    value: Any, simulation: SimulationConfig, where: str
+) -> tuple[float, int, tuple[str, str, int] | None]:
+    """Return what the solver takes from the last step; what is left out is as configured."""
     found = checked_object(value, where, 'an object {"span": ..., "finer": ...}')
-    checked_keys(found, f"{where}: ", "key", ("span", "finer"))
+    checked_keys(found, f"{where}: ", "key", ("span", "finer", "chosen"))
     given: dict[str, Any] = {"span": simulation.dt / simulation.substeps, "finer": 1, **found}
     try:
-        return float(_SPAN.check(given["span"])), int(_FINER.check(given["finer"]))
+        span, finer = float(_SPAN.check(given["span"])), int(_FINER.check(given["finer"]))
     except InvalidValue as error:
         raise SceneError(f"{where.removesuffix('solver')}{error}") from error
+    return span, finer, _chosen(found["chosen"], f"{where}.chosen") if "chosen" in found else None
+
+
+def _chosen(value: Any, where: str) -> tuple[str, str, int]:
+    """Return how collisions were found, by which method bodies moved, and in how many steps."""
+    allowed = f"[how collisions are found, a method, a whole number from 1 to {MAX_STEPS}]"
+    if isinstance(value, list) and len(value) == 3:
+        collisions, method, steps = value
+        known = collisions in ("exact", "step", "none") and isinstance(method, str)
+        if known and method in INTEGRATORS and type(steps) is int and 1 <= steps <= MAX_STEPS:
+            return collisions, method, steps
+    raise refusal(where, value, allowed)
 
 
 def _time(value: Any, where: str) -> float:

@@ -21,11 +21,11 @@ from physicslab.world import World
 
 __all__ = ["SceneError", "load_scene", "read_scene", "save_scene", "scene_bytes", "write_scene"]
 
-LARGEST_FILE = 100 * 2**20
+FILE_LIMIT = 100 * 2**20
 """Bytes that a scene file may have."""
-MOST_BRACKETS = 1_000_000
+BRACKET_LIMIT = 1_000_000
 """Objects and lists that a scene file may hold, 125,000 bodies: reading them takes up to 1.1 GB of memory."""
-MOST_VALUES = 8_000_000
+VALUE_LIMIT = 8_000_000
 """Values that it may hold, counted by the brackets and commas before them, those within texts included."""
 
 
@@ -45,7 +45,7 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> World:
     Raises
     ------
     SceneError
-        If there is no such scene, or anything in it is not allowed; one line that says what and where.
+        If there is no such scene, or anything in it is not allowed; one line: what and where.
 
     Examples
     --------
@@ -140,21 +140,21 @@ def _read_bytes(path: str | os.PathLike[str], source: str) -> bytes:
     with open(os.open(path, flags), "rb") as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
             raise SceneError(f"{source}: is a pipe or a device; a scene must be a plain file")
-        content = file.read(LARGEST_FILE + 1)
-    if len(content) > LARGEST_FILE:
-        raise SceneError(f"{source}: is too large: a scene file must have at most {LARGEST_FILE:,} bytes")
+        content = file.read(FILE_LIMIT + 1)
+    if len(content) > FILE_LIMIT:
+        raise SceneError(f"{source}: is too large: a scene file must have at most {FILE_LIMIT:,} bytes")
     return content
 
 
 def _parse(text: str, source: str) -> object:
     # Counted before it is parsed: every one becomes a Python object, many times its size in the file.
     brackets = text.count("{") + text.count("[")
-    if brackets > MOST_BRACKETS:
+    if brackets > BRACKET_LIMIT:
         raise SceneError(
-            f"{source}: holds too much: a scene must have at most {MOST_BRACKETS:,} objects and lists"
+            f"{source}: holds too much: a scene must have at most {BRACKET_LIMIT:,} objects and lists"
         )
-    if brackets + text.count(",") > MOST_VALUES:
-        raise SceneError(f"{source}: holds too much: a scene must have at most {MOST_VALUES:,} values")
+    if brackets + text.count(",") > VALUE_LIMIT:
+        raise SceneError(f"{source}: holds too much: a scene must have at most {VALUE_LIMIT:,} values")
     try:
         return json.loads(text, object_pairs_hook=JsonObject.of, parse_int=_whole)
     except json.JSONDecodeError as error:

@@ -12,6 +12,7 @@ from physicslab.contacts.islands import export_rests
 from physicslab.contacts.memory import copied
 from physicslab.ecs.component import Component
 from physicslab.ecs.entity_index import EntityIndex
+from physicslab.stepping.plan import outlived
 
 if TYPE_CHECKING:
     from physicslab.state.contacts import Contacts
@@ -37,7 +38,9 @@ class WorldSnapshot:
     contacts : Contacts
         What the contact solver remembers.
     rests : list of lists
-        Who sleeps, and how long the others have rested.
+        What sleeps, and how long the others have rested.
+    chosen : tuple, optional
+        What was chosen for the motion as it once was, where it would not be chosen now.
     texts : dict of str to str
         Name, title and description of the world.
     time : float
@@ -48,6 +51,7 @@ class WorldSnapshot:
         world.synchronise()
         with world.active():
             self.entities = world.entities()
+            self.chosen = outlived(world, world.schedule, world.plan)
             named = [(entity, name.id) for entity, name in esper.get_component(Name)]
         living = set(self.entities)
         self.names = {entity: name for entity, name in named if entity in living}

@@ -43,59 +43,65 @@ def write_scene(world: World) -> dict[str, Any]:
             return document
 
 
-def scene_pieces(frozen: WorldSnapshot) -> Generator[None, None, dict[str, Any]]:
+def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any]]:
     """Write like :func:`write_scene`, stopping after every entity: the world may go on meanwhile.
 
     The document is what the generator returns.
     """
     entities: dict[int, list[Component]] = {}
-    for number in frozen.entities:
-        entities[number] = _saved(frozen, number)
+    for number in snapshot.entities:
+        entities[number] = _saved(snapshot, number)
         yield
     contacts: list[list[Any]] = []
-    shaped = {0, *frozen.shaped}
-    for row in kept_rows(frozen.contacts):
+    shaped = {0, *snapshot.shaped}
+    for row in kept_rows(snapshot.contacts):
         if row is not None and shaped.issuperset(row[:2]):  # what is still there to touch
             contacts.append(row)
         yield
-    ids = dict(frozen.names)
-    referred = {end for row in contacts for end in row[:2]} | {rest[0] for rest in frozen.rests}
+    ids = dict(snapshot.names)
+    referred = {end for row in contacts for end in row[:2]} | {rest[0] for rest in snapshot.rests}
     ids |= yield from _invented(entities, ids, referred)
-    document: dict[str, Any] = {"format": FORMAT} | {key: text for key, text in frozen.texts.items() if text}
-    if frozen.time:
-        document["time"] = frozen.time
-    document["physics"] = _settings(frozen.physics)
-    document["simulation"] = _settings(frozen.simulation)
+    document: dict[str, Any] = {"format": FORMAT} | {
+        key: text for key, text in snapshot.texts.items() if text
+    }
+    if snapshot.time:
+        document["time"] = snapshot.time
+    document["physics"] = _settings(snapshot.physics)
+    document["simulation"] = _settings(snapshot.simulation)
     document["entities"] = written = []
     for number, components in entities.items():
-        label = frozen.label(number)
+        label = snapshot.label(number)
         named = {"id": ids[number]} if number in ids else {}
         written.append(named | {type(part).__name__: _fields(part, ids, label) for part in components})
         yield
     for memory in contacts:
         memory[:2] = [ids.get(end) for end in memory[:2]]
         yield
-    rests = [[ids[rest[0]], *rest[1:]] for rest in frozen.rests]
-    kept = {"contacts": contacts, "rests": rests, "solver": _solver(frozen)}
+    rests = [[ids[rest[0]], *rest[1:]] for rest in snapshot.rests]
+    kept = {"contacts": contacts, "rests": rests, "solver": _solver(snapshot)}
     return document | {key: value for key, value in kept.items() if value}
 
 
-def _solver(frozen: WorldSnapshot) -> dict[str, Any]:
-    """Return for what time impulses stand, and how much finer the next step is, where not as asked."""
-    contacts, simulation = frozen.contacts, frozen.simulation
+def _solver(snapshot: WorldSnapshot) -> dict[str, Any]:
+    """Return the time over which impulses act, how much finer the next step is, and what was chosen before.
+
+    Each only where a world would not start so.
+    """
+    contacts, simulation = snapshot.contacts, snapshot.simulation
     span = (
         {"span": contacts.impulse_dt}
         if contacts.impulse_dt not in (0.0, simulation.dt / simulation.substeps)
         else {}
     )
-    return span | ({"finer": contacts.substep_factor} if contacts.substep_factor != 1 else {})
+    finer = {"finer": contacts.substep_factor} if contacts.substep_factor != 1 else {}
+    return span | finer | ({"chosen": list(snapshot.chosen)} if snapshot.chosen is not None else {})
 
 
-def _saved(frozen: WorldSnapshot, entity: int) -> list[Component]:
+def _saved(snapshot: WorldSnapshot, entity: int) -> list[Component]:
     """Return those of an entity's components that a file holds, the contract's first."""
     order = [*_FIRST, *(name for name in COMPONENTS if name not in _FIRST)]
     kinds = [COMPONENTS[name] for name in order if COMPONENTS[name] not in UNSAVED]
-    found = (frozen.component(entity, kind) for kind in kinds)
+    found = (snapshot.component(entity, kind) for kind in kinds)
     return [component for component in found if component is not None]
 
 

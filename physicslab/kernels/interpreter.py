@@ -36,6 +36,9 @@ __all__ = [
     "is_forced",
     "limit",
     "prepare",
+    "spent",
+    "spent_on",
+    "stand_back",
     "stand_in",
     "twin_of",
     "unlimited",
@@ -49,19 +52,42 @@ def is_forced() -> bool:
     return _forced
 
 
-def limit(seconds: float, compile_now: Callable[[Any], None]) -> None:
+def limit(seconds: Callable[[Any], float], compile_now: Callable[[Any], None]) -> None:
     """Let no kernel be interpreted for much longer than so many seconds at a time, until :func:`unlimited`.
 
     One that is gets back what its arguments held, ``compile_now`` is called with it and must load it, and it
     is called again: so a method that chooses its steps, or a thousand impacts within one, stop no window.
+
+    Parameters
+    ----------
+    seconds : callable
+        Called with a kernel before each call of it; returns how long that may take [s].
+    compile_now : callable
+        Called with a kernel that may not be interpreted, or not for as long as its call takes.
     """
     global _limit, _compile_now
     _limit, _compile_now = seconds, compile_now
+    _spent.clear()
 
 
 def unlimited() -> None:
     """Let every kernel that is interpreted run for as long as it takes."""
-    limit(math.inf, _load)
+    limit(_endlessly, _load)
+
+
+def spent_on(jitted: Any) -> float:
+    """Return the processor time [s] for which a kernel has been interpreted since :func:`limit`."""
+    return _spent.get(jitted, 0.0)
+
+
+def spent() -> float:
+    """Return the processor time [s] for which kernels have been interpreted since :func:`limit`."""
+    return sum(_spent.values())
+
+
+def _endlessly(_: Any) -> float:
+    """Return the longest time: where nothing is limited."""
+    return math.inf
 
 
 def _load(jitted: Any) -> None:
@@ -69,8 +95,10 @@ def _load(jitted: Any) -> None:
     loading.load(jitted)
 
 
-_limit: float = math.inf
+_limit: Callable[[Any], float] = _endlessly
 _compile_now: Callable[[Any], None] = _load
+_spent: dict[Any, float] = {}
+"""How long [s] each kernel has been interpreted."""
 
 
 def compile_all_the_same() -> None:
@@ -122,7 +150,7 @@ def interpreted() -> Iterator[None]:
     finally:
         _forced = before
         for jitted in compiler.KERNELS:
-            _stand_back(jitted)
+            stand_back(jitted)
         for jitted, overloads in aside.items():
             _take_back(jitted, overloads)
 
@@ -132,7 +160,7 @@ def _is_dispatcher(value: Any) -> bool:
     return bool(is_jitted(value))
 
 
-def _stand_back(jitted: Any) -> None:
+def stand_back(jitted: Any) -> None:
     """Let a kernel be compiled where it is called, as it was before :func:`stand_in`."""
     if _is_dispatcher(jitted):
         loading.at_first_call(jitted)
@@ -179,27 +207,30 @@ def entry_of(jitted: Any) -> Callable[..., Any]:
         except (TypeError, ValueError) as error:
             raise TypeError(f"No matching definition of {jitted.__name__}: {error}") from error
         with np.errstate(all="ignore"):
-            if _limit == math.inf or _forced:
+            if _limit is _endlessly or _forced:
                 return way_out(twin_of(jitted)(*taken))
-            kept = [(array, array.copy()) for array in _arrays(arguments)]
-            try:
-                return way_out(_in_time(twin_of(jitted), taken))
-            except Overdue:
-                for array, copy in kept:
-                    array[...] = copy
+            if (longest := _limit(jitted)) > 0.0:
+                kept = [(array, array.copy()) for array in _arrays(arguments)]
+                try:
+                    return way_out(_in_time(jitted, taken, longest))
+                except Overdue:
+                    for array, copy in kept:
+                        array[...] = copy
         _compile_now(jitted)
         return jitted(*arguments)
 
     return enter
 
 
-def _in_time(twin: Callable[..., Any], taken: list[Any]) -> Any:
-    """Call a twin, which raises Overdue if it takes longer than it may."""
-    before, patience.until = patience.until, time.perf_counter() + _limit
+def _in_time(jitted: Any, taken: list[Any], longest: float) -> Any:
+    """Call a kernel's twin, which raises Overdue if that takes longer than it may; note what it took."""
+    twin, start = twin_of(jitted), time.thread_time()
+    before, patience.until = patience.until, time.perf_counter() + longest
     try:
         return twin(*taken)
     finally:
         patience.until = before
+        _spent[jitted] = spent_on(jitted) + time.thread_time() - start
 
 
 def _arrays(arguments: tuple[Any, ...]) -> Iterator[NDArray[Any]]:

@@ -9,6 +9,7 @@ from numba.extending import intrinsic
 
 from physicslab.kernels import Rows, inlined
 from physicslab.kernels.stand_ins import stands_in_for
+from physicslab.kernels.twins import endless
 
 __all__ = ["charge", "ticks"]
 
@@ -27,6 +28,7 @@ ticks: Any = intrinsic(_read_clock)
 stands_in_for(ticks)(time.perf_counter_ns)
 
 
+@endless
 @inlined
 def charge(cost: Rows, system: int, since: int) -> int:
     """Add the ticks since ``since`` to the cost of a ``system``; return the clock.

@@ -156,19 +156,19 @@ class Warmup:
 
     def _employ(self, process: subprocess.Popen[str]) -> None:
         """Give one process a kernel after the other, until none is left or the work is stopped."""
-        with process:
+        with (
+            suppress(OSError),
+            process,
+        ):  # at the end it is closed, which fails like writing where it has ended
             assert process.stdin is not None
             assert process.stdout is not None
-            try:
-                while job := self._next(process):
-                    process.stdin.write(f"{job}\n")
-                    name = process.stdout.readline().strip()
-                    if not name:
-                        break
-                    self._answers.put(name)
-                process.stdin.close()
-            except OSError:
-                return
+            while job := self._next(process):
+                process.stdin.write(f"{job}\n")
+                name = process.stdout.readline().strip()
+                if not name:
+                    break
+                self._answers.put(name)
+            process.stdin.close()
 
     def _next(self, process: subprocess.Popen[str]) -> str:
         with self._lock:

@@ -34,7 +34,7 @@ class Case:
 
     @property
     def family(self) -> str:
-        """The name under which the command line knows it and others together."""
+        """The name for it and others together on the command line."""
         return self.group
 
 
@@ -60,7 +60,7 @@ class Catalogue[AnyCase: Case](dict[str, AnyCase]):
 
     @property
     def names(self) -> list[str]:
-        """Every name that :meth:`select` knows: families, then cases."""
+        """Every name that :meth:`select` takes: families, then cases."""
         return list(dict.fromkeys((*self.families, *self)))
 
     def select(self, name: str) -> list[AnyCase]:

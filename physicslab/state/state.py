@@ -59,8 +59,10 @@ class State:
     moment : float
         The time [s] at which impacts of the substep at hand are resolved.
     revision : int
-        How often structure, configuration or columns were changed from outside: measurements from
-        before do not apply any more.
+        How often structure, configuration or columns were changed from outside.
+    motion_edits : int
+        How often that concerned the motion, as a new trail does not: measurements over time from before do
+        not apply any more.
     entity_index : EntityIndex
         Which entity has which row.
     bodies : Bodies
@@ -79,7 +81,7 @@ class State:
         self._physics = physics or PhysicsConfig()
         self._simulation = simulation or SimulationConfig()
         self.name, self.title, self.description = "", "", ""
-        self.time, self.steps, self.revision = 0.0, 0, 0
+        self.time, self.steps, self.revision, self.motion_edits = 0.0, 0, 0, 0
         self.substeps, self.step_divisions = self._simulation.substeps, 1
         self.force_evaluations = self.collisions = 0
         self._waited_before = seconds_waited()
@@ -267,7 +269,7 @@ class State:
     @physics.setter
     def physics(self, physics: PhysicsConfig) -> None:
         self._physics = physics
-        self._stale = True
+        self._stale = self.entity_index.motion_edited = True
 
     @property
     def simulation(self) -> SimulationConfig:
@@ -277,7 +279,7 @@ class State:
     @simulation.setter
     def simulation(self, simulation: SimulationConfig) -> None:
         self._simulation = simulation
-        self._stale = True
+        self._stale = self.entity_index.motion_edited = True
 
     @property
     def counts(self) -> tuple[int, int, int]:

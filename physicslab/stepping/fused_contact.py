@@ -45,7 +45,9 @@ __all__ = ["FusedContact"]
 
 _NEEDED = (AccelerateSystem, IntegrateSystem, BroadPhaseSystem, ContactSystem, ResolveSystem)
 _MAX_STEPS = 4096
-"""Largest number of steps of one call: a run that is stopped waits for its end."""
+"""Largest number of steps of one call."""
+_CALL_NS = 100_000_000
+"""Time [ns] that a call takes at most, as far as the last one tells: what stops a run waits for its end."""
 _SUBSTEP = [stage for stage, _ in LEAPFROG.substep]
 
 
@@ -81,6 +83,7 @@ class FusedContact:
         self._gravity = sum((g for g in uniform if g is not None), start=Vector2(0.0, 0.0))
         self._cost = np.zeros(fused.COSTS, np.int64)
         self._h = 0.0
+        self._max_steps = 64
         self._kept: object = None
         self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], Any]
         self.reason = "bodies can touch, and nothing looks at substeps"
@@ -120,7 +123,8 @@ class FusedContact:
         refill(state)
         self._broad_phase.follow_rows(state)
         self._contact.begin_step(state)
-        made, substep, stage, steps = 0, 0, fused.BEGIN, min(steps, _MAX_STEPS)
+        made, substep, stage, wanted = 0, 0, fused.BEGIN, steps
+        steps, began = min(steps, self._max_steps), working_ns() if steps > 1 else 0
         try:
             while made < steps:
                 why, done, substep = self._advance(state, made, steps - made, substep, stage, h)
@@ -146,6 +150,8 @@ class FusedContact:
             state.time, state.steps = state.time + made * h, state.steps + made
             raise
         keep_places(state)
+        if wanted > 1:
+            self._max_steps = max(1, min(_MAX_STEPS, made * _CALL_NS // max(working_ns() - began, 1)))
         return Advance(made)
 
     def _advance(

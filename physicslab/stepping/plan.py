@@ -23,14 +23,16 @@ from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import ForceSystem, Stage
 
-__all__ = ["StepPlan", "choose_plan", "default_plan", "why_not_smooth"]
+__all__ = ["StepPlan", "choose_plan", "default_plan", "outlived", "resumed_plan", "why_not_smooth"]
 
 _CROWD = 200
 """Number of attracting bodies from which sampling their forces takes longer than the accuracy is worth."""
 _WELL_RESOLVED = 0.5
 """omega h of the steps of blanes_moan: above about 1 it does not reach its order."""
-_MAX_STEPS = 1000
+MAX_STEPS = 1000
 """Largest number of steps of a method that ``auto`` makes of a step of the world."""
+_FOLLOWING = (BLANES_MOAN.name, DOP853.name, IMPLICIT_MIDPOINT.name)
+"""The methods that ``auto`` chooses by the state of motion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +79,13 @@ class StepPlan:
     split_steps: int = 1
 
     @property
+    def kept(self) -> tuple[str, str, int]:
+        """What a file keeps: how collisions are found, what follows the forces, and in how many steps."""
+        if self.split_forces is not None:
+            return self.collisions, self.split_forces.name, self.split_steps
+        return self.collisions, self.integrator.name, self.substeps
+
+    @property
     def kick_before_contacts(self) -> float:
         """Which share of a substep's kick comes before contacts are found."""
         substep = self.stages.substep
@@ -94,11 +103,14 @@ def default_plan(simulation: SimulationConfig) -> StepPlan:
     return StepPlan(method, "asked for", simulation.substeps, smooth=False, stages=stages)
 
 
-def choose_plan(state: State, schedule: Schedule) -> StepPlan:
-    """Return the method for what a world holds, or the configured one if it can advance it."""
+def choose_plan(state: State, schedule: Schedule, collisions: str | None = None) -> StepPlan:
+    """Return the method for what a world holds, or the configured one if it can advance it.
+
+    ``collisions`` stands for the configured way to find them.
+    """
     if not schedule.runs(Stage.CONTACT):
         return _mover(state, schedule)
-    wish = state.simulation.collisions
+    wish = collisions or state.simulation.collisions
     if wish == "step":
         return replace(_mover(state, schedule), collisions="step", collision_reason="asked for")
     obstacle = why_not_exact(state, schedule)
@@ -111,6 +123,30 @@ def choose_plan(state: State, schedule: Schedule) -> StepPlan:
     if obstacle is not None:
         return replace(_mover(state, schedule), collisions="step", collision_reason=obstacle)
     return _event_driven_plan(state, "few bodies, which bounce")
+
+
+def outlived(state: State, schedule: Schedule, plan: StepPlan) -> tuple[str, str, int] | None:
+    """Return ``plan.kept`` where the world would not choose so any more, in its present state of motion.
+
+    A plan holds until the motion is edited: whether bodies rest, how fast drag slows them and whether a
+    spring may be compressed to nothing are judged once.
+    """
+    return None if choose_plan(state, schedule).kept == plan.kept else plan.kept
+
+
+def resumed_plan(state: State, schedule: Schedule, kept: tuple[str, str, int]) -> StepPlan:
+    """Return the plan with what was ``kept`` of an earlier one, where it can advance the world."""
+    wish = state.simulation.collisions
+    collisions, method, steps = kept
+    plan = choose_plan(state, schedule, collisions if wish == "auto" and collisions != "none" else None)
+    if plan.kept == kept or plan.integrator.name == state.simulation.integrator:
+        return plan
+    reason = f"{method} was chosen before the scene was saved"
+    if plan.split_forces is not None and method in _FOLLOWING:
+        return replace(plan, split_forces=INTEGRATORS[method], split_steps=steps, reason=reason)
+    if plan.smooth and (method in _FOLLOWING or method == LEAPFROG.name):
+        return replace(plan, integrator=INTEGRATORS[method], substeps=steps, reason=reason)
+    return plan
 
 
 def _event_driven_plan(state: State, reason: str) -> StepPlan:
@@ -164,7 +200,7 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
     planets = attractors > 1
     rate = _fastest(state, [force for force in forces if not force.attractors > 1])
     needed = _steps(rate, h)
-    if needed > _MAX_STEPS:
+    if needed > MAX_STEPS:
         return StepPlan(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
     if planets and attractors >= _CROWD and state.physics.softening > 0.0:
         return StepPlan(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
@@ -198,7 +234,7 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
         return kicks
     rate, half = _fastest(state, forces), 0.5 * state.simulation.dt / substeps
     needed = _steps(rate, half)
-    if needed * 2 * substeps > _MAX_STEPS:
+    if needed * 2 * substeps > MAX_STEPS:
         method, needed, how = IMPLICIT_MIDPOINT, 1, _too_fast(rate)
     elif attractors > 1 or _sees_velocity(state, forces) or _why_singular(state, forces):
         method, needed, how = DOP853, 1, "the step follows the motion"
@@ -219,7 +255,7 @@ def _fastest(state: State, forces: Sequence[ForceSystem]) -> float:
 def _steps(rate: float, h: float) -> int:
     """Return the number of steps of a time h that a rate needs, up to a limit."""
     phase = rate * h / _WELL_RESOLVED
-    return max(1, math.ceil(phase)) if phase <= _MAX_STEPS else _MAX_STEPS + 1
+    return max(1, math.ceil(phase)) if phase <= MAX_STEPS else MAX_STEPS + 1
 
 
 def _why_singular(state: State, forces: Sequence[ForceSystem]) -> str | None:

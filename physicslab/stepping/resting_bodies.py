@@ -21,6 +21,8 @@ __all__ = ["Moment", "Motion", "RestingBodies", "clear_impacts", "copy_motion", 
 type Motion = list[NDArray[np.float64]]
 """Copies of all positions, angles, velocities and angular velocities."""
 
+_WARM = ("feature", "normal_impulse", "tangent_impulse")
+"""What a contact starts the next substep from."""
 _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 
 
@@ -135,6 +137,9 @@ class RestingBodies:
         contacts = state.contacts
         near = contacts.manifolds[: contacts.recorded]
         points = contacts.points[: 2 * contacts.recorded]
+        lost = np.repeat(near["count"] <= 0, 2)  # a contact that comes again starts from no old impulse
+        for name in _WARM:
+            points[name][lost] = 0
         others = np.ones(len(near), np.bool_)
         others[pairs] = False
         near["count"][others] = -1  # the contact step passes over them

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from physicslab.ecs.component import InvalidValue
-from physicslab.ecs.config import SHORTEST, SimulationConfig
+from physicslab.ecs.config import MIN_TIME, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.state.masses import Diverged
 from physicslab.state.state import State
@@ -82,7 +82,7 @@ def _whole_steps(seconds: float, dt: float) -> tuple[int, float]:
     """
     if not seconds / dt < 2**53:
         raise InvalidValue("run", "seconds", seconds, f"less than 2**53 steps of dt = {dt!r} s")
-    if seconds < SHORTEST:
+    if seconds < MIN_TIME:
         return 0, 0.0
     whole = round(seconds / dt)
     if whole and abs(seconds - whole * dt) <= 4.0 * math.ulp(seconds):

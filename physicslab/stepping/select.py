@@ -64,21 +64,24 @@ def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Stepper
     return Steppers(tuple(usable), tuple(left_out))
 
 
-def choose(state: State, schedule: Schedule) -> tuple[StepPlan, Steppers]:
-    """Choose the method and the steppers for the systems that run."""
+def choose(state: State, schedule: Schedule, plan: StepPlan | None = None) -> tuple[StepPlan, Steppers]:
+    """Choose the steppers for the systems that run, and the method, unless there is a ``plan`` already."""
     before = state.event_driven
-    plan = choose_plan(state, schedule)
+    plan = plan or choose_plan(state, schedule)
     state.event_driven = plan.collisions == "exact"
     state.contacts.stale |= before or state.event_driven
     return plan, select_steppers(state, schedule, plan)
 
 
-def remake(state: State, schedule: Schedule) -> tuple[StepPlan, Steppers]:
-    """Choose systems, method and steppers; whether bodies may sleep depends on how collisions are found."""
+def remake(state: State, schedule: Schedule, plan: StepPlan | None) -> tuple[StepPlan, Steppers]:
+    """Choose systems, steppers and the method, unless there is a ``plan`` already.
+
+    Whether bodies may sleep depends on how collisions are found.
+    """
     while True:
         before = state.event_driven
         schedule.remake(state)
         state.has_forces = bool(schedule.forces)
-        chosen = choose(state, schedule)
+        chosen = choose(state, schedule, plan)
         if state.event_driven == before:
             return chosen

@@ -8,9 +8,10 @@ from physicslab.kernels.broad.near_pairs import ACTIVATION_RATIO
 from physicslab.kernels.narrow.outline import Way, outline_of
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point, Points
-from physicslab.kernels.wide.slots import SCALAR
 
-__all__ = ["CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "mix"]
+__all__ = [
+    "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "follow_pose", "mix",
+]  # fmt: skip
 
 CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found again."""
@@ -21,7 +22,7 @@ _APART, _KEPT, _OUTDATED = range(3)
 
 
 @inlined
-def _refresh(
+def follow_pose(
     manifold: Manifold, points: Points, p: int, dx: float, dy: float, turn_a: float, turn_b: float
 ) -> None:
     """Update the separations of kept points for how far the pair has moved and turned, to second order."""
@@ -111,7 +112,7 @@ def _look_up(
             and abs(turn_b) <= CACHE_TURN_TOLERANCE
             and slow
         ):
-            _refresh(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
+            follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
             return _KEPT
     manifold.base_x, manifold.base_y = way.dx, way.dy
     manifold.base_angle_a, manifold.base_angle_b = angle[a], angle[b]
@@ -154,10 +155,10 @@ def _put_last(touching: Rows, found: int, held: int, count: int) -> int:
 
 @inlined
 def find_contacts(
-    near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
-    first: bool, h: float, start: float, speculative_margin: float,
+    near: Near, count: int, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
+    bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
 ) -> int:  # fmt: skip
-    """Find or refresh the contact points of the near pairs that are scalar; return how many have any.
+    """Find or refresh the contact points of the ``count`` scalar pairs; return how many have any.
 
     Their numbers are written to ``near.touching``, in order, those with fixed bodies last. A pair of boxes
     that has hardly moved keeps its points. The substep spans ``h`` seconds from ``start`` h before or after
@@ -166,7 +167,7 @@ def find_contacts(
     the first substep of a step, in which records of impacts are cleared; ``speculative_margin`` is how far
     [m] the forces may bring two bodies together within the substep.
     """
-    position, linear, touching, count = motion.position, motion.linear, near.touching, near.counts[SCALAR]
+    position, linear, touching = motion.position, motion.linear, near.touching
     found, held = 0, count
     for number in range(count):
         p = near.scalar[number]

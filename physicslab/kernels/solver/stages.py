@@ -70,7 +70,7 @@ def find_touching(
         scalar, counts[SCALAR], near.entities, motion.position, motion.linear, h, speculative_margin,
     )  # fmt: skip
     counts[ACTIVE] = find_contacts(
-        near, motion, sizes, materials, inverse, bounds, first, h, start, speculative_margin
+        near, counts[SCALAR], motion, sizes, materials, inverse, bounds, first, h, start, speculative_margin
     )
 
 

@@ -221,6 +221,11 @@ def add_to_blocks(
     before = counts[DISC_BLOCKS], counts[BOX_BLOCKS]
     counts[DISC_BLOCKS] = _trimmed(counts[DISC_BLOCKS], discs.pair)
     counts[BOX_BLOCKS] = _trimmed(counts[BOX_BLOCKS], boxes.pair)
+    # At once: where this returns early, the next call finds nothing to drop.
+    if counts[DISC_BLOCKS] != before[0]:
+        sort_blocks(counts[DISC_BLOCKS], discs.colour, discs.order)
+    if counts[BOX_BLOCKS] != before[1]:
+        sort_blocks(counts[BOX_BLOCKS], boxes.colour, boxes.order)
     active, room = counts[ACTIVE], WIDE * (counts[DISC_BLOCKS] + counts[BOX_BLOCKS])
     if room > 2 * COLOURS * WIDE and counts[WIDE_COUNT] < _SPARSE * room:
         return SPARSE
@@ -236,11 +241,9 @@ def add_to_blocks(
                 slots, counts[which], opened, near, motion, sizes, materials, inverse, asleep, h
             )
             came += more
-    if came > 0 or counts[DISC_BLOCKS] != before[0]:
-        sort_blocks(counts[DISC_BLOCKS], discs.colour, discs.order)
-    if came > 0 or counts[BOX_BLOCKS] != before[1]:
-        sort_blocks(counts[BOX_BLOCKS], boxes.colour, boxes.order)
     if came > 0:
+        sort_blocks(counts[DISC_BLOCKS], discs.colour, discs.order)
+        sort_blocks(counts[BOX_BLOCKS], boxes.colour, boxes.order)
         counts[WIDE_COUNT] += came
         counts[ACTIVE] = _keep_scalar(near.manifolds, near.touching, active)
         counts[SCALAR], counts[SLEEPING] = list_scalar(

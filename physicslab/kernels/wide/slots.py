@@ -6,6 +6,7 @@ import numpy as np
 
 from physicslab.kernels import Flags, Rows, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.arguments import Acting, Inverse, Motion, Near
+from physicslab.kernels.narrow.contact import follow_pose
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.wide.layout import (
     ARM_AX,
@@ -15,6 +16,7 @@ from physicslab.kernels.wide.layout import (
     DISC,
     FOUND,
     IMPULSE,
+    MASS,
     NORMAL_X,
     NORMAL_Y,
     ONE,
@@ -23,6 +25,7 @@ from physicslab.kernels.wide.layout import (
     SEPARATION,
     SIZE,
     TANGENT_IMPULSE,
+    TANGENT_MASS,
     TWO,
     WIDE,
     Slots,
@@ -81,6 +84,7 @@ def store_slot(slots: Slots, slot: int, manifolds: Manifolds, points: Points) ->
         manifold.normal_x, manifold.normal_y = nx, ny
         point.arm_ax, point.arm_ay = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
         point.arm_bx, point.arm_by = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny
+        point.normal_mass, point.tangent_mass = data[at + ONE + MASS], data[at + ONE + TANGENT_MASS]
 
 
 @kernel
@@ -197,6 +201,26 @@ def _approach(slots: Slots, slot: int, count: int, motion: Motion) -> float:
     return lowest
 
 
+@inlined
+def _measure_now(slots: Slots, slot: int, manifolds: Manifolds, points: Points, motion: Motion) -> None:
+    """Bring the separations of a pair that had a slot up to date after impacts have moved bodies.
+
+    A slot has no offset: that of the record is as old as the contact.
+    """
+    data, position, angle, p = slots.data, motion.position, motion.angle, slots.pair[slot]
+    manifold, one = manifolds[p], points[2 * p]
+    i, j = manifold.a, manifold.b
+    dx, dy = position[j, 0] - position[i, 0], position[j, 1] - position[i, 1]
+    if slots.kind == DISC:
+        at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
+        along = dx * manifold.normal_x + dy * manifold.normal_y
+        one.separation = along - data[at + RADIUS_A] - data[at + RADIUS_B]
+    else:
+        turn_a, turn_b = angle[i] - manifold.base_angle_a, angle[j] - manifold.base_angle_b
+        follow_pose(manifold, points, p, dx - manifold.base_x, dy - manifold.base_y, turn_a, turn_b)
+    manifold.offset_x, manifold.offset_y = dx, dy
+
+
 @allocating
 def wake(slots: Slots, near: Near, motion: Motion, acting: Acting, inverse: Inverse, h: float) -> None:
     """Make those contacts scalar that may bounce, approach faster than rest, and have a body with an impact.
@@ -218,4 +242,7 @@ def wake(slots: Slots, near: Near, motion: Motion, acting: Acting, inverse: Inve
             near.scalar[counts[SCALAR]] = near.touching[counts[ACTIVE]] = p
             counts[SCALAR] += 1
             counts[ACTIVE] += 1
-            set_scalar(slots, slot, manifolds, near.points)
+            store_slot(slots, slot, manifolds, near.points)
+            _measure_now(slots, slot, manifolds, near.points, motion)
+            manifolds[p].slot = -1
+            empty_slot(slots, slot)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 from physicslab.components import Drag, Mass, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
@@ -14,6 +15,9 @@ from physicslab.prefabs import box, circle
 from physicslab.world import World
 
 __all__ = ["BALLISTIC"]
+
+
+_problem = partial(Problem, group="ballistic")
 
 
 def _free_fall(simulation: SimulationConfig) -> World:
@@ -84,11 +88,9 @@ def _drag_quadratic_energy(t: float) -> float:
 _FLIGHT = number("projectile", "T")
 
 BALLISTIC = (
-    Problem(
+    _problem(
         name="free_fall",
         title="Free fall with a sideways throw",
-        group="ballistic",
-        source="free_fall",
         compared="x, y, vy after 2 s",
         measure="largest error [m], [m/s]",
         build=_free_fall,
@@ -98,11 +100,9 @@ BALLISTIC = (
         excellent=4.0 * math.ulp(20.0),
         ladder=Ladder(16),
     ),
-    Problem(
+    _problem(
         name="projectile",
         title="A ball thrown at 60 degrees, bouncing off level ground",
-        group="ballistic",
-        source="projectile",
         compared="range, apex and flight time, from the states at half and at one and a half flights",
         measure="largest error of x, y [m] and of the time [s]",
         build=_projectile,
@@ -114,11 +114,9 @@ BALLISTIC = (
         touches=True,
         collisions=1,
     ),
-    Problem(
+    _problem(
         name="drag_linear",
         title="A throw in a viscous medium",
-        group="ballistic",
-        source="drag_linear",
         compared="x, y, vx, vy after 3 s",
         measure="largest error [m], [m/s]",
         build=_drag_linear,
@@ -129,11 +127,9 @@ BALLISTIC = (
         ladder=Ladder(16, 9),
         exact_energy=_drag_linear_energy,
     ),
-    Problem(
+    _problem(
         name="drag_quadratic",
         title="A fall in air",
-        group="ballistic",
-        source="drag_quadratic",
         compared="distance fallen and speed after 2 s",
         measure="largest error [m], [m/s]",
         build=_drag_quadratic,

@@ -98,7 +98,6 @@ CHAOS = (
         name="crowd100",
         title="A hundred bodies that attract each other, softened",
         group="gravity",
-        source="crowd100",
         compared=f"positions of all after {CROWD_TIME} s",
         measure="largest distance from the true place [m]",
         build=_crowd,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
@@ -15,6 +16,7 @@ from physicslab.world import World
 
 __all__ = ["FRICTION"]
 
+_problem = partial(Problem, group="contact", touches=True)
 _MU, _SPEED = 0.3, 5.0
 _NONE: frozenset[str] = frozenset()
 
@@ -70,10 +72,9 @@ def _roll(kind: str, share: float, *, way: bool = False) -> Problem:
         speed, rim = _SPEED - _MU * GRAVITY * slipping, _MU * GRAVITY * slipping / share
         return 0.5 * (speed * speed + share * rim * rim) + GRAVITY * 0.5
 
-    return Problem(
+    return _problem(
         name=f"slip_to_roll_{kind}" + ("_way" if way else ""),
         title=f"A {kind} thrown without spin that comes to roll",
-        group="contact",
         source="slip_to_roll",
         compared="how far it has come after 1 s" if way else "speed and spin after 1 s, when it rolls",
         measure="error [m]" if way else "largest error of the speed, and of the rim's [m/s]",
@@ -83,7 +84,6 @@ def _roll(kind: str, share: float, *, way: bool = False) -> Problem:
         good=1e-2 if way else 1e-3,
         excellent=1e-6 if way else 1e-9,
         ladder=Ladder(240, 4, by_step=True),
-        touches=True,
         exact_energy=energy,
         keeps=_NONE,
     )
@@ -112,10 +112,9 @@ def _forces_error(world: World, i: int) -> float:
 def _stack_problem(
     name: str, compared: str, measure: str, error: Any, good: float, excellent: float
 ) -> Problem:
-    return Problem(
+    return _problem(
         name=f"stack10_{name}",
         title="Ten boxes on each other, at rest for 10 s",
-        group="contact",
         source="stack10",
         compared=compared,
         measure=measure,
@@ -125,16 +124,13 @@ def _stack_problem(
         good=good,
         excellent=excellent,
         ladder=Ladder(2400, 2, by_step=True),
-        touches=True,
     )
 
 
 FRICTION = (
-    Problem(
+    _problem(
         name="friction_slide",
         title="A block that slides to a stop",
-        group="contact",
-        source="friction_slide",
         compared="place and speed after 1 s, and after 3 s, when it has stopped",
         measure="largest error [m], [m/s]",
         build=_slide,
@@ -143,7 +139,6 @@ FRICTION = (
         good=1e-2,
         excellent=1e-6,
         ladder=Ladder(720, 4, by_step=True),
-        touches=True,
         exact_energy=_slide_energy,
         keeps=_NONE,
     ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from itertools import pairwise
 
 from physicslab.ecs.config import SimulationConfig
@@ -14,6 +15,7 @@ from physicslab.world import World
 
 __all__ = ["IMPACTS"]
 
+_problem = partial(Problem, group="collision", touches=True)
 _ALL = frozenset({"energy", "momentum"})
 _NEEDS_EXACT = "a problem for located impacts: within steps, impacts crowd"
 
@@ -42,10 +44,9 @@ def _galperin(n: int, rungs: int) -> Problem:
             abs(place(world, "large").x - 2 * small - large - where),
         )  # fmt: skip
 
-    return Problem(
+    return _problem(
         name=f"galperin_n{n}",
         title=f"Two discs and a wall, 1 to 100^{n}: the collisions count the digits of pi",
-        group="collision",
         source="galperin",
         compared=f"velocities and the large disc's place 1 s after the last of {_count(key)} collisions",
         measure="largest error [m/s], [m]; excellent and good need the exact number of collisions as well",
@@ -55,7 +56,6 @@ def _galperin(n: int, rungs: int) -> Problem:
         good=1e-2,
         excellent=1e-9,
         ladder=Ladder(math.ceil(end * 240), rungs, by_step=True),
-        touches=True,
         keeps=frozenset({"energy"}),
         collisions=_count(key),
         note=_NEEDS_EXACT,
@@ -87,10 +87,9 @@ def _cradle(name: str, title: str, pushed: int, gap: float) -> Problem:
             off += [abs(place(world, str(i)).x - x) for i, x in enumerate(ends)]
         return max(off)
 
-    return Problem(
+    return _problem(
         name=name,
         title=title,
-        group="collision",
         source="newton_cradle",
         compared="velocities after 1 s" + (", and places, which show when each was hit" if gap else ""),
         measure="largest error [m/s]" + (", [m]" if gap else ""),
@@ -100,7 +99,6 @@ def _cradle(name: str, title: str, pushed: int, gap: float) -> Problem:
         good=1e-6,
         excellent=1e-12,
         ladder=Ladder(240, 4, by_step=True),
-        touches=True,
         keeps=_ALL,
         collisions=4 if pushed == 1 else None,
     )
@@ -131,11 +129,9 @@ IMPACTS = (
     _cradle("newton_cradle_gap", "Newton's cradle with gaps of 1 cm", 1, 0.01),
     _cradle("newton_cradle_touching", "Newton's cradle, touching", 1, 0.0),
     _cradle("newton_cradle_touching_two", "Newton's cradle, touching, two discs coming in", 2, 0.0),
-    Problem(
+    _problem(
         name="bounce",
         title="A ball that loses a fifth of its speed at each bounce",
-        group="collision",
-        source="bounce",
         compared="height and speed where the top of each of the first nine bounces should be",
         measure="largest error of the height [m] and of the time [s]",
         build=lambda simulation: _ball(simulation, 0.8),
@@ -144,13 +140,11 @@ IMPACTS = (
         good=1e-2,
         excellent=1e-12,
         ladder=Ladder(1920, 4, by_step=True),
-        touches=True,
         keeps=frozenset(),
     ),
-    Problem(
+    _problem(
         name="bounce_rest",
         title="The same ball after infinitely many bounces",
-        group="collision",
         source="bounce",
         compared="height and speed one step of 1/60 s after the bounces should have ended",
         measure="largest of height [m] and speed [m/s]",
@@ -160,14 +154,11 @@ IMPACTS = (
         good=1e-2,
         excellent=1e-12,
         ladder=Ladder(2184, 4, by_step=True),
-        touches=True,
         keeps=frozenset(),
     ),
-    Problem(
+    _problem(
         name="elastic_bounce_100",
         title="A hundred bounces without loss",
-        group="collision",
-        source="elastic_bounce_100",
         compared="height and speed where the top after the hundredth bounce should be",
         measure="largest error of the height [m] and of the time [s]",
         build=lambda simulation: _ball(simulation, 1.0),
@@ -176,7 +167,6 @@ IMPACTS = (
         good=5e-2,
         excellent=1e-10,
         ladder=Ladder(48461, 2, by_step=True),
-        touches=True,
         collisions=100,
     ),
 )

@@ -99,7 +99,7 @@ _LAGRANGE_LIMITS = ((1e-6, 1e-12), (1e-2, 1e-8))
 
 
 def _lagrange(simulation: SimulationConfig) -> World:
-    # Lying so, most numbers are exact: each rounding at the start grows 85 times a period.
+    # In this place most numbers are exact: each rounding at the start grows 85 times a period.
     half = math.sqrt(3.0) / 2.0
     radius = 1.0 / math.sqrt(3.0)
     places = [(radius, 0.0), (-0.5 * radius, 0.5), (-0.5 * radius, -0.5)]

@@ -48,8 +48,8 @@ class Problem(Case):
     Attributes
     ----------
     source : str
-        The name under which ``problems.json`` holds the figures. Problems that share one are a family, which
-        the command line knows by this name.
+        The name under which ``problems.json`` holds the figures, where it is not the problem's own. Problems
+        that share one are a family, with this name on the command line.
     compared, measure : str
         What is compared and when; how the error is measured, with its unit.
     build : callable
@@ -82,7 +82,7 @@ class Problem(Case):
         Remarks for the reader.
     """
 
-    source: str
+    source: str = ""
     compared: str
     measure: str
     build: Callable[[SimulationConfig], World]
@@ -104,7 +104,7 @@ class Problem(Case):
     @property
     @override
     def family(self) -> str:
-        return self.source
+        return self.source or self.name
 
     @property
     def seconds(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
@@ -16,6 +17,7 @@ from physicslab.world import World
 
 __all__ = ["SLOPES"]
 
+_problem = partial(Problem, group="contact", touches=True)
 _THETA = math.pi / 6.0
 _NONE: frozenset[str] = frozenset()
 
@@ -53,10 +55,9 @@ def _going(name: str, title: str, key: str, build: Callable[[SimulationConfig], 
         acceleration = number("incline", key)
         return max(abs(2.0 * distance / acceleration - 1.0), abs(speed / acceleration - 1.0))
 
-    return Problem(
+    return _problem(
         name=f"incline_{name}",
         title=title,
-        group="contact",
         source="incline",
         compared="distance and speed after 1 s",
         measure="largest relative error of the acceleration that they stand for",
@@ -66,7 +67,6 @@ def _going(name: str, title: str, key: str, build: Callable[[SimulationConfig], 
         good=1e-3,
         excellent=1e-9,
         ladder=Ladder(240, 4, by_step=True),
-        touches=True,
         keeps=frozenset({"energy"}) if "rolling" in key else _NONE,
     )
 
@@ -127,10 +127,9 @@ SLOPES = (
         "disc_slip_mu01_a",
         lambda s: _wheel(s, 0.1, 0.5),
     ),
-    Problem(
+    _problem(
         name="incline_held",
         title="A block that friction holds on 30 degrees, mu = 0.7",
-        group="contact",
         source="incline",
         compared="how far it has gone after 10 s",
         measure="way [m]",
@@ -140,12 +139,10 @@ SLOPES = (
         good=1e-4,
         excellent=1e-12,
         ladder=Ladder(2400, 2, by_step=True),
-        touches=True,
     ),
-    Problem(
+    _problem(
         name="incline_threshold",
         title="The friction that just holds a block on 30 degrees",
-        group="contact",
         source="incline",
         compared="the smallest friction with which it stands still after 2 s, by bisection",
         measure="relative error of the coefficient",
@@ -155,15 +152,12 @@ SLOPES = (
         good=1e-2,
         excellent=1e-3,
         ladder=Ladder(480, 3, by_step=True),
-        touches=True,
         keeps=_NONE,
         search=_threshold,
     ),
-    Problem(
+    _problem(
         name="box_topple",
         title="The slope on which a box of 1 m by 2 m falls over",
-        group="contact",
-        source="box_topple",
         compared="the smallest angle at which it has fallen after 4 s, by bisection",
         measure="error of the angle [deg]",
         build=lambda s: _topple_at(s, math.radians(26.0)),
@@ -172,7 +166,6 @@ SLOPES = (
         good=0.5,
         excellent=0.05,
         ladder=Ladder(960, 3, by_step=True),
-        touches=True,
         keeps=_NONE,
         search=_topple_error,
     ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from functools import partial
 
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
@@ -16,6 +17,7 @@ from physicslab.world import World
 __all__ = ["STIFF"]
 
 _STEP = 0.01
+_problem = partial(Problem, group="stiff", dt=_STEP)
 _RESTS = "its steps shrink without end as the weight comes to rest: they are measured by the present speed"
 
 
@@ -37,10 +39,9 @@ def _spring(z: str) -> Problem:
         x, v = number("stiff_spring", z, "x"), number("stiff_spring", z, "v_over_w")
         return state_error(world, "bob", (x, 0.0), (rate * v, 0.0), rate=rate)
 
-    return Problem(
+    return _problem(
         name=f"stiff_spring_z{z}",
         title=f"An undamped spring, omega dt = {z} at 10 ms",
-        group="stiff",
         source="stiff_spring",
         compared="x and v after 10 s",
         measure="largest error of x and of v / omega [m]",
@@ -50,7 +51,6 @@ def _spring(z: str) -> Problem:
         good=1e-4,
         excellent=1e-12,
         ladder=Ladder(1000, 6, by_step=True),
-        dt=_STEP,
         keeps=frozenset({"energy", "angular_momentum"}),
     )
 
@@ -68,10 +68,9 @@ def _sag(z: str) -> Problem:
         rest = number("stiff_spring_gravity_sag", z, "rest")
         return abs((place(world, "bob").y - number("stiff_spring_gravity_sag", z, "x_at_1s")) / rest)
 
-    return Problem(
+    return _problem(
         name=f"stiff_spring_gravity_sag_z{z}",
         title=f"A weight let go on a damped spring, omega dt = {z} at 10 ms",
-        group="stiff",
         source="stiff_spring_gravity_sag",
         compared="how far it hangs down after 1 s",
         measure="error as a share of the sag at rest",
@@ -81,7 +80,6 @@ def _sag(z: str) -> Problem:
         good=1e-9,
         excellent=1e-12,
         ladder=Ladder(100, 8, by_step=True),
-        dt=_STEP,
         keeps=frozenset(),
         not_used={"dop853": _RESTS} if float(z) > 1.0 else {},
     )
@@ -104,10 +102,9 @@ def _damper(z: str) -> Problem:
         v = (1.0 + sink) * math.exp(-rate * t) - sink
         return 0.5 * v * v + GRAVITY * ((1.0 + sink) * -math.expm1(-rate * t) / rate - sink * t)
 
-    return Problem(
+    return _problem(
         name=f"stiff_damper_z{z}",
         title=f"A body falling in syrup, c dt / m = {z} at 10 ms",
-        group="stiff",
         source="stiff_damper",
         compared="the velocity after 10 ms, and after 4 s, when it has become steady",
         measure="largest error [m/s]",
@@ -117,7 +114,6 @@ def _damper(z: str) -> Problem:
         good=1e-9,
         excellent=1e-13,
         ladder=Ladder(400, 6, by_step=True),
-        dt=_STEP,
         exact_energy=energy,
     )
 

@@ -18,7 +18,7 @@ _DT = 1.0 / 60.0
 _STEPS = 1_000
 _STRETCH = 0.01
 _ASIDE = 0.01
-"""Sideways [m/s]: what that adds to the stretch is less than the limit sees."""
+"""Sideways [m/s]: what that adds to the stretch is too little for the limit."""
 _STIFFNESS = {
     **{f"{rate:g}": (rate / _DT) ** 2 for rate in (0.1, 1.0, 1.9, 10.0, 100.0)},
     "k_1e12": 1e12,

@@ -24,7 +24,7 @@ _SAME_PLACE = 0.15
 class ImpactReader:
     """Reads each impact of a world once.
 
-    The log of a world (``Contacts.log``) holds the last impacts, and ``Contacts.logged`` says how many there
+    The log of a world (``Contacts.log``) holds the last impacts, and ``Contacts.logged`` is how many there
     were: what has a higher number than at the last call is new, however many steps were made meanwhile.
     """
 

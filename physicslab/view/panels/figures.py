@@ -65,8 +65,9 @@ def measure_world(world: World, watch: EnergyWatch) -> WorldFigures:
 class EnergyWatch:
     """Watches the energy of a world from one edit to the next, and its motion where that is known exactly.
 
-    Whatever changes the structure or the laws of the world is an edit, and so is taking a body and letting it
-    go: the energy that these bring in or take out is no error of the simulation.
+    What changes the laws of the world, or its structure where the motion may depend on that, is an edit, and
+    so is taking a body and letting it go: the energy that these bring in or take out is no error of the
+    simulation.
 
     Attributes
     ----------
@@ -84,14 +85,14 @@ class EnergyWatch:
 
     def follow(self, world: World) -> None:
         """Begin again if the world was edited; to be called in every frame, so that nothing is missed."""
-        if self._drift is None or self._seen != (world, world.revision):
+        if self._drift is None or self._seen != (world, world.motion_edits):
             self.restart(world)
 
     def restart(self, world: World) -> Drift:
         """Begin again from the energy as it is now."""
         self._drift = Drift(world)
         self.known = reference_solution(world)
-        self._seen, self.since = (world, world.revision), world.time
+        self._seen, self.since = (world, world.motion_edits), world.time
         return self._drift
 
     def sample(self, world: World) -> Drift:

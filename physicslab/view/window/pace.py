@@ -41,7 +41,7 @@ class Pace:
 
     SLOW = 0.25
     """The speed of slow motion."""
-    SLOWEST, FASTEST = 0.0625, 4.0
+    MIN_SPEED, MAX_SPEED = 0.0625, 4.0
     """The speeds that can be chosen."""
 
     def __init__(self, max_dt: float) -> None:
@@ -70,7 +70,7 @@ class Pace:
 
     def choose(self, factor: float) -> None:
         """Multiply the speed by a factor, within the speeds there are."""
-        self.chosen = min(max(self.speed * factor, self.SLOWEST), self.FASTEST)
+        self.chosen = min(max(self.speed * factor, self.MIN_SPEED), self.MAX_SPEED)
         self.slow_motion = False
 
     def begin(self, elapsed: float) -> None:

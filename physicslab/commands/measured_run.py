@@ -1,0 +1,172 @@
+"""A run without a window: measured at intervals, watched for slow steps, stopped where its time is up."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Iterator
+
+from physicslab.commands.progress import Progress
+from physicslab.commands.step_watch import StepWatch
+from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.overflow import find_overflow
+from physicslab.diagnostics.run_report import RunRecord
+from physicslab.diagnostics.trajectory import TrajectoryWriter
+from physicslab.diagnostics.warnings import find_warnings
+from physicslab.ecs.text import printable, shortened
+from physicslab.kernels.tiers import Tiers
+from physicslab.state.masses import Diverged
+from physicslab.world import World
+
+__all__ = ["MeasuredRun"]
+
+_SAMPLES = 500
+"""How often a run without contacts is measured: what lies between is one compiled loop."""
+_LOOKS = 100
+"""How often warnings are looked for in a run: with thousands of contacts that takes a third of a step."""
+_WORK = 200_000
+"""Entities times substeps that are advanced between two measurements at most, so that a run can be stopped
+there: with few entities that takes a tenth of a second. It must not depend on how fast the machine is, as
+smooth motion ends in other bits where it is divided elsewhere."""
+_PATIENCE_S = 0.1
+"""So long [s] a run with a budget goes on before the clock is looked at."""
+
+
+class MeasuredRun:
+    """Advances a world; between steps, outside the time that is counted, it measures and records.
+
+    Parameters
+    ----------
+    world : World
+        What is advanced.
+    name : str
+        What the run is called.
+    tiers : Tiers
+        What decides whether kernels are compiled or interpreted.
+    at_most : float, optional
+        Wall-clock time [s] after which the run is stopped, compiling left out.
+    trajectory : TrajectoryWriter, optional
+        What records every step.
+
+    Attributes
+    ----------
+    record : RunRecord
+        What was gathered.
+    stopped : str
+        Where the run was stopped because its time was up, in words; empty if it was not.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        name: str,
+        tiers: Tiers,
+        at_most: float | None = None,
+        trajectory: TrajectoryWriter | None = None,
+    ) -> None:
+        self.record, self.stopped = RunRecord(name, Drift(world)), ""
+        self._world, self._tiers, self._at_most, self._trajectory = world, tiers, at_most, trajectory
+        self._watch = StepWatch(world)
+        self._label = shortened(printable(name))
+        self._start = world.time
+        self._began = time.perf_counter() - world.compile_s
+        self._samples, self._measure_every, self._look_every = 0, 1, 1
+        self._check_sums()
+
+    def go(self, seconds: float | None, steps: int | None) -> None:
+        """Advance by a time [s] or by a number of steps, or until the time is up.
+
+        Raises
+        ------
+        Diverged
+            If a value is not finite any more.
+        """
+        world, record, dt = self._world, self.record, self._world.simulation.dt
+        length = (steps or 0) * dt if seconds is None else seconds
+        whole = round(length / dt)
+        stride = 1 if self._trajectory is not None else self._stride(whole)
+        patience = math.inf if self._at_most is None else _PATIENCE_S
+        stepping = world.stepping(seconds=seconds, steps=steps, stride=stride, patience=patience)
+        self._measure_every, self._look_every = (max(1, whole // (stride * n)) for n in (_SAMPLES, _LOOKS))
+        if self._trajectory is not None:
+            self._measure_every = 1
+        progress = Progress(self._label, sys.stderr)
+        try:
+            self._write()
+            while not self.stopped and self._advance(stepping, progress):
+                self._write()
+                if record.steps % stride == 0:
+                    self._sample()
+                progress.show((world.time - self._start) / length)
+                self._tiers.foresee(record.steps / max(whole, record.steps))
+                if self._at_most is not None and self._seconds >= self._at_most:
+                    self.stopped = self._where_stopped(self._at_most, self._start + length, whole)
+            self._measure()
+            record.warnings.add(find_warnings(world))
+        finally:
+            progress.clear()
+        record.warnings.add(self._watch.warnings)
+
+    def _stride(self, whole: int) -> int:
+        """Return how many of so many steps are made between two measurements."""
+        each = (len(self._world.entity_index) - 1) * self._world.simulation.substeps
+        return max(1, min(whole // _SAMPLES, _WORK // max(each, 1)))
+
+    @property
+    def _seconds(self) -> float:
+        """How long it has been [s], without the time in which kernels were compiled or loaded."""
+        return time.perf_counter() - self._world.compile_s - self._began
+
+    def _advance(self, stepping: Iterator[int], progress: Progress) -> bool:
+        """Go on with the run, and count what that took; return whether it was not at its end."""
+        record, before, interpreted = self.record, self._seconds, self._tiers.interpreted_s
+        done = next(stepping, None)
+        taken = self._seconds - before
+        record.wall_s += taken
+        if done is None:
+            return False
+        made = done - record.steps
+        if self._tiers.interpreted_s > interpreted:
+            record.interpreted_steps += made
+            record.interpreted_s += self._tiers.interpreted_s - interpreted
+            taken = 0.0  # what is slow as Python need not be slow
+        for line in (self._watch.note(made, taken), self._watch.note_impacts()):
+            if line and sys.stderr is not None:
+                progress.clear()
+                print(f"physicslab: {self._label}: {line}", file=sys.stderr, flush=True)
+        record.steps = done
+        return True
+
+    def _write(self) -> None:
+        if self._trajectory is not None:
+            self._trajectory.write(self._world)
+
+    def _where_stopped(self, at_most: float, end: float, whole: int) -> str:
+        """Return in words where a run was stopped; nothing where it was at its end."""
+        if self._world.time >= end:
+            return ""
+        steps = f"after {self.record.steps} of {whole} steps"
+        place = f"at t = {self._world.time:.9g} s, {steps}"
+        return f"stopped after {at_most:g} s of wall clock (--at-most) {place}"
+
+    def _sample(self) -> None:
+        """Measure, and look for warnings, where that is due."""
+        if self._samples % self._measure_every == 0:
+            self._measure()
+        if self._samples % self._look_every == 0:
+            self.record.warnings.add(find_warnings(self._world))
+        self._samples += 1
+
+    def _measure(self) -> None:
+        world, record = self._world, self.record
+        record.drift.sample(world)
+        record.max_penetration = max(record.max_penetration, world.contacts.max_penetration)
+        record.divided = max(record.divided, world.step_divisions)
+        self._check_sums()
+
+    def _check_sums(self) -> None:
+        """Stop a run whose energy or momentum is no longer finite, naming what and when."""
+        overflow = find_overflow(self._world, self.record.drift.latest)
+        if overflow is not None:
+            raise Diverged(f"{overflow} at t = {self._world.time:.9g} s")

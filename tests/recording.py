@@ -1,0 +1,86 @@
+"""A canvas that draws nothing and records what is drawn on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle, TextSurface
+from physicslab.view.canvas.theme import Colour
+
+__all__ = ["RecordingCanvas"]
+
+
+@dataclass(slots=True)
+class RecordingCanvas:
+    """A canvas that draws nothing and keeps a list of the calls.
+
+    Attributes
+    ----------
+    size : tuple of two ints
+        Width and height [px].
+    calls : list of (str, dict)
+        The name of each method called, and what it was given.
+    """
+
+    size: tuple[int, int]
+    calls: list[tuple[str, dict[str, Any]]] = field(default_factory=list)
+
+    def called(self, name: str) -> list[dict[str, Any]]:
+        """Return what each call of a method was given."""
+        return [given for called, given in self.calls if called == name]
+
+    @property
+    def words(self) -> list[str]:
+        """Everything that was written."""
+        return [given["words"] for given in self.called("text")]
+
+    def clear(self, colour: Colour) -> None:
+        """Note the colour."""
+        self.calls.append(("clear", {"colour": colour}))
+
+    def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
+        """Note the discs."""
+        given = {"centre": centre, "radius": radius, "angle": angle, "look": look}
+        self.calls.append(("discs", given))
+
+    def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
+        """Note the boxes."""
+        given = {"centre": centre, "extent": extent, "angle": angle, "look": look}
+        self.calls.append(("boxes", given))
+
+    def lines(
+        self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
+    ) -> None:
+        """Note the lines."""
+        given = {"start": start, "end": end, "colour": colour, "width": width, "opacity": opacity}
+        self.calls.append(("lines", given))
+
+    def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
+        """Note the lines."""
+        self.calls.append(("strokes", {"start": start, "end": end, "colour": colour, "width": width}))
+
+    def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
+        """Note the rectangle."""
+        given = {"rect": rect, "colour": colour, "outline": outline, "opacity": opacity}
+        self.calls.append(("panel", given))
+
+    def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
+        """Note the words."""
+        self.calls.append(("text", {"words": words, "at": at, "style": style, "align": align}))
+
+    def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
+        """Return a guess: letters a little over half as wide as high."""
+        return round(0.55 * style.size * len(words)), round(1.36 * style.size)
+
+    def layer(self, name: str, rect: Rect, version: object, draw: Callable[[TextSurface], None]) -> None:
+        """Note each thing on it."""
+        draw(self)
+
+    def paint(self, painter: Painter) -> None:
+        """Note that something was to be drawn."""
+        self.calls.append(("paint", {"painter": painter}))
