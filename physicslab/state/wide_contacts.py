@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.kernels import near_counts
 from physicslab.kernels.wide import graph_colour, refresh, restore_slots, slots
 from physicslab.kernels.wide.layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE, SlotsTuple
 
@@ -33,7 +34,8 @@ class WideConstraints:
     """
 
     def __init__(self, kind: int, counts: _Rows) -> None:
-        self._counts, self._place = counts, slots.DISC_BLOCKS if kind == DISC else slots.BOX_BLOCKS
+        self._counts = counts
+        self._place = near_counts.DISC_BLOCKS if kind == DISC else near_counts.BOX_BLOCKS
         self.kind, self.rows = kind, DISC_ROWS if kind == DISC else BOX_ROWS
         self.data: NDArray[np.float64] = np.zeros(0)
         self.a, self.b, self.pair, self.colour, self.order = (np.zeros(0, np.int64) for _ in range(5))
@@ -115,11 +117,11 @@ class WideContacts:
     @property
     def filled(self) -> int:
         """How many contacts have a slot."""
-        return int(self._counts[slots.WIDE_COUNT])
+        return int(self._counts[near_counts.WIDE_COUNT])
 
     @filled.setter
     def filled(self, contacts: int) -> None:
-        self._counts[slots.WIDE_COUNT] = contacts
+        self._counts[near_counts.WIDE_COUNT] = contacts
 
     def reset(self, rows: int) -> None:
         """Empty every slot, in a world of so many rows."""

@@ -15,11 +15,10 @@ from physicslab.contacts.arguments import (
     speculative_margin,
 )
 from physicslab.contacts.islands import check_edits, fall_asleep, keep_places, wake, wake_all
-from physicslab.kernels import motion
+from physicslab.kernels import motion, near_counts
 from physicslab.kernels.arguments import InverseTuple
 from physicslab.kernels.sleep import edits, islands
 from physicslab.kernels.solver import entries
-from physicslab.kernels.wide import slots
 from physicslab.state.sleep import Sleep
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
@@ -158,7 +157,7 @@ def _find_among(
 ) -> int:  # fmt: skip
     """Find or refresh the points of some of the pairs; return how many of them touch."""
     counts = np.zeros_like(state.contacts.counts)  # neither proximity pairs nor wide contacts
-    counts[slots.SCALAR] = len(pairs)
+    counts[near_counts.SCALAR] = len(pairs)
     near = near_in(state)
     among = (counts, *near[1:3], pairs, touching, *near[5:])
     state.compile((entries.find_stage,))
@@ -166,4 +165,4 @@ def _find_among(
         among, motion_of(state), sizes_of(state), materials_of(state), inverse, bounds_of(state),
         first, h, state.window[0], speculative_margin(state, h),
     )  # fmt: skip
-    return int(counts[slots.ACTIVE])
+    return int(counts[near_counts.ACTIVE])

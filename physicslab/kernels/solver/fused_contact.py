@@ -30,12 +30,12 @@ from physicslab.kernels.arguments import (
 from physicslab.kernels.broad.fat_boxes import still_holds
 from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.motion import clear, drift, find_not_finite, kick
+from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.islands import count_rest, find_touched
 from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
 from physicslab.kernels.ticks import charge, ticks
 from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to_blocks
-from physicslab.kernels.wide.slots import ACTIVE, WIDE_COUNT
 
 __all__ = [
     "ACCELERATE", "ALL", "BEGIN", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "FIND",

@@ -4,8 +4,8 @@ import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, fused, inlined, kernel
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
+from physicslab.kernels.near_counts import WIDE_COUNT
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
-from physicslab.kernels.wide.slots import WIDE_COUNT
 from physicslab.kernels.wide.solve import SoftConstraint, soft_normal_impulse, sweep_wide, warm_start_wide
 
 __all__ = [

@@ -18,11 +18,7 @@ from physicslab.kernels.arguments import (
 )
 from physicslab.kernels.broad.near_pairs import activate, sort_scalar
 from physicslab.kernels.narrow.contact import find_contacts
-from physicslab.kernels.solver import impulse
-from physicslab.kernels.solver.impact import resolve_impacts
-from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
-from physicslab.kernels.wide.refresh import refresh
-from physicslab.kernels.wide.slots import (
+from physicslab.kernels.near_counts import (
     ACTIVE,
     LEFT,
     LOGGED,
@@ -31,8 +27,12 @@ from physicslab.kernels.wide.slots import (
     SCALAR,
     UNORDERED,
     WIDE_COUNT,
-    wake,
 )
+from physicslab.kernels.solver import impulse
+from physicslab.kernels.solver.impact import resolve_impacts
+from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
+from physicslab.kernels.wide.refresh import refresh
+from physicslab.kernels.wide.slots import wake
 
 __all__ = ["find_touching", "press", "relax", "resolve_all_impacts"]
 

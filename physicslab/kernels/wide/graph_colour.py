@@ -18,22 +18,20 @@ from physicslab.kernels.arguments import (
 )
 from physicslab.kernels.broad.near_pairs import sort_scalar
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
-from physicslab.kernels.records import Manifold, Manifolds, Point
-from physicslab.kernels.wide.layout import DISC, WIDE, Masks, Slots, rows_of
-from physicslab.kernels.wide.restore_slots import fill_slot
-from physicslab.kernels.wide.slots import (
+from physicslab.kernels.near_counts import (
     ACTIVE,
     BOX_BLOCKS,
-    COLOURS,
     DISC_BLOCKS,
     RECORDED,
     SCALAR,
     SLEEPING,
     UNORDERED,
     WIDE_COUNT,
-    clear_slot,
-    list_scalar,
 )
+from physicslab.kernels.records import Manifold, Manifolds, Point
+from physicslab.kernels.wide.layout import DISC, WIDE, Masks, Slots, rows_of
+from physicslab.kernels.wide.restore_slots import fill_slot
+from physicslab.kernels.wide.slots import COLOURS, clear_slot, list_scalar
 
 __all__ = ["ADDED", "FULL", "MIN_WIDE", "SPARSE", "add_constraints", "add_to_blocks", "sort_blocks"]
 

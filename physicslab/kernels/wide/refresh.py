@@ -4,6 +4,7 @@ from physicslab.kernels import Numbers, fused, inlined, kernel
 from physicslab.kernels.arguments import Motion, Near
 from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
+from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
 from physicslab.kernels.wide.float64x8 import (
     Wide,
     choose,
@@ -41,7 +42,7 @@ from physicslab.kernels.wide.layout import (
     Slots,
     rows_of,
 )  # fmt: skip
-from physicslab.kernels.wide.slots import DISC_BLOCKS, SCALAR, set_scalar
+from physicslab.kernels.wide.slots import set_scalar
 
 __all__ = ["deepest_wide", "refresh"]
 

@@ -7,6 +7,7 @@ import numpy as np
 from physicslab.kernels import Flags, Rows, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.arguments import Acting, Inverse, Motion, Near
 from physicslab.kernels.narrow.contact import follow_pose
+from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, SCALAR
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.wide.layout import (
     ARM_AX,
@@ -34,21 +35,12 @@ from physicslab.kernels.wide.layout import (
 )  # fmt: skip
 
 __all__ = [
-    "ACTIVE", "BOX_BLOCKS", "COLOURS", "COUNTED", "DISC_BLOCKS", "LEFT", "LOGGED", "PROXIMITY", "RECORDED",
-    "SCALAR", "SLEEPING", "UNORDERED", "WIDE_COUNT", "clear_slot", "empty_slot", "follow_pairs",
-    "list_scalar", "release", "set_scalar", "store", "store_slot", "wake",
+    "COLOURS", "clear_slot", "empty_slot", "follow_pairs", "list_scalar", "release", "set_scalar", "store",
+    "store_slot", "wake",
 ]  # fmt: skip
 
 COLOURS = 64
 """Largest number of blocks that may move one body; its further contacts stay scalar."""
-COUNTED = 11
-(
-    PROXIMITY, RECORDED, SCALAR, SLEEPING, ACTIVE, LEFT, WIDE_COUNT, DISC_BLOCKS, BOX_BLOCKS, UNORDERED,
-    LOGGED,
-) = range(COUNTED)  # fmt: skip
-"""Counts that kernels keep: near pairs without records; those with records; of these the scalar ones, those
-that sleep, those that touch, those that impacts have left to the solver; slots in use; blocks of discs and of
-boxes; whether scalar pairs are out of order; and all impacts logged so far."""
 
 
 @inlined

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.arguments import Motion, Near
+from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
 from physicslab.kernels.wide.float64x8 import (
     Wide,
     choose,
@@ -43,7 +44,6 @@ from physicslab.kernels.wide.layout import (
     WIDE,
     Slots,
 )  # fmt: skip
-from physicslab.kernels.wide.slots import BOX_BLOCKS, DISC_BLOCKS
 
 __all__ = ["DEEPER", "SOFT", "SoftConstraint", "soft_normal_impulse", "sweep_wide", "warm_start_wide"]
 
