@@ -4,35 +4,28 @@ from __future__ import annotations
 
 import math
 import sys
-import time
 from collections.abc import Iterator
-
-import numpy as np
 
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows
 from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
-from physicslab.state.masses import Diverged, derive_masses
+from physicslab.state.masses import derive_masses, quiet
 from physicslab.state.state import State
 from physicslab.stepping.forces import add_up_forces
-from physicslab.stepping.plan import StepPlan, default_plan, resumed_plan
-from physicslab.stepping.run import go_on, run_length
-from physicslab.stepping.select import Steppers, choose, remake
+from physicslab.stepping.plan import StepPlan, default_plan
+from physicslab.stepping.run import strides
+from physicslab.stepping.select import Steppers, choose, remake, resume
 from physicslab.stepping.stepper import Advance, Stepper
-from physicslab.stepping.undo import go_back
+from physicslab.stepping.undo import Undoing
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import Stage, System
 
 __all__ = ["World"]
 
-_quiet = np.errstate(all="ignore")
-"""An overflow becomes infinite, which is found and raised as :class:`Diverged`: numpy need not warn."""
-_go_on = _quiet(go_on)
 _STEP = Field("dt", "number", minimum=MIN_TIME, unit="s", owner="step")
-_STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 
 
 class World(State):
@@ -89,7 +82,7 @@ class World(State):
 
     # ---- time ----------------------------------------------------------------------------------------------
 
-    @_quiet
+    @quiet
     def step(self, dt: float | None = None) -> None:
         """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps.
 
@@ -112,21 +105,10 @@ class World(State):
 
         The clock is the caller's. Where that fails or is broken off, the world goes back to before the step.
         """
-        if self._stepping:
-            raise RuntimeError("a system cannot step the world that is calling it")
-        self.checkpoint.take(self._motion, self.counts)
-        self._stepping = True
-        try:
+        with Undoing(self, self._motion):
             self.schedule.run(Stage.PREPARE, self, h)
             made = self._advance(h, steps)
             self.schedule.run(Stage.FINISH, self, h * steps)
-        except BaseException:
-            go_back(self)
-            # Steppers hold numbers of the step that failed.
-            self._stale = self.entity_index.motion_edited = True
-            raise
-        finally:
-            self._stepping = False
         self.steps += made.steps
         self.step_divisions = made.divisions
         return made.steps
@@ -171,27 +153,11 @@ class World(State):
         The steps in between are one compiled loop where possible. Where they are several calls, it yields
         also after the first that ends more than ``patience`` seconds of wall clock after the last yield.
         """
-        _STRIDE.check(stride)
-        due = time.monotonic() + patience
-        length, start, done = run_length(self, seconds, steps), self.time, 0
-        if not length.steps:
-            self.time += length.seconds  # which is nothing, or too short for anything to move
-        while done < length.steps:
-            before = self.steps
-            try:
-                with self.active():
-                    done += _go_on(self, length, done, stride)
-            except Diverged:
-                self.time = start + (done + self.steps - before) * length.dt
-                raise
-            self.time = start + length.elapsed(done)
-            if done % stride == 0 or done == length.steps or time.monotonic() >= due:
-                yield done
-                due = time.monotonic() + patience
+        return strides(self, seconds, steps, stride, patience)
 
     # ---- structure -----------------------------------------------------------------------------------------
 
-    @_quiet
+    @quiet
     def synchronise(self) -> None:
         """Follow the present entities and components, and compute their masses, as each step does first."""
         with self.active():
@@ -203,11 +169,11 @@ class World(State):
 
     def _follow(self, *, numbers: bool = False) -> None:
         """Follow what changed in the structure of the world since the last call; in the numbers as well."""
-        if self._stepping:
+        if self.in_step:
             return
-        self._stepping = True  # a batch that is taken meanwhile follows nothing
+        self.in_step = True  # a batch that is taken meanwhile follows nothing
         try:
-            if self.entity_index.synchronise() or self._stale:
+            if self.entity_index.synchronise() or self.stale:
                 self._adapt()
             if numbers:
                 self.generation += 1
@@ -216,13 +182,13 @@ class World(State):
                     self._choose()
                 check_edits(self)
         finally:
-            self._stepping = False
+            self.in_step = False
 
-    @_quiet
+    @quiet
     def _adapt(self) -> None:
         """Compute masses and choose systems and steppers again, until nothing changes any more."""
         while True:
-            self._stale = True  # and stays so if a system refuses what it finds
+            self.stale = True  # and stays so if a system refuses what it finds
             self.generation += 1
             self._motion = motion_of(self)
             follow_rows(self)
@@ -232,7 +198,7 @@ class World(State):
             self.plan, self.steppers = remake(self, self.schedule, plan)
             self.revision += 1
             self.motion_edits += self.entity_index.motion_edited
-            self._stale = self.entity_index.motion_edited = False
+            self.stale = self.entity_index.motion_edited = False
             if not self.entity_index.synchronise():
                 return
 
@@ -242,8 +208,7 @@ class World(State):
 
     def resume(self, collisions: str, method: str, steps: int) -> None:
         """Go on with what was chosen before this world was saved (:attr:`StepPlan.kept`), where possible."""
-        kept = resumed_plan(self, self.schedule, (collisions, method, steps))
-        self.plan, self.steppers = choose(self, self.schedule, kept)
+        self.plan, self.steppers = resume(self, self.schedule, (collisions, method, steps))
 
     def edited(self) -> None:
         """Note that columns or components were changed from outside: measurements over time begin again."""
@@ -256,7 +221,7 @@ class World(State):
         So a window can show a world that was made without one.
         """
         self.schedule.extend(systems)
-        self._stale = True
+        self.stale = True
         self.entity_index.motion_edited |= any(system.acts_within_step() for system in systems)
 
     # ---- looking -------------------------------------------------------------------------------------------
@@ -266,7 +231,7 @@ class World(State):
         """The forces that Python computes, call by call, where a compiled loop could run."""
         return self.schedule.interpreted
 
-    @_quiet
+    @quiet
     def add_up_forces(self) -> None:
         """Update ``bodies.force`` and ``.torque`` to the forces that act.
 

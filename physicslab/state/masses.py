@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
 from physicslab.components.shape import CIRCLE
 from physicslab.ecs.component import InvalidValue
@@ -11,13 +13,17 @@ from physicslab.kernels import motion
 from physicslab.kernels.solver import impulse
 from physicslab.state.state import State
 
-__all__ = ["Diverged", "check_finite", "derive_masses"]
+__all__ = ["Diverged", "check_finite", "derive_masses", "quiet"]
 
 _INERTIA = next(spec for spec in Mass.FIELDS if spec.name == "inertia")
 
 
 class Diverged(ArithmeticError):
     """A value is no longer finite: the run cannot go on."""
+
+
+quiet = np.errstate(all="ignore")
+"""A decorator: an overflow becomes infinite, which is found and raised as Diverged; numpy need not warn."""
 
 
 def derive_masses(state: State) -> None:

@@ -63,6 +63,10 @@ class State:
     motion_edits : int
         How often that concerned the motion, as a new trail does not: measurements over time from before do
         not apply any more.
+    stale : bool
+        Whether systems and steppers are to be chosen again before the next step.
+    in_step : bool
+        Whether a step is being made, or changes of structure are being followed: neither is begun meanwhile.
     entity_index : EntityIndex
         Which entity has which row.
     bodies : Bodies
@@ -93,7 +97,7 @@ class State:
         self.checkpoint = Checkpoint()
         # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
         self._names: set[str] = set()
-        self._stale, self._stepping = True, False
+        self.stale, self.in_step = True, False
         self.context = f"physicslab-{next(_numbers)}"
         self.activate()
         weakref.finalize(self, _forget, self.context)
@@ -254,7 +258,7 @@ class State:
 
     def batch(self, *components: type[Any]) -> Batch:
         """Return the rows of the entities that have all of ``components``; within a step, at its start."""
-        if not self._stepping:
+        if not self.in_step:
             with self.active():
                 self._follow()
         return self.entity_index.batch(*components)
@@ -269,7 +273,7 @@ class State:
     @physics.setter
     def physics(self, physics: PhysicsConfig) -> None:
         self._physics = physics
-        self._stale = self.entity_index.motion_edited = True
+        self.stale = self.entity_index.motion_edited = True
 
     @property
     def simulation(self) -> SimulationConfig:
@@ -279,7 +283,7 @@ class State:
     @simulation.setter
     def simulation(self, simulation: SimulationConfig) -> None:
         self._simulation = simulation
-        self._stale = self.entity_index.motion_edited = True
+        self.stale = self.entity_index.motion_edited = True
 
     @property
     def counts(self) -> tuple[int, int, int]:

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Protocol
 
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import MIN_TIME, SimulationConfig
 from physicslab.ecs.fields import Field
-from physicslab.state.masses import Diverged
-from physicslab.state.state import State
+from physicslab.state.masses import Diverged, quiet
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.stepper import Stepper
 from physicslab.systems.schedule import Schedule
 
-__all__ = ["RunLength", "Stepped", "go_on", "run_length"]
+__all__ = ["RunLength", "Stepped", "run_length", "strides"]
 
 _STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
 _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
+_STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +55,31 @@ class RunLength:
         return done * self.dt if done < self.steps else self.seconds
 
 
-def run_length(state: State, seconds: float | None, steps: int | None) -> RunLength:
+class Stepped(Protocol):
+    """What a run wants of a world."""
+
+    time: float
+    steps: int
+    schedule: Schedule
+
+    @property
+    def simulation(self) -> SimulationConfig:
+        """Return how the world is stepped."""
+
+    def active(self) -> AbstractContextManager[object]:
+        """Make this the world that plain esper calls act on, within a ``with`` block."""
+
+    def synchronise(self) -> None:
+        """Follow the present entities and components."""
+
+    def advance(self, h: float, steps: int) -> int:
+        """Make steps of ``h`` seconds; return how many."""
+
+    def stepper_for(self, h: float) -> Stepper:
+        """Return the best stepper for a coming step of ``h`` seconds."""
+
+
+def run_length(world: Stepped, seconds: float | None, steps: int | None) -> RunLength:
     """Return the length of a run of so many seconds, or of so many steps.
 
     Raises
@@ -64,10 +91,10 @@ def run_length(state: State, seconds: float | None, steps: int | None) -> RunLen
     """
     if (seconds is None) == (steps is None):
         raise TypeError("give either seconds or steps")
-    dt = state.simulation.dt
+    dt = world.simulation.dt
     if seconds is None:
         count: int = _STEPS.check(steps)
-        if not math.isfinite(state.time + count * dt):
+        if not math.isfinite(world.time + count * dt):
             raise InvalidValue("run", "steps", steps, f"so few that {dt!r} s each lead to a finite time")
         return RunLength(count * dt, dt, count, 0.0)
     seconds = _SECONDS.check(seconds)
@@ -93,28 +120,31 @@ def _whole_steps(seconds: float, dt: float) -> tuple[int, float]:
     return whole, seconds - whole * dt
 
 
-class Stepped(Protocol):
-    """What a run wants of a world."""
+def strides(
+    world: Stepped, seconds: float | None, steps: int | None, stride: int, patience: float
+) -> Iterator[int]:
+    """Advance by a time or by a number of steps, yielding as :meth:`World.stepping` says."""
+    _STRIDE.check(stride)
+    due = time.monotonic() + patience
+    length, start, done = run_length(world, seconds, steps), world.time, 0
+    if not length.steps:
+        world.time += length.seconds  # which is nothing, or too short for anything to move
+    while done < length.steps:
+        before = world.steps
+        try:
+            with world.active():
+                done += _go_on(world, length, done, stride)
+        except Diverged:
+            world.time = start + (done + world.steps - before) * length.dt
+            raise
+        world.time = start + length.elapsed(done)
+        if done % stride == 0 or done == length.steps or time.monotonic() >= due:
+            yield done
+            due = time.monotonic() + patience
 
-    time: float
-    steps: int
-    schedule: Schedule
 
-    @property
-    def simulation(self) -> SimulationConfig:
-        """Return how the world is stepped."""
-
-    def synchronise(self) -> None:
-        """Follow the present entities and components."""
-
-    def advance(self, h: float, steps: int) -> int:
-        """Make steps of ``h`` seconds; return how many."""
-
-    def stepper_for(self, h: float) -> Stepper:
-        """Return the best stepper for a coming step of ``h`` seconds."""
-
-
-def go_on(world: Stepped, length: RunLength, done: int, stride: int) -> int:
+@quiet
+def _go_on(world: Stepped, length: RunLength, done: int, stride: int) -> int:
     """Go on with a run of which ``done`` steps are made, as far as one call goes; return how many it made."""
     world.synchronise()
     h = length.dt if done < length.whole else length.rest

@@ -10,11 +10,11 @@ from physicslab.stepping.contact import Contact
 from physicslab.stepping.event_driven import EventDriven
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.fused_contact import FusedContact
-from physicslab.stepping.plan import StepPlan, choose_plan
+from physicslab.stepping.plan import StepPlan, choose_plan, resumed_plan
 from physicslab.stepping.stepper import Stepper
 from physicslab.systems.schedule import LeftOut, Schedule
 
-__all__ = ["STEPPERS", "Steppers", "choose", "remake", "select_steppers"]
+__all__ = ["STEPPERS", "Steppers", "choose", "remake", "resume", "select_steppers"]
 
 STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, FusedContact, Contact)
 """All of them, the best first. The last can advance any world."""
@@ -71,6 +71,11 @@ def choose(state: State, schedule: Schedule, plan: StepPlan | None = None) -> tu
     state.event_driven = plan.collisions == "exact"
     state.contacts.stale |= before or state.event_driven
     return plan, select_steppers(state, schedule, plan)
+
+
+def resume(state: State, schedule: Schedule, kept: tuple[str, str, int]) -> tuple[StepPlan, Steppers]:
+    """Choose what was ``kept`` of an earlier plan (:attr:`StepPlan.kept`), where possible."""
+    return choose(state, schedule, resumed_plan(state, schedule, kept))
 
 
 def remake(state: State, schedule: Schedule, plan: StepPlan | None) -> tuple[StepPlan, Steppers]:

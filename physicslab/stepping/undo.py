@@ -1,12 +1,52 @@
-"""Back to before a step that failed."""
+"""A step at hand, and back to before one that failed."""
 
 from __future__ import annotations
 
+from types import TracebackType
+
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import wake_all
+from physicslab.kernels.arguments import MotionTuple
 from physicslab.state.state import State
 
-__all__ = ["go_back"]
+__all__ = ["Undoing", "go_back"]
+
+
+class Undoing:
+    """A ``with`` block that makes a step: where it fails or is broken off, the state goes back to before it.
+
+    Parameters
+    ----------
+    state : State
+        What the step changes.
+    motion : tuple of arrays
+        Its positions, angles and velocities (``motion_of``).
+    """
+
+    __slots__ = ("_motion", "_state")
+
+    def __init__(self, state: State, motion: MotionTuple) -> None:
+        self._state, self._motion = state, motion
+
+    def __enter__(self) -> None:
+        """Take the checkpoint; raise ``RuntimeError`` within a step."""
+        state = self._state
+        if state.in_step:
+            raise RuntimeError("a system cannot step the world that is calling it")
+        state.checkpoint.take(self._motion, state.counts)
+        state.in_step = True
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        state = self._state
+        try:
+            if kind is not None:
+                go_back(state)
+                # Steppers hold numbers of the step that failed.
+                state.stale = state.entity_index.motion_edited = True
+        finally:
+            state.in_step = False
 
 
 def go_back(state: State) -> None:
