@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels.forces.pairwise import attract_pairwise, depth_of_pairs
 from physicslab.kernels.forces.tree_pull import (
-    LARGEST_ERROR,
+    MAX_ERROR,
     RMS_ERROR,
     THETA,
     attract_by_tree,
@@ -82,7 +82,7 @@ def main() -> None:
     sizes = parser.parse_args().sizes
     for spread in (even, plummer_sphere, two_clusters):
         measure(spread, 1_000)  # compiled, and warm
-    print(f"theta {THETA}: stated are {RMS_ERROR:g} by root mean square, {LARGEST_ERROR:g} at most")
+    print(f"theta {THETA}: stated are {RMS_ERROR:g} by root mean square, {MAX_ERROR:g} at most")
     print("places          bodies direct ms Mpair/s  tree ms  ratio   rms off  max off  energy")
     for n in sizes:
         for spread in (even, plummer_sphere, two_clusters):

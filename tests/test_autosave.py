@@ -27,7 +27,7 @@ from physicslab.world import World
 
 
 class Clock:
-    """A clock that goes on when it is told to."""
+    """A clock that is set forward by hand."""
 
     now = 0.0
 
@@ -42,7 +42,7 @@ def saved(autosave: Autosave, world: World, clock: Clock, seconds: float = 10.0)
     for _ in range(300):
         autosave.advance(world)
         if autosave._thread is not None:
-            autosave._thread.join()  # the disk may take as long as it likes
+            autosave._thread.join()  # the disk may take any time
     return autosave.path.exists() and autosave.path.stat().st_mtime_ns != before
 
 

@@ -11,7 +11,7 @@ from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum, summation
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels.forces.gravity import MANY
+from physicslab.kernels.forces.gravity import TREE_THRESHOLD
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.world import World
@@ -182,7 +182,7 @@ def test_modes_switch_while_running() -> None:
 
 
 @pytest.mark.parametrize(
-    ("n", "said"), [(100, ""), (101, "each pair of 101"), (MANY, "Barnes-Hut tree of 8000")]
+    ("n", "said"), [(100, ""), (101, "each pair of 101"), (TREE_THRESHOLD, "Barnes-Hut tree of 8000")]
 )
 def test_how_it_sums_is_said(n: int, said: str) -> None:
     world = planets(1e-6, 0.1, "plummer")

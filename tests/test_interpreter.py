@@ -31,7 +31,7 @@ from physicslab.kernels import KERNELS, ask_before_compiling, compile_kernels, i
 from physicslab.kernels.events.events import run_events
 from physicslab.kernels.forces import gravity
 from physicslab.kernels.forces.pairwise import attract_pairwise
-from physicslab.kernels.forces.tree_pull import LARGEST_ERROR, attract_by_tree
+from physicslab.kernels.forces.tree_pull import MAX_ERROR, attract_by_tree
 from physicslab.kernels.interpreter import interpreted, stand_in, twin_of
 from physicslab.kernels.ode.dop853 import dop853
 from physicslab.kernels.stand_ins import math_functions
@@ -335,7 +335,7 @@ def test_the_tree_is_as_near_as_stated_when_interpreted() -> None:
         twin_of(attract_pairwise)(x, y, mass, np.float64(0.0), False, *direct)
         twin_of(attract_by_tree)(x, y, mass, np.float64(0.0), False, *tree)
     pulls = np.hypot(*direct)
-    assert np.hypot(*(tree - direct)).max() < LARGEST_ERROR * pulls.mean()
+    assert np.hypot(*(tree - direct)).max() < MAX_ERROR * pulls.mean()
 
 
 def test_math_gives_what_compiled_code_gives_where_python_raises() -> None:

@@ -252,7 +252,7 @@ def test_a_temporary_folder_is_removed_at_the_end(places: Path) -> None:
 
 @posix
 def test_planted_code_is_not_run(tmp_path: Path) -> None:
-    """A pickle runs what it likes when it is read."""
+    """A pickle can run anything when it is read."""
     place, ran = tmp_path / "planted", tmp_path / "ran"
     spoil(place, "open")
     folder = place / keys.folder_of("physicslab.kernels.motion")

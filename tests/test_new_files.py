@@ -39,7 +39,7 @@ def test_programs_that_save_at_once_get_a_file_each(tmp_path: Path) -> None:
     processes = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(4)]
     said = [line for process in processes for line in process.communicate()[0].splitlines()]
     assert [process.returncode for process in processes] == [0, 0, 0, 0]
-    assert len(said) == 80 and len(set(said)) == 80, "each is told of a file of its own"
+    assert len(said) == 80 and len(set(said)) == 80, "each has a file of its own"
     assert sorted(said) == sorted(map(str, tmp_path.iterdir())), "and nothing else is left"
 
 

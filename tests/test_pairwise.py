@@ -81,7 +81,7 @@ def test_forces_and_energy_are_those_of_the_formula(
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("n", [50, 150, gravity.MANY])
+@pytest.mark.parametrize("n", [50, 150, gravity.TREE_THRESHOLD])
 def test_compiled_integrators_have_the_same_forces(law: str, n: int) -> None:
     position, mass = crowd(3, n)
     place = 2 * np.random.default_rng(4).permutation(n)
@@ -107,14 +107,14 @@ def test_momentum_is_kept_to_rounding(law: str) -> None:
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("softening", [0.0, 0.5])
-@pytest.mark.parametrize("n", [101, 128, gravity.MANY])
+@pytest.mark.parametrize("n", [101, 128, gravity.TREE_THRESHOLD])
 def test_bodies_on_one_spot_do_not_pull(law: str, softening: float, n: int) -> None:
     position, mass = np.full((n, 2), 3.0), np.ones(n)
     assert not forces(position, mass, softening, law).any()
     assert np.isfinite(energy(position, mass, softening, law))
 
 
-@pytest.mark.parametrize("n", [101, gravity.MANY])
+@pytest.mark.parametrize("n", [101, gravity.TREE_THRESHOLD])
 def test_what_is_not_a_number_stays_so(n: int) -> None:
     position, mass = crowd(2, n)
     position[7, 0] = np.nan

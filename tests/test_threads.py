@@ -17,7 +17,7 @@ LINE = "another thread is working with a world: esper's context is one for the w
 
 
 class Pause(System):
-    """Waits within a step, until another thread has tried what it wants to try."""
+    """Waits within a step, until another thread has made its attempt."""
 
     def __init__(self, meanwhile: Callable[[], object]) -> None:
         self._meanwhile = meanwhile

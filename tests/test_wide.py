@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from physicslab.kernels.wide.float64x8 import (
     choose,
     greater,
-    least,
+    lesser,
     mask_bits,
     put,
     put_numbers,
@@ -40,7 +40,7 @@ def arithmetic(x: Numbers, y: Numbers, scale: float, out: Numbers) -> None:
 def comparisons(x: Numbers, y: Numbers, limit: float, out: Numbers) -> int:
     a, b = take(x, 0), take(y, 0)
     inside = (a < b) & (a > limit)
-    put(out, 0, least(a, b))
+    put(out, 0, lesser(a, b))
     put(out, 8, greater(a, limit))
     put(out, 16, choose(inside | (b > 1.0), a, limit))
     return mask_bits(inside)
@@ -48,7 +48,7 @@ def comparisons(x: Numbers, y: Numbers, limit: float, out: Numbers) -> int:
 
 @numba.njit(error_model="numpy")
 def plain(x: float, y: float) -> tuple[float, float, float]:
-    return least(x, y), greater(x, y), choose(x < y, x, 0.0)
+    return lesser(x, y), greater(x, y), choose(x < y, x, 0.0)
 
 
 @numba.njit(error_model="numpy")

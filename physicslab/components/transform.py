@@ -1,7 +1,7 @@
 """Where a body is."""
 
 from physicslab.ecs.component import Component, Vector, component, field
-from physicslab.ecs.fields import FARTHEST
+from physicslab.ecs.fields import COORDINATE_LIMIT
 
 
 @component
@@ -9,6 +9,6 @@ class Transform(Component):
     """The pose of a body: where its centre of mass is and how far it has turned."""
 
     position: Vector = field(
-        default=(0.0, 0.0), unit="m", limit=FARTHEST, meaning="centre of mass; y points up"
+        default=(0.0, 0.0), unit="m", limit=COORDINATE_LIMIT, meaning="centre of mass; y points up"
     )
     angle: float = field(default=0.0, unit="rad", meaning="orientation, counter-clockwise")

@@ -59,9 +59,9 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
         # Rows may have changed: contacts that had a slot get it again.
         contacts.restoring |= contacts.wide.filled > 0
         contacts.wide.reset(len(entities))
-    most = count + contacts.proximity_count
-    if len(contacts.spare_manifolds) < most:
-        room = most + most // 4  # a record takes 400 bytes, and there are two sets of them
+    needed = count + contacts.proximity_count
+    if len(contacts.spare_manifolds) < needed:
+        room = needed + needed // 4  # a record takes 400 bytes, and there are two sets of them
         contacts.spare_manifolds, contacts.spare_points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
     near_pairs.carry_over(
         pairs, count, entities, contacts.manifolds, contacts.points, contacts.recorded, contacts.table, noted,
@@ -70,8 +70,8 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
     contacts.manifolds, contacts.spare_manifolds = contacts.spare_manifolds, contacts.manifolds
     contacts.points, contacts.spare_points = contacts.spare_points, contacts.points
     contacts.recorded, contacts.active, contacts.stale = count, 0, False
-    if len(contacts.touching) < most:
-        contacts.touching, contacts.scalar, contacts.sleeping = np.zeros((3, most + most // 4), np.int64)
+    if len(contacts.touching) < needed:
+        contacts.touching, contacts.scalar, contacts.sleeping = np.zeros((3, needed + needed // 4), np.int64)
     if contacts.restoring:
         wide.fill_again(state)
     elif contacts.wide.filled:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar
 
-from physicslab.ecs.fields import FARTHEST, Field, InvalidValue
+from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
@@ -96,7 +96,7 @@ class PhysicsConfig:
 
 
 def _box(owner: str, name: str, value: Any) -> tuple[float, ...]:
-    corner = Field(name, "vector", limit=FARTHEST, owner=owner)
+    corner = Field(name, "vector", limit=COORDINATE_LIMIT, owner=owner)
     try:
         xmin, ymin, xmax, ymax = value
         box = (*corner.check((xmin, ymin)), *corner.check((xmax, ymax)))
@@ -105,7 +105,7 @@ def _box(owner: str, name: str, value: Any) -> tuple[float, ...]:
     if not box or not (box[0] < box[2] and box[1] < box[3]):
         words = (
             "null or four finite numbers [xmin, ymin, xmax, ymax] m with xmin < xmax and ymin < ymax, "
-            f"at most {FARTHEST:g} each"
+            f"at most {COORDINATE_LIMIT:g} each"
         )
         raise InvalidValue(owner, name, value, words)
     return box

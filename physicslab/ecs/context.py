@@ -14,7 +14,7 @@ _OTHER_THREAD = (
     "used by one thread at a time, or in a process each"
 )
 _turn = threading.RLock()
-"""Held by the thread in which a context is active; that thread may take it as often as it likes."""
+"""Held by the thread in which a context is active; that thread may take it any number of times."""
 
 
 class Active[W]:

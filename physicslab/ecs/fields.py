@@ -12,13 +12,13 @@ import numpy as np
 
 from physicslab.ecs.vector import Vector2
 
-__all__ = ["FARTHEST", "LENGTH_LIMIT", "REQUIRED", "Field", "InvalidValue", "Kind", "field"]
+__all__ = ["COORDINATE_LIMIT", "LENGTH_LIMIT", "REQUIRED", "Field", "InvalidValue", "Kind", "field"]
 
 Kind = Literal["number", "whole", "vector", "flag", "entity", "choice"]
 
 _SHOWN_LIMIT = 100
 """Characters of a value that a message shows."""
-FARTHEST = 1e300
+COORDINATE_LIMIT = 1e300
 """The largest coordinate [m]: the difference of two is finite, and the product of one with a usual number."""
 LENGTH_LIMIT = 1e150
 """The largest extent, arm or length of a spring [m]: the squares of two can be added."""
@@ -118,8 +118,8 @@ class Field:
             words += f" >= {self.minimum:g}"
         elif self.maximum < math.inf:
             words += f" <= {self.maximum:g}"
-        most = f", at most {self.limit:g}" if self.limit < math.inf else ""
-        return words + unit + most + (" or null" if self.derived else "")
+        upper = f", at most {self.limit:g}" if self.limit < math.inf else ""
+        return words + unit + upper + (" or null" if self.derived else "")
 
     @property
     def lowest(self) -> float:

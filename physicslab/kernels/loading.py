@@ -137,7 +137,7 @@ def refuse_calls(jitted: Any) -> None:
 
 
 def prepare() -> None:
-    """Let numba learn what it knows of types, as it would before the first kernel: 0.2 s and more.
+    """Load numba's tables of types, as it does before the first kernel: 0.2 s and more.
 
     Where SciPy is installed numba imports its linear algebra, only to see whether matrix products could be
     compiled: half as long again, at every start. No kernel has any, so numba finds that there is none.

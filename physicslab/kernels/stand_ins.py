@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 __all__ = ["Memory", "Records", "arithmetic", "math_functions", "stand_in_of", "stands_in_for"]
 
-_LOWEST = -(2**63)
+_INT64_MIN = -(2**63)
 """What a number becomes that no int64 can hold."""
 
 
@@ -60,7 +60,7 @@ def _whole(function: Callable[[float], int]) -> Callable[[float], int]:
         try:
             return function(number)
         except (ValueError, OverflowError):
-            return _LOWEST
+            return _INT64_MIN
 
     return call
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 __all__ = ["propagate_kepler"]
 
-_MOST_ITERATIONS = 100
+_MAX_ITERATIONS = 100
 
 
 def propagate_kepler(
@@ -53,7 +53,7 @@ def propagate_kepler(
 
     low, high = _bracket(late, t, r)
     s = 0.5 * (low + high)
-    for _ in range(_MOST_ITERATIONS):
+    for _ in range(_MAX_ITERATIONS):
         excess, slope, _ = late(s)
         low, high = (low, s) if excess > 0.0 else (s, high)
         following = s - excess / slope if slope > 0.0 else math.nan

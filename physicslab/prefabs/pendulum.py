@@ -27,7 +27,7 @@ def pendulum(
 ) -> int:
     """Spawn a disc that hangs from a fixed point by a spring, stiff enough for a rod; return its entity.
 
-    The bob's centre hangs on the spring, so that it swings without being turned. The spring pushes too.
+    The bob's centre is the spring's end, so that it swings without being turned. The spring pushes too.
 
     Parameters
     ----------

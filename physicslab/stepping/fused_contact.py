@@ -47,7 +47,7 @@ _NEEDED = (AccelerateSystem, IntegrateSystem, BroadPhaseSystem, ContactSystem, R
 _MAX_STEPS = 4096
 """Largest number of steps of one call."""
 _CALL_NS = 100_000_000
-"""Time [ns] that a call takes at most, as far as the last one tells: what stops a run waits for its end."""
+"""Time [ns] that a call takes at most, judged by the last one: what stops a run waits for its end."""
 _SUBSTEP = [stage for stage, _ in LEAPFROG.substep]
 
 

@@ -25,7 +25,7 @@ from physicslab.systems.system import ForceSystem, Stage
 
 __all__ = ["StepPlan", "choose_plan", "default_plan", "outlived", "resumed_plan", "why_not_smooth"]
 
-_CROWD = 200
+_SAMPLED_LIMIT = 200
 """Number of attracting bodies from which sampling their forces takes longer than the accuracy is worth."""
 _WELL_RESOLVED = 0.5
 """omega h of the steps of blanes_moan: above about 1 it does not reach its order."""
@@ -202,7 +202,7 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
     needed = _steps(rate, h)
     if needed > MAX_STEPS:
         return StepPlan(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
-    if planets and attractors >= _CROWD and state.physics.softening > 0.0:
+    if planets and attractors >= _SAMPLED_LIMIT and state.physics.softening > 0.0:
         return StepPlan(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
     if planets:
         return StepPlan(DOP853, f"{_why_singular(state, forces)}: the step follows them", 1, smooth=True)
@@ -230,7 +230,7 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     if python:
         return replace(kicks, reason=f"{obstacle}, and the force of {python[0]} has no compiled kernel")
     attractors = max((force.attractors for force in forces), default=0)
-    if attractors >= _CROWD:
+    if attractors >= _SAMPLED_LIMIT:
         return kicks
     rate, half = _fastest(state, forces), 0.5 * state.simulation.dt / substeps
     needed = _steps(rate, half)

@@ -56,7 +56,7 @@ class RunLength:
 
 
 class Stepped(Protocol):
-    """What a run wants of a world."""
+    """What a run needs of a world."""
 
     time: float
     steps: int

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from physicslab.state.state import State
 
-__all__ = ["LARGEST", "is_small"]
+__all__ = ["_ENTITY_LIMIT", "is_small"]
 
-LARGEST = 40
+_ENTITY_LIMIT = 40
 """So many entities a small world has at most: forty boxes in a heap take 30 ms a step, ten bodies on ten
 springs 16, alone on a core. Where bodies attract each other each counts twice: twenty take 26 ms, forty
 300."""
@@ -15,4 +15,4 @@ springs 16, alone on a core. Where bodies attract each other each counts twice: 
 def is_small(state: State) -> bool:
     """Whether a step of a world takes tens of milliseconds at most where kernels are interpreted."""
     weight = 2 if state.physics.gravity_mode == "planet" else 1
-    return weight * len(state.entities()) <= LARGEST
+    return weight * len(state.entities()) <= _ENTITY_LIMIT

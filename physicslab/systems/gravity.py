@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.forces import gravity, packed_forces
-from physicslab.kernels.forces.tree_pull import LARGEST_ERROR, RMS_ERROR, THETA
+from physicslab.kernels.forces.tree_pull import MAX_ERROR, RMS_ERROR, THETA
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
@@ -104,11 +104,11 @@ class GravitySystem(ForceSystem):
         n = self.attractors
         if state.physics.gravity_mode != "planet" or n <= gravity.PLAIN_LIMIT:
             return ""
-        if n < gravity.MANY:
+        if n < gravity.TREE_THRESHOLD:
             return f"each pair of {n} bodies, in vectors"
         return (
             f"Barnes-Hut tree of {n} bodies, theta {THETA:g}: forces within {RMS_ERROR:g} of the mean one by "
-            f"root mean square, {LARGEST_ERROR:g} at most; momentum is kept as well as they are right"
+            f"root mean square, {MAX_ERROR:g} at most; momentum is kept as well as they are right"
         )
 
     def potential_energy(self, state: State) -> float:

@@ -12,9 +12,9 @@ from physicslab.kernels.records import Couples, Pairs
 __all__ = ["find_pairs"]
 
 
-_CROWD = 32
+_COMPANY_LIMIT = 32
 """Largest number of overlapping bodies of a body's own size that make pairs with it."""
-_FARTHEST = 1e15
+_CELL_LIMIT = 1e15
 """Number of the farthest cell: beyond it, float64 does not resolve neighbouring cells."""
 _OWN_SIZE = 2.0
 """Ratio of sizes up to which two bodies are of the same size: few such bodies fit beside one."""
@@ -70,7 +70,7 @@ def _take(search: Search, found: int, i: int, j: int) -> int:
     if (dx < across_i + across_j) & (dy < up_i + up_j):
         larger, smaller = max(across_i, up_i), min(across_j, up_j)
         if larger <= _OWN_SIZE * smaller and max(across_j, up_j) <= _OWN_SIZE * min(across_i, up_i):
-            if company[i] >= _CROWD or company[j] >= _CROWD:
+            if company[i] >= _COMPANY_LIMIT or company[j] >= _COMPANY_LIMIT:
                 return found
             company[i] += 1
             company[j] += 1
@@ -82,7 +82,7 @@ def _take(search: Search, found: int, i: int, j: int) -> int:
 @inlined
 def _cell(x: float) -> int:
     """Return the number of a cell; what is not finite, or too far out for one, is in the last."""
-    return math.floor(x) if abs(x) < _FARTHEST else int(_FARTHEST)
+    return math.floor(x) if abs(x) < _CELL_LIMIT else int(_CELL_LIMIT)
 
 
 class Cells(NamedTuple):
@@ -184,7 +184,7 @@ def _pair_dense(search: Search, cells: Cells, grid: Grid, smalls: int, found: in
         at, i = (home[p, 0] - cells.low_x) * cells.up + home[p, 1] - cells.low_y, body[p]
         above, beside, end = first[at + 2], first[at + cells.up - 1], first[at + cells.up + 2]
         candidates = above - (p + 1) + end - beside
-        if candidates <= 2 * _CROWD:
+        if candidates <= 2 * _COMPANY_LIMIT:
             if 2 * (found + candidates) > len(couples):
                 found += candidates
                 continue

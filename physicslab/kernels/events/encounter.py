@@ -48,10 +48,10 @@ def _meet_wall(
     x, x_low, y, y_low = place(paths, b, now, low)
     vx, vx_low, vy, vy_low = velocity(paths, b, now, low)
     gap, along_x, sign = _wall_gap(manifold, x, y, body, walls)
-    least = _ROUNDING * (abs(vx) + abs(vy)) + min_speed
+    min_rate = _ROUNDING * (abs(vx) + abs(vy)) + min_speed
     if along_x:
-        return meet_line(gap + sign * x_low, sign * (vx + vx_low), sign * paths[b, 8], least)
-    return meet_line(gap + sign * y_low, sign * (vy + vy_low), sign * paths[b, 9], least)
+        return meet_line(gap + sign * x_low, sign * (vx + vx_low), sign * paths[b, 8], min_rate)
+    return meet_line(gap + sign * y_low, sign * (vy + vy_low), sign * paths[b, 9], min_rate)
 
 
 @inlined

@@ -40,13 +40,13 @@ def _at(course: Course, t: float) -> tuple[float, float]:
 
 
 @inlined
-def meet_line(gap: float, speed: float, pull: float, least: float) -> float:
+def meet_line(gap: float, speed: float, pull: float, min_rate: float) -> float:
     """Return the first t >= 0 at which gap + speed t + pull t^2 / 2 is <= 0 and decreases, or infinity.
 
-    Rates of at least -``least`` count as zero. Squares of numbers other than zero must not underflow.
+    Rates of at least -``min_rate`` count as zero. Squares of numbers other than zero must not underflow.
     """
     square = speed * speed - 2.0 * pull * gap
-    if speed < -least:
+    if speed < -min_rate:
         if gap <= 0.0:
             return 0.0
         return 2.0 * gap / (math.sqrt(square) - speed) if square >= 0.0 else math.inf
@@ -141,14 +141,14 @@ def meet_circle_circle(course: Course, reach: float, span: float, min_speed: flo
     dx, dy, ux, uy, wx, wy = course
     height, rate = _height(course, reach, 0.0)
     distance = math.sqrt(dx * dx + dy * dy)
-    least = distance * (_ROUNDING * (abs(ux) + abs(uy)) + min_speed)
-    if height <= 0.0 and rate < -least:
+    min_rate = distance * (_ROUNDING * (abs(ux) + abs(uy)) + min_speed)
+    if height <= 0.0 and rate < -min_rate:
         return 0.0
     if wx == 0.0 and wy == 0.0:
         # The chord, not |d|^2 |u|^2: it loses nothing when the speeds are large.
         cross, u2 = dx * uy - dy * ux, ux * ux + uy * uy
         square = reach * reach * u2 - cross * cross
-        if rate >= -least or square < 0.0:
+        if rate >= -min_rate or square < 0.0:
             return math.inf
         return 2.0 * height / (math.sqrt(square) - rate)
     if height <= 0.0 and rate <= 0.0 and ux * ux + uy * uy + dx * wx + dy * wy < 0.0:
@@ -170,13 +170,13 @@ def meet_circle_circle(course: Course, reach: float, span: float, min_speed: flo
 
 
 @inlined
-def _falling(gap: float, speed: float, pull: float, size: float, least: float) -> float:
+def _falling(gap: float, speed: float, pull: float, size: float, min_rate: float) -> float:
     """Return when a line is crossed from outside; infinity for a body beyond it, which does not cross it."""
     # It would have to come out before it can come in again.
     comes_out = speed > 0.0 and pull < 0.0 and speed * speed > 2.0 * pull * gap
     if gap < -_SEAM * size and not comes_out:
         return math.inf
-    return meet_line(gap, speed, pull, least)
+    return meet_line(gap, speed, pull, min_rate)
 
 
 @inlined
@@ -207,7 +207,7 @@ def meet_circle_box(
     """Return when a circle meets a box, up to ``span``, or infinity; all in the frame of the box."""
     px, py, qx, qy, wx, wy = course
     size = half_x + half_y + radius
-    least = _ROUNDING * (abs(qx) + abs(qy)) + min_speed
+    min_rate = _ROUNDING * (abs(qx) + abs(qy)) + min_speed
     out_x, out_y = max(abs(px) - half_x, 0.0), max(abs(py) - half_y, 0.0)
     out = math.sqrt(out_x * out_x + out_y * out_y)
     if out < radius:  # they overlap: the nearest place of the outline decides
@@ -219,17 +219,17 @@ def meet_circle_box(
         else:
             ny = math.copysign(1.0, py)
         speed, pull = qx * nx + qy * ny, wx * nx + wy * ny
-        if speed < -least:
+        if speed < -min_rate:
             return 0.0
         if pull < 0.0 and speed * speed < -2.0 * pull * (radius - out):
             return max(speed, 0.0) / -pull
     best = math.inf
     for k in range(2):
         sign = 1.0 - 2.0 * k
-        t = _falling(sign * px - half_x - radius, sign * qx, sign * wx, size, least)
+        t = _falling(sign * px - half_x - radius, sign * qx, sign * wx, size, min_rate)
         if t < best and abs(py + t * (qy + 0.5 * t * wy)) <= half_y + _SEAM * size:
             best = t
-        t = _falling(sign * py - half_y - radius, sign * qy, sign * wy, size, least)
+        t = _falling(sign * py - half_y - radius, sign * qy, sign * wy, size, min_rate)
         if t < best and abs(px + t * (qx + 0.5 * t * wx)) <= half_x + _SEAM * size:
             best = t
     if out <= radius + _SEAM * size and min(out_x, out_y) == 0.0 and best == 0.0:
@@ -247,7 +247,7 @@ def meet_box_box(course: Course, a: Outline, b: Outline, min_speed: float) -> tu
     dx, dy, ux, uy, wx, wy = course
     best, face = math.inf, -1
     size = a.half_x + a.half_y + b.half_x + b.half_y
-    least = _ROUNDING * (abs(ux) + abs(uy)) + min_speed
+    min_rate = _ROUNDING * (abs(ux) + abs(uy)) + min_speed
     gap, nearest = -math.inf, -1
     for k in range(8):
         nx, ny, reach = box_normal(k, a, b)
@@ -257,14 +257,14 @@ def meet_box_box(course: Course, a: Outline, b: Outline, min_speed: float) -> tu
     if gap <= 0.0:
         nx, ny, _ = box_normal(nearest, a, b)
         speed, pull = ux * nx + uy * ny, wx * nx + wy * ny
-        if speed < -least:
+        if speed < -min_rate:
             return 0.0, nearest
         if pull < 0.0 and speed * speed < -2.0 * pull * -gap:
             return max(speed, 0.0) / -pull, nearest
     for k in range(8):
         nx, ny, reach = box_normal(k, a, b)
         apart = dx * nx + dy * ny - reach
-        t = _falling(apart, ux * nx + uy * ny, wx * nx + wy * ny, size, least)
+        t = _falling(apart, ux * nx + uy * ny, wx * nx + wy * ny, size, min_rate)
         if t >= best:
             continue
         x, y = _at(course, t)

@@ -12,8 +12,8 @@ from physicslab.kernels.forces.pairwise import attract_pairwise, depth_of_pairs
 from physicslab.kernels.forces.tree_pull import attract_by_tree, depth_by_tree
 
 __all__ = [
-    "MANY",
     "PLAIN_LIMIT",
+    "TREE_THRESHOLD",
     "attract",
     "fastest_fall",
     "inverse_cube",
@@ -28,7 +28,7 @@ PLAIN_LIMIT = 100
 Vectors are faster from about 40 on (10 us instead of 20 for 100 bodies), which makes no difference in
 practice, and their roots are accurate to two units in the last place only.
 """
-MANY = 8_000
+TREE_THRESHOLD = 8_000
 """Number of bodies from which a tree sums the forces.
 
 The tree is as fast as every pair at 3,000 bodies that are spread evenly and at 5,000 in a Plummer sphere,
@@ -76,7 +76,7 @@ def attract(
     x: Numbers, y: Numbers, mass: Numbers, softening: float, plummer: bool, ax: Numbers, ay: Numbers
 ) -> None:
     """Set ``ax``, ``ay`` [kg/m^2] to the pull of all others on a unit mass at each of many bodies."""
-    if len(x) >= MANY:
+    if len(x) >= TREE_THRESHOLD:
         attract_by_tree(x, y, mass, softening, plummer, ax, ay)
     else:
         attract_pairwise(x, y, mass, softening, plummer, ax, ay)
@@ -95,7 +95,7 @@ def planet_potential(
     n = len(rows)
     if n > PLAIN_LIMIT:
         x, y, weight = position[rows, 0], position[rows, 1], mass[rows]
-        if n >= MANY:
+        if n >= TREE_THRESHOLD:
             return -G * depth_by_tree(x, y, weight, softening, plummer)
         return -G * depth_of_pairs(x, y, weight, softening, plummer)
     for p in range(n):

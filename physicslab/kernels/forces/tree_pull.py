@@ -7,7 +7,7 @@ softening. With d^2 = r^2 + s^2 under Plummer's law (d = r under the other) and 
 centre of mass, it pulls with x (M/d^3 + (7.5 x.S x/d^2 - 1.5 tr S)/d^5) - 3 S x/d^5, x leading there.
 
 Accuracy: against the direct sum, as shares of the mean pull, :data:`RMS_ERROR` at most by root mean square
-and :data:`LARGEST_ERROR` for any one body, on squares filled evenly, on Plummer spheres and on two clusters
+and :data:`MAX_ERROR` for any one body, on squares filled evenly, on Plummer spheres and on two clusters
 (``benchmarks/gravity.py``; held by ``tests/test_tree.py``). These are measured: a bound that holds for any
 arrangement is 4 (b/d)^3 / (1 - b/d)^2 of M/d^2 for each node (Salmon and Warren, J. Comput. Phys. 111 (1994)
 136), which here is at most 0.029. A group does not pull as it is pulled: momentum is kept as well as forces
@@ -34,11 +34,11 @@ from physicslab.kernels.forces.tree import (
     levels_of,
 )
 
-__all__ = ["LARGEST_ERROR", "RMS_ERROR", "THETA", "attract_by_tree", "depth_by_tree"]
+__all__ = ["MAX_ERROR", "RMS_ERROR", "THETA", "attract_by_tree", "depth_by_tree"]
 
 THETA = 0.17
 """How wide a node may be that is taken whole: its radius by its distance. Errors go as its power 3.5."""
-RMS_ERROR, LARGEST_ERROR = 1e-4, 1e-3
+RMS_ERROR, MAX_ERROR = 1e-4, 1e-3
 
 
 @inlined_loosely

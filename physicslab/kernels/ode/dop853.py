@@ -20,11 +20,11 @@ NOT_FINITE = -2
 """What is returned where the forces at the start are not finite."""
 EXHAUSTED = -3
 """What is returned where more force evaluations were made than are allowed."""
-_SAFETY, _MOST, _LEAST = 0.9, 6.0, 0.2
+_SAFETY, _MAX_GROWTH, _MIN_GROWTH = 0.9, 6.0, 0.2
 """Safety factor of a step, and the limits of its growth and shrinkage at once."""
 _LEADS = 1e-4
 """Share of the largest coordinate that must be covered in a step for speeds to be measured by themselves."""
-_SHORTEST = 1e-13
+_MIN_STEP = 1e-13
 """The shortest step, as a share of the time to go; shorter ones would never finish."""
 _NOISE = 1e6
 """Multiple of the tolerance above which an estimate is not taken for rounding."""
@@ -129,12 +129,12 @@ def _all_finite(q: Numbers, v: Numbers, n: int) -> bool:
 @allocating_kernel
 def dop853(
     q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
-    span: float, tolerance: float, period: float, most: int,
+    span: float, tolerance: float, period: float, max_evaluations: int,
 ) -> int:  # fmt: skip
     """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
-    Within any ``period`` seconds of it at most ``most`` force evaluations are made: a long span may take
-    many, but none of its parts may run without end.
+    Within any ``period`` seconds of it at most ``max_evaluations`` force evaluations are made: a long span
+    may take many, but none of its parts may run without end.
 
     A step is made again, shorter, where its error is estimated to be more than ``tolerance`` of the largest
     coordinate or speed. Sums are compensated.
@@ -149,7 +149,7 @@ def dop853(
         return NOT_FINITE
     evaluations, done, done_low = 1, 0.0, 0.0
     h = first_step(pushes, q_scale, v_scale, span, tolerance)
-    grow, last_error, last_taken = _MOST, math.inf, 1.0
+    grow, last_error, last_taken = _MAX_GROWTH, math.inf, 1.0
     spent, mark = 0, 0.0
     while True:
         left = (span - done) - done_low
@@ -157,11 +157,11 @@ def dop853(
             return evaluations
         last = h >= left
         taken = left if last else min(h, 0.5 * left) if h > 0.9 * left else h
-        if taken < _SHORTEST * span and not last:
+        if taken < _MIN_STEP * span and not last:
             return TOO_SHORT
         if done - mark >= period:
             spent, mark = 0, done
-        if spent > most - LAST:
+        if spent > max_evaluations - LAST:
             return EXHAUSTED
         make_stages(
             q, v, stage_q, stage_v, acceleration, rates, pushes,
@@ -173,10 +173,10 @@ def dop853(
         # Where all is at rest, the measure is the distance that an error of the speed makes within the step.
         error = step_error(rates, pushes, taken, q_reach, max(v_reach, _LEADS * q_reach / taken), tolerance)
         if not (math.isfinite(error) and _all_finite(stage_q, stage_v, n)):
-            h, grow = _LEAST * taken, 1.0
+            h, grow = _MIN_GROWTH * taken, 1.0
             last_error = math.inf
             continue
-        factor = min(max(_SAFETY * math.pow(error, -0.125), _LEAST), grow) if error > 0.0 else grow
+        factor = min(max(_SAFETY * math.pow(error, -0.125), _MIN_GROWTH), grow) if error > 0.0 else grow
         h = factor * taken
         # Rounding decreases as the step, a kink of the force as its square: no shorter step is better.
         rounding = error < _NOISE and error > last_error * math.pow(taken / last_taken, 1.5)
@@ -185,7 +185,7 @@ def dop853(
             continue
         if rounding:
             h = taken
-        grow, last_error = _MOST, math.inf
+        grow, last_error = _MAX_GROWTH, math.inf
         for i in range(n):
             moved, moved_low = total(rates[i])
             pushed, pushed_low = total(pushes[i])

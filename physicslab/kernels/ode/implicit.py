@@ -11,7 +11,7 @@ from physicslab.kernels.ode.dop853 import largest
 
 __all__ = ["implicit_midpoint"]
 
-_MOST_ITERATIONS = 40
+_MAX_ITERATIONS = 40
 _PARTS = 1024
 """Largest number of parts of a step that is halved where Newton's method does not converge."""
 _SLOW = 2
@@ -139,7 +139,7 @@ def _newton(
     n = len(order)
     residual = shifted
     before, evaluations, far = math.inf, 0, False
-    for iteration in range(1, _MOST_ITERATIONS + 1):
+    for iteration in range(1, _MAX_ITERATIONS + 1):
         _miss(q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss)
         evaluations += 1
         if (iteration == 1 and not known) or iteration > _SLOW or far:

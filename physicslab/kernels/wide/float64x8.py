@@ -24,7 +24,7 @@ __all__ = [
     "Wide",
     "choose",
     "greater",
-    "least",
+    "lesser",
     "mask_bits",
     "put",
     "put_numbers",
@@ -138,8 +138,8 @@ _define(operator.or_, _mask, ((_mask, _mask),), lambda build, x, y: build.or_(x,
 # ---- functions of wide numbers -----------------------------------------------------------------------------
 
 
-def _least_type(context: Any, x: Any, y: Any) -> Any:
-    """Return the smaller of two, slot by slot."""
+def _lesser_type(context: Any, x: Any, y: Any) -> Any:
+    """Return the lesser of two, slot by slot."""
     return _of_kind(x, y)(x, y), lambda c, build, s, both: _picked(build, "<", *both)
 
 
@@ -310,7 +310,7 @@ def _put_vectors_type(context: Any, vectors: Any, rows: Any, first: Any, x: Any,
 
 type _Some = Wide | float
 _inline: Any = intrinsic
-least: Any = _inline(_least_type)
+lesser: Any = _inline(_lesser_type)
 greater: Any = _inline(_greater_type)
 choose: Any = _inline(_choose_type)
 root: Callable[[Wide], Wide] = _inline(_root_type)

@@ -16,8 +16,8 @@ __all__: list[str] = []
 type _Lanes = NDArray[np.float64]
 
 
-@stands_in_for(float64x8.least)
-def _least(x: Any, y: Any) -> Any:
+@stands_in_for(float64x8.lesser)
+def _lesser(x: Any, y: Any) -> Any:
     return _choose(x < y, x, y)
 
 

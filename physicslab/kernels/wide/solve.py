@@ -9,7 +9,7 @@ from physicslab.kernels.wide.float64x8 import (
     Wide,
     choose,
     greater,
-    least,
+    lesser,
     put,
     put_numbers,
     put_vectors,
@@ -82,9 +82,9 @@ def soft_normal_impulse[N: (float, Wide)](
     second, no faster than balances twice the load: else a pile of overlapping bodies would burst. Bodies
     that are apart may close the separation within the substep, and not more.
     """
-    load = least(impulse, soft.force_cap) * (2.0 * soft.impulse_scale / soft.mass_scale)
+    load = lesser(impulse, soft.force_cap) * (2.0 * soft.impulse_scale / soft.mass_scale)
     limit = mass * size * (soft.push_rate * SOFT) + load
-    push = greater(mass * soft.push_rate * least(separation + soft.slop * size, 0.0), -limit)
+    push = greater(mass * soft.push_rate * lesser(separation + soft.slop * size, 0.0), -limit)
     push = choose(separation < -DEEPER * size, 0.0, push)
     corrected = impulse - soft.mass_scale * (mass * v + push) - soft.impulse_scale * impulse
     hard = impulse - mass * (v + separation * soft.inverse_h)
@@ -111,7 +111,7 @@ def _update_normal(
 def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide:
     """Update the tangential impulses, at most mu times the normal ones; return their change [N s]."""
     limit, friction_impulse = friction * take(data, point + IMPULSE), take(data, point + TANGENT_IMPULSE)
-    total: Wide = least(greater(friction_impulse - take(data, point + TANGENT_MASS) * v, -limit), limit)
+    total: Wide = lesser(greater(friction_impulse - take(data, point + TANGENT_MASS) * v, -limit), limit)
     put(data, point + TANGENT_IMPULSE, total)
     return total - friction_impulse
 

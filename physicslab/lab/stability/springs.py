@@ -81,8 +81,7 @@ def _past_limit(damping: float, kind: str, touches: bool) -> float:
     def past() -> float:
         return world.component(bob, Velocity).linear.y - falls
 
-    most = largest(world, _STEPS, past)
-    return max(0.0, most, abs(past()))
+    return max(0.0, largest(world, _STEPS, past), abs(past()))
 
 
 def _swing(touches: bool, stiffness: float) -> tuple[World, int]:

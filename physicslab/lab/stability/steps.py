@@ -52,11 +52,11 @@ def _spring_energy(touches: bool) -> float:
     world.component(bob, Velocity).linear = Vector2(0.5, 0.0)  # along one line it would be closed form
     world.add(bob, Spring(rest_length=1.0, stiffness=100.0))
     start = measure_energy(world).total
-    most = 0.0
+    drift = 0.0
     for _ in range(10):
         world.step(_LONG)
-        most = max(most, abs(measure_energy(world).total / start - 1.0))
-    return most
+        drift = max(drift, abs(measure_energy(world).total / start - 1.0))
+    return drift
 
 
 def _fall_error() -> float:

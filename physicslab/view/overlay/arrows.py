@@ -33,7 +33,7 @@ _HEAD = 10.0
 """Length of a head [px]; at most half of the arrow."""
 _DASH, _GAP = 5.0, 4.0
 """The strokes of a broken shaft, and the spaces between them [px]."""
-_CROWD = 256
+_BOLD_LIMIT = 256
 """More arrows than this of one kind are drawn finer, so that something is seen between them."""
 
 type Strokes = tuple[tuple[tuple[float, float], tuple[float, float]], ...]
@@ -135,7 +135,7 @@ def draw_arrows(
     end = start + length[:, None] * unit
     colour, width = kind.colour(theme), kind.width if width is None else width
     head = _HEAD + width
-    if len(length) > _CROWD:
+    if len(length) > _BOLD_LIMIT:
         width, head, share = max(0.5 * width, 1.0), 0.6 * _HEAD, 0.6 * share
     if kind.dashed:
         froms, tos, whose = dashes(start, end)

@@ -22,9 +22,9 @@ def grid_spacing(scale: float) -> float:
     >>> grid_spacing(100.0)
     0.5
     """
-    least = _MIN_SPACING / scale
-    power = 10.0 ** math.floor(math.log10(least))
-    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= least * (1.0 - 1e-9))
+    min_step = _MIN_SPACING / scale
+    power = 10.0 ** math.floor(math.log10(min_step))
+    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= min_step * (1.0 - 1e-9))
 
 
 def _lines(camera: Camera, xs: Numbers, ys: Numbers) -> tuple[Points, Points]:
