@@ -16,8 +16,9 @@ from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import Diverged, derive_masses
 from physicslab.state.state import State
+from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.forces import add_up_forces
-from physicslab.stepping.plan import StepPlan, choose_plan, default_plan, resumed_plan
+from physicslab.stepping.plan import StepPlan, choose_plan, default_plan, plan_for_jumps, resumed_plan
 from physicslab.stepping.run import go_on, run_length
 from physicslab.stepping.select import Steppers, select_steppers
 from physicslab.stepping.stepper import Stepper
@@ -116,7 +117,7 @@ class World(State):
         if self._stepping:
             raise RuntimeError("a system cannot step the world that is calling it")
         self.checkpoint.take(self._motion, self.counts)
-        self._stepping = True
+        self._stepping, remainders = True, self.remainders
         try:
             self.schedule.run(Stage.PREPARE, self, h)
             try:
@@ -124,9 +125,14 @@ class World(State):
             except NoClosedForm:  # a body was given another velocity, or another spring
                 self._choose()
                 made = self._best(h).advance(self, h, steps)
+            except NotSmooth:
+                self.plan = plan_for_jumps(self, self.schedule, self.plan)
+                self._take_plan()
+                made = self._best(h).advance(self, h, steps)
             self.schedule.run(Stage.FINISH, self, h * steps)
         except BaseException:
             self._go_back()
+            self.remainders = remainders
             raise
         finally:
             self._stepping = False

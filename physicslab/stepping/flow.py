@@ -16,7 +16,11 @@ from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 
-__all__ = ["Flow"]
+__all__ = ["Flow", "NotSmooth"]
+
+
+class NotSmooth(ArithmeticError):
+    """A force in Python jumps, so that no method which chooses its steps follows it."""
 
 
 class Flow:
@@ -68,6 +72,8 @@ class Flow:
         try:
             made = method.flow(state, ode, span, count)
         except StepTooSmall as error:
+            if ode.undo(state) and state.simulation.integrator == "auto":
+                raise NotSmooth(str(error)) from error
             what = f"{fastest_body(state, self._schedule.forces)}: Velocity changes too fast: {error}"
             raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error
         ode.scatter(state, h * steps)
