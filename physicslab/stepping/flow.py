@@ -11,7 +11,7 @@ from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.state import State
 from physicslab.stepping.fastest_body import fastest_body
-from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.plan import StepPlan, tolerance_for
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
@@ -34,6 +34,7 @@ class Flow:
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator
         self._ode = OdeSystem(state, schedule.forces)
+        self._ode.tolerance = tolerance_for(state, schedule.forces)
         self.kernels: tuple[Any, ...] = self._method.kernels
         self.reason = plan.reason
 
