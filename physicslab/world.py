@@ -245,6 +245,8 @@ class World(State):
             self._remake()
             self.revision += 1
             self.motion_edits += self.entity_index.motion_edited
+            if self.entity_index.motion_edited:
+                self.fastest_rates.clear()
             self._stale = self.entity_index.motion_edited = False
             if not self.entity_index.synchronise():
                 return
@@ -285,6 +287,7 @@ class World(State):
         """
         self.revision += 1
         self.motion_edits += 1
+        self.fastest_rates.clear()
 
     def install(self, *systems: System) -> None:
         """Add systems to this world, after those of the same stage.

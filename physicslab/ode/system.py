@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -76,6 +77,8 @@ class OdeSystem:
         self.near: tuple[NDArray[np.int64], int] | None = None
         self.tolerance = state.simulation.tolerance
         self._error: BaseException | None = None
+        self._clock = np.zeros(1)
+        self._still = np.zeros(2 * len(self.layout.fixed) + 1)
         self._settings = self._look(state)
 
     def _look(self, state: State) -> bytes:
@@ -106,12 +109,11 @@ class OdeSystem:
         transform, velocity = state.table(Transform), state.table(Velocity)
         moving, turning, fixed = self.layout.moving, self.layout.turning, self.layout.fixed
         position, linear = transform["position"], velocity["linear"]
+        self._clock[0] = state.time
         self.q = np.concatenate(
-            (position[moving].ravel(), transform["angle"][turning], position[fixed].ravel(), (state.time,))
+            (position[moving].ravel(), transform["angle"][turning], position[fixed].ravel(), self._clock)
         )
-        self.v = np.concatenate(
-            (linear[moving].ravel(), velocity["angular"][turning], np.zeros(2 * len(fixed) + 1))
-        )
+        self.v = np.concatenate((linear[moving].ravel(), velocity["angular"][turning], self._still))
         self._low = None
         self._start = (self.q.copy(), self.v.copy()) if self.interpreted else None
 
@@ -138,6 +140,7 @@ class OdeSystem:
             state.remainders = Remainders(self._keys, self.q[:n], self.v[:n], *self._low)
         elif self._carries:
             state.remainders = NO_REMAINDERS
+        self._note_rates(state)
         steady = layout.steady
         if len(steady):
             spin, c = velocity["angular"][steady], state.physics.angular_damping
@@ -145,6 +148,12 @@ class OdeSystem:
             lasting = np.where(free & (c > 0.0), -np.expm1(-c * span) / (c or 1.0), span)
             transform["angle"][steady] += spin * lasting
             velocity["angular"][steady] = np.where(free, spin * np.exp(-c * span), spin)
+
+    def _note_rates(self, state: State) -> None:
+        """Note the fastest rates that forces met, wherever within the steps that was."""
+        for system, force in self._measured:
+            rate = math.sqrt(force.parameters[force.steepest])
+            state.fastest_rates[system.name] = max(rate, state.fastest_rates.get(system.name, 0.0))
 
     def undo(self, state: State) -> bool:
         """Write back the state from which a method that failed began; return whether Python had changed it.
@@ -185,6 +194,7 @@ class OdeSystem:
             for force in forces
             if force.resistance is not None
         ]
+        self._measured = [(system, force) for system, force in packed if force and force.steepest is not None]
         self._kept: list[Any] = [*forces, *resisting]  # while C may read them
         state.compile([*(force.kernel for force in forces), *(kernel for kernel, _, _ in resisting)])
         rows = [

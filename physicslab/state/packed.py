@@ -27,12 +27,15 @@ class PackedForce:
     resistance : ForceKernel, optional
         The response of the force to a velocity other than the present one, where it resists motion (see
         :mod:`physicslab.kernels.forces.resistance`).
+    steepest : int, optional
+        Where in ``parameters`` the kernel leaves the square of the fastest rate that it met [1/s^2].
     """
 
     kernel: ForceKernel
     parameters: NDArray[np.float64]
     indices: NDArray[np.int64]
     resistance: ForceKernel | None = None
+    steepest: int | None = None
 
     @property
     def call(self) -> tuple[int, int, int]:

@@ -14,7 +14,7 @@ type _Numbers = NDArray[np.float64]
 type _Keys = NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)
 class Remainders:
     """The remainders that a compensated method left, with the values that they belong to.
 
@@ -57,7 +57,7 @@ class Remainders:
             Of each entity x, y, angle and their rates, and the six remainders.
         """
         keys = (3 * np.array(list(bodies), np.int64)[:, None] + np.arange(3)).ravel()
-        values = np.array(list(bodies.values()), np.float64).reshape(len(bodies), 2, 2, 3)
+        values = np.array(list(bodies.values()), np.float64).reshape(len(bodies), 2, 2, 3) + 0.0  # no -0.0
         q, v, q_low, v_low = (values[:, i, j].ravel() for i in (0, 1) for j in (0, 1))
         return cls(keys, q, v, q_low, v_low)
 
@@ -70,8 +70,10 @@ def coordinate_keys(moving: _Keys, turning: _Keys) -> _Keys:
 
 
 def _held(values: _Numbers, kept: _Numbers, low: _Numbers) -> _Numbers:
-    """Return the remainders of what is unchanged, and zero for the rest; never -0.0."""
-    return np.where(values == kept, low, 0.0) + 0.0
+    """Return the remainders of what is unchanged, and zero for the rest."""
+    if values.tobytes() == kept.tobytes():  # the quickest way to find that nothing was edited
+        return low.copy()
+    return np.where(values == kept, low, 0.0)
 
 
 _NONE = np.zeros(0)

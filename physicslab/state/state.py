@@ -70,6 +70,8 @@ class State:
         Masses and forces, a row an entity.
     contacts : Contacts
         The near pairs.
+    fastest_rates : dict of str to float
+        Of force systems the fastest rate [rad/s] that was met within steps since the motion was last edited.
     remainders : Remainders
         What rounding left out of positions and velocities in the last step.
     checkpoint : Checkpoint
@@ -94,6 +96,7 @@ class State:
         self.entity_index = EntityIndex()
         self.bodies, self.contacts, self.sleep = Bodies(), Contacts(), Sleep()
         self.remainders: Remainders = NO_REMAINDERS
+        self.fastest_rates: dict[str, float] = {}
         self.checkpoint = Checkpoint()
         # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
         self._names: set[str] = set()

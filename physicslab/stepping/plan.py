@@ -40,7 +40,7 @@ _STIFF = 1.0
 """omega dt of springs from which damped motion at the default tolerance costs more than anything can show."""
 _OF_STIFF = 1e-13
 """Tolerance of dop853 there. A chain of 19 bodies on springs of 1e4 N/m and dampers is then 2e-13 m off after
-2 s, as good as at 1e-17 with an eighth of the evaluations; 1e-10 would take 0.4 times as many, for 3e-11 m."""
+2 s, as good as at 1e-17 with an eighth of the evaluations; 1e-10 takes 0.4 times as many, for 3e-11 m."""
 _FOLLOWING = (BLANES_MOAN.name, DOP853.name, IMPLICIT_MIDPOINT.name)
 """The methods that ``auto`` chooses by the state of motion."""
 
