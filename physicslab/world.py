@@ -13,8 +13,9 @@ from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
 from physicslab.state.state import State
+from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.forces import add_up_forces
-from physicslab.stepping.plan import StepPlan, default_plan
+from physicslab.stepping.plan import StepPlan, default_plan, plan_for_jumps
 from physicslab.stepping.run import strides
 from physicslab.stepping.select import Steppers, choose, remake, resume
 from physicslab.stepping.stepper import Advance, Stepper
@@ -119,7 +120,9 @@ class World(State):
             return self._best(h).advance(self, h, steps)
         except NoClosedForm:  # a body was given another velocity, or another spring
             self._choose()
-            return self._best(h).advance(self, h, steps)
+        except NotSmooth:
+            self._choose(plan_for_jumps(self, self.schedule, self.plan))
+        return self._best(h).advance(self, h, steps)
 
     def _best(self, h: float) -> Stepper:
         """Return the best stepper for the coming step, with its kernels compiled."""
@@ -198,13 +201,15 @@ class World(State):
             self.plan, self.steppers = remake(self, self.schedule, plan)
             self.revision += 1
             self.motion_edits += self.entity_index.motion_edited
+            if self.entity_index.motion_edited:
+                self.fastest_rates.clear()
             self.stale = self.entity_index.motion_edited = False
             if not self.entity_index.synchronise():
                 return
 
-    def _choose(self) -> None:
-        """Choose method and steppers again, for the same systems."""
-        self.plan, self.steppers = choose(self, self.schedule)
+    def _choose(self, plan: StepPlan | None = None) -> None:
+        """Choose steppers again for the same systems, and the method, unless there is a ``plan`` already."""
+        self.plan, self.steppers = choose(self, self.schedule, plan)
 
     def resume(self, collisions: str, method: str, steps: int) -> None:
         """Go on with what was chosen before this world was saved (:attr:`StepPlan.kept`), where possible."""
@@ -214,6 +219,7 @@ class World(State):
         """Note that columns or components were changed from outside: measurements over time begin again."""
         self.revision += 1
         self.motion_edits += 1
+        self.fastest_rates.clear()
 
     def install(self, *systems: System) -> None:
         """Add systems to this world, after those of the same stage.

@@ -15,7 +15,7 @@ def attraction(
 ) -> NDArray[np.float64]:
     """Return the force [N] on each of n bodies (n, 2) at ``position`` (n, 2) [m]."""
     n, force = len(mass), np.zeros(position.shape)
-    parameters = np.concatenate(((G, softening), mass))
+    parameters = np.concatenate(((G, softening), mass, (0.0,)))
     indices = np.concatenate(((n, plummer), 2 * np.arange(n))).astype(np.int64)
     compile_kernels((packed_forces.planet_gravity, add_forces))
     call = packed_forces.planet_gravity.address, parameters.ctypes.data, indices.ctypes.data

@@ -13,6 +13,7 @@ from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.state.masses import Diverged
+from physicslab.state.state import State
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.standard import standard_systems
@@ -27,6 +28,9 @@ class Push(ForceSystem):
 
     def __init__(self, force: tuple[float, float], torque: float = 0.0) -> None:
         self.force, self.torque = force, torque
+
+    def sees_velocity(self, state: State) -> bool:
+        return False
 
     @at(Stage.FORCE)
     def push(self, world: World, h: float) -> None:

@@ -106,7 +106,7 @@ def test_what_a_step_counts_is_taken_back() -> None:
 
         @at(Stage.FORCE)
         def push(self, world: World, h: float) -> None:
-            world.bodies.force[1:, 0] += math.inf if world.time > 0.1 else 0.0
+            world.bodies.force[1:, 0] += math.inf if world.time > 0.12 else 0.0
 
     world = World(*standard_systems(), Poison())
     box(world, (0, -0.5), width=20, height=1, static=True)

@@ -87,7 +87,8 @@ def test_compiled_integrators_have_the_same_forces(law: str, n: int) -> None:
     place = 2 * np.random.default_rng(4).permutation(n)
     q, force = np.zeros((2, 2 * n))
     q[place], q[place + 1] = position.T
-    numbers, whole = np.concatenate(((2.0, 0.1), mass)), np.concatenate(((n, law == "plummer"), place))
+    numbers = np.concatenate(((2.0, 0.1), mass, (0.0,)))
+    whole = np.concatenate(((n, law == "plummer"), place))
     address = ctypes.c_void_p
     pull = ctypes.CFUNCTYPE(None, address, address, ctypes.c_double, address, address, address)(
         packed_forces.planet_gravity.address

@@ -9,6 +9,7 @@ from physicslab.ecs import config
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.integrators import INTEGRATORS
 from physicslab.prefabs import box
+from physicslab.state.state import State
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.standard import standard_systems
@@ -149,11 +150,16 @@ def test_a_force_written_in_python_is_named_beside_contacts_too() -> None:
     assert "Wind is computed by Python: slower" in [line.label for line in method_lines(world)]
 
 
-def test_auto_keeps_to_one_evaluation_where_a_force_is_written_in_python() -> None:
-    world = World(Wind(), IntegrateSystem())
+def test_auto_keeps_to_one_evaluation_where_a_force_in_python_depends_on_no_velocity() -> None:
+    class Steady(Wind):
+        def sees_velocity(self, state: State) -> bool:
+            return False
+
+    world = World(Steady(), IntegrateSystem())
     world.spawn(Transform(), Velocity(), Mass())
     world.step()
-    assert world.plan.reason == "the force of Wind has no compiled kernel"
+    assert world.plan.reason == "the force of Steady has no compiled kernel"
+    assert world.force_evaluations == world.simulation.substeps
 
 
 def test_what_a_force_raises_reaches_the_caller() -> None:

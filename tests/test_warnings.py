@@ -13,7 +13,7 @@ from test_hud import frame, recorded
 from physicslab.cli import main
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings, find_warnings
-from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import box, circle, stack
 from physicslab.scenes import SCENES
@@ -83,6 +83,29 @@ def test_what_is_too_fast_to_be_followed_is_said(method: str) -> None:
     world.simulation = SimulationConfig(integrator=method, dt=dt)
     world.synchronise()
     assert not [advice for advice in find_warnings(world) if "too fast" in advice.what]
+
+
+def comet() -> World:
+    """Return a world with a light body on a long ellipse: it is far out at the start, and after 2 s."""
+    config = SimulationConfig(integrator="leapfrog")
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="planet"), simulation=config)
+    world.spawn(Transform(), Velocity(), Mass(1))
+    world.spawn(Transform((1, 0)), Velocity((0, 0.05)), Mass(1e-9), name="comet")
+    return world
+
+
+def test_a_close_passage_is_said_whenever_it_is_looked_for() -> None:
+    at_once, stepped = comet(), comet()
+    at_once.run(seconds=2.0)
+    for _ in range(120):
+        stepped.step()
+    (first,), (second,) = find_warnings(at_once), find_warnings(stepped)
+    assert first == second
+    assert first.value is not None and first.value > 0.3 * 2.0
+    present = at_once.schedule.forces[0].strongest_rate(at_once) / 240
+    assert present < 0.02, "far out, where nothing is to be said"
+    at_once.edited()
+    assert find_warnings(at_once) == (), "an edit begins again"
 
 
 def test_what_chooses_its_steps_or_is_exact_needs_no_advice() -> None:

@@ -9,7 +9,15 @@ __all__ = ["fastest_force"]
 
 
 def fastest_force(world: World) -> tuple[float, ForceSystem | None]:
-    """Return the fastest rate of any force in the present state [rad/s] and which; 0 and ``None`` if none."""
+    """Return the fastest rate of any force [rad/s] and which; 0 and ``None`` if there is none.
+
+    It is the one of the present state, or the fastest within steps since the motion was last edited, where
+    the force measures that: a close passage between two looks counts.
+    """
+    met = world.fastest_rates
     with world.active():
-        rates = [(system.strongest_rate(world), system) for system in world.schedule.forces]
+        rates = [
+            (max(system.strongest_rate(world), met.get(system.name, 0.0)), system)
+            for system in world.schedule.forces
+        ]
     return max(rates, key=lambda pair: pair[0], default=(0.0, None))

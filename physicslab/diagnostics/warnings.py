@@ -57,7 +57,7 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
 
     Nothing is changed; the figures are those of the last step.
     """
-    found = [*_refusals(world), *_division(world), *_rates(world), *_distance(world)]
+    found = [*_refusals(world), *_division(world), *_rates(world), *_order(world), *_distance(world)]
     if world.plan.collisions == "step":
         graph = contact_graph(world)
         found += [
@@ -107,6 +107,20 @@ def _rates(world: World) -> Iterator[ModelWarning]:
     yield ModelWarning(
         entity, source + what, value, "", limit, _shorter(world, rate, limit, followed=bounded)
     )
+
+
+def _order(world: World) -> Iterator[ModelWarning]:
+    """Yield a force that depends on velocities, where the method that was asked for is made for positions."""
+    plan = world.plan
+    method = plan.integrator if plan.smooth else plan.stages
+    if world.simulation.integrator == "auto" or plan.collisions == "exact" or not method.positions_only:
+        return
+    seeing = next((force for force in world.schedule.forces if force.sees_velocity(world)), None)
+    if seeing is not None:
+        name = seeing.name.removesuffix("System")
+        what = f"{name}: {method.name} has order 1 where a force depends on velocities"
+        better = '"dop853"' if plan.smooth else '"auto"'
+        yield ModelWarning(None, what, None, "", None, f"simulation.integrator = {better}")
 
 
 def _shorter(world: World, rate: float, limit: float, *, followed: bool) -> str:

@@ -23,8 +23,10 @@ from physicslab.files.checks import (
     shown,
 )
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_rests
+from physicslab.files.remainders import check_remainders
 from physicslab.integrators import INTEGRATORS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
+from physicslab.state.remainders import Remainders
 from physicslab.stepping.plan import MAX_STEPS
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
@@ -41,7 +43,7 @@ TITLE_LIMIT = 200
 
 _KEYS = (
     "format", "name", "title", "description", "time", "physics", "simulation", "entities", "contacts",
-    "rests", "solver",
+    "rests", "solver", "remainders",
 )  # fmt: skip
 
 
@@ -63,6 +65,8 @@ class SceneDraft:
         The contact solver's memory; the first two numbers of a row are entities, 0 for the bounds.
     rests : list of lists of numbers
         What sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
+    remainders : dict of int to two lists of six numbers
+        Of entities x, y, angle and their rates, and what rounding left out of each.
     solver : tuple of float, int and tuple
         The time over which the contacts' impulses act [s], the factor by which the coming step needs more
         substeps than configured, and what was chosen for an earlier state of motion, if anything was.
@@ -77,6 +81,7 @@ class SceneDraft:
     entities: list[tuple[str | None, list[Component]]]
     contacts: list[list[Any]]
     rests: list[list[Any]]
+    remainders: dict[int, tuple[list[float], list[float]]]
     solver: tuple[float, int, tuple[str, str, int] | None]
 
 
@@ -122,6 +127,8 @@ def read_scene(document: object, source: str = "scene") -> World:
             esper.switch_world(before)
             raise SceneError(f"{source}: contacts: {error}") from error
         restore_rests(world, draft.rests)
+    if draft.remainders:
+        world.remainders = Remainders.of_bodies(draft.remainders)
     if chosen is not None:
         world.resume(*chosen)
     return world
@@ -139,6 +146,7 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
         raise SceneError(f"{source}: entities is missing: must be a list of entities")
     ids = check_ids(scene["entities"], source)
     simulation = _config(SimulationConfig, scene.get("simulation", {}), source)
+    entities = check_entities(scene["entities"], ids, source)
     return SceneDraft(
         name=checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
         title=checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
@@ -146,9 +154,10 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
         time=_time(scene.get("time", 0.0), f"{source}: time"),
         physics=_config(PhysicsConfig, scene.get("physics", {}), source),
         simulation=simulation,
-        entities=check_entities(scene["entities"], ids, source),
+        entities=entities,
         contacts=check_contacts(scene.get("contacts", []), scene["entities"], ids, source),
         rests=check_rests(scene.get("rests", []), scene["entities"], ids, source),
+        remainders=check_remainders(scene.get("remainders", []), entities, ids, source),
         solver=_solver(scene.get("solver", {}), simulation, f"{source}: solver"),
     )
 

@@ -12,6 +12,7 @@ from physicslab.contacts.islands import export_rests
 from physicslab.contacts.memory import copied
 from physicslab.ecs.component import Component
 from physicslab.ecs.entity_index import EntityIndex
+from physicslab.files.remainders import export_remainders
 from physicslab.stepping.plan import outlived
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ class WorldSnapshot:
         What the contact solver remembers.
     rests : list of lists
         What sleeps, and how long the others have rested.
+    remainders : list of lists
+        What rounding left out of positions and velocities, where it is not zero.
     chosen : tuple, optional
         What was chosen for the motion as it once was, where it would not be chosen now.
     texts : dict of str to str
@@ -60,6 +63,7 @@ class WorldSnapshot:
         self.shaped = set(world.batch(Shape).entities.tolist())
         self.contacts: Contacts = copied(world.contacts)
         self.rests = export_rests(world)
+        self.remainders = export_remainders(world)
         self._rows = dict(world.entity_index.row_of)
         self._tables = _copied(world.entity_index)
 

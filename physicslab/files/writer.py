@@ -60,6 +60,7 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
         yield
     ids = dict(snapshot.names)
     referred = {end for row in contacts for end in row[:2]} | {rest[0] for rest in snapshot.rests}
+    referred |= {row[0] for row in snapshot.remainders}
     ids |= yield from _invented(entities, ids, referred)
     document: dict[str, Any] = {"format": FORMAT} | {
         key: text for key, text in snapshot.texts.items() if text
@@ -78,7 +79,8 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
         memory[:2] = [ids.get(end) for end in memory[:2]]
         yield
     rests = [[ids[rest[0]], *rest[1:]] for rest in snapshot.rests]
-    kept = {"contacts": contacts, "rests": rests, "solver": _solver(snapshot)}
+    remainders = [[ids[row[0]], *row[1:]] for row in snapshot.remainders]
+    kept = {"contacts": contacts, "rests": rests, "solver": _solver(snapshot), "remainders": remainders}
     return document | {key: value for key, value in kept.items() if value}
 
 

@@ -13,25 +13,32 @@ _MAX_EVALUATIONS = 1_000_000
 """Force evaluations a step of the world. The most that ``auto`` gives it, 500 rad in a step, takes
 120,000 at the finest tolerance; a million take 0.2 s for two bodies."""
 
+_MAX_IN_PYTHON = 100_000
+"""The same where Python computes a force: they take a second or two."""
+
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     eq, tolerance = ode, ode.tolerance
+    q_low, v_low = eq.remainders(state)
+    most = _MAX_IN_PYTHON if eq.interpreted else _MAX_EVALUATIONS
     made = dop853(
         eq.q,
         eq.v,
+        q_low,
+        v_low,
         eq.inverse_mass,
         eq.damping,
         eq.calls,
         steps * h,
         tolerance,
         state.simulation.dt,
-        _MAX_EVALUATIONS,
+        most,
     )
     if made == NOT_FINITE:
         raise StepTooSmall(f"forces are no longer finite at t = {state.time:.9g} s")
     if made == EXHAUSTED:
         raise StepTooSmall(
-            f"{_MAX_EVALUATIONS:,} force evaluations do not make a step of {state.simulation.dt:g} s "
+            f"{most:,} force evaluations do not make a step of {state.simulation.dt:g} s "
             f"at a tolerance of "
             f"{tolerance:g}; a larger tolerance, a smaller dt or the integrator implicit_midpoint may help"
         )

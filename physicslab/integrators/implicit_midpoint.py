@@ -22,6 +22,7 @@ __all__ = ["IMPLICIT_MIDPOINT"]
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     eq = ode
+    q_low, v_low = eq.remainders(state)
     if eq.near is None:
         eq.near = _banded(state, ode)
     order, band = eq.near
@@ -29,7 +30,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         # Each coordinate of the mean velocity is next to the same one of the end velocity less the mean.
         order, band = np.stack((order, order + len(order)), axis=1).ravel(), 2 * band + 1
     made = implicit_midpoint(
-        eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, eq.resistances, order, band, h, steps
+        eq.q, eq.v, q_low, v_low, eq.inverse_mass, eq.damping, eq.calls, eq.resistances, order, band, h, steps
     )
     if made < 0:
         raise StepTooSmall(

@@ -12,7 +12,8 @@ __all__ = ["RK4"]
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     eq = ode
-    return rk4(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, h, steps)
+    q_low, v_low = eq.remainders(state)
+    return rk4(eq.q, eq.v, q_low, v_low, eq.inverse_mass, eq.damping, eq.calls, h, steps)
 
 
 RK4 = Integrator(

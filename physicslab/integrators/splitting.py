@@ -18,6 +18,19 @@ def splitting(*, drifts: tuple[float, ...], kicks: tuple[float, ...]) -> Flow:
 
     def flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         eq = ode
-        return split(eq.q, eq.v, eq.inverse_mass, eq.damping, eq.calls, drift_shares, kick_shares, h, steps)
+        q_low, v_low = eq.remainders(state)
+        return split(
+            eq.q,
+            eq.v,
+            q_low,
+            v_low,
+            eq.inverse_mass,
+            eq.damping,
+            eq.calls,
+            drift_shares,
+            kick_shares,
+            h,
+            steps,
+        )
 
     return flow

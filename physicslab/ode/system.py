@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.state.packed import StateLayout
+from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage
 
@@ -24,11 +26,12 @@ _CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, ctypes.c_double, _REAL, _REAL, 
 class OdeSystem:
     """Packed state and packed forces of a world in which nothing acts but forces.
 
-    ``q`` holds the coordinates as :class:`StateLayout` orders them, ``v`` their rates (zero for what is
-    fixed); q'' = ``inverse_mass`` * force - ``damping`` * v.
+    ``q`` holds the coordinates as :class:`StateLayout` orders them, and last the time; ``v`` their rates
+    (zero for what is fixed, and last); q'' = ``inverse_mass`` * force - ``damping`` * v.
 
     A force system that packs its force (:meth:`ForceSystem.packed`) is called without Python. One that does
-    not is called back at its ``Stage.FORCE``, with the state that it reads in the world's tables: slower.
+    not is called back at its ``Stage.FORCE``, with the state that it reads in the world's tables, and the
+    time of that state as ``state.time``: slower.
 
     Attributes
     ----------
@@ -49,6 +52,8 @@ class OdeSystem:
         Relative error a step for methods that choose their steps.
     forces : tuple of ForceSystem
         What acts.
+    interpreted : bool
+        Whether Python computes any of it.
 
     Parameters
     ----------
@@ -64,11 +69,16 @@ class OdeSystem:
         self, state: State, forces: Sequence[ForceSystem], part: NDArray[np.bool_] | None = None
     ) -> None:
         self.forces = tuple(forces)
-        interpreted = any(not type(system).packs() for system in self.forces)
-        self.layout = StateLayout(state, part, all_turn=interpreted)
+        self.interpreted = any(not type(system).packs() for system in self.forces)
+        self.layout = StateLayout(state, part, all_turn=self.interpreted)
+        entities, self._carries = state.entity_index.entities, part is None
+        self._keys = coordinate_keys(entities[self.layout.moving], entities[self.layout.turning])
+        self._low: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
         self.near: tuple[NDArray[np.int64], int] | None = None
         self.tolerance = state.simulation.tolerance
         self._error: BaseException | None = None
+        self._clock = np.zeros(1)
+        self._still = np.zeros(2 * len(self.layout.fixed) + 1)
         self._settings = self._look(state)
 
     def _look(self, state: State) -> bytes:
@@ -99,20 +109,38 @@ class OdeSystem:
         transform, velocity = state.table(Transform), state.table(Velocity)
         moving, turning, fixed = self.layout.moving, self.layout.turning, self.layout.fixed
         position, linear = transform["position"], velocity["linear"]
+        self._clock[0] = state.time
         self.q = np.concatenate(
-            (position[moving].ravel(), transform["angle"][turning], position[fixed].ravel())
+            (position[moving].ravel(), transform["angle"][turning], position[fixed].ravel(), self._clock)
         )
-        self.v = np.concatenate(
-            (linear[moving].ravel(), velocity["angular"][turning], np.zeros(2 * len(fixed)))
-        )
+        self.v = np.concatenate((linear[moving].ravel(), velocity["angular"][turning], self._still))
+        self._low = None
+        self._start = (self.q.copy(), self.v.copy()) if self.interpreted else None
+
+    def remainders(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return what rounding left out of the present q and v, of what moves; a method carries them on.
+
+        A method changes both arrays in place; those that it leaves are kept for the next step by
+        :meth:`scatter`. Where only a part of the world is advanced they begin with zero and are not kept:
+        contacts act in between.
+        """
+        n = self.layout.moving_count
+        if not self._carries:
+            return np.zeros(n), np.zeros(n)
+        self._low = state.remainders.of(self._keys, self.q[:n], self.v[:n])
+        return self._low
 
     def scatter(self, state: State, span: float) -> None:
         """Put the state back into the tables; what no force turns has turned steadily for ``span`` s."""
-        if self._error is not None:
-            error, self._error = self._error, None
-            raise error
+        self._raise()
         layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
         self._write(state, self.q, self.v)
+        n = layout.moving_count
+        if self._low is not None:
+            state.remainders = Remainders(self._keys, self.q[:n], self.v[:n], *self._low)
+        elif self._carries:
+            state.remainders = NO_REMAINDERS
+        self._note_rates(state)
         steady = layout.steady
         if len(steady):
             spin, c = velocity["angular"][steady], state.physics.angular_damping
@@ -120,6 +148,31 @@ class OdeSystem:
             lasting = np.where(free & (c > 0.0), -np.expm1(-c * span) / (c or 1.0), span)
             transform["angle"][steady] += spin * lasting
             velocity["angular"][steady] = np.where(free, spin * np.exp(-c * span), spin)
+
+    def _note_rates(self, state: State) -> None:
+        """Note the fastest rates that forces met, wherever within the steps that was."""
+        for system, force in self._measured:
+            rate = math.sqrt(force.parameters[force.steepest])
+            state.fastest_rates[system.name] = max(rate, state.fastest_rates.get(system.name, 0.0))
+
+    def undo(self, state: State) -> bool:
+        """Write back the state from which a method that failed began; return whether Python had changed it.
+
+        Raises
+        ------
+        BaseException
+            The error of a force in Python, if that is why it failed.
+        """
+        self._raise()
+        if self._start is not None:
+            self._write(state, *self._start)
+        return self.interpreted
+
+    def _raise(self) -> None:
+        """Raise the error of a force in Python, if there was one."""
+        if self._error is not None:
+            error, self._error = self._error, None
+            raise error
 
     def _write(self, state: State, q: NDArray[np.float64], v: NDArray[np.float64]) -> None:
         layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
@@ -141,6 +194,7 @@ class OdeSystem:
             for force in forces
             if force.resistance is not None
         ]
+        self._measured = [(system, force) for system, force in packed if force and force.steepest is not None]
         self._kept: list[Any] = [*forces, *resisting]  # while C may read them
         state.compile([*(force.kernel for force in forces), *(kernel for kernel, _, _ in resisting)])
         rows = [
@@ -160,11 +214,12 @@ class OdeSystem:
         """Return a C function that lets force systems written in Python act on the world's tables."""
         methods = [getattr(system, type(system).marked()[Stage.FORCE]) for system in systems]
         layout, bodies = self.layout, state.bodies
-        n, d, size = 2 * len(layout.moving), layout.moving_count, len(self.q)
+        n, d, size, clock = 2 * len(layout.moving), layout.moving_count, len(self.q), layout.clock
 
         def call(q: Any, v: Any, _span: float, force: Any, parameters: Any, indices: Any) -> None:
             if self._error is not None:
                 return
+            start, state.time = state.time, float(q[clock])
             try:
                 self._write(state, np.ctypeslib.as_array(q, (size,)), np.ctypeslib.as_array(v, (size,)))
                 bodies.force[:] = 0.0
@@ -176,5 +231,7 @@ class OdeSystem:
                 total[n:d] += bodies.torque[layout.turning]
             except BaseException as error:  # C code cannot be unwound: it is raised when that has returned
                 self._error = error
+            finally:
+                state.time = start
 
         return call

@@ -17,8 +17,9 @@ class Bodies:
         Forces [N] and torques [N m] added up in this substep; views of ``pull``.
     pull : float64 array (3 rows,)
         Both in one array: the x and y of each force in turn, then the torques.
-    q, v : float64 arrays (3 rows,)
-        Positions and angles, velocities and angular velocities in the same order, for forces that are packed.
+    q, v : float64 arrays (3 rows + 1,)
+        Positions and angles, velocities and angular velocities in the same order, for forces that are packed;
+        last in ``q`` the time [s].
     inverse_mass, inverse_inertia : float64 arrays (rows,)
         Zero for what cannot be moved or turned: static, kinematic and held bodies.
     awake_inverse_mass, awake_inverse_inertia : float64 arrays (rows,)
@@ -37,8 +38,8 @@ class Bodies:
         """Set the number of rows, all of them zero."""
         self.pull: NDArray[np.float64] = np.zeros(3 * rows)
         self.force, self.torque = self.pull[: 2 * rows].reshape(rows, 2), self.pull[2 * rows :]
-        self.q: NDArray[np.float64] = np.zeros(3 * rows)
-        self.v: NDArray[np.float64] = np.zeros(3 * rows)
+        self.q: NDArray[np.float64] = np.zeros(3 * rows + 1)
+        self.v: NDArray[np.float64] = np.zeros(3 * rows + 1)
         self.inverse_mass: NDArray[np.float64] = np.zeros(rows)
         self.inverse_inertia: NDArray[np.float64] = np.zeros(rows)
         self.awake_inverse_mass: NDArray[np.float64] = np.zeros(rows)

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.state.remainders import NO_REMAINDERS, Remainders
+
 __all__ = ["Checkpoint"]
 
 type _Columns = Sequence[NDArray[np.float64]]
@@ -25,11 +27,14 @@ class Checkpoint:
         Positions, angles, velocities and angular velocities of then; compiled loops keep them themselves.
     counts : tuple of int
         Force evaluations, impacts, and impacts logged until then.
+    remainders : Remainders
+        What rounding had left out of positions and velocities; replaced by a step, never changed in place.
     """
 
     def __init__(self) -> None:
         self.columns: _Columns = ()
         self.counts = 0, 0, 0
+        self.remainders: Remainders = NO_REMAINDERS
 
     def make_room(self, columns: _Columns, counts: tuple[int, int, int]) -> None:
         """Keep the counts, with room for columns like these."""

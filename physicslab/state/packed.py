@@ -27,12 +27,15 @@ class PackedForce:
     resistance : ForceKernel, optional
         The response of the force to a velocity other than the present one, where it resists motion (see
         :mod:`physicslab.kernels.forces.resistance`).
+    steepest : int, optional
+        Where in ``parameters`` the kernel leaves the square of the fastest rate that it met [1/s^2].
     """
 
     kernel: ForceKernel
     parameters: NDArray[np.float64]
     indices: NDArray[np.int64]
     resistance: ForceKernel | None = None
+    steepest: int | None = None
 
     @property
     def call(self) -> tuple[int, int, int]:
@@ -44,7 +47,7 @@ class StateLayout:
     """The place of each row of a world among the packed coordinates.
 
     First two coordinates for every row that moves, then an angle for every row that forces may turn, then the
-    two coordinates of the rows that stay where they are, the world itself among them.
+    two coordinates of the rows that stay where they are, the world itself among them, and last the time.
 
     Attributes
     ----------
@@ -54,10 +57,13 @@ class StateLayout:
         The rows that move and no force turns.
     place, turn : int64 arrays (rows,)
         Indices of x and of the angle of a row; -1 for a row that has none, or takes no part.
+    clock : int
+        Index of the time [s] of the state: a packed force that depends on time reads it there.
     """
 
     place: NDArray[np.int64]
     turn: NDArray[np.int64]
+    clock: int
 
     @classmethod
     def of_rows(cls, rows: int) -> StateLayout:
@@ -66,6 +72,7 @@ class StateLayout:
         layout.moving = layout.turning = np.arange(rows)
         layout.steady = layout.fixed = np.zeros(0, np.int64)
         layout.place, layout.turn = 2 * np.arange(rows), 2 * rows + np.arange(rows)
+        layout.clock = 3 * rows
         return layout
 
     def __init__(self, state: State, part: NDArray[np.bool_] | None, *, all_turn: bool) -> None:
@@ -88,6 +95,7 @@ class StateLayout:
         self.place[self.moving] = 2 * np.arange(n)
         self.turn[self.turning] = 2 * n + np.arange(m)
         self.place[self.fixed] = 2 * n + m + 2 * np.arange(len(self.fixed))
+        self.clock = 2 * n + m + 2 * len(self.fixed)
 
     @property
     def moving_count(self) -> int:

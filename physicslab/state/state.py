@@ -21,6 +21,7 @@ from physicslab.kernels import compile_kernels, seconds_waited
 from physicslab.state.bodies import Bodies
 from physicslab.state.checkpoint import Checkpoint
 from physicslab.state.contacts import Contacts
+from physicslab.state.remainders import NO_REMAINDERS, Remainders
 from physicslab.state.sleep import Sleep
 
 __all__ = ["State"]
@@ -36,7 +37,7 @@ class State:
     name, title, description : str
         Of the scene.
     time : float
-        The clock [s].
+        The clock [s]. Within a step it is that of the state which a force or a stage sees.
     steps : int
         Steps made.
     substeps : int
@@ -73,6 +74,10 @@ class State:
         Masses and forces, a row an entity.
     contacts : Contacts
         The near pairs.
+    fastest_rates : dict of str to float
+        Of force systems the fastest rate [rad/s] that was met within steps since the motion was last edited.
+    remainders : Remainders
+        What rounding left out of positions and velocities in the last step.
     checkpoint : Checkpoint
         The state of motion before the step at hand.
     sleep : Sleep
@@ -94,6 +99,8 @@ class State:
         self.window, self.kick_before_contacts, self.moment = (-0.5, 0.5), 0.5, 0.0
         self.entity_index = EntityIndex()
         self.bodies, self.contacts, self.sleep = Bodies(), Contacts(), Sleep()
+        self.remainders: Remainders = NO_REMAINDERS
+        self.fastest_rates: dict[str, float] = {}
         self.checkpoint = Checkpoint()
         # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
         self._names: set[str] = set()

@@ -73,11 +73,22 @@ class Contact:
 
     def go_through(self, state: State, start: float, h: float, count: int) -> None:
         """Go through the stages of ``count`` substeps of ``h`` seconds, from the time ``start`` [s]."""
-        run, split = self._schedule.run, self._split
-        for substep in range(count):
-            state.moment = start + (substep - state.window[0]) * h
-            for stage, share in self._stages:
-                if stage is not Stage.PREDICT:
-                    run(stage, state, share * h)
-                if split is not None:
-                    split.take_part(stage, state, share * h)
+        before = state.time
+        try:
+            for substep in range(count):
+                state.moment = start + (substep - state.window[0]) * h
+                self._go_through_one(state, start + substep * h, h)
+        finally:
+            state.time = before
+
+    def _go_through_one(self, state: State, start: float, h: float) -> None:
+        """Go through the stages of a substep; the clock goes on as the positions do."""
+        run, split, drifted = self._schedule.run, self._split, 0.0
+        for stage, share in self._stages:
+            state.time = start + drifted * h
+            if stage is not Stage.PREDICT:
+                run(stage, state, share * h)
+            if split is not None:
+                split.take_part(stage, state, share * h)
+            if stage is Stage.DRIFT:
+                drifted += share

@@ -11,12 +11,16 @@ from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.state import State
 from physicslab.stepping.fastest_body import fastest_body
-from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.plan import StepPlan, tolerance_for
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 
-__all__ = ["Flow"]
+__all__ = ["Flow", "NotSmooth"]
+
+
+class NotSmooth(ArithmeticError):
+    """A force in Python jumps, so that no method which chooses its steps follows it."""
 
 
 class Flow:
@@ -30,6 +34,7 @@ class Flow:
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator
         self._ode = OdeSystem(state, schedule.forces)
+        self._ode.tolerance = tolerance_for(state, schedule.forces)
         self.kernels: tuple[Any, ...] = self._method.kernels
         self.reason = plan.reason
 
@@ -68,6 +73,8 @@ class Flow:
         try:
             made = method.flow(state, ode, span, count)
         except StepTooSmall as error:
+            if ode.undo(state) and state.simulation.integrator == "auto":
+                raise NotSmooth(str(error)) from error
             what = f"{fastest_body(state, self._schedule.forces)}: Velocity changes too fast: {error}"
             raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error
         ode.scatter(state, h * steps)

@@ -16,7 +16,7 @@ from physicslab.state.state import State
 from physicslab.stepping.fastest_body import fastest_body
 from physicslab.systems.system import ForceSystem, Stage
 
-__all__ = ["SplitForces", "sub_integrated_rows"]
+__all__ = ["SplitForces", "sees_velocity_in_python", "sub_integrated_rows"]
 
 _MAX_PREDICTABLE = 1.0
 """omega h up to which a force hardly changes within a substep, so that contacts get its prediction."""
@@ -24,14 +24,28 @@ _TOLERANCE = 1e-12
 """Smallest tolerance of methods that choose their steps."""
 
 
+def sees_velocity_in_python(state: State, force: ForceSystem) -> bool:
+    """Return whether a force in Python states that it depends on velocities, which kicks make one of order 1.
+
+    One that states nothing is kicked, as a wind is: bodies that it acts on may then sleep.
+    """
+    kind = type(force)
+    stated = kind.sees_velocity is not ForceSystem.sees_velocity
+    return stated and not kind.packs() and force.sees_velocity(state)
+
+
 def sub_integrated_rows(state: State, forces: Sequence[ForceSystem]) -> NDArray[np.bool_]:
     """Return for each row whether a force acts on it that is not the same for all, or it is an end of one.
+
+    So does a force in Python that states that it depends on velocities.
 
     Where another force couples any body with any, all are.
     """
     rows = np.zeros(len(state.entity_index), np.bool_)
     for force in forces:
         rates, pairs = force.rates(state), force.couples(state)
+        if sees_velocity_in_python(state, force):
+            rows[state.batch(Velocity, *force.needs).rows] = True
         if rates is not None:
             rows |= rates > 0.0
             if pairs is not None:

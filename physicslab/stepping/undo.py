@@ -34,7 +34,7 @@ class Undoing:
         if state.in_step:
             raise RuntimeError("a system cannot step the world that is calling it")
         state.checkpoint.take(self._motion, state.counts)
-        state.in_step = True
+        state.in_step, state.checkpoint.remainders = True, state.remainders
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -53,5 +53,6 @@ def go_back(state: State) -> None:
     """Restore positions, velocities and counts from the checkpoint, and drop all contacts."""
     state.checkpoint.restore(motion_of(state))
     state.force_evaluations, state.collisions, state.contacts.logged = state.checkpoint.counts
+    state.remainders = state.checkpoint.remainders
     state.contacts.clear()  # what a failed step left there may not be finite either
     wake_all(state)  # no contact supports any body now

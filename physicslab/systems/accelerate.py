@@ -33,8 +33,9 @@ class AccelerateSystem(System):
             bodies, transform, velocity = state.bodies, state.table(Transform), state.table(Velocity)
             rows = len(bodies.torque)
             motion.clear(bodies.force, bodies.torque)
-            bodies.q[: 2 * rows], bodies.q[2 * rows :] = transform["position"].ravel(), transform["angle"]
-            bodies.v[: 2 * rows], bodies.v[2 * rows :] = velocity["linear"].ravel(), velocity["angular"]
+            bodies.q[: 2 * rows], bodies.q[2 * rows : -1] = transform["position"].ravel(), transform["angle"]
+            bodies.q[-1] = state.time
+            bodies.v[: 2 * rows], bodies.v[2 * rows : -1] = velocity["linear"].ravel(), velocity["angular"]
             state.force_evaluations += 1
 
     @at(Stage.KICK)

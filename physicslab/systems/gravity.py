@@ -72,8 +72,8 @@ class GravitySystem(ForceSystem):
             return PackedForce(packed_forces.uniform_gravity, parameters, indices)
         rows = self._attracting
         indices = np.concatenate(([len(rows), physics.softening_law == "plummer"], layout.place[rows]))
-        parameters = np.concatenate(((physics.G, physics.softening), mass[rows]))
-        return PackedForce(packed_forces.planet_gravity, parameters, indices)
+        parameters = np.concatenate(((physics.G, physics.softening), mass[rows], (0.0,)))
+        return PackedForce(packed_forces.planet_gravity, parameters, indices, steepest=2 + len(rows))
 
     def strongest_rate(self, state: State) -> float:
         """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair at present; 0 for uniform gravity."""

@@ -187,8 +187,12 @@ class ForceSystem(System):
         return None
 
     def sees_velocity(self, state: State) -> bool:
-        """Return whether the force depends on velocities, as drag does, for the choice of a method."""
-        return False
+        """Return whether the force depends on velocities, as drag does, for the choice of a method.
+
+        A force in Python is taken to, unless it overrides this: a method that is made for positions alone
+        would then lose its order. One that is packed is taken not to.
+        """
+        return not type(self).packs()
 
     def why_singular(self, state: State) -> str | None:
         """Return why bodies may come where the force is not smooth, which fixed steps miss; or ``None``."""

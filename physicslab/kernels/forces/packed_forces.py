@@ -42,15 +42,15 @@ def _attract_packed(q, force, parameters, indices):  # type: ignore[no-untyped-d
 def planet_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add the attraction of every pair.
 
-    ``parameters``: G, softening, then the masses; ``indices``: how many, whether Plummer's law holds, then
-    where x of each is.
+    ``parameters``: G, softening, the masses, and then the largest |G| (m_a + m_b) / d^3 that any call found,
+    where bodies are few; ``indices``: how many, whether Plummer's law holds, then where x of each is.
     """
     n, plummer = indices[0], indices[1] != 0
     G, softening = parameters[0], parameters[1]
     if n > PLAIN_LIMIT:
         _attract_packed(q, force, parameters, indices)  # type: ignore[no-untyped-call]
         return
-    softening2 = softening * softening
+    softening2, steepest = softening * softening, 0.0
     for p in range(n):
         i = indices[2 + p]
         x, y, weight = q[i], q[i + 1], G * parameters[2 + p]
@@ -58,13 +58,16 @@ def planet_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-u
         for other in range(p + 1, n):
             j = indices[2 + other]
             dx, dy = q[j] - x, q[j + 1] - y
-            f = weight * parameters[2 + other] * inverse_cube(dx * dx + dy * dy, softening2, plummer)
+            pull = inverse_cube(dx * dx + dy * dy, softening2, plummer)
+            steepest = max(steepest, (parameters[2 + p] + parameters[2 + other]) * pull)
+            f = weight * parameters[2 + other] * pull
             fx += f * dx
             fy += f * dy
             force[j] -= f * dx
             force[j + 1] -= f * dy
         force[i] += fx
         force[i + 1] += fy
+    parameters[2 + n] = max(parameters[2 + n], abs(G) * steepest)
 
 
 @force_kernel

@@ -11,21 +11,27 @@ __all__ = ["rk4"]
 
 @allocating_kernel
 def rk4(
-    q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float, steps: int
-) -> int:
-    """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations."""
-    n = len(inverse_mass)
+    q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
+    calls: Calls, h: float, steps: int,
+) -> int:  # fmt: skip
+    """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
+
+    ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are carried on.
+    """
+    n, clock, start = len(inverse_mass), len(q) - 1, q[len(q) - 1]
     stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
     q_sum, v_sum = np.empty(n), np.empty(n)
-    q_low, v_low = np.zeros(n), np.zeros(n)
-    for _ in range(steps):
+    for step in range(steps):
+        node = 0.0
         for i in range(n):
             q_sum[i] = v_sum[i] = 0.0
             stage_q[i], stage_v[i] = q[i], v[i]
         for stage in range(4):
+            stage_q[clock] = start + (step + node) * h
             accelerate(stage_q, stage_v, acceleration, inverse_mass, damping, calls)
             weight = h / 6.0 if stage == 0 or stage == 3 else h / 3.0
-            reach = h if stage == 2 else 0.5 * h
+            node = 1.0 if stage == 2 else 0.5
+            reach = node * h
             for i in range(n):
                 q_sum[i] += weight * stage_v[i]
                 v_sum[i] += weight * acceleration[i]
@@ -34,4 +40,5 @@ def rk4(
         for i in range(n):
             q[i], q_low[i] = add(q[i], q_low[i], q_sum[i])
             v[i], v_low[i] = add(v[i], v_low[i], v_sum[i])
+    q[clock] = start + steps * h
     return 4 * steps

@@ -7,7 +7,7 @@ import numpy as np
 from physicslab.kernels import Numbers, Vectors, allocating_kernel, inlined
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add
-from physicslab.kernels.ode.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, LAST_LOW, WEIGHTS
+from physicslab.kernels.ode.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, LAST_LOW, NODES, WEIGHTS
 
 __all__ = [
     "EXHAUSTED", "NOT_FINITE", "TOO_SHORT", "dop853", "first_step", "largest", "make_stages",
@@ -49,8 +49,9 @@ def make_stages(
     ``rates`` and ``pushes`` (n, 16) take q' and v' of each stage; those of the stages before ``first`` are
     there. ``stage_q`` and ``stage_v`` are left at the last stage.
     """
-    n = len(inverse_mass)
+    n, clock = len(inverse_mass), len(q) - 1
     for stage in range(first, end):
+        stage_q[clock] = q[clock] + NODES[stage] * h
         for i in range(n):
             moved, pushed = 0.0, 0.0
             for other in range(stage):
@@ -128,8 +129,8 @@ def _all_finite(q: Numbers, v: Numbers, n: int) -> bool:
 
 @allocating_kernel
 def dop853(
-    q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
-    span: float, tolerance: float, period: float, max_evaluations: int,
+    q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
+    calls: Calls, span: float, tolerance: float, period: float, max_evaluations: int,
 ) -> int:  # fmt: skip
     """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
@@ -137,12 +138,12 @@ def dop853(
     may take many, but none of its parts may run without end.
 
     A step is made again, shorter, where its error is estimated to be more than ``tolerance`` of the largest
-    coordinate or speed. Sums are compensated.
+    coordinate or speed. Sums are compensated: ``q_low`` and ``v_low`` (n,) are the remainders of what moves,
+    and are carried on.
     """
-    n = len(inverse_mass)
+    n, clock, start = len(inverse_mass), len(q) - 1, q[len(q) - 1]
     stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
     rates, pushes = np.zeros((n, 16)), np.zeros((n, 16))
-    q_low, v_low = np.zeros(n), np.zeros(n)
     q_scale, v_scale = largest(q, n), largest(v, n)
     make_stages(q, v, stage_q, stage_v, acceleration, rates, pushes, inverse_mass, damping, calls, 0.0, 0, 1)
     if not _all_finite(acceleration, stage_v, n):
@@ -195,6 +196,7 @@ def dop853(
             v[i], v_low[i] = add(v[i], v_low[i], taken * pushed)
             rates[i, 0], pushes[i, 0] = rates[i, LAST], pushes[i, LAST]
         done, done_low = add(done, done_low, taken)
+        q[clock] = start + done
         if last:
             return evaluations
         q_scale, v_scale = q_reach, v_reach

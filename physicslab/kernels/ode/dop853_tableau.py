@@ -7,10 +7,12 @@ that name. Stages 0..11 make the step, stage 12 is its end, 13..15 are for the d
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["DENSE", "ESTIMATE_3", "ESTIMATE_5", "LAST", "LAST_LOW", "WEIGHTS"]
+__all__ = ["DENSE", "ESTIMATE_3", "ESTIMATE_5", "LAST", "LAST_LOW", "NODES", "WEIGHTS"]
 
 
 def _filled(shape: tuple[int, int], entries: dict[tuple[int, int], float]) -> NDArray[np.float64]:
@@ -181,6 +183,9 @@ LAST_LOW = _filled(
     },
 )[0]
 """What rounding leaves out of the weights of the step (16,): energy would show the bias after 100 orbits."""
+
+NODES = np.array([math.fsum(row) for row in WEIGHTS])
+"""The time of each stage, as a share of the step (16,)."""
 
 ESTIMATE_5 = _filled(
     (1, 16),

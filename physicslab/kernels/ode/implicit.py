@@ -191,8 +191,8 @@ def _search(
 
 @allocating_kernel
 def implicit_midpoint(
-    q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls,
-    order: Rows, band: int, h: float, steps: int,
+    q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
+    calls: Calls, resistances: Calls, order: Rows, band: int, h: float, steps: int,
 ) -> int:  # fmt: skip
     """Advance by ``steps`` steps of ``h`` seconds.
 
@@ -201,18 +201,19 @@ def implicit_midpoint(
     from v to v + h a and the place from q to q + h u, where u - v = (1 + Z) (v + h a - u). Z = h W C is what
     ``resistances`` and ``damping`` make of the matrix C of damping and the inverse masses W; with none,
     u = v + h/2 a. ``order`` is the order of u, and of y = v + h a - u behind it where there is a Z, in which
-    coupled ones are within ``band`` of each other. Sums are compensated.
+    coupled ones are within ``band`` of each other. Sums are compensated: ``q_low`` and ``v_low`` (n,) are the
+    remainders of what moves, and are carried on. Forces are those of the time in the middle of the step.
     """
-    n, m = len(inverse_mass), len(order)
+    n, m, clock, start = len(inverse_mass), len(order), len(q) - 1, q[len(q) - 1]
     stage_q, x, miss, shifted = q.copy(), np.zeros(m), np.empty(m), np.empty(m)
     acceleration, stack = np.empty(len(q)), np.zeros(3 * len(q))
     matrix, pivots = np.zeros((m, m)), np.zeros(m, np.int64)
-    q_low, v_low = np.zeros(n), np.zeros(n)
     evaluations, known = 0, False
-    for _ in range(steps):
+    for step in range(steps):
         done, part = 0, _PARTS
         while done < _PARTS:
             span = h * part / _PARTS
+            stage_q[clock] = start + (step + (done + 0.5 * part) / _PARTS) * h
             iterations, tried = _search(
                 q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, span, miss,
                 shifted, order, band, matrix, pivots, known,

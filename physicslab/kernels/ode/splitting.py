@@ -13,25 +13,28 @@ __all__ = ["split"]
 
 @allocating_kernel
 def split(
-    q: Numbers, v: Numbers, inverse_mass: Numbers, damping: Numbers, calls: Calls,
-    drifts: Numbers, kicks: Numbers, h: float, steps: int,
+    q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
+    calls: Calls, drifts: Numbers, kicks: Numbers, h: float, steps: int,
 ) -> int:  # fmt: skip
     """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
 
     A step is kick, drift, kick, ..., drift, kick, with the shares ``kicks`` (n + 1,) and ``drifts`` (n,) of
     h. A kick with no motion since the last one reuses its forces. Damping v' = -c v goes with
-    the kicks and is solved exactly: v(h) = v e^(-c h) + a (1 - e^(-c h)) / c. Sums are compensated.
+    the kicks and is solved exactly: v(h) = v e^(-c h) + a (1 - e^(-c h)) / c. Sums are compensated:
+    ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are carried on. The time goes on with
+    the drifts, as the coordinates do.
     """
-    n = len(inverse_mass)
+    n, clock, start = len(inverse_mass), len(q) - 1, q[len(q) - 1]
     acceleration = np.empty(len(q))
     undamped = np.empty(0)
-    q_low, v_low = np.zeros(n), np.zeros(n)
     known, evaluations = False, 0
-    for _ in range(steps):
+    for step in range(steps):
+        moved = 0.0
         for stage in range(len(kicks)):
             kick = kicks[stage] * h
             if kick != 0.0:
                 if not known:
+                    q[clock] = start + (step + moved) * h
                     accelerate(q, v, acceleration, inverse_mass, undamped, calls)
                     known = True
                     evaluations += 1
@@ -49,7 +52,9 @@ def split(
                         v[i], v_low[i] = add(v[i], v_low[i], change)
             if stage < len(drifts):
                 drift = drifts[stage] * h
+                moved += drifts[stage]
                 for i in range(n):
                     q[i], q_low[i] = add(q[i], q_low[i], drift * v[i])
                 known = False
+    q[clock] = start + steps * h
     return evaluations

@@ -15,6 +15,7 @@ from physicslab.diagnostics.energy import Drift
 from physicslab.ecs.config import SimulationConfig
 from physicslab.integrators import INTEGRATORS
 from physicslab.lab.case import Job, attempt, cpu_time
+from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
 
 __all__ = ["ESTIMATE", "SceneRow", "SceneStudy", "study_scene"]
@@ -163,11 +164,13 @@ def _tightest(load: Callable[[], World], plain: SimulationConfig) -> tuple[NDArr
 def _row(
     load: Callable[[], World], simulation: SimulationConfig, best: NDArray[np.float64] | None
 ) -> SceneRow:
-    method = _prepared(load, simulation).plan
+    world = _prepared(load, simulation)
+    method = world.plan
     parts = 1 if method.integrator.chooses_steps else method.substeps
     step = f"{simulation.dt / parts:.3g} s"
     if method.integrator.chooses_steps:
-        step = "" if method.integrator.name == "exact" else f"tol {simulation.tolerance:g}"
+        tolerance = tolerance_for(world, world.schedule.forces)
+        step = "" if method.integrator.name == "exact" else f"tol {tolerance:g}"
     row = SceneRow(method.integrator.name, method.reason, simulation.integrator, step)
     _, row.failure = attempt(partial(_fill, row, load, simulation, best))
     return row
