@@ -60,7 +60,7 @@ class SceneRow:
     tightest : float, optional
         The same from where the tightest method has it; ``None`` where there is no such method.
     energy : float, optional
-        The relative drift of the energy at the end.
+        The relative drift of the energy at the end; ``None`` where what is driven changes it.
     failure : str
         Why there are no figures.
     """
@@ -219,7 +219,7 @@ def _fill(
             break
     row.evaluations = world.force_evaluations
     drift.sample(world)
-    row.energy = drift.relative
+    row.energy = drift.error
     row.half_step = _apart(places, _end(_prepared(load, finer_settings(simulation, 2)), seconds))
     if best is not None:
         row.tightest = _apart(places, best)
