@@ -10,17 +10,18 @@ from collections.abc import Iterator
 import numpy as np
 
 from physicslab.contacts.arguments import motion_of
-from physicslab.contacts.islands import check_edits, follow_rows, wake_all
+from physicslab.contacts.islands import check_edits, follow_rows
 from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import Diverged, derive_masses
 from physicslab.state.state import State
 from physicslab.stepping.forces import add_up_forces
-from physicslab.stepping.plan import StepPlan, choose_plan, default_plan, resumed_plan
+from physicslab.stepping.plan import StepPlan, default_plan, resumed_plan
 from physicslab.stepping.run import go_on, run_length
-from physicslab.stepping.select import Steppers, select_steppers
-from physicslab.stepping.stepper import Stepper
+from physicslab.stepping.select import Steppers, choose, remake
+from physicslab.stepping.stepper import Advance, Stepper
+from physicslab.stepping.undo import go_back
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import Stage, System
@@ -59,9 +60,8 @@ class World(State):
     -----
     Each world lives in an esper context of its own, so worlds never mix. A new world is esper's active one
     until another is made or activated; every method enters its own context and leaves the one before. That
-    context is one for the whole process: one thread at a time can work with worlds. Where another does
-    meanwhile, a ``RuntimeError`` says so before anything is touched. Worlds that are to run at the same time
-    need a process each (``concurrent.futures.ProcessPoolExecutor``).
+    context is one for the whole process: one thread at a time can work with worlds, another gets a
+    ``RuntimeError``. Worlds that are to run at the same time need a process each.
 
     Examples
     --------
@@ -93,9 +93,8 @@ class World(State):
     def step(self, dt: float | None = None) -> None:
         """Advance by one step of ``dt`` seconds (``simulation.dt`` where none is given), in substeps.
 
-        A step longer than ``simulation.dt`` is divided, so that no substep is longer than the scene's own:
-        ``step_divisions`` is the number of parts. A method that is exact or chooses its steps takes it
-        whole.
+        A step longer than ``simulation.dt`` is divided into ``step_divisions`` parts, so that no substep is
+        longer than the scene's own. A method that is exact or chooses its steps takes it whole.
 
         Raises
         ------
@@ -119,14 +118,12 @@ class World(State):
         self._stepping = True
         try:
             self.schedule.run(Stage.PREPARE, self, h)
-            try:
-                made = self._best(h).advance(self, h, steps)
-            except NoClosedForm:  # a body was given another velocity, or another spring
-                self._choose()
-                made = self._best(h).advance(self, h, steps)
+            made = self._advance(h, steps)
             self.schedule.run(Stage.FINISH, self, h * steps)
         except BaseException:
-            self._go_back()
+            go_back(self)
+            # Steppers hold numbers of the step that failed.
+            self._stale = self.entity_index.motion_edited = True
             raise
         finally:
             self._stepping = False
@@ -134,24 +131,23 @@ class World(State):
         self.step_divisions = made.divisions
         return made.steps
 
-    def stepper_for(self, h: float) -> Stepper:
-        """Return the best stepper for a coming step of ``h`` seconds."""
-        return self.steppers.ready(self, h)
+    def _advance(self, h: float, steps: int) -> Advance:
+        """Advance with the best stepper; choose again where its numbers do not apply any more."""
+        try:
+            return self._best(h).advance(self, h, steps)
+        except NoClosedForm:  # a body was given another velocity, or another spring
+            self._choose()
+            return self._best(h).advance(self, h, steps)
 
     def _best(self, h: float) -> Stepper:
         """Return the best stepper for the coming step, with its kernels compiled."""
-        self.stepper = self.steppers.ready(self, h)
+        self.stepper = self.stepper_for(h)
         self.compile(self.stepper.kernels)
         return self.stepper
 
-    def _go_back(self) -> None:
-        """Go back to the state before the step that failed."""
-        self.checkpoint.restore(motion_of(self))
-        self.force_evaluations, self.collisions, self.contacts.logged = self.checkpoint.counts
-        self.contacts.clear()  # what a failed step left there may not be finite either
-        wake_all(self)  # no contact supports any body now
-        # Steppers hold numbers of the step that failed.
-        self._stale = self.entity_index.motion_edited = True
+    def stepper_for(self, h: float) -> Stepper:
+        """Return the best stepper for a coming step of ``h`` seconds."""
+        return self.steppers.ready(self, h)
 
     def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.
@@ -197,11 +193,7 @@ class World(State):
 
     @_quiet
     def synchronise(self) -> None:
-        """Follow the present entities and components, and compute their masses.
-
-        The engine does so at the start of every step; what a system changes within one takes part from the
-        next.
-        """
+        """Follow the present entities and components, and compute their masses, as each step does first."""
         with self.active():
             self._synchronise()
 
@@ -236,47 +228,25 @@ class World(State):
             follow_rows(self)
             derive_masses(self)
             check_edits(self)
-            self._remake()
+            plan = None if self.entity_index.motion_edited else self.plan
+            self.plan, self.steppers = remake(self, self.schedule, plan)
             self.revision += 1
             self.motion_edits += self.entity_index.motion_edited
             self._stale = self.entity_index.motion_edited = False
             if not self.entity_index.synchronise():
                 return
 
-    def _remake(self) -> None:
-        """Choose systems and steppers; whether bodies may sleep depends on how collisions are found."""
-        while True:
-            event_driven = self.event_driven
-            self.schedule.remake(self)
-            self.has_forces = bool(self.schedule.forces)
-            self._choose(again=self.entity_index.motion_edited)
-            if event_driven == self.event_driven:
-                return
-
-    def _choose(self, *, again: bool = True) -> None:
-        """Choose steppers for what there is, and the method, if it is to be chosen ``again``."""
-        if again:
-            self.plan = choose_plan(self, self.schedule)
-        self._take_plan()
+    def _choose(self) -> None:
+        """Choose method and steppers again, for the same systems."""
+        self.plan, self.steppers = choose(self, self.schedule)
 
     def resume(self, collisions: str, method: str, steps: int) -> None:
         """Go on with what was chosen before this world was saved (:attr:`StepPlan.kept`), where possible."""
-        self.plan = resumed_plan(self, self.schedule, (collisions, method, steps))
-        self._take_plan()
-
-    def _take_plan(self) -> None:
-        """Choose the steppers that the plan allows."""
-        before = self.event_driven
-        self.event_driven = self.plan.collisions == "exact"
-        self.steppers = select_steppers(self, self.schedule, self.plan)
-        self.contacts.stale |= before or self.event_driven
+        kept = resumed_plan(self, self.schedule, (collisions, method, steps))
+        self.plan, self.steppers = choose(self, self.schedule, kept)
 
     def edited(self) -> None:
-        """Note that columns or components were changed from outside.
-
-        The steps themselves find what has changed; measurements over time, as the drift of the energy, begin
-        again.
-        """
+        """Note that columns or components were changed from outside: measurements over time begin again."""
         self.revision += 1
         self.motion_edits += 1
 

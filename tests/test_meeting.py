@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from physicslab.kernels.events import meeting
+from physicslab.kernels.events.meeting import Course
+from physicslab.kernels.narrow.outline import Outline
 
 meet_line, meet_circle_circle = compiled(meeting.meet_line), compiled(meeting.meet_circle_circle)
 meet_circle_box, meet_box_box = compiled(meeting.meet_circle_box), compiled(meeting.meet_box_box)
@@ -37,7 +39,7 @@ def check(t: float, gap: NDArray[np.float64], gap_at: float, scale: float) -> No
 @given(away, turns, speeds, speeds, speeds, speeds, st.booleans())
 def test_circles(d: float, turn: float, ux: float, uy: float, wx: float, wy: float, pulled: bool) -> None:
     dx, dy, wx, wy = d * math.cos(turn), d * math.sin(turn), wx * pulled, wy * pulled
-    t = meet_circle_circle(dx, dy, ux, uy, wx, wy, 0.9, SPAN, 0.0)
+    t = meet_circle_circle(Course(dx, dy, ux, uy, wx, wy), 0.9, SPAN, 0.0)
 
     def gap(at: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.hypot(path(at, dx, ux, wx), path(at, dy, uy, wy)) - 0.9
@@ -51,7 +53,7 @@ def test_a_circle_and_a_box(
     d: float, turn: float, ux: float, uy: float, wx: float, wy: float, pulled: bool
 ) -> None:
     dx, dy, wx, wy = d * math.cos(turn), d * math.sin(turn), wx * pulled, wy * pulled
-    t = meet_circle_box(dx, dy, ux, uy, wx, wy, 0.5, 0.3, 0.2, SPAN, 0.0)
+    t = meet_circle_box(Course(dx, dy, ux, uy, wx, wy), 0.5, 0.3, 0.2, SPAN, 0.0)
 
     def gap(at: NDArray[np.float64]) -> NDArray[np.float64]:
         x, y = np.abs(path(at, dx, ux, wx)) - 0.5, np.abs(path(at, dy, uy, wy)) - 0.3
@@ -66,8 +68,9 @@ def test_two_boxes(
     d: float, turn: float, ux: float, uy: float, wx: float, wy: float, a: float, b: float
 ) -> None:
     dx, dy = d * math.cos(turn), d * math.sin(turn)
-    frame = math.cos(a), math.sin(a), math.cos(b), math.sin(b)
-    t, face = meet_box_box(dx, dy, ux, uy, wx, wy, *frame, 0.5, 0.3, 0.4, 0.2, 0.0)
+    one = Outline(True, math.cos(a), math.sin(a), 0.5, 0.3, 0.0)
+    other = Outline(True, math.cos(b), math.sin(b), 0.4, 0.2, 0.0)
+    t, face = meet_box_box(Course(dx, dy, ux, uy, wx, wy), one, other, 0.0)
 
     def gap(at: NDArray[np.float64]) -> NDArray[np.float64]:
         x, y = path(at, dx, ux, wx), path(at, dy, uy, wy)
@@ -110,17 +113,17 @@ def test_what_has_just_bounced_is_not_met_again() -> None:
     for gap in (0.0, 1e-17, -1e-17):
         assert meet_line(gap, 1.0, 0.0, 0.0) == math.inf
         assert abs(meet_line(gap, 1.0, -2.0, 0.0) - 1.0) < 1e-15
-        assert meet_circle_circle(1.0 + gap, 0.0, 1.0, 0.5, 0.0, 0.0, 1.0, SPAN, 0.0) == math.inf
-        later = meet_circle_circle(1.0 + gap, 0.0, 1.0, 0.0, -2.0, 0.0, 1.0, SPAN, 0.0)
+        assert meet_circle_circle(Course(1.0 + gap, 0.0, 1.0, 0.5, 0.0, 0.0), 1.0, SPAN, 0.0) == math.inf
+        later = meet_circle_circle(Course(1.0 + gap, 0.0, 1.0, 0.0, -2.0, 0.0), 1.0, SPAN, 0.0)
         assert abs(later - 1.0) < 1e-15
-        later = meet_circle_box(1.0 + gap, 0.1, 1.0, 0.0, -2.0, 0.0, 0.5, 0.5, 0.5, SPAN, 0.0)
+        later = meet_circle_box(Course(1.0 + gap, 0.1, 1.0, 0.0, -2.0, 0.0), 0.5, 0.5, 0.5, SPAN, 0.0)
         assert abs(later - 1.0) < 1e-15
 
 
 def test_the_fastest_and_the_faintest_meeting_are_found() -> None:
-    assert meet_circle_circle(1e6, 0.0, -1e12, 0.0, 0.0, 0.0, 1.0, SPAN, 0.0) == (1e6 - 1.0) / 1e12
+    assert meet_circle_circle(Course(1e6, 0.0, -1e12, 0.0, 0.0, 0.0), 1.0, SPAN, 0.0) == (1e6 - 1.0) / 1e12
     graze = 1.0 - 1e-12
-    assert abs(meet_circle_circle(10.0, graze, -5.0, 0.0, 0.0, 0.0, 1.0, SPAN, 0.0) - 2.0) < 1e-5
+    assert abs(meet_circle_circle(Course(10.0, graze, -5.0, 0.0, 0.0, 0.0), 1.0, SPAN, 0.0) - 2.0) < 1e-5
     # A parabola whose top dips into the circle from below.
-    t = meet_circle_circle(-2.0, -3.0, 1.0, math.sqrt(2 * (2.0 + 1e-9)), 0.0, -1.0, 1.0, SPAN, 0.0)
+    t = meet_circle_circle(Course(-2.0, -3.0, 1.0, math.sqrt(2 * (2.0 + 1e-9)), 0.0, -1.0), 1.0, SPAN, 0.0)
     assert 1.99 < t < 2.0

@@ -11,10 +11,9 @@ from physicslab.contacts.arguments import motion_of, near_in
 from physicslab.contacts.memory import export_contacts, restore_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.files.scene import read_scene, write_scene
-from physicslab.kernels import compile_kernels
+from physicslab.kernels import compile_kernels, near_counts
+from physicslab.kernels.arguments import Motion, MotionTuple
 from physicslab.kernels.solver import entries
-from physicslab.kernels.solver.arguments import Motion, MotionTuple, Near, NearTuple
-from physicslab.kernels.wide import slots
 from physicslab.kernels.wide.layout import MASS_A, MASS_B, WIDE
 from physicslab.lab.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle, container, pile, pyramid
@@ -90,18 +89,18 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         linear, angular = velocity["linear"].copy(), velocity["angular"].copy()
         linear[bodies.inverse_mass > 0.0] -= (0.0, 9.81 * h)
         counts = contacts.counts.copy()
-        counts[slots.ACTIVE] = counts[slots.LEFT] = 0 if in_blocks else len(order)
+        counts[near_counts.ACTIVE] = counts[near_counts.LEFT] = 0 if in_blocks else len(order)
         if not in_blocks:
-            counts[slots.WIDE_COUNT] = counts[slots.DISC_BLOCKS] = counts[slots.BOX_BLOCKS] = 0
-        discs, boxes = ((kind.data.copy(), *kind.slots[1:]) for kind in blocks.kinds)
-        near = Near(*near_in(world))._replace(
-            counts=counts, points=contacts.points.copy(), touching=np.array(order, np.int64),
-            discs=discs, boxes=boxes,
-        )  # fmt: skip
+            for count in (near_counts.WIDE_COUNT, near_counts.DISC_BLOCKS, near_counts.BOX_BLOCKS):
+                counts[count] = 0
+        discs, boxes = ((kind.kind, kind.data.copy(), *kind.slots[2:]) for kind in blocks.kinds)
+        near = near_in(world)
+        points, touching = contacts.points.copy(), np.array(order, np.int64)
+        near = (counts, near[1], points, near[3], touching, discs, boxes, *near[7:])
         motion = Motion(*motion_of(world))._replace(linear=linear, angular=angular)
         inverse, acting = (bodies.inverse_mass, bodies.inverse_inertia), (bodies.force, bodies.torque, True)
         entries.solve_stage(
-            cast(NearTuple, tuple(near)), cast(MotionTuple, tuple(motion)), inverse, acting,
+            near, cast(MotionTuple, tuple(motion)), inverse, acting,
             (45.0, 2.0, 0.0005, 1.5), h, h, 1,
         )  # fmt: skip
         ends.append((linear, angular))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from physicslab.components import Material, Shape, Transform, Velocity
-from physicslab.kernels.solver.arguments import (
+from physicslab.kernels.arguments import (
     ActingTuple,
     BoundsTuple,
     InverseTuple,

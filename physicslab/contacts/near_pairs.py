@@ -76,7 +76,7 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
         wide.fill_again(state)
     elif contacts.wide.filled:
         contacts.wide.filled = sum(
-            slots.follow_pairs(*constraints.layout, contacts.manifolds, count)
+            slots.follow_pairs(constraints.slots, constraints.count, contacts.manifolds, count)
             for constraints in contacts.wide.kinds
         )
     contacts.list_scalar(len(entities))

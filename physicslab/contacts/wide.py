@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Material, Shape, Velocity
+from physicslab.components import Material, Shape
+from physicslab.contacts.arguments import inverse_in, materials_of, motion_of, near_in, sizes_of
 from physicslab.kernels.wide import graph_colour, restore_slots
 from physicslab.kernels.wide.graph_colour import MIN_WIDE
 from physicslab.kernels.wide.layout import WIDE
@@ -17,20 +18,15 @@ __all__ = ["add_constraints", "fill_again", "refill"]
 
 def add_constraints(state: State, h: float) -> None:
     """Put steady contacts into blocks."""
-    contacts, bodies = state.contacts, state.bodies
-    material, shape = state.table(Material), state.table(Shape)
-    wide = contacts.wide
+    contacts, wide = state.contacts, state.contacts.wide
     if not wide.filled and contacts.active < MIN_WIDE:
         return
     state.compile(wide.kernels)
     known = wide.filled > 0
     while True:
         came = graph_colour.add_constraints(
-            contacts.counts, wide.discs.slots, wide.boxes.slots, contacts.opened,
-            contacts.manifolds, contacts.points, contacts.scalar, contacts.sleeping, contacts.touching,
-            contacts.inactive, state.sleep.asleep,
-            shape["kind"], shape["radius"], material["restitution"], material["friction"],
-            state.table(Velocity)["linear"], bodies.awake_inverse_mass, bodies.awake_inverse_inertia, h,
+            near_in(state), contacts.opened, contacts.sleeping, contacts.inactive, state.sleep.asleep,
+            motion_of(state), sizes_of(state), materials_of(state), inverse_in(state), h,
         )  # fmt: skip
         if came != graph_colour.FULL:
             break
@@ -55,18 +51,15 @@ def refill(state: State) -> None:
 
 def fill_again(state: State) -> None:
     """Put the contacts whose records name a slot, as those of a file do, back into it."""
-    contacts, material = state.contacts, state.table(Material)
+    contacts, bodies = state.contacts, state.bodies
     contacts.restoring = False
     near, asleep = contacts.manifolds[: contacts.recorded], state.sleep.asleep
     near["slot"][asleep[near["a"]] | asleep[near["b"]]] = -1  # sleeping contacts have none
     state.compile(contacts.wide.kernels)
     for constraints in contacts.wide.kinds:
         constraints.count, restored = restore_slots.restore_slots(
-            constraints.kind, constraints.data, constraints.a, constraints.b, constraints.pair,
-            constraints.colour, constraints.used, contacts.manifolds, contacts.points, contacts.recorded,
-            state.table(Shape)["kind"], state.table(Shape)["radius"],
-            material["restitution"], material["friction"],
-            state.bodies.inverse_mass, state.bodies.inverse_inertia,
+            constraints.slots, contacts.manifolds, contacts.points, contacts.recorded,
+            sizes_of(state), materials_of(state), (bodies.inverse_mass, bodies.inverse_inertia),
         )  # fmt: skip
         constraints.sort()
         contacts.wide.filled += restored

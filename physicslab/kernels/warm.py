@@ -27,12 +27,13 @@ _FIRST = (
     "raster",
     "motion",
     "energy",
+    "fat_boxes",
     "grid",
-    "contact",
-    "impact",
+    "near_pairs",
     "impulse",
     "slots",
     "refresh",
+    "entries",
 )
 """Modules whose kernels almost every scene needs; they are compiled first."""
 _WORKER = (sys.executable, "-m", "physicslab.kernels", "worker")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels import compile_kernels
+from physicslab.kernels import compile_kernels, near_counts
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.records import IMPACT, MANIFOLD, POINT
 from physicslab.kernels.solver import impulse
@@ -79,17 +79,19 @@ class Contacts:
     LOGGED = 32_768
     """How many impacts are kept."""
 
-    proximity_count = _count(slots.PROXIMITY, "How many near pairs have no record.")
-    recorded = _count(slots.RECORDED, "How many near pairs have records.")
-    scalar_count = _count(slots.SCALAR, "How many of these are solved one by one.")
-    sleeping_count = _count(slots.SLEEPING, "How many inactive pairs have points.")
-    active = _count(slots.ACTIVE, "How many scalar pairs have points.")
-    left = _count(slots.LEFT, "How many pairs the impacts of this substep have left to the solver.")
-    logged = _count(slots.LOGGED, "How many impacts were ever logged.")
-    unordered = _count(slots.UNORDERED, "Whether scalar pairs were added since those were last put in order.")
+    proximity_count = _count(near_counts.PROXIMITY, "How many near pairs have no record.")
+    recorded = _count(near_counts.RECORDED, "How many near pairs have records.")
+    scalar_count = _count(near_counts.SCALAR, "How many of these are solved one by one.")
+    sleeping_count = _count(near_counts.SLEEPING, "How many inactive pairs have points.")
+    active = _count(near_counts.ACTIVE, "How many scalar pairs have points.")
+    left = _count(near_counts.LEFT, "How many pairs the impacts of this substep have left to the solver.")
+    logged = _count(near_counts.LOGGED, "How many impacts were ever logged.")
+    unordered = _count(
+        near_counts.UNORDERED, "Whether scalar pairs were added since those were last put in order."
+    )
 
     def __init__(self) -> None:
-        self.counts = np.zeros(slots.COUNTED, np.int64)
+        self.counts = np.zeros(near_counts.COUNTED, np.int64)
         self.wide = WideContacts(self.counts)
         self.inactive: NDArray[np.bool_] = np.zeros(0, np.bool_)
         self.opened = np.zeros(slots.COLOURS, np.int64)
@@ -152,14 +154,7 @@ class Contacts:
         """Write slots into the records of their pairs, if they are newer."""
         if not self._synced:
             for constraints in self.wide.kinds:
-                slots.store(
-                    constraints.data,
-                    constraints.rows,
-                    constraints.count,
-                    constraints.pair,
-                    self.manifolds,
-                    self.points,
-                )
+                slots.store(constraints.slots, constraints.count, self.manifolds, self.points)
             self._synced = True
 
     def dissolve(self, rows: int) -> None:
@@ -198,7 +193,7 @@ class Contacts:
         """Write the slots of sleeping bodies to their records and empty them."""
         if self.wide.filled:
             self.wide.filled -= sum(
-                slots.release(*constraints.layout, self.manifolds, self.points, asleep)
+                slots.release(constraints.slots, constraints.count, self.manifolds, self.points, asleep)
                 for constraints in self.wide.kinds
             )
 

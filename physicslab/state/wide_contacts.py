@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.kernels import near_counts
 from physicslab.kernels.wide import graph_colour, refresh, restore_slots, slots
-from physicslab.kernels.wide.layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE
-from physicslab.kernels.wide.slots import Slots
+from physicslab.kernels.wide.layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE, SlotsTuple
 
 __all__ = ["WideConstraints", "WideContacts"]
 
-type _Numbers = NDArray[np.float64]
 type _Rows = NDArray[np.int64]
 
 
@@ -35,7 +34,8 @@ class WideConstraints:
     """
 
     def __init__(self, kind: int, counts: _Rows) -> None:
-        self._counts, self._place = counts, slots.DISC_BLOCKS if kind == DISC else slots.BOX_BLOCKS
+        self._counts = counts
+        self._place = near_counts.DISC_BLOCKS if kind == DISC else near_counts.BOX_BLOCKS
         self.kind, self.rows = kind, DISC_ROWS if kind == DISC else BOX_ROWS
         self.data: NDArray[np.float64] = np.zeros(0)
         self.a, self.b, self.pair, self.colour, self.order = (np.zeros(0, np.int64) for _ in range(5))
@@ -72,19 +72,9 @@ class WideConstraints:
         graph_colour.sort_blocks(self.count, self.colour, self.order)
 
     @property
-    def slots(self) -> Slots:
-        """The arguments of kernels that count the blocks themselves."""
-        return self.data, self.a, self.b, self.pair, self.colour, self.used, self.order
-
-    @property
-    def layout(self) -> tuple[int, _Numbers, int, _Rows, _Rows, _Rows, _Rows, NDArray[np.uint64]]:
-        """The arguments of kernels that fill or empty slots."""
-        return self.kind, self.data, self.count, self.a, self.b, self.pair, self.colour, self.used
-
-    @property
-    def solved(self) -> tuple[_Numbers, int, _Rows, _Rows, _Rows]:
-        """The arguments of kernels that only change impulses."""
-        return self.data, self.count, self.order, self.a, self.b
+    def slots(self) -> SlotsTuple:
+        """The arguments of kernels."""
+        return self.kind, self.data, self.a, self.b, self.pair, self.colour, self.used, self.order
 
 
 class WideContacts:
@@ -127,11 +117,11 @@ class WideContacts:
     @property
     def filled(self) -> int:
         """How many contacts have a slot."""
-        return int(self._counts[slots.WIDE_COUNT])
+        return int(self._counts[near_counts.WIDE_COUNT])
 
     @filled.setter
     def filled(self, contacts: int) -> None:
-        self._counts[slots.WIDE_COUNT] = contacts
+        self._counts[near_counts.WIDE_COUNT] = contacts
 
     def reset(self, rows: int) -> None:
         """Empty every slot, in a world of so many rows."""

@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.components import Transform, Velocity
+from physicslab.contacts.arguments import bounds_of, materials_of, motion_of, sizes_of
 from physicslab.contacts.near_pairs import list_all
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.events import events, path
@@ -17,6 +18,15 @@ from physicslab.state.masses import check_finite
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import pairs_that_may_meet, turning_boxes
 from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.resting_bodies import (
+    Moment,
+    Motion,
+    RestingBodies,
+    clear_impacts,
+    copy_motion,
+    list_touching,
+    set_motion,
+)
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.integrate import IntegrateSystem
@@ -26,13 +36,6 @@ from physicslab.systems.system import Stage
 
 __all__ = ["EventDriven"]
 
-type _State = list[NDArray[np.float64]]
-"""Copies of the columns below."""
-
-_COLUMNS = ((Transform, "position"), (Transform, "angle"), (Velocity, "linear"), (Velocity, "angular"))
-_WARM = ("feature", "normal_impulse", "tangent_impulse")
-"""What a contact starts the next substep from."""
-_IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 _ACCELERATION = slice(8, 10)
 """The columns of a path's acceleration."""
 _SHORT = 1e-6
@@ -58,7 +61,7 @@ class EventDriven:
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
-        self._schedule, self._stages = schedule, plan.stages.substep
+        self._schedule, self._resting = schedule, RestingBodies(schedule, plan)
         self.reason = plan.collision_reason
         rows = len(state.entity_index)
         self._pairs = pairs_that_may_meet(state)
@@ -74,7 +77,7 @@ class EventDriven:
         self._face = np.zeros(len(self._pairs), np.int64)
         self._due = np.zeros((len(self._pairs), 5))
         self._impact_positions = np.full((len(self._pairs), 2), np.nan)
-        self._bounds = np.array(state.physics.bounds or (0.0, 0.0, 0.0, 0.0))
+        self._bounds = bounds_of(state)
         uniform = [force.uniform_acceleration(state) for force in schedule.forces]
         self._gravity = np.array([(g.x, g.y) for g in uniform if g is not None] or [(0.0, 0.0)]).sum(axis=0)
         internal = (*schedule.forces, schedule.find(ContactSystem), schedule.find(ResolveSystem))
@@ -106,7 +109,7 @@ class EventDriven:
     def _step(self, state: State, dt: float) -> None:
         """Make one step, and call the systems that observe its impacts."""
         self._begin(state)
-        self._begin_contact_step(state)
+        self._resting.begin_step(state)
         self._advance(state, dt, dt, 0.0)
         self._point_to_impacts(state)
         self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, dt)
@@ -124,34 +127,22 @@ class EventDriven:
                 whole = min(int(gone / dt), steps - done - 1)
                 done, gone = done + whole, gone - whole * dt
             # Resting bodies are moved by the contact step from here on, which makes whole steps.
-            self._begin_contact_step(state)
+            self._resting.begin_step(state)
             self._advance(state, dt - gone, dt, done * dt + gone)
             done += 1
 
-    def _begin_contact_step(self, state: State) -> None:
-        contact = self._schedule.find(ContactSystem)
-        if contact is not None:
-            contact.begin_step(state)
-
     def _begin(self, state: State) -> None:
         """Find the mode of each row, and clear the impacts of the step before."""
-        contacts = state.contacts
-        if contacts.stale or not self._listed:
+        if state.contacts.stale or not self._listed:
             list_all(state, self._pairs, len(self._pairs))
-            self._list_touching(state)
+            list_touching(state)
             self._listed = True
-        near = contacts.manifolds[: contacts.recorded]
-        if near["impact_count"].any():
-            near["impact_count"] = 0
-            points = contacts.points[: 2 * contacts.recorded]
-            for name in _IMPACT_FIELDS:
-                points[name] = 0.0
+        if clear_impacts(state):
             self._impact_positions[:] = np.nan
         self._mode[:] = self._initial_mode
-        if contacts.count:
-            self._mode[self._held_by_contacts(state) & (self._initial_mode == events.BALLISTIC)] = (
-                events.IN_CONTACT
-            )
+        if state.contacts.count:
+            resting = self._resting.held(state) & (self._initial_mode == events.BALLISTIC)
+            self._mode[resting] = events.IN_CONTACT
 
     def _point_to_impacts(self, state: State) -> None:
         """Make the arms of ballistic impacts lead from the present place of B to that of the impact."""
@@ -163,25 +154,6 @@ class EventDriven:
                 points["arm_bx"][2 * pairs + k] += moved[:, 0]
                 points["arm_by"][2 * pairs + k] += moved[:, 1]
 
-    def _list_touching(self, state: State) -> None:
-        contacts = state.contacts
-        touching = np.flatnonzero(contacts.manifolds["count"][: contacts.recorded] > 0)
-        contacts.active = len(touching)
-        contacts.touching[: len(touching)] = touching
-
-    def _held_by_contacts(self, state: State) -> NDArray[np.bool_]:
-        """Return which rows have a contact that holds them after the contact step."""
-        contacts = state.contacts
-        near = contacts.manifolds[: contacts.recorded]
-        points = contacts.points[: 2 * contacts.recorded].reshape(-1, 2)
-        in_use = np.arange(2) < near["count"][:, None]
-        deep = points["separation"] < -events.DEEP * near["size"][:, None]
-        held = (in_use & ((points["normal_impulse"] > 0.0) | deep)).any(axis=1)
-        pressed = np.zeros(len(self._mode), np.bool_)
-        pressed[near["a"][held]] = True
-        pressed[near["b"][held]] = True
-        return pressed
-
     # ---- parts of a step -----------------------------------------------------------------------------------
 
     def _advance(self, state: State, span: float, dt: float, offset: float) -> None:
@@ -192,47 +164,54 @@ class EventDriven:
             if parts > _MAX_PARTS:
                 self._mode[self._mode == events.BALLISTIC] = events.IN_CONTACT
             if (self._mode == events.IN_CONTACT).any():
-                elapsed = self._both(state, left, dt, offset + (span - left))
+                elapsed = self._advance_both(state, left, dt, offset + (span - left))
             else:
                 elapsed, why = self._run_events(state, left, dt, offset + (span - left))
                 if why == events.TOO_MANY_IMPACTS:
                     self._mode[self._mode == events.BALLISTIC] = events.IN_CONTACT
             left = left - elapsed if elapsed < left else 0.0
 
-    def _both(self, state: State, span: float, dt: float, offset: float) -> float:
-        """Advance resting and ballistic bodies together until an event; return the time that passed."""
+    def _advance_both(self, state: State, span: float, dt: float, offset: float) -> float:
+        """Advance resting and ballistic bodies together until an event; return the time that passed.
+
+        For ballistic bodies, resting ones follow a path from their known start, velocity and end. Where an
+        event comes before that end, resting bodies go back and advance to the event.
+        """
         in_contact = self._mode == events.IN_CONTACT
-        pairs = np.flatnonzero(self._left_to_contacts())
-        before, kept = _copied(state), _contacts(state, pairs)
-        collisions, logged = state.collisions, state.contacts.logged
-        after = self._rest(state, pairs, state.time + offset, span, dt)
-        elapsed = span
+        start = Moment.of(state, np.flatnonzero(self._left_to_contacts()))
+        end = self._advance_resting(state, start, offset, span, dt)
+        impacts, elapsed = state.collisions - start.collisions, span
         if (self._mode == events.BALLISTIC).any():
-            # For ballistic bodies, resting ones follow a path from their known start, velocity and end.
-            way = after[0] - before[0] - span * before[2]
-            self._paths[:, _ACCELERATION] = self._gravity
-            self._paths[in_contact, _ACCELERATION] = (
-                2.0 * way[in_contact] / (span * span) if span > _SHORT * dt else 0.0
-            )
-            impact_count = state.collisions - collisions
-            _restore(state, before)
+            self._lead_resting(in_contact, start.motion, end, span, dt)
+            set_motion(state, start.motion)
             elapsed, _ = self._run_events(state, span, dt, offset)
-            advanced = _copied(state)
+            motion = copy_motion(state)
             if elapsed < span:
-                state.collisions -= impact_count
-                if state.contacts.read:
-                    state.contacts.forget_impacts(logged, impact_count)
-                _restore(state, before)
-                _restore_contacts(state, pairs, kept)
-                after = self._rest(state, pairs, state.time + offset, elapsed, dt)
-            for whole, part in zip(advanced, after, strict=True):
+                start.restore(state, impacts)
+                end = self._advance_resting(state, start, offset, elapsed, dt)
+            for whole, part in zip(motion, end, strict=True):
                 whole[in_contact] = part[in_contact]
-            _restore(state, advanced)
+            set_motion(state, motion)
         if elapsed > _SHORT * dt:
-            self._mode[in_contact & (self._mode == events.IN_CONTACT) & ~self._held_by_contacts(state)] = (
-                events.BALLISTIC
-            )
+            released = in_contact & (self._mode == events.IN_CONTACT) & ~self._resting.held(state)
+            self._mode[released] = events.BALLISTIC
         return elapsed
+
+    def _advance_resting(self, state: State, start: Moment, offset: float, span: float, dt: float) -> Motion:
+        """Advance resting bodies by ``span`` s, if they can move within it; return the motion of all."""
+        if span <= _SHORT * dt:
+            return copy_motion(state)
+        return self._resting.advance(state, start.pairs, state.time + offset, span)
+
+    def _lead_resting(
+        self, in_contact: NDArray[np.bool_], start: Motion, end: Motion, span: float, dt: float
+    ) -> None:
+        """Give resting bodies the acceleration that leads them from ``start`` to ``end`` in ``span`` s."""
+        way = end[0] - start[0] - span * start[2]
+        self._paths[:, _ACCELERATION] = self._gravity
+        self._paths[in_contact, _ACCELERATION] = (
+            2.0 * way[in_contact] / (span * span) if span > _SHORT * dt else 0.0
+        )
 
     def _left_to_contacts(self) -> NDArray[np.bool_]:
         """Return which pairs the contact step handles: one body rests, and the other is not ballistic."""
@@ -241,43 +220,10 @@ class EventDriven:
         left: NDArray[np.bool_] = in_contact & (one != events.BALLISTIC) & (other != events.BALLISTIC)
         return left
 
-    def _rest(self, state: State, pairs: NDArray[np.int64], began: float, span: float, dt: float) -> _State:
-        """Advance all by the contact step for ``span`` s, with these contacts alone; return the new state."""
-        if span <= _SHORT * dt:
-            return _copied(state)
-        contacts = state.contacts
-        near = contacts.manifolds[: contacts.recorded]
-        points = contacts.points[: 2 * contacts.recorded]
-        lost = np.repeat(near["count"] <= 0, 2)  # a contact that comes again starts from no old impulse
-        for name in _WARM:
-            points[name][lost] = 0
-        others = np.ones(len(near), np.bool_)
-        others[pairs] = False
-        near["count"][others] = -1  # the contact step skips them
-        impact_count, earlier = near["impact_count"].copy(), [points[name].copy() for name in _IMPACT_FIELDS]
-        substeps, run = state.simulation.substeps, self._schedule.run
-        # Kernels of the stages are compiled at their first call: most are not called here.
-        for substep in range(substeps):
-            state.moment = began + (substep + 0.5) * span / substeps
-            for stage, share in self._stages:
-                if stage is not Stage.BROAD_PHASE:
-                    run(stage, state, share * span / substeps)
-        near["count"][others] = 0
-        # The contact stage has cleared the records of impacts; those of the ballistic part are added again.
-        new = impact_count > near["impact_count"]
-        near["impact_count"][new] += impact_count[new]
-        both = np.repeat(new, 2)
-        for name, before in zip(_IMPACT_FIELDS, earlier, strict=True):
-            joined = np.maximum if name == "approach_speed" else np.add
-            points[name][both] = joined(points[name][both], before[both])
-        return _copied(state)
-
     def _run_events(self, state: State, span: float, dt: float, offset: float) -> tuple[float, int]:
         """Move bodies from impact to impact for ``span`` s, or until an event; return the time and why."""
         began = time.perf_counter_ns()
-        contacts, bodies, physics = state.contacts, state.bodies, state.physics
-        transform, velocity = state.table(Transform), state.table(Velocity)
-        shape, material = state.table(Shape), state.table(Material)
+        contacts, bodies = state.contacts, state.bodies
         ballistic = self._mode == events.BALLISTIC
         self._paths[:, _ACCELERATION] = np.where(
             (self._mode == events.IN_CONTACT)[:, None],
@@ -287,10 +233,8 @@ class EventDriven:
         elapsed, impacts, why, pair = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,
             self._paths, self._mode, self._face, self._due, self._impact_positions,
-            transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
-            shape["kind"], shape["radius"], shape["width"], shape["height"],
-            material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
-            self._bounds, physics.bounds_restitution, physics.bounds_friction,
+            motion_of(state), sizes_of(state), materials_of(state),
+            (bodies.inverse_mass, bodies.inverse_inertia), self._bounds,
             contacts.log, contacts.logged, state.time + offset, span, dt, self._urgent,
         )  # fmt: skip
         # The impact of a woken body is resolved first, or the body would come to rest again at once.
@@ -301,25 +245,3 @@ class EventDriven:
         for name in self._within:
             self._schedule.note(name, 1, 0)  # their time is part of the loop's
         return elapsed, why
-
-
-def _copied(state: State) -> _State:
-    """Return a copy of all places and velocities."""
-    return [state.table(component)[name].copy() for component, name in _COLUMNS]
-
-
-def _restore(state: State, kept: _State) -> None:
-    for (component, name), column in zip(_COLUMNS, kept, strict=True):
-        state.table(component)[name][:] = column
-
-
-def _contacts(state: State, pairs: NDArray[np.int64]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return a copy of the contacts of some pairs."""
-    return state.contacts.manifolds[pairs], state.contacts.points.reshape(-1, 2)[pairs]
-
-
-def _restore_contacts(
-    state: State, pairs: NDArray[np.int64], kept: tuple[NDArray[Any], NDArray[Any]]
-) -> None:
-    state.contacts.manifolds[pairs] = kept[0]
-    state.contacts.points.reshape(-1, 2)[pairs] = kept[1]

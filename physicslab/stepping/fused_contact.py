@@ -24,6 +24,7 @@ from physicslab.contacts.wide import refill
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.kernels.broad import grid, near_pairs
+from physicslab.kernels.broad.fat_boxes import fat_boxes
 from physicslab.kernels.loading import working_ns
 from physicslab.kernels.solver import fused_contact as fused
 from physicslab.kernels.wide import slots
@@ -62,7 +63,7 @@ class FusedContact:
     leaps: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = True
     kernels: tuple[Any, ...] = (
-        fused.advance, grid.fat_boxes, grid.find_pairs, near_pairs.partition, near_pairs.carry_over,
+        fused.advance, fat_boxes, grid.find_pairs, near_pairs.partition, near_pairs.carry_over,
         near_pairs.sort_scalar, slots.list_scalar,
     )  # fmt: skip
 

@@ -10,11 +10,11 @@ from physicslab.stepping.contact import Contact
 from physicslab.stepping.event_driven import EventDriven
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.fused_contact import FusedContact
-from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.plan import StepPlan, choose_plan
 from physicslab.stepping.stepper import Stepper
 from physicslab.systems.schedule import LeftOut, Schedule
 
-__all__ = ["STEPPERS", "Steppers", "select_steppers"]
+__all__ = ["STEPPERS", "Steppers", "choose", "remake", "select_steppers"]
 
 STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, FusedContact, Contact)
 """All of them, the best first. The last can advance any world."""
@@ -62,3 +62,26 @@ def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Stepper
         if kind in (Flow, EventDriven) and reason is None:
             break
     return Steppers(tuple(usable), tuple(left_out))
+
+
+def choose(state: State, schedule: Schedule, plan: StepPlan | None = None) -> tuple[StepPlan, Steppers]:
+    """Choose the steppers for the systems that run, and the method, unless there is a ``plan`` already."""
+    before = state.event_driven
+    plan = plan or choose_plan(state, schedule)
+    state.event_driven = plan.collisions == "exact"
+    state.contacts.stale |= before or state.event_driven
+    return plan, select_steppers(state, schedule, plan)
+
+
+def remake(state: State, schedule: Schedule, plan: StepPlan | None) -> tuple[StepPlan, Steppers]:
+    """Choose systems, steppers and the method, unless there is a ``plan`` already.
+
+    Whether bodies may sleep depends on how collisions are found.
+    """
+    while True:
+        before = state.event_driven
+        schedule.remake(state)
+        state.has_forces = bool(schedule.forces)
+        chosen = choose(state, schedule, plan)
+        if state.event_driven == before:
+            return chosen

@@ -9,6 +9,7 @@ from physicslab.components import Shape, Transform, Velocity
 from physicslab.contacts.arguments import motion_of, sizes_of
 from physicslab.contacts.near_pairs import partition
 from physicslab.kernels.broad import grid, near_pairs
+from physicslab.kernels.broad.fat_boxes import fat_boxes, still_holds
 from physicslab.kernels.wide import slots
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
@@ -54,7 +55,7 @@ class BroadPhaseSystem(System):
 
     engine = True
     kernels = (
-        grid.still_holds, grid.fat_boxes, grid.find_pairs,
+        still_holds, fat_boxes, grid.find_pairs,
         near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
     )  # fmt: skip
 
@@ -92,7 +93,7 @@ class BroadPhaseSystem(System):
         """Update the list of near pairs, where it is not valid any more."""
         self.follow_rows(state)
         position, angle, linear, _ = motion_of(state)
-        if not grid.still_holds(position, angle, linear, *sizes_of(state), self.fat, h):
+        if not still_holds(position, angle, linear, *sizes_of(state), self.fat, h):
             self.list_pairs(state, h)
 
     def list_pairs(self, state: State, h: float) -> None:
@@ -101,7 +102,7 @@ class BroadPhaseSystem(System):
         shape = state.table(Shape)
         awake = state.bodies.awake_inverse_mass
         ahead = h * _lookahead(state.sleep.count, int(np.count_nonzero(awake)))
-        grid.fat_boxes(position, angle, linear, *sizes, awake, self.fat, self._boxes, ahead)
+        fat_boxes(position, angle, linear, *sizes, awake, self.fat, self._boxes, ahead)
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
         found, walls = self._count_pairs(shape["kind"], inverse_mass, bounded)

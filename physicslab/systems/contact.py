@@ -12,7 +12,6 @@ from physicslab.contacts.arguments import (
     speculative_margin,
 )
 from physicslab.contacts.wide import add_constraints, refill
-from physicslab.kernels.narrow import contact
 from physicslab.kernels.solver import entries
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
@@ -29,7 +28,7 @@ class ContactSystem(System):
     """
 
     engine = True
-    kernels = (entries.find_stage, contact.find_contacts)
+    kernels = (entries.find_stage,)
 
     def __init__(self) -> None:
         self._first = True

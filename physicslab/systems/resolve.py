@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from physicslab.contacts.arguments import acting_in, inverse_in, motion_of, near_in
+from physicslab.kernels.arguments import SoftnessTuple
 from physicslab.kernels.solver import entries, impulse
-from physicslab.kernels.solver.arguments import SoftnessTuple
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.system import Stage, System, at

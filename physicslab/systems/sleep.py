@@ -6,12 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Velocity
-from physicslab.contacts.arguments import bounds_of, materials_of, motion_of, sizes_of, speculative_margin
+from physicslab.contacts.arguments import (
+    bounds_of,
+    materials_of,
+    motion_of,
+    near_in,
+    sizes_of,
+    speculative_margin,
+)
 from physicslab.contacts.islands import check_edits, fall_asleep, keep_places, wake, wake_all
-from physicslab.kernels import motion
-from physicslab.kernels.narrow import contact
+from physicslab.kernels import motion, near_counts
+from physicslab.kernels.arguments import InverseTuple
 from physicslab.kernels.sleep import edits, islands
-from physicslab.kernels.solver.arguments import InverseTuple
+from physicslab.kernels.solver import entries
 from physicslab.state.sleep import Sleep
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
@@ -152,11 +159,13 @@ def _find_among(
     first: bool,
 ) -> int:  # fmt: skip
     """Find or refresh the points of some of the pairs; return how many of them touch."""
-    contacts, (walls, restitution, friction) = state.contacts, bounds_of(state)
-    state.compile((contact.find_contacts,))
-    return contact.find_contacts(
-        contacts.manifolds, contacts.points, pairs, len(pairs), touching, *motion_of(state), *sizes_of(state),
-        *materials_of(state), *inverse, walls, restitution, friction, first, h,
-        state.window[0],
-        speculative_margin(state, h),
+    counts = np.zeros_like(state.contacts.counts)  # neither proximity pairs nor wide contacts
+    counts[near_counts.SCALAR] = len(pairs)
+    near = near_in(state)
+    among = (counts, *near[1:3], pairs, touching, *near[5:])
+    state.compile((entries.find_stage,))
+    entries.find_stage(
+        among, motion_of(state), sizes_of(state), materials_of(state), inverse, bounds_of(state),
+        first, h, state.window[0], speculative_margin(state, h),
     )  # fmt: skip
+    return int(counts[near_counts.ACTIVE])

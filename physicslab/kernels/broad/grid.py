@@ -1,91 +1,15 @@
 """The broad phase: a uniform grid over fat boxes, sorted by counting."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, fused, inlined
 from physicslab.kernels.records import Couples, Pairs
 
-__all__ = ["fat_boxes", "find_pairs", "still_holds"]
-
-
-@inlined
-def _bounding_radius(kind: int, radius: float, width: float, height: float) -> float:
-    if kind == 1:
-        return radius
-    return 0.5 * math.sqrt(width * width + height * height)
-
-
-@kernel
-def still_holds(
-    position: Vectors,
-    angle: Numbers,
-    linear: Vectors,
-    kind: Rows,
-    radius: Numbers,
-    width: Numbers,
-    height: Numbers,
-    fat: Vectors,
-    h: float,
-) -> bool:
-    """Whether every body, with its motion in a time h, is still inside the fat box made for it.
-
-    ``fat`` (5, rows) holds where each body was (x, y, angle), its bounding radius then, and the margin around
-    it.
-    """
-    places, velocities = position.reshape(position.size), linear.reshape(linear.size)
-    holds = True
-    for i in range(len(angle)):  # no early exit, so that LLVM vectorises the loop
-        reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
-        made_for = reach if kind[i] != 0 else 0.0
-        moved_x = abs(places[2 * i] - fat[0, i]) + abs(velocities[2 * i]) * h
-        moved_y = abs(places[2 * i + 1] - fat[1, i]) + abs(velocities[2 * i + 1]) * h
-        turned = abs(angle[i] - fat[2, i]) * (reach if kind[i] == 2 else 0.0)
-        inside = (max(moved_x, moved_y) + turned <= fat[4, i]) | (kind[i] == 0)
-        holds &= inside & (made_for == fat[3, i])
-    return holds
-
-
-@kernel
-def fat_boxes(
-    position: Vectors,
-    angle: Numbers,
-    linear: Vectors,
-    kind: Rows,
-    radius: Numbers,
-    width: Numbers,
-    height: Numbers,
-    inverse_mass: Numbers,
-    fat: Vectors,
-    boxes: Vectors,
-    h: float,
-) -> None:
-    """Make each body's fat box (xmin, ymin, xmax, ymax), good for about three steps."""
-    moving, speeds = 0, 0.0
-    for i in range(len(angle)):
-        speed = abs(linear[i, 0]) + abs(linear[i, 1])
-        if speed > 0.0 and kind[i] != 0:
-            moving += 1
-            speeds += min(speed, 1e9)
-    usual = speeds / moving if moving else 0.0
-    for i in range(len(angle)):
-        fat[3, i] = 0.0
-        if kind[i] == 0:
-            continue
-        reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
-        half_x = half_y = reach
-        if kind[i] == 2:
-            c, s = abs(math.cos(angle[i])), abs(math.sin(angle[i]))
-            half_x = 0.5 * (c * width[i] + s * height[i])
-            half_y = 0.5 * (s * width[i] + c * height[i])
-        # A slow body among fast ones is likely to be hit.
-        speed = max(abs(linear[i, 0]), abs(linear[i, 1]), usual if inverse_mass[i] > 0.0 else 0.0)
-        margin = 0.1 * min(half_x, half_y) + 14.0 * h * speed
-        fat[0, i], fat[1, i], fat[2, i] = position[i, 0], position[i, 1], angle[i]
-        fat[3, i], fat[4, i] = reach, margin
-        boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
-        boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
+__all__ = ["find_pairs"]
 
 
 _CROWD = 32
@@ -115,16 +39,27 @@ def _meet(flat: Numbers, p: int, q: int) -> bool:
     )  # fmt: skip
 
 
+class Search(NamedTuple):
+    """The boxes among which pairs are found, with their margins and inverse masses, and where pairs go.
+
+    ``company`` counts the bodies of its own size that overlap each body.
+    """
+
+    boxes: Vectors
+    fat: Vectors
+    inverse_mass: Numbers
+    couples: Couples
+    company: Rows
+
+
 @inlined
-def _take(
-    couples: Couples, found: int, inverse_mass: Numbers,
-    boxes: Vectors, fat: Vectors, company: Rows, i: int, j: int,
-) -> int:  # fmt: skip
+def _take(search: Search, found: int, i: int, j: int) -> int:
     """Write the pair (i, j), if it can be moved and there is room; return how many there are now.
 
     Of bodies that were put on one spot only so many pairs are taken that work and memory stay proportional
     to the bodies: a body whose ``company`` is full makes pairs with further ones when some have left.
     """
+    boxes, fat, inverse_mass, couples, company = search
     if inverse_mass[i] + inverse_mass[j] == 0.0:
         return found
     # The boxes without their margins.
@@ -150,35 +85,43 @@ def _cell(x: float) -> int:
     return math.floor(x) if abs(x) < _FARTHEST else int(_FARTHEST)
 
 
-@inlined
-def _bucket(ix: int, iy: int, low_x: int, low_y: int, up: int, buckets: int, dense: bool) -> int:
-    """Return the bucket of a cell: one of its own, or a shared one by a hash."""
-    if dense:
-        return (ix - low_x) * up + iy - low_y
-    return ((ix * 73856093) ^ (iy * 19349663)) & (buckets - 1)
+class Cells(NamedTuple):
+    """The first and the last of the cells, with an empty rim, and how many are above each other.
 
-
-@allocating
-def _level(
-    boxes: Vectors,
-    fat: Vectors,
-    members: Rows,
-    count: int,
-    cell: float,
-    inverse_mass: Numbers,
-    couples: Couples,
-    found: int,
-    larges: Rows,
-    company: Rows,
-) -> tuple[int, int]:
-    """Find all pairs with a body no larger than a cell; return how many there are, and how many are larger.
-
-    Each small body is in the one cell that holds its centre, so that its partners are in that cell and its
-    eight neighbours, of which four are looked at, to take each pair once. Each large body looks through all
-    cells it spans.
+    Then the number of buckets, and whether each cell has one of its own: if not, they are shared by a hash.
     """
-    small = np.empty(count, np.int64)
-    cells = np.empty((count, 2), np.int64)
+
+    low_x: int
+    low_y: int
+    high_x: int
+    high_y: int
+    up: int
+    buckets: int
+    dense: bool
+
+
+class Grid(NamedTuple):
+    """Bodies sorted by bucket: where each bucket begins, the bodies' rows, cells (., 2) and boxes (., 4)."""
+
+    first: Rows
+    body: Rows
+    home: NDArray[np.int64]
+    near: Vectors
+
+
+@inlined
+def _bucket(ix: int, iy: int, cells: Cells) -> int:
+    """Return the bucket of a cell: one of its own, or a shared one by a hash."""
+    if cells.dense:
+        return (ix - cells.low_x) * cells.up + iy - cells.low_y
+    return ((ix * 73856093) ^ (iy * 19349663)) & (cells.buckets - 1)
+
+
+@fused
+def _place(
+    boxes: Vectors, members: Rows, count: int, cell: float, larges: Rows, small: Rows, home: NDArray[np.int64]
+) -> tuple[int, int, Cells]:
+    """Find the cell of each body no larger than one; return how many are, how many larger, and the cells."""
     smalls, large_count = 0, 0
     low_x, low_y, high_x, high_y = 0, 0, -1, -1
     half_per_cell = 0.5 / cell
@@ -193,7 +136,7 @@ def _level(
         if smalls == 0:
             low_x, high_x, low_y, high_y = ix, ix, iy, iy
         low_x, high_x, low_y, high_y = min(low_x, ix), max(high_x, ix), min(low_y, iy), max(high_y, iy)
-        small[smalls], cells[smalls, 0], cells[smalls, 1] = i, ix, iy
+        small[smalls], home[smalls, 0], home[smalls, 1] = i, ix, iy
         smalls += 1
     # A rim of empty cells, so that every cell has all its neighbours.
     low_x, low_y, high_x, high_y = low_x - 1, low_y - 1, high_x + 1, high_y + 1
@@ -202,14 +145,18 @@ def _level(
     buckets = across * up if dense else 1
     while not dense and buckets < 2 * smalls:
         buckets *= 2
+    return smalls, large_count, Cells(low_x, low_y, high_x, high_y, up, buckets, dense)
 
-    # Count the bodies of each bucket, then put them there: a counting sort.
-    first = np.zeros(buckets + 1, np.int64)
+
+@fused
+def _sort(boxes: Vectors, small: Rows, cell_of: NDArray[np.int64], smalls: int, cells: Cells) -> Grid:
+    """Count the bodies of each bucket, then put them there: a counting sort."""
+    first = np.zeros(cells.buckets + 1, np.int64)
     where = np.empty(smalls, np.int64)
     for k in range(smalls):
-        where[k] = _bucket(cells[k, 0], cells[k, 1], low_x, low_y, up, buckets, dense)
+        where[k] = _bucket(cell_of[k, 0], cell_of[k, 1], cells)
         first[where[k] + 1] += 1
-    for bucket in range(buckets):
+    for bucket in range(cells.buckets):
         first[bucket + 1] += first[bucket]
     fill = first[:-1].copy()
     body = np.empty(smalls, np.int64)
@@ -218,64 +165,108 @@ def _level(
     for k in range(smalls):
         entry = fill[where[k]]
         fill[where[k]] = entry + 1
-        body[entry], home[entry, 0], home[entry, 1] = small[k], cells[k, 0], cells[k, 1]
+        body[entry], home[entry, 0], home[entry, 1] = small[k], cell_of[k, 0], cell_of[k, 1]
         for side in range(4):
             near[entry, side] = boxes[small[k], side]
+    return Grid(first, body, home, near)
 
+
+@fused
+def _pair_dense(search: Search, cells: Cells, grid: Grid, smalls: int, found: int) -> int:
+    """Find the pairs of small bodies where each cell has its own bucket; return how many pairs there are now.
+
+    Buckets one above the other are next to each other: two stretches hold all five cells.
+    """
+    first, body, home, near = grid
+    couples = search.couples
     flat = near.reshape(near.size)  # else every index is multiplied by a stride
     for p in range(smalls):
-        ix, iy = home[p, 0], home[p, 1]
-        if dense:  # buckets one above the other are next to each other: two stretches hold all five cells
-            at = (ix - low_x) * up + iy - low_y
-            above, beside, end = first[at + 2], first[at + up - 1], first[at + up + 2]
-            candidates = above - (p + 1) + end - beside
-            i = body[p]
-            if candidates <= 2 * _CROWD:
-                if 2 * (found + candidates) > len(couples):
-                    found += candidates
-                    continue
-                # Every neighbour is written, and kept by counting: whether two overlap cannot be predicted.
-                for q in range(p + 1, above):
-                    couples[2 * found], couples[2 * found + 1] = i, body[q]
-                    found += _meet(flat, p, q)
-                for q in range(beside, end):
-                    couples[2 * found], couples[2 * found + 1] = i, body[q]
-                    found += _meet(flat, p, q)
+        at, i = (home[p, 0] - cells.low_x) * cells.up + home[p, 1] - cells.low_y, body[p]
+        above, beside, end = first[at + 2], first[at + cells.up - 1], first[at + cells.up + 2]
+        candidates = above - (p + 1) + end - beside
+        if candidates <= 2 * _CROWD:
+            if 2 * (found + candidates) > len(couples):
+                found += candidates
                 continue
+            # Every neighbour is written, and kept by counting: whether two overlap cannot be predicted.
             for q in range(p + 1, above):
-                if _overlap(near, p, near, q):
-                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
+                couples[2 * found], couples[2 * found + 1] = i, body[q]
+                found += _meet(flat, p, q)
             for q in range(beside, end):
-                if _overlap(near, p, near, q):
-                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
+                couples[2 * found], couples[2 * found + 1] = i, body[q]
+                found += _meet(flat, p, q)
             continue
+        for q in range(p + 1, above):
+            if _overlap(near, p, near, q):
+                found = _take(search, found, i, body[q])
+        for q in range(beside, end):
+            if _overlap(near, p, near, q):
+                found = _take(search, found, i, body[q])
+    return found
+
+
+@fused
+def _pair_hashed(search: Search, cells: Cells, grid: Grid, smalls: int, found: int) -> int:
+    """Find the pairs of small bodies where cells share buckets; return how many pairs there are now."""
+    first, body, home, near = grid
+    for p in range(smalls):
+        ix, iy = home[p, 0], home[p, 1]
         for neighbour in range(5):
             jx = ix if neighbour < 2 else ix + 1
             jy = iy + neighbour if neighbour < 2 else iy + neighbour - 3
-            at = _bucket(jx, jy, low_x, low_y, up, buckets, dense)
+            at = _bucket(jx, jy, cells)
             for q in range(p + 1 if neighbour == 0 else first[at], first[at + 1]):
                 if home[q, 0] == jx and home[q, 1] == jy and _overlap(near, p, near, q):
-                    found = _take(couples, found, inverse_mass, boxes, fat, company, body[p], body[q])
+                    found = _take(search, found, body[p], body[q])
+    return found
 
-    for k in range(large_count):
+
+@fused
+def _pair_large(
+    search: Search, cells: Cells, grid: Grid, smalls: int, larges: Rows, count: int, cell: float, found: int
+) -> int:
+    """Find the pairs of large bodies with small ones; return how many pairs there are now."""
+    boxes, body = search.boxes, grid.body
+    for k in range(count):
         i = larges[k]
         from_x, to_x = _cell(boxes[i, 0] / cell - 0.5), _cell(boxes[i, 2] / cell + 0.5)
         from_y, to_y = _cell(boxes[i, 1] / cell - 0.5), _cell(boxes[i, 3] / cell + 0.5)
-        from_x, to_x = max(from_x, low_x), min(to_x, high_x)
-        from_y, to_y = max(from_y, low_y), min(to_y, high_y)
+        from_x, to_x = max(from_x, cells.low_x), min(to_x, cells.high_x)
+        from_y, to_y = max(from_y, cells.low_y), min(to_y, cells.high_y)
         if from_x > to_x or from_y > to_y:
             continue
-        if not dense or float(to_x - from_x + 1) * float(to_y - from_y + 1) > smalls:
+        if not cells.dense or float(to_x - from_x + 1) * float(to_y - from_y + 1) > smalls:
             for q in range(smalls):
-                if _overlap(boxes, i, near, q):
-                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
+                if _overlap(boxes, i, grid.near, q):
+                    found = _take(search, found, i, body[q])
             continue
         for ix in range(from_x, to_x + 1):
-            column = (ix - low_x) * up - low_y
-            for q in range(first[column + from_y], first[column + to_y + 1]):
-                if _overlap(boxes, i, near, q):
-                    found = _take(couples, found, inverse_mass, boxes, fat, company, i, body[q])
-    return found, large_count
+            column = (ix - cells.low_x) * cells.up - cells.low_y
+            for q in range(grid.first[column + from_y], grid.first[column + to_y + 1]):
+                if _overlap(boxes, i, grid.near, q):
+                    found = _take(search, found, i, body[q])
+    return found
+
+
+@allocating
+def _level(
+    search: Search, members: Rows, count: int, cell: float, larges: Rows, found: int
+) -> tuple[int, int]:
+    """Find all pairs with a body no larger than a cell; return how many there are, and how many are larger.
+
+    Each small body is in the one cell that holds its centre, so that its partners are in that cell and its
+    eight neighbours, of which four are looked at, to take each pair once. Each large body looks through all
+    cells it spans.
+    """
+    small = np.empty(count, np.int64)
+    home = np.empty((count, 2), np.int64)
+    smalls, large_count, cells = _place(search.boxes, members, count, cell, larges, small, home)
+    grid = _sort(search.boxes, small, home, smalls, cells)
+    if cells.dense:
+        found = _pair_dense(search, cells, grid, smalls, found)
+    else:
+        found = _pair_hashed(search, cells, grid, smalls, found)
+    return _pair_large(search, cells, grid, smalls, larges, large_count, cell, found), large_count
 
 
 @allocating_kernel
@@ -293,7 +284,7 @@ def find_pairs(
     n = len(kind)
     members = np.empty(n, np.int64)
     larges = np.empty(n, np.int64)
-    company = np.zeros(n, np.int64)
+    search = Search(boxes, fat, inverse_mass, couples, np.zeros(n, np.int64))
     count, found, walls = 0, 0, 0
     for i in range(n):
         if kind[i] == 0:
@@ -312,12 +303,8 @@ def find_pairs(
             i = members[k]
             inverse_sizes += 1.0 / max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1])
         # The harmonic mean goes by the small bodies, which are many, and not by the few walls.
-        found, count = _level(
-            boxes, fat, members, count, 1.25 * count / inverse_sizes, inverse_mass, couples, found, larges,
-            company,
-        )  # fmt: skip
-        for k in range(
-            count
-        ):  # one by one: for slices, numba compiles the text of an error that cannot occur
+        found, count = _level(search, members, count, 1.25 * count / inverse_sizes, larges, found)
+        # One by one: for slices, numba compiles the text of an error that cannot occur.
+        for k in range(count):
             members[k] = larges[k]
     return found, walls

@@ -7,14 +7,27 @@ are resolved one after the other until no pair approaches: a row of touching dis
 """
 
 import math
+from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels.arguments import (
+    Bounds,
+    BoundsTuple,
+    Inverse,
+    InverseTuple,
+    Materials,
+    MaterialsTuple,
+    Motion,
+    MotionTuple,
+    Sizes,
+    SizesTuple,
+)
 from physicslab.kernels.events.encounter import gap_of, meeting_of, touch_pair
 from physicslab.kernels.events.path import advance_to, begin, place, seen_from
 from physicslab.kernels.events.path_impact import resolve_ballistic_impacts
 from physicslab.kernels.narrow.contact import effective_masses, mix
 from physicslab.kernels.ode.compensated import add
-from physicslab.kernels.records import Impacts, Manifold, Manifolds, Point, Points
+from physicslab.kernels.records import Impacts, Manifold, Manifolds, Points
 from physicslab.kernels.solver.impact_log import write_impact
 from physicslab.kernels.twins import endless
 
@@ -40,6 +53,27 @@ _SAME_TIME = 1e-12
 """Share of a step within which impacts of one pair count as simultaneous."""
 _MAX_REPEATS = 32
 """Largest number of bounces of an inelastic pair within that time; then it stays together."""
+
+
+class Flight(NamedTuple):
+    """What is known of ballistic motion: the pairs, the bodies, and when each pair meets.
+
+    Records and points of the pairs, and how many there are; paths, modes and motions of the bodies; of each
+    pair the face, when it meets, and where B was at its last impact; then sizes, masses and bounds.
+    """
+
+    manifolds: Manifolds
+    points: Points
+    pairs: int
+    paths: Vectors
+    mode: Rows
+    motion: Motion
+    face: Rows
+    due: Vectors
+    impact_position: Vectors
+    sizes: Sizes
+    inverse: Inverse
+    bounds: Bounds
 
 
 @inlined
@@ -82,44 +116,41 @@ def _first(due: Vectors, count: int) -> int:
     return best
 
 
-@inlined
-def _begin_all(
-    manifolds: Manifolds, count: int, paths: Vectors, mode: Rows, due: Vectors,
-    position: Vectors, angle: Numbers, linear: Vectors, kind: Rows, radius: Numbers,
-    width: Numbers, height: Numbers, restitution: Numbers, friction: Numbers,
-    bounds: Numbers, bounds_restitution: float, bounds_friction: float,
-) -> tuple[int, float]:  # fmt: skip
+@fused
+def _begin_all(flight: Flight, materials: Materials) -> tuple[int, float]:
     """Begin all paths; return OVERLAP if bodies overlap too deeply, and the speed that counts as none."""
+    paths, mode, due, (position, angle, linear, _) = flight.paths, flight.mode, flight.due, flight.motion
     why, fastest = DONE, 0.0
     for i in range(len(mode)):
         begin(paths, i, position[i, 0], position[i, 1], linear[i, 0], linear[i, 1])
         fastest = max(fastest, abs(linear[i, 0]) + abs(linear[i, 1]))
-    for p in range(count):
-        manifold = manifolds[p]
+    for p in range(flight.pairs):
+        manifold = flight.manifolds[p]
         a, b = manifold.a, manifold.b
         due[p, 0], due[p, 1], due[p, 2], due[p, 3], due[p, 4] = math.inf, 0.0, -math.inf, 0.0, -1.0
-        mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
+        mix(manifold, materials, flight.bounds)
         if mode[a] == BALLISTIC or mode[b] == BALLISTIC:
-            gap, size = gap_of(manifold, paths, angle, kind, radius, width, height, bounds)
+            gap, size = gap_of(manifold, paths, angle, flight.sizes, flight.bounds.walls)
             if gap < -DEEP * size:
                 why = OVERLAP
                 _mark_in_contact(mode, a, b)
     return why, _MIN_SPEED_RATIO * fastest
 
 
-@inlined
+@fused
 def _meet(
-    p: int, manifold: Manifold, one: Point, two: Point, points: Points, paths: Vectors, mode: Rows,
-    face: Rows, due: Vectors, impact_position: Vectors, angle: Numbers, angular: Numbers, kind: Rows,
-    radius: Numbers, width: Numbers, height: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
-    bounds: Numbers, log: Impacts, number: int, start: float, now: float, low: float, dt: float,
-) -> tuple[int, int]:  # fmt: skip
+    flight: Flight, p: int, log: Impacts, number: int, start: float, now: float, low: float, dt: float
+) -> tuple[int, int]:
     """Resolve a meeting; return why the motion ends, DONE if it goes on, and how many impacts it was."""
+    manifold, one, two = flight.manifolds[p], flight.points[2 * p], flight.points[2 * p + 1]
+    paths, mode, due, angle, angular = (
+        flight.paths, flight.mode, flight.due, flight.motion.angle, flight.motion.angular,
+    )  # fmt: skip
     a, b = manifold.a, manifold.b
     dx, dy, ux, uy, wx, wy = seen_from(paths, a, b, now, low)
     x, _, y, _ = place(paths, b, now, low)
-    touch_pair(manifold, one, two, face[p], x, y, dx, dy, angle, kind, radius, width, height, bounds)
-    effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
+    touch_pair(manifold, one, two, flight.face[p], x, y, dx, dy, angle, flight.sizes, flight.bounds.walls)
+    effective_masses(manifold, flight.points, p, flight.inverse)
     nx, ny = manifold.normal_x, manifold.normal_y
     approach = -(ux * nx + uy * ny)
     was_resting = mode[a] == IN_CONTACT or mode[b] == IN_CONTACT
@@ -137,22 +168,31 @@ def _meet(
     if why == CAME_TO_REST or (e < 1.0 and due[p, 3] > _MAX_REPEATS):
         manifold.restitution = 0.0
     normal, tangent = one.impact_normal + two.impact_normal, one.impact_tangent + two.impact_tangent
-    resolve_ballistic_impacts(manifold, one, two, paths, angular, inverse_mass, inverse_inertia)
+    resolve_ballistic_impacts(manifold, one, two, paths, angular, flight.inverse)
     manifold.restitution, manifold.count, manifold.found = e, 0, 0
-    impact_position[p, 0], impact_position[p, 1] = x, y
+    flight.impact_position[p, 0], flight.impact_position[p, 1] = x, y
     if approach <= 0.0:
         return why, 0
     write_impact(log, number, manifold, one, two, one, start + (now + low), x, y, approach, normal, tangent)
     return why, 1
 
 
+@fused
+def _end_all(flight: Flight, now: float, low: float) -> None:
+    """Move all bodies to where they are at the time ``now + low``."""
+    paths, (position, angle, linear, angular) = flight.paths, flight.motion
+    for i in range(len(flight.mode)):
+        if flight.mode[i] != FIXED:
+            advance_to(paths, i, angle, angular, now, low)
+            position[i, 0], position[i, 1] = paths[i, 0], paths[i, 2]
+            linear[i, 0], linear[i, 1] = paths[i, 4], paths[i, 6]
+
+
 @kernel
 def run_events(
     manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, due: Vectors,
-    impact_position: Vectors, position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers,
-    kind: Rows, radius: Numbers, width: Numbers, height: Numbers, restitution: Numbers, friction: Numbers,
-    inverse_mass: Numbers, inverse_inertia: Numbers,
-    bounds: Numbers, bounds_restitution: float, bounds_friction: float,
+    impact_position: Vectors, motion: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
+    inverse: InverseTuple, bounds: BoundsTuple,
     log: Impacts, logged: int, start: float, span: float, dt: float, urgent: int,
 ) -> tuple[float, int, int, int]:  # fmt: skip
     """Move bodies from impact to impact for ``span`` seconds, or until one comes to rest or is woken.
@@ -168,18 +208,16 @@ def run_events(
         The time that passed [s]; how many impacts there were; why it ended, and with which pair.
     """
     now, low, impacts, window, within, p = 0.0, 0.0, 0, 0.0, 0, -1
-    why, min_speed = _begin_all(
-        manifolds, count, paths, mode, due, position, angle, linear, kind, radius, width, height,
-        restitution, friction, bounds, bounds_restitution, bounds_friction,
+    flight = Flight(
+        manifolds, points, count, paths, mode, Motion(*motion), face, due, impact_position,
+        Sizes(*sizes), Inverse(*inverse), Bounds(*bounds),
     )  # fmt: skip
+    why, min_speed = _begin_all(flight, Materials(*materials))
     if why == OVERLAP:
         return 0.0, 0, why, p
     first, second = -1, -1
     while why == DONE:
-        _predict_pair(
-            manifolds, count, first, second, paths, mode, face, due, angle, kind, radius, width, height,
-            bounds, now, low, span - now, min_speed,
-        )  # fmt: skip
+        _predict_pairs(flight, first, second, now, low, span - now, min_speed)
         p = _first(due, count)
         if urgent >= 0:
             p, due[urgent, 0], due[urgent, 1], urgent = urgent, 0.0, 0.0, -1
@@ -193,31 +231,21 @@ def run_events(
             why = TOO_MANY_IMPACTS
             break
         first, second = manifolds[p].a, manifolds[p].b
-        why, new = _meet(
-            p, manifolds[p], points[2 * p], points[2 * p + 1], points, paths, mode, face, due,
-            impact_position,
-            angle, angular, kind, radius, width, height, inverse_mass, inverse_inertia, bounds,
-            log, logged + impacts, start, now, low, dt,
-        )  # fmt: skip
+        why, new = _meet(flight, p, log, logged + impacts, start, now, low, dt)
         impacts += new
-    for i in range(len(mode)):
-        if mode[i] != FIXED:
-            advance_to(paths, i, angle, angular, now, low)
-            position[i, 0], position[i, 1] = paths[i, 0], paths[i, 2]
-            linear[i, 0], linear[i, 1] = paths[i, 4], paths[i, 6]
+    _end_all(flight, now, low)
     return now + low, impacts, why, p
 
 
 @endless
-@inlined
-def _predict_pair(
-    manifolds: Manifolds, count: int, first: int, second: int, paths: Vectors, mode: Rows, face: Rows,
-    due: Vectors, angle: Numbers, kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
-    bounds: Numbers, now: float, low: float, span: float, min_speed: float,
-) -> None:  # fmt: skip
+@fused
+def _predict_pairs(
+    flight: Flight, first: int, second: int, now: float, low: float, span: float, min_speed: float
+) -> None:
     """Predict when the pairs of two rows meet next; of all rows, if ``first`` is -1."""
-    for p in range(count):
-        manifold = manifolds[p]
+    mode, due = flight.mode, flight.due
+    for p in range(flight.pairs):
+        manifold = flight.manifolds[p]
         a, b = manifold.a, manifold.b
         # Impacts on fixed and kinematic bodies do not change the meetings of their other pairs.
         affected = (mode[a] == BALLISTIC and a in (first, second)) or (
@@ -228,9 +256,10 @@ def _predict_pair(
         if mode[a] != BALLISTIC and mode[b] != BALLISTIC:
             due[p, 0] = math.inf
             continue
-        t, face[p] = meeting_of(
-            manifold, paths, angle, kind, radius, width, height, bounds, now, low, span, min_speed
-        )
+        t, flight.face[p] = meeting_of(
+            manifold, flight.paths, flight.motion.angle, flight.sizes, flight.bounds.walls, now, low, span,
+            min_speed,
+        )  # fmt: skip
         if t < math.inf:
             due[p, 0], due[p, 1] = add(now, low, t)
         else:

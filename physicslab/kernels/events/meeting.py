@@ -7,16 +7,36 @@ acceleration is zero; else of fourth degree, found between the extrema, so that 
 """
 
 import math
+from typing import NamedTuple
 
 from physicslab.kernels import inlined
+from physicslab.kernels.narrow.outline import Outline
 
-__all__ = ["box_normal", "meet_box_box", "meet_circle_box", "meet_circle_circle", "meet_line"]
+__all__ = ["Course", "box_normal", "meet_box_box", "meet_circle_box", "meet_circle_circle", "meet_line"]
 
 _ROUNDING = 1e-14
 """Share of a speed, or of a length, that rounding may have made."""
 _SEAM = 1e-12
 """Share of the size by which a side is taken as longer than it is: where side and corner join, no gap is
 left."""
+
+
+class Course(NamedTuple):
+    """Where B is seen from A (dx, dy) [m], its velocity (ux, uy) [m/s] and acceleration (wx, wy) [m/s^2]."""
+
+    dx: float
+    dy: float
+    ux: float
+    uy: float
+    wx: float
+    wy: float
+
+
+@inlined
+def _at(course: Course, t: float) -> tuple[float, float]:
+    """Return where B is at the time t [m]."""
+    dx, dy, ux, uy, wx, wy = course
+    return dx + t * (ux + 0.5 * t * wx), dy + t * (uy + 0.5 * t * wy)
 
 
 @inlined
@@ -39,41 +59,32 @@ def meet_line(gap: float, speed: float, pull: float, least: float) -> float:
 
 
 @inlined
-def _height(
-    dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, reach: float, t: float
-) -> tuple[float, float]:
+def _height(course: Course, reach: float, t: float) -> tuple[float, float]:
     """Return (|d(t)|^2 - reach^2) / 2 and its rate."""
-    x, y = dx + t * (ux + 0.5 * t * wx), dy + t * (uy + 0.5 * t * wy)
+    x, y = _at(course, t)
     distance = math.sqrt(x * x + y * y)
-    return 0.5 * (distance - reach) * (distance + reach), x * (ux + t * wx) + y * (uy + t * wy)
+    rate = x * (course.ux + t * course.wx) + y * (course.uy + t * course.wy)
+    return 0.5 * (distance - reach) * (distance + reach), rate
 
 
 @inlined
-def _rate(dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, t: float) -> tuple[float, float]:
+def _rate(course: Course, t: float) -> tuple[float, float]:
     """Return the rate of |d(t)|^2 / 2 and its derivative."""
-    x, y = dx + t * (ux + 0.5 * t * wx), dy + t * (uy + 0.5 * t * wy)
-    vx, vy = ux + t * wx, uy + t * wy
-    return x * vx + y * vy, vx * vx + vy * vy + x * wx + y * wy
+    x, y = _at(course, t)
+    vx, vy = course.ux + t * course.wx, course.uy + t * course.wy
+    return x * vx + y * vy, vx * vx + vy * vy + x * course.wx + y * course.wy
 
 
 @inlined
-def _root(
-    dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, reach: float, low: float, high: float,
-) -> float:  # fmt: skip
+def _root(course: Course, reach: float, low: float, high: float) -> float:
     """Return where |d|^2 - reach^2 crosses zero between ``low`` and ``high``, or its rate if reach < 0.
 
     The signs differ at the ends. Newton's step where it stays between them and shrinks fast, else half-way.
     """
-    rising = (
-        _rate(dx, dy, ux, uy, wx, wy, high)[0] > 0.0
-        if reach < 0.0
-        else _height(dx, dy, ux, uy, wx, wy, reach, high)[0] > 0.0
-    )
+    rising = (_rate(course, high) if reach < 0.0 else _height(course, reach, high))[0] > 0.0
     t = 0.5 * (low + high)
     for k in range(200):
-        value, slope = (
-            _rate(dx, dy, ux, uy, wx, wy, t) if reach < 0.0 else _height(dx, dy, ux, uy, wx, wy, reach, t)
-        )
+        value, slope = _rate(course, t) if reach < 0.0 else _height(course, reach, t)
         if value == 0.0:
             return t
         if (value > 0.0) == rising:
@@ -90,10 +101,9 @@ def _root(
 
 
 @inlined
-def _extrema(
-    dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, span: float
-) -> tuple[float, float, float]:
+def _extrema(course: Course, span: float) -> tuple[float, float, float]:
     """Return three times within ``span`` at which |d| is extremal, in order; ``span`` if there are fewer."""
+    dx, dy, ux, uy, wx, wy = course
     # The derivative of the rate is u^2 + d.w + 3 u.w t + 3/2 w^2 t^2: between its zeros the rate is monotone.
     a = 1.5 * (wx * wx + wy * wy)
     b = 3.0 * (ux * wx + uy * wy)
@@ -106,12 +116,12 @@ def _extrema(
         first = min(max(min(one, two), 0.0), span)
         second = min(max(max(one, two), 0.0), span)
     t1, t2, t3 = span, span, span
-    low, before = 0.0, _rate(dx, dy, ux, uy, wx, wy, 0.0)[0]
+    low, before = 0.0, _rate(course, 0.0)[0]
     for k in range(3):
         high = first if k == 0 else (second if k == 1 else span)
-        after = _rate(dx, dy, ux, uy, wx, wy, high)[0]
+        after = _rate(course, high)[0]
         if high > low and (before > 0.0) != (after > 0.0):
-            t = _root(dx, dy, ux, uy, wx, wy, -1.0, low, high)
+            t = _root(course, -1.0, low, high)
             if t1 == span:
                 t1 = t
             elif t2 == span:
@@ -123,15 +133,13 @@ def _extrema(
 
 
 @inlined
-def meet_circle_circle(
-    dx: float, dy: float, ux: float, uy: float, wx: float, wy: float, reach: float, span: float,
-    min_speed: float,
-) -> float:  # fmt: skip
+def meet_circle_circle(course: Course, reach: float, span: float, min_speed: float) -> float:
     """Return when the centres of two circles come within ``reach``, up to ``span``, or infinity.
 
     Here and below, approaches no faster than ``min_speed`` [m/s] are ignored.
     """
-    height, rate = _height(dx, dy, ux, uy, wx, wy, reach, 0.0)
+    dx, dy, ux, uy, wx, wy = course
+    height, rate = _height(course, reach, 0.0)
     distance = math.sqrt(dx * dx + dy * dy)
     least = distance * (_ROUNDING * (abs(ux) + abs(uy)) + min_speed)
     if height <= 0.0 and rate < -least:
@@ -145,16 +153,16 @@ def meet_circle_circle(
         return 2.0 * height / (math.sqrt(square) - rate)
     if height <= 0.0 and rate <= 0.0 and ux * ux + uy * uy + dx * wx + dy * wy < 0.0:
         return 0.0  # at rest on each other, and pressed together
-    t1, t2, t3 = _extrema(dx, dy, ux, uy, wx, wy, span)
+    t1, t2, t3 = _extrema(course, span)
     low, before = 0.0, height
     for k in range(4):
         high = t1 if k == 0 else (t2 if k == 1 else (t3 if k == 2 else span))
         if high <= low:
             continue
-        after = _height(dx, dy, ux, uy, wx, wy, reach, high)[0]
+        after = _height(course, reach, high)[0]
         if after < before and after <= 0.0:
             if before > 0.0:
-                return _root(dx, dy, ux, uy, wx, wy, reach, low, high)
+                return _root(course, reach, low, high)
             if low > 0.0:
                 return low  # it turns before the two have come apart
         low, before = high, after
@@ -172,11 +180,32 @@ def _falling(gap: float, speed: float, pull: float, size: float, least: float) -
 
 
 @inlined
+def _meet_corners(
+    course: Course, half_x: float, half_y: float, radius: float, best: float, span: float, min_speed: float
+) -> float:
+    """Return when a circle meets a corner of a box from beyond both its sides, if that is before ``best``."""
+    px, py, qx, qy, wx, wy = course
+    seam = _SEAM * (half_x + half_y + radius)
+    for k in range(4):
+        corner_x = half_x if k < 2 else -half_x
+        corner_y = half_y if k % 2 == 0 else -half_y
+        horizon = min(best, span)
+        to_corner = Course(px - corner_x, py - corner_y, qx, qy, wx, wy)
+        t = meet_circle_circle(to_corner, radius, horizon, min_speed)
+        if t < best:
+            x, y = _at(course, t)
+            beyond_x = (x - corner_x) * math.copysign(1.0, corner_x) >= -seam
+            if beyond_x and (y - corner_y) * math.copysign(1.0, corner_y) >= -seam:
+                best = t
+    return best
+
+
+@inlined
 def meet_circle_box(
-    px: float, py: float, qx: float, qy: float, wx: float, wy: float,
-    half_x: float, half_y: float, radius: float, span: float, min_speed: float,
-) -> float:  # fmt: skip
+    course: Course, half_x: float, half_y: float, radius: float, span: float, min_speed: float
+) -> float:
     """Return when a circle meets a box, up to ``span``, or infinity; all in the frame of the box."""
+    px, py, qx, qy, wx, wy = course
     size = half_x + half_y + radius
     least = _ROUNDING * (abs(qx) + abs(qy)) + min_speed
     out_x, out_y = max(abs(px) - half_x, 0.0), max(abs(py) - half_y, 0.0)
@@ -205,56 +234,43 @@ def meet_circle_box(
             best = t
     if out <= radius + _SEAM * size and min(out_x, out_y) == 0.0 and best == 0.0:
         return best
-    for k in range(4):
-        corner_x = half_x if k < 2 else -half_x
-        corner_y = half_y if k % 2 == 0 else -half_y
-        horizon = min(best, span)
-        t = meet_circle_circle(px - corner_x, py - corner_y, qx, qy, wx, wy, radius, horizon, min_speed)
-        if t < best:
-            x, y = px + t * (qx + 0.5 * t * wx), py + t * (qy + 0.5 * t * wy)
-            beyond_x = (x - corner_x) * math.copysign(1.0, corner_x) >= -_SEAM * size
-            if beyond_x and (y - corner_y) * math.copysign(1.0, corner_y) >= -_SEAM * size:
-                best = t
-    return best
+    return _meet_corners(course, half_x, half_y, radius, best, span, min_speed)
 
 
 @inlined
-def meet_box_box(
-    dx: float, dy: float, ux: float, uy: float, wx: float, wy: float,
-    ca: float, sa: float, cb: float, sb: float, ax: float, ay: float, bx: float, by: float,
-    min_speed: float,
-) -> tuple[float, int]:  # fmt: skip
+def meet_box_box(course: Course, a: Outline, b: Outline, min_speed: float) -> tuple[float, int]:
     """Return when two boxes meet and which of eight normals then leads from A to B, or infinity and -1.
 
     Normals 0 to 3 are A's (+x, +y, -x, -y), 4 to 7 B's. In the plane of d, the two overlap within a convex
     outline of up to eight sides; they meet where d first crosses one of them while it is within the others.
     """
+    dx, dy, ux, uy, wx, wy = course
     best, face = math.inf, -1
-    size = ax + ay + bx + by
+    size = a.half_x + a.half_y + b.half_x + b.half_y
     least = _ROUNDING * (abs(ux) + abs(uy)) + min_speed
     gap, nearest = -math.inf, -1
     for k in range(8):
-        nx, ny, reach = box_normal(k, ca, sa, cb, sb, ax, ay, bx, by)
+        nx, ny, reach = box_normal(k, a, b)
         apart = dx * nx + dy * ny - reach
         if apart > gap:
             gap, nearest = apart, k
     if gap <= 0.0:
-        nx, ny, _ = box_normal(nearest, ca, sa, cb, sb, ax, ay, bx, by)
+        nx, ny, _ = box_normal(nearest, a, b)
         speed, pull = ux * nx + uy * ny, wx * nx + wy * ny
         if speed < -least:
             return 0.0, nearest
         if pull < 0.0 and speed * speed < -2.0 * pull * -gap:
             return max(speed, 0.0) / -pull, nearest
     for k in range(8):
-        nx, ny, reach = box_normal(k, ca, sa, cb, sb, ax, ay, bx, by)
+        nx, ny, reach = box_normal(k, a, b)
         apart = dx * nx + dy * ny - reach
         t = _falling(apart, ux * nx + uy * ny, wx * nx + wy * ny, size, least)
         if t >= best:
             continue
-        x, y = dx + t * (ux + 0.5 * t * wx), dy + t * (uy + 0.5 * t * wy)
+        x, y = _at(course, t)
         within = True
         for j in range(8):
-            mx, my, limit = box_normal(j, ca, sa, cb, sb, ax, ay, bx, by)
+            mx, my, limit = box_normal(j, a, b)
             within = within and (j == k or x * mx + y * my - limit <= _SEAM * size)
         if within:
             best, face = t, k
@@ -262,16 +278,14 @@ def meet_box_box(
 
 
 @inlined
-def box_normal(
-    k: int, ca: float, sa: float, cb: float, sb: float, ax: float, ay: float, bx: float, by: float
-) -> tuple[float, float, float]:
+def box_normal(k: int, a: Outline, b: Outline) -> tuple[float, float, float]:
     """Return normal k of two boxes, and how far apart along it their centres are when they touch."""
-    c, s = (ca, sa) if k < 4 else (cb, sb)
-    turn_c, turn_s = abs(ca * cb + sa * sb), abs(ca * sb - sa * cb)
+    turn_c, turn_s = abs(a.c * b.c + a.s * b.s), abs(a.c * b.s - a.s * b.c)
+    one, other = (a, b) if k < 4 else (b, a)
     upright = k % 2 == 1
-    if k < 4:
-        reach = ay + turn_s * bx + turn_c * by if upright else ax + turn_c * bx + turn_s * by
+    if upright:
+        reach = one.half_y + turn_s * other.half_x + turn_c * other.half_y
     else:
-        reach = by + turn_s * ax + turn_c * ay if upright else bx + turn_c * ax + turn_s * ay
+        reach = one.half_x + turn_c * other.half_x + turn_s * other.half_y
     sign = 1.0 if k % 4 < 2 else -1.0
-    return (-sign * s if upright else sign * c), (sign * c if upright else sign * s), reach
+    return (-sign * one.s if upright else sign * one.c), (sign * one.c if upright else sign * one.s), reach

@@ -6,18 +6,16 @@ form, so that no error adds up, however many impacts other bodies have.
 """
 
 from physicslab.kernels import Numbers, Vectors, inlined
+from physicslab.kernels.events.meeting import Course
 from physicslab.kernels.ode.compensated import add_pair, multiply
 
 __all__ = ["FIELDS", "advance_to", "begin", "place", "push", "seen_from", "velocity"]
 
 FIELDS = 12
 """Numbers of a path."""
-_X, _VX, _A, _T = (
-    0,
-    4,
-    8,
-    10,
-)  # x and its remainder, y and its remainder; the same of velocities and the start
+_X, _VX, _A, _T = 0, 4, 8, 10
+"""Where its parts begin: x and its remainder, y and its remainder; the same of velocities; accelerations; the
+start."""
 
 
 @inlined
@@ -56,15 +54,13 @@ def velocity(paths: Vectors, i: int, now: float, low: float) -> tuple[float, flo
 
 
 @inlined
-def seen_from(
-    paths: Vectors, a: int, b: int, now: float, low: float
-) -> tuple[float, float, float, float, float, float]:
+def seen_from(paths: Vectors, a: int, b: int, now: float, low: float) -> Course:
     """Return place, velocity and acceleration of row b against row a."""
     ax, ax_low, ay, ay_low = place(paths, a, now, low)
     bx, bx_low, by, by_low = place(paths, b, now, low)
     vax, vax_low, vay, vay_low = velocity(paths, a, now, low)
     vbx, vbx_low, vby, vby_low = velocity(paths, b, now, low)
-    return (
+    return Course(
         (bx - ax) + (bx_low - ax_low), (by - ay) + (by_low - ay_low),
         (vbx - vax) + (vbx_low - vax_low), (vby - vay) + (vby_low - vay_low),
         paths[b, _A] - paths[a, _A], paths[b, _A + 1] - paths[a, _A + 1],

@@ -2,24 +2,23 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Rows, fused, inlined
+from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
 from physicslab.kernels.broad.near_pairs import ACTIVATION_RATIO
+from physicslab.kernels.narrow.outline import Way, outline_of
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
-from physicslab.kernels.records import Manifold, Manifolds, Points
+from physicslab.kernels.records import Manifold, Point, Points
 
 __all__ = [
-    "CACHE_TOLERANCE",
-    "CACHE_TURN_TOLERANCE",
-    "effective_masses",
-    "find_contacts",
-    "follow_pose",
-    "mix",
-]
+    "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "follow_pose", "mix",
+]  # fmt: skip
 
 CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found again."""
 CACHE_TURN_TOLERANCE = 0.002
 """How far [rad] either may turn."""
+_APART, _KEPT, _OUTDATED = range(3)
+"""What is known of a pair of boxes: that they have no points; where their points are; nothing any more."""
 
 
 @inlined
@@ -38,180 +37,114 @@ def follow_pose(
 
 
 @inlined
-def effective_masses(
-    manifold: Manifold, points: Points, p: int, inverse_mass: Numbers, inverse_inertia: Numbers
-) -> None:
+def effective_masses(manifold: Manifold, points: Points, p: int, inverse: Inverse) -> None:
     """Compute 1 / (1/m_a + 1/m_b + (r_a x n)^2 / I_a + (r_b x n)^2 / I_b), for normal and tangent."""
     a, b = manifold.a, manifold.b
     nx, ny = manifold.normal_x, manifold.normal_y
-    linear = inverse_mass[a] + inverse_mass[b]
+    linear = inverse.mass[a] + inverse.mass[b]
     for j in range(2 * p, 2 * p + manifold.count):
         point = points[j]
         turn_a, turn_b = point.arm_ax * ny - point.arm_ay * nx, point.arm_bx * ny - point.arm_by * nx
         point.normal_mass = 1.0 / (
-            linear + inverse_inertia[a] * turn_a * turn_a + inverse_inertia[b] * turn_b * turn_b
+            linear + inverse.inertia[a] * turn_a * turn_a + inverse.inertia[b] * turn_b * turn_b
         )
         turn_a, turn_b = point.arm_ax * nx + point.arm_ay * ny, point.arm_bx * nx + point.arm_by * ny
         point.tangent_mass = 1.0 / (
-            linear + inverse_inertia[a] * turn_a * turn_a + inverse_inertia[b] * turn_b * turn_b
+            linear + inverse.inertia[a] * turn_a * turn_a + inverse.inertia[b] * turn_b * turn_b
         )
 
 
-@kernel
-def find_contacts(
-    manifolds: Manifolds,
-    points: Points,
-    scalar: Rows,
-    count: int,
-    touching: Rows,
-    position: Vectors,
-    angle: Numbers,
-    linear: Vectors,
-    angular: Numbers,
-    kind: Rows,
-    radius: Numbers,
-    width: Numbers,
-    height: Numbers,
-    restitution: Numbers,
-    friction: Numbers,
-    inverse_mass: Numbers,
-    inverse_inertia: Numbers,
-    bounds: Numbers,
-    bounds_restitution: float,
-    bounds_friction: float,
-    first: bool,
-    h: float,
-    start: float,
-    speculative_margin: float,
-) -> int:
-    """Find or refresh the contact points of the near pairs that are ``scalar``; return how many have any.
+@inlined
+def mix(manifold: Manifold, materials: Materials, bounds: Bounds) -> None:
+    """Combine the materials of a pair: e = min, mu = the geometric mean."""
+    a, b, restitution, friction = manifold.a, manifold.b, materials.restitution, materials.friction
+    walled = manifold.wall >= 0
+    manifold.restitution = min(bounds.restitution if walled else restitution[a], restitution[b])
+    manifold.friction = math.sqrt((bounds.friction if walled else friction[a]) * friction[b])
 
-    Their numbers are written to ``touching``, in order. A pair of boxes that has hardly moved keeps its
-    points. The substep spans ``h`` seconds from ``start`` h before or after now: a pair that meets within it
-    has points with the normal of that moment and the separation, along it, of now. Pairs whose count is
-    negative are moved by event-driven stepping, and passed over. ``first`` marks the first substep of a
-    step, in which records of impacts are cleared; ``speculative_margin`` is how far [m] the forces may bring
-    two bodies together within the substep.
+
+@fused
+def _too_far(
+    manifold: Manifold, way: Way, motion: Motion, sizes: Sizes, bounds: Bounds, speculative_margin: float
+) -> bool:
+    """Whether a disc is too far from another one, or from a wall, for this substep, as most near ones are."""
+    dx, dy, ux, uy = way
+    a, b, wall = manifold.a, manifold.b, manifold.wall
+    if wall < 0:
+        reach = ACTIVATION_RATIO * (sizes.radius[a] + sizes.radius[b]) + abs(ux) + abs(uy)
+        reach = reach + speculative_margin
+        return bool(dx * dx + dy * dy > reach * reach)
+    away = motion.position[b, wall % 2] - bounds.walls[wall]
+    clear = (away if wall < 2 else -away) - sizes.radius[b]
+    margin = ACTIVATION_RATIO * CONTACT_MARGIN * sizes.radius[b] + abs(ux) + abs(uy)
+    return bool(clear > margin + speculative_margin)
+
+
+@fused
+def _look_up(
+    manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, sizes: Sizes,
+    speculative_margin: float,
+) -> int:  # fmt: skip
+    """Use what was found of two boxes, or of one and a wall, if they have hardly moved against each other.
+
+    Returns what is known of them now. Where that is nothing, their present pose is recorded, for which
+    their points are to be found.
     """
-    found, held = 0, count
-    for number in range(count):
-        p = scalar[number]
-        manifold = manifolds[p]
-        if manifold.count < 0:
-            continue
-        a, b = manifold.a, manifold.b
-        one, two = points[2 * p], points[2 * p + 1]
-        if first and manifold.impact_count > 0:
-            manifold.impact_count = 0
-            one.approach_speed = one.impact_normal = one.impact_tangent = 0.0
-            two.approach_speed = two.impact_normal = two.impact_tangent = 0.0
-        dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
-        ux, uy = (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h
-        a_box, b_box = kind[a] == 2, kind[b] == 2
-        had_points = manifold.count > 0
-        if not (a_box or b_box or had_points or manifold.wall >= 0):
-            # Most near circles are too far apart for this substep: skip those without a call.
-            reach = ACTIVATION_RATIO * (radius[a] + radius[b]) + abs(ux) + abs(uy) + speculative_margin
-            if dx * dx + dy * dy > reach * reach:
-                continue
-        elif manifold.wall >= 0 and not (b_box or had_points):
-            # The same for circles near the bounds.
-            away = position[b, manifold.wall % 2] - bounds[manifold.wall]
-            clear = (away if manifold.wall < 2 else -away) - radius[b]
-            if clear > ACTIVATION_RATIO * CONTACT_MARGIN * radius[b] + abs(ux) + abs(uy) + speculative_margin:
-                continue
-        manifold.offset_x, manifold.offset_y = dx, dy
-        if (a_box and b_box) or (manifold.wall >= 0 and b_box):
-            size = min(width[b], height[b])
-            sizes = width[b] + 2.0 * height[b]
-            if a_box:
-                size = min(size, min(width[a], height[a]))
-                sizes += 3.0 * width[a] + 5.0 * height[a]
-            moved_x, moved_y = dx - manifold.base_x, dy - manifold.base_y
-            turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
-            travel = abs(ux) + abs(uy)
-            known = manifold.found == 2 and manifold.base_sizes == sizes
-            if known and not had_points:
-                # A lower bound of their gap now, however they have moved since.
-                turned = abs(turn_a) * (width[a] + height[a]) + abs(turn_b) * (width[b] + height[b])
-                nearest = manifold.gap - abs(moved_x) - abs(moved_y) - 0.5 * turned - 0.0025 * size
-                if nearest > CONTACT_MARGIN * size + travel + speculative_margin:
-                    continue
-            if (
-                known
-                and had_points
-                and abs(moved_x) + abs(moved_y) <= CACHE_TOLERANCE * size
-                and abs(turn_a) <= CACHE_TURN_TOLERANCE
-                and abs(turn_b) <= CACHE_TURN_TOLERANCE
-                and travel <= 0.5 * CONTACT_MARGIN * size
-            ):
-                follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
-                if inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0:
-                    touching[found] = p
-                    found += 1
-                else:
-                    held -= 1
-                    touching[held] = p
-                if first:
-                    effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
-                    mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
-                continue
-            manifold.base_x, manifold.base_y = dx, dy
-            manifold.base_angle_a, manifold.base_angle_b = angle[a], angle[b]
-            manifold.base_sizes = sizes
-            manifold.found = 2 if travel <= 0.5 * CONTACT_MARGIN * size else 1
-        cb, sb = (math.cos(angle[b]), math.sin(angle[b])) if b_box else (1.0, 0.0)
-        half_bx, half_by = 0.5 * width[b], 0.5 * height[b]
-        if manifold.wall >= 0:
-            spin = abs(angular[b]) * h * math.sqrt(half_bx * half_bx + half_by * half_by)
-            touch_wall(
-                manifold, one, two, position[b, 0], position[b, 1], ux, uy, spin, speculative_margin, b_box,
-                cb, sb,
-                half_bx, half_by, radius[b], bounds,
-            )  # fmt: skip
-        else:
-            ca, sa = (math.cos(angle[a]), math.sin(angle[a])) if a_box else (1.0, 0.0)
-            half_ax, half_ay = 0.5 * width[a], 0.5 * height[a]
-            if a_box and b_box:
-                touch_boxes(
-                    manifold,
-                    one,
-                    two,
-                    dx,
-                    dy,
-                    ux,
-                    uy,
-                    start,
-                    speculative_margin,
-                    ca,
-                    sa,
-                    half_ax,
-                    half_ay,
-                    cb,
-                    sb,
-                    half_bx,
-                    half_by,
-                )
-            else:
-                touch_with_circle(
-                    manifold, one, dx, dy, ux, uy, start, speculative_margin, a_box, ca, sa, half_ax,
-                    half_ay, radius[a],
-                    b_box, cb, sb, half_bx, half_by, radius[b],
-                )  # fmt: skip
-        if manifold.count > 0:
-            effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
-            if first or not had_points:
-                mix(manifold, a, b, restitution, friction, bounds_restitution, bounds_friction)
-            if inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0:
-                touching[found] = p
-                found += 1
-            else:
-                held -= 1
-                touching[held] = p
-        elif had_points:
-            one.feature = two.feature = 0
-            one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
-    # Pairs with fixed bodies were written from the end, the last first.
+    a, b, width, height, angle = manifold.a, manifold.b, sizes.width, sizes.height, motion.angle
+    size, sizes_of_both = min(width[b], height[b]), width[b] + 2.0 * height[b]
+    if manifold.wall < 0:
+        size = min(size, min(width[a], height[a]))
+        sizes_of_both += 3.0 * width[a] + 5.0 * height[a]
+    moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
+    turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
+    travel = abs(way.ux) + abs(way.uy)
+    slow = travel <= 0.5 * CONTACT_MARGIN * size
+    if manifold.found == 2 and manifold.base_sizes == sizes_of_both:
+        if manifold.count == 0:
+            # A lower bound of their gap now, however they have moved since.
+            turned = abs(turn_a) * (width[a] + height[a]) + abs(turn_b) * (width[b] + height[b])
+            nearest = manifold.gap - abs(moved_x) - abs(moved_y) - 0.5 * turned - 0.0025 * size
+            if nearest > CONTACT_MARGIN * size + travel + speculative_margin:
+                return _APART
+        elif (
+            abs(moved_x) + abs(moved_y) <= CACHE_TOLERANCE * size
+            and abs(turn_a) <= CACHE_TURN_TOLERANCE
+            and abs(turn_b) <= CACHE_TURN_TOLERANCE
+            and slow
+        ):
+            follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
+            return _KEPT
+    manifold.base_x, manifold.base_y = way.dx, way.dy
+    manifold.base_angle_a, manifold.base_angle_b = angle[a], angle[b]
+    manifold.base_sizes = sizes_of_both
+    manifold.found = 2 if slow else 1
+    return _OUTDATED
+
+
+@fused
+def _touch(
+    manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, sizes: Sizes, bounds: Bounds,
+    h: float, start: float, speculative_margin: float,
+) -> None:  # fmt: skip
+    """Find the points of a pair, of whatever shapes."""
+    b = manifold.b
+    body = outline_of(b, motion.angle, sizes)
+    if manifold.wall >= 0:
+        farthest = math.sqrt(body.half_x * body.half_x + body.half_y * body.half_y)
+        spin = abs(motion.angular[b]) * h * farthest
+        place = Way(motion.position[b, 0], motion.position[b, 1], way.ux, way.uy)
+        touch_wall(manifold, one, two, place, spin, speculative_margin, body, bounds.walls)
+        return
+    other = outline_of(manifold.a, motion.angle, sizes)
+    if other.box and body.box:
+        touch_boxes(manifold, one, two, way, start, speculative_margin, other, body)
+    else:
+        touch_with_circle(manifold, one, way, start, speculative_margin, other, body)
+
+
+@inlined
+def _put_last(touching: Rows, found: int, held: int, count: int) -> int:
+    """Put the pairs from ``held`` on, which were written from the end, after those found; return how many."""
     at_end = count - held
     for k in range(at_end // 2):
         touching[held + k], touching[count - 1 - k] = touching[count - 1 - k], touching[held + k]
@@ -221,16 +154,61 @@ def find_contacts(
 
 
 @inlined
-def mix(
-    manifold: Manifold,
-    a: int,
-    b: int,
-    restitution: Numbers,
-    friction: Numbers,
-    bounds_restitution: float,
-    bounds_friction: float,
-) -> None:
-    """Combine the materials of a pair: e = min, mu = the geometric mean."""
-    walled = manifold.wall >= 0
-    manifold.restitution = min(bounds_restitution if walled else restitution[a], restitution[b])
-    manifold.friction = math.sqrt((bounds_friction if walled else friction[a]) * friction[b])
+def find_contacts(
+    near: Near, count: int, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
+    bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
+) -> int:  # fmt: skip
+    """Find or refresh the contact points of the ``count`` scalar pairs; return how many have any.
+
+    Their numbers are written to ``near.touching``, in order, those with fixed bodies last. A pair of boxes
+    that has hardly moved keeps its points. The substep spans ``h`` seconds from ``start`` h before or after
+    now: a pair that meets within it has points with the normal of that moment and the separation, along it,
+    of now. Pairs whose count is negative are moved by event-driven stepping, and passed over. ``first`` marks
+    the first substep of a step, in which records of impacts are cleared; ``speculative_margin`` is how far
+    [m] the forces may bring two bodies together within the substep.
+    """
+    position, linear, touching = motion.position, motion.linear, near.touching
+    found, held = 0, count
+    for number in range(count):
+        p = near.scalar[number]
+        manifold, one, two = near.manifolds[p], near.points[2 * p], near.points[2 * p + 1]
+        had_points = manifold.count > 0
+        if manifold.count < 0:
+            continue
+        a, b = manifold.a, manifold.b
+        if first and manifold.impact_count > 0:
+            manifold.impact_count = 0
+            one.approach_speed = one.impact_normal = one.impact_tangent = 0.0
+            two.approach_speed = two.impact_normal = two.impact_tangent = 0.0
+        way = Way(
+            position[b, 0] - position[a, 0], position[b, 1] - position[a, 1],
+            (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h,
+        )  # fmt: skip
+        boxes = int(sizes.kind[a] == 2) + int(sizes.kind[b] == 2)
+        walled = manifold.wall >= 0
+        round_pair = not had_points and (sizes.kind[b] != 2 if walled else boxes == 0)
+        if round_pair and _too_far(manifold, way, motion, sizes, bounds, speculative_margin):
+            continue
+        manifold.offset_x, manifold.offset_y = way.dx, way.dy
+        known = _OUTDATED
+        if sizes.kind[b] == 2 and (walled or boxes == 2):
+            known = _look_up(manifold, near.points, p, way, motion, sizes, speculative_margin)
+            if known == _APART:
+                continue
+        if known == _OUTDATED:
+            _touch(manifold, one, two, way, motion, sizes, bounds, h, start, speculative_margin)
+        if manifold.count > 0:
+            if first or known == _OUTDATED:
+                effective_masses(manifold, near.points, p, inverse)
+            if first or not had_points:
+                mix(manifold, materials, bounds)
+            if inverse.mass[a] > 0.0 and inverse.mass[b] > 0.0:
+                touching[found] = p
+                found += 1
+            else:
+                held -= 1
+                touching[held] = p
+        elif had_points:
+            one.feature = two.feature = 0
+            one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
+    return _put_last(touching, found, held, count)

@@ -1,10 +1,12 @@
 """Where two shapes touch: separations, normals and points, in coordinates relative to A's centre."""
 
 import math
+from typing import NamedTuple
 
 from physicslab.kernels import inlined
+from physicslab.kernels.narrow.outline import Outline
 
-__all__ = ["box_box", "circle_box", "circle_circle", "wall_corner"]
+__all__ = ["Corner", "box_box", "circle_box", "circle_circle", "wall_corner"]
 
 
 @inlined
@@ -23,13 +25,12 @@ def circle_circle(
 
 
 @inlined
-def circle_box(
-    x: float, y: float, c: float, s: float, half_x: float, half_y: float, radius: float
-) -> tuple[float, float, float, float, float]:
+def circle_box(x: float, y: float, box: Outline, radius: float) -> tuple[float, float, float, float, float]:
     """Return the normal from box to circle, the point of the box's outline nearest, and the separation.
 
-    (x, y) is the circle's centre from the box's, (c, s) the cosine and sine of the box's angle.
+    (x, y) is the circle's centre from the box's.
     """
+    c, s, half_x, half_y = box.c, box.s, box.half_x, box.half_y
     local_x, local_y = c * x + s * y, c * y - s * x
     near_x = min(max(local_x, -half_x), half_x)
     near_y = min(max(local_y, -half_y), half_y)
@@ -54,49 +55,35 @@ def circle_box(
 
 
 @inlined
-def wall_corner(k: int, c: float, s: float, half_x: float, half_y: float) -> tuple[float, float]:
+def wall_corner(k: int, box: Outline) -> tuple[float, float]:
     """Return corner k of a box, counted counter-clockwise from (+, +), relative to its centre."""
-    x = half_x if k == 0 or k == 3 else -half_x
-    y = half_y if k == 0 or k == 1 else -half_y
-    return c * x - s * y, s * x + c * y
+    x = box.half_x if k == 0 or k == 3 else -box.half_x
+    y = box.half_y if k == 0 or k == 1 else -box.half_y
+    return box.c * x - box.s * y, box.s * x + box.c * y
+
+
+class Corner(NamedTuple):
+    """A point of two boxes: half-way between the surfaces, from A's centre [m], and which point it is."""
+
+    x: float
+    y: float
+    separation: float
+    feature: int
 
 
 @inlined
-def box_box(
-    dx: float,
-    dy: float,
-    ca: float,
-    sa: float,
-    cb: float,
-    sb: float,
-    ax: float,
-    ay: float,
-    bx: float,
-    by: float,
-    margin: float,
-) -> tuple[float, float, float, int, float, float, float, int, float, float, float, int]:
-    """Return the contact of two boxes: separating axes, then the incident edge clipped to the reference face.
-
-    (dx, dy) leads from A's centre to B's; (c, s) are cosine and sine of the angles, (ax, ay), (bx, by) half
-    extents.
-
-    Returns
-    -------
-    gap, nx, ny, count, x1, y1, separation1, feature1, x2, y2, separation2, feature2
-        ``gap`` is the separation along the best axis, the normal leads from A to B, points are halfway
-        between the surfaces and relative to A's centre. No points where the gap exceeds ``margin``. (After
-        Catto, box2d-lite.)
-    """
+def _best_axis(dx: float, dy: float, a: Outline, b: Outline) -> tuple[float, int]:
+    """Return the largest separation [m] along an axis of two boxes, and which: x or y of A, x or y of B."""
     # d in the frames of A and of B; the axes of B seen from A
-    dax, day = ca * dx + sa * dy, ca * dy - sa * dx
-    dbx, dby = cb * dx + sb * dy, cb * dy - sb * dx
-    c, s = abs(ca * cb + sa * sb), abs(ca * sb - sa * cb)
-    gap_ax = abs(dax) - ax - (c * bx + s * by)
-    gap_ay = abs(day) - ay - (s * bx + c * by)
-    gap_bx = abs(dbx) - bx - (c * ax + s * ay)
-    gap_by = abs(dby) - by - (s * ax + c * ay)
+    dax, day = a.c * dx + a.s * dy, a.c * dy - a.s * dx
+    dbx, dby = b.c * dx + b.s * dy, b.c * dy - b.s * dx
+    c, s = abs(a.c * b.c + a.s * b.s), abs(a.c * b.s - a.s * b.c)
+    gap_ax = abs(dax) - a.half_x - (c * b.half_x + s * b.half_y)
+    gap_ay = abs(day) - a.half_y - (s * b.half_x + c * b.half_y)
+    gap_bx = abs(dbx) - b.half_x - (c * a.half_x + s * a.half_y)
+    gap_by = abs(dby) - b.half_y - (s * a.half_x + c * a.half_y)
     # A new axis must be better by a little, so that the reference face does not change to and fro.
-    favour = 0.005 * min(min(ax, ay), min(bx, by))
+    favour = 0.005 * min(min(a.half_x, a.half_y), min(b.half_x, b.half_y))
     gap, face = gap_ax, 0
     if gap_ay > gap + favour:
         gap, face = gap_ay, 1
@@ -104,40 +91,35 @@ def box_box(
         gap, face = gap_bx, 2
     if gap_by > gap + favour:
         gap, face = gap_by, 3
-    nothing = 0.0
-    if gap > margin:
-        return gap, nothing, nothing, 0, nothing, nothing, nothing, 0, nothing, nothing, nothing, 0
+    return gap, face
 
-    # The reference box r holds the face; the incident box i is cut off at the face's ends.
-    flip = face >= 2
-    if flip:
-        rc, rs, rx, ry, ic, is_, ix, iy = cb, sb, bx, by, ca, sa, ax, ay
-        origin_x, origin_y, incident_x, incident_y = dx, dy, 0.0, 0.0
-        toward_x, toward_y = -dbx, -dby
-    else:
-        rc, rs, rx, ry, ic, is_, ix, iy = ca, sa, ax, ay, cb, sb, bx, by
-        origin_x, origin_y, incident_x, incident_y = 0.0, 0.0, dx, dy
-        toward_x, toward_y = dax, day
-    if face == 0 or face == 2:
+
+@inlined
+def _reference_face(
+    upright: bool, toward_x: float, toward_y: float, box: Outline
+) -> tuple[float, float, float, float, int]:
+    """Return the outward normal of the face of a box towards a point, its distance, half length and edge.
+
+    The point is given in the frame of the box; the normal is along its x if ``upright``, else along its y.
+    """
+    if upright:
         sign = 1.0 if toward_x >= 0.0 else -1.0
-        nx, ny, depth, side = sign * rc, sign * rs, rx, ry
-        edge = 3 if sign > 0.0 else 1
-    else:
-        sign = 1.0 if toward_y >= 0.0 else -1.0
-        nx, ny, depth, side = -sign * rs, sign * rc, ry, rx
-        edge = 0 if sign > 0.0 else 2
-    # The incident edge is the one whose outward normal is most opposed to the normal.
-    local_nx, local_ny = -(ic * nx + is_ * ny), -(ic * ny - is_ * nx)
-    sideways, upright = 3 if local_nx > 0.0 else 1, 0 if local_ny > 0.0 else 2
-    incident = sideways if abs(local_nx) > abs(local_ny) else upright
-    x1, y1 = wall_corner(incident, ic, is_, ix, iy)
-    x2, y2 = wall_corner((incident + 1) % 4, ic, is_, ix, iy)
-    x1, y1 = x1 + incident_x - origin_x, y1 + incident_y - origin_y
-    x2, y2 = x2 + incident_x - origin_x, y2 + incident_y - origin_y
+        return sign * box.c, sign * box.s, box.half_x, box.half_y, 3 if sign > 0.0 else 1
+    sign = 1.0 if toward_y >= 0.0 else -1.0
+    return -sign * box.s, sign * box.c, box.half_y, box.half_x, 0 if sign > 0.0 else 2
 
-    # Cut the edge from 1 to 2 at both ends of the face, along its tangent t.
-    tx, ty = -ny, nx
-    along1, along2 = x1 * tx + y1 * ty, x2 * tx + y2 * ty
+
+@inlined
+def _incident_edge(nx: float, ny: float, box: Outline) -> int:
+    """Return the edge of a box whose outward normal is most opposed to a normal."""
+    local_nx, local_ny = -(box.c * nx + box.s * ny), -(box.c * ny - box.s * nx)
+    sideways, upright = 3 if local_nx > 0.0 else 1, 0 if local_ny > 0.0 else 2
+    return sideways if abs(local_nx) > abs(local_ny) else upright
+
+
+@inlined
+def _clipped(along1: float, along2: float, side: float) -> tuple[float, float]:
+    """Return the shares of an edge from ``along1`` to ``along2`` [m] between which it is within ``side``."""
     start, end = 0.0, 1.0
     run = along2 - along1
     if abs(run) > 0.0:
@@ -145,19 +127,65 @@ def box_box(
         start, end = max(start, min(low, high)), min(end, max(low, high))
     elif abs(along1) > side:
         end = -1.0
+    return start, end
+
+
+@inlined
+def box_box(
+    dx: float, dy: float, a: Outline, b: Outline, margin: float
+) -> tuple[float, float, float, int, Corner, Corner]:
+    """Return the contact of two boxes: separating axes, then the incident edge clipped to the reference face.
+
+    (dx, dy) leads from A's centre to B's.
+
+    Returns
+    -------
+    gap, nx, ny, count, one, two
+        ``gap`` is the separation along the best axis, the normal leads from A to B. No points where the gap
+        exceeds ``margin``. (After Catto, box2d-lite.)
+    """
+    gap, face = _best_axis(dx, dy, a, b)
+    none = Corner(0.0, 0.0, 0.0, 0)
+    if gap > margin:
+        return gap, 0.0, 0.0, 0, none, none
+    # The reference box holds the face; the edge of the incident box is cut off at the face's ends.
+    flip = face >= 2
+    upright = face == 0 or face == 2
+    if flip:
+        nx, ny, depth, side, edge = _reference_face(
+            upright, -(b.c * dx + b.s * dy), -(b.c * dy - b.s * dx), b
+        )
+        incident = _incident_edge(nx, ny, a)
+        x1, y1 = wall_corner(incident, a)
+        x2, y2 = wall_corner((incident + 1) % 4, a)
+        origin_x, origin_y, incident_x, incident_y = dx, dy, 0.0, 0.0
+    else:
+        nx, ny, depth, side, edge = _reference_face(upright, a.c * dx + a.s * dy, a.c * dy - a.s * dx, a)
+        incident = _incident_edge(nx, ny, b)
+        x1, y1 = wall_corner(incident, b)
+        x2, y2 = wall_corner((incident + 1) % 4, b)
+        origin_x, origin_y, incident_x, incident_y = 0.0, 0.0, dx, dy
+    x1, y1 = x1 + incident_x - origin_x, y1 + incident_y - origin_y
+    x2, y2 = x2 + incident_x - origin_x, y2 + incident_y - origin_y
+    tx, ty = -ny, nx
+    start, end = _clipped(x1 * tx + y1 * ty, x2 * tx + y2 * ty, side)
     if start > end:
-        return gap, nothing, nothing, 0, nothing, nothing, nothing, 0, nothing, nothing, nothing, 0
+        return gap, 0.0, 0.0, 0, none, none
     px1, py1 = x1 + start * (x2 - x1), y1 + start * (y2 - y1)
     px2, py2 = x1 + end * (x2 - x1), y1 + end * (y2 - y1)
-    separation1 = px1 * nx + py1 * ny - depth
-    separation2 = px2 * nx + py2 * ny - depth
-    px1, py1 = px1 - 0.5 * separation1 * nx + origin_x, py1 - 0.5 * separation1 * ny + origin_y
-    px2, py2 = px2 - 0.5 * separation2 * nx + origin_x, py2 - 0.5 * separation2 * ny + origin_y
+    separation1, separation2 = px1 * nx + py1 * ny - depth, px2 * nx + py2 * ny - depth
     feature = 1 + 2 * (incident + 4 * (edge + (4 if flip else 0)))
+    one = Corner(
+        px1 - 0.5 * separation1 * nx + origin_x, py1 - 0.5 * separation1 * ny + origin_y, separation1, feature
+    )
+    two = Corner(
+        px2 - 0.5 * separation2 * nx + origin_x, py2 - 0.5 * separation2 * ny + origin_y, separation2,
+        feature + 1,
+    )  # fmt: skip
     if flip:
         nx, ny = -nx, -ny
     if separation1 <= margin and separation2 <= margin:
-        return gap, nx, ny, 2, px1, py1, separation1, feature, px2, py2, separation2, feature + 1
+        return gap, nx, ny, 2, one, two
     if separation1 <= margin:
-        return gap, nx, ny, 1, px1, py1, separation1, feature, nothing, nothing, nothing, 0
-    return gap, nx, ny, 1, px2, py2, separation2, feature + 1, nothing, nothing, nothing, 0
+        return gap, nx, ny, 1, one, none
+    return gap, nx, ny, 1, two, none

@@ -7,6 +7,7 @@ where they miss each other. Rotation within the displacement is neglected.
 import math
 
 from physicslab.kernels import inlined
+from physicslab.kernels.narrow.outline import Outline, Way
 
 __all__ = ["MISS", "sweep_box_box", "sweep_circle_box", "sweep_circle_circle"]
 
@@ -40,10 +41,9 @@ def _slab(d: float, u: float, reach: float) -> tuple[float, float]:
 
 
 @inlined
-def sweep_circle_box(
-    x: float, y: float, ux: float, uy: float, c: float, s: float, half_x: float, half_y: float, radius: float
-) -> float:
+def sweep_circle_box(x: float, y: float, ux: float, uy: float, box: Outline, radius: float) -> float:
     """Return when a circle at (x, y) from a box's centre, moving by (ux, uy), touches the box."""
+    c, s, half_x, half_y = box.c, box.s, box.half_x, box.half_y
     px, py, qx, qy = c * x + s * y, c * y - s * x, c * ux + s * uy, c * uy - s * ux
     enter_x, leave_x = _slab(px, qx, half_x + radius)
     enter_y, leave_y = _slab(py, qy, half_y + radius)
@@ -60,26 +60,15 @@ def sweep_circle_box(
 
 
 @inlined
-def sweep_box_box(
-    dx: float,
-    dy: float,
-    ux: float,
-    uy: float,
-    ca: float,
-    sa: float,
-    cb: float,
-    sb: float,
-    ax: float,
-    ay: float,
-    bx: float,
-    by: float,
-) -> float:
+def sweep_box_box(way: Way, a: Outline, b: Outline) -> float:
     """Return when the last of the four axes along which two boxes are apart closes."""
-    c, s = abs(ca * cb + sa * sb), abs(ca * sb - sa * cb)
-    enter1, leave1 = _slab(ca * dx + sa * dy, ca * ux + sa * uy, ax + c * bx + s * by)
-    enter2, leave2 = _slab(ca * dy - sa * dx, ca * uy - sa * ux, ay + s * bx + c * by)
-    enter3, leave3 = _slab(cb * dx + sb * dy, cb * ux + sb * uy, bx + c * ax + s * ay)
-    enter4, leave4 = _slab(cb * dy - sb * dx, cb * uy - sb * ux, by + s * ax + c * ay)
+    dx, dy, ux, uy = way
+    c, s = abs(a.c * b.c + a.s * b.s), abs(a.c * b.s - a.s * b.c)
+    ax, ay, bx, by = a.half_x, a.half_y, b.half_x, b.half_y
+    enter1, leave1 = _slab(a.c * dx + a.s * dy, a.c * ux + a.s * uy, ax + c * bx + s * by)
+    enter2, leave2 = _slab(a.c * dy - a.s * dx, a.c * uy - a.s * ux, ay + s * bx + c * by)
+    enter3, leave3 = _slab(b.c * dx + b.s * dy, b.c * ux + b.s * uy, bx + c * ax + s * ay)
+    enter4, leave4 = _slab(b.c * dy - b.s * dx, b.c * uy - b.s * ux, by + s * ax + c * ay)
     t = max(max(enter1, enter2), max(enter3, enter4), 0.0)
     if t > min(min(leave1, leave2), min(leave3, leave4)) or t > 1.0:
         return MISS

@@ -1,26 +1,26 @@
 """The stages of a substep as kernels that Python calls, with plain tuples of arrays."""
 
 from physicslab.kernels import kernel
-from physicslab.kernels.records import Impacts
-from physicslab.kernels.solver.arguments import (
+from physicslab.kernels.arguments import (
+    Acting,
     ActingTuple,
+    Bounds,
     BoundsTuple,
+    Inverse,
     InverseTuple,
     Log,
+    Materials,
     MaterialsTuple,
+    Motion,
     MotionTuple,
     NearTuple,
+    Sizes,
     SizesTuple,
+    Softness,
     SoftnessTuple,
-    named_acting,
-    named_bounds,
-    named_inverse,
-    named_materials,
-    named_motion,
     named_near,
-    named_sizes,
-    named_softness,
-)  # fmt: skip
+)
+from physicslab.kernels.records import Impacts
 from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
 
 __all__ = ["find_stage", "impact_stage", "relax_stage", "solve_stage"]
@@ -34,8 +34,8 @@ def find_stage(
 ) -> None:  # fmt: skip
     """Find where near bodies touch (:func:`~physicslab.kernels.solver.stages.find_touching`)."""
     find_touching(
-        named_near(near), named_motion(motion), named_sizes(sizes), named_materials(materials),
-        named_inverse(inverse), named_bounds(bounds), first, h, start, speculative_margin,
+        named_near(near), Motion(*motion), Sizes(*sizes), Materials(*materials),
+        Inverse(*inverse), Bounds(*bounds), first, h, start, speculative_margin,
     )  # fmt: skip
 
 
@@ -46,7 +46,7 @@ def impact_stage(
 ) -> int:  # fmt: skip
     """Bounce what meets (:func:`~physicslab.kernels.solver.stages.resolve_all_impacts`)."""
     return resolve_all_impacts(
-        named_near(near), named_motion(motion), named_inverse(inverse), named_acting(acting),
+        named_near(near), Motion(*motion), Inverse(*inverse), Acting(*acting),
         Log(log, moment), h, start, end,
     )  # fmt: skip
 
@@ -58,8 +58,8 @@ def solve_stage(
 ) -> float:  # fmt: skip
     """Find the impulses that keep bodies apart (:func:`~physicslab.kernels.solver.stages.press`)."""
     return press(
-        named_near(near), named_motion(motion), named_inverse(inverse), named_acting(acting),
-        named_softness(softness), h, impulse_dt, iterations,
+        named_near(near), Motion(*motion), Inverse(*inverse), Acting(*acting),
+        Softness(*softness), h, impulse_dt, iterations,
     )  # fmt: skip
 
 
@@ -70,6 +70,6 @@ def relax_stage(
 ) -> None:  # fmt: skip
     """Take back what the correction left (:func:`~physicslab.kernels.solver.stages.relax`)."""
     relax(
-        named_near(near), named_motion(motion), named_inverse(inverse), named_softness(softness), h,
+        named_near(near), Motion(*motion), Inverse(*inverse), Softness(*softness), h,
         iterations,
     )  # fmt: skip

@@ -1,12 +1,7 @@
 """Whole steps of a world whose bodies touch, in one compiled loop: the stages of leapfrog, in their order."""
 
 from physicslab.kernels import Flags, Rows, Vectors, inlined, kernel
-from physicslab.kernels.broad.grid import still_holds
-from physicslab.kernels.forces.gravity import uniform_gravity
-from physicslab.kernels.motion import clear, drift, find_not_finite, kick
-from physicslab.kernels.records import Impacts
-from physicslab.kernels.sleep.islands import count_rest, find_touched
-from physicslab.kernels.solver.arguments import (
+from physicslab.kernels.arguments import (
     Acting,
     ActingTuple,
     Bounds,
@@ -30,22 +25,17 @@ from physicslab.kernels.solver.arguments import (
     SleepersTuple,
     Softness,
     SoftnessTuple,
-    named_acting,
-    named_bounds,
-    named_gravity,
-    named_inverse,
-    named_materials,
-    named_motion,
     named_near,
-    named_plan,
-    named_sizes,
-    named_sleepers,
-    named_softness,
-)  # fmt: skip
+)
+from physicslab.kernels.broad.fat_boxes import still_holds
+from physicslab.kernels.forces.gravity import uniform_gravity
+from physicslab.kernels.motion import clear, drift, find_not_finite, kick
+from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
+from physicslab.kernels.records import Impacts
+from physicslab.kernels.sleep.islands import count_rest, find_touched
 from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
 from physicslab.kernels.ticks import charge, ticks
-from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_constraints
-from physicslab.kernels.wide.slots import ACTIVE, WIDE_COUNT
+from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to_blocks
 
 __all__ = [
     "ACCELERATE", "ALL", "BEGIN", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "FIND",
@@ -109,10 +99,9 @@ def _made_wide(
         return True
     came = SPARSE  # the first blocks are made in Python
     if near.counts[WIDE_COUNT] > 0:
-        came = add_constraints(
-            near.counts, near.discs, near.boxes, opened, near.manifolds, near.points, near.scalar,
-            sleepers.pairs, near.touching, sleepers.inactive, sleepers.asleep, sizes.kind, sizes.radius,
-            materials.restitution, materials.friction, motion.linear, inverse.mass, inverse.inertia, h,
+        came = add_to_blocks(
+            near, opened, sleepers.pairs, sleepers.inactive, sleepers.asleep, motion, sizes, materials,
+            inverse, h,
         )  # fmt: skip
     return came == ADDED
 
@@ -219,8 +208,8 @@ def advance(
     are done and all impacts, and the time [s] over which the points' impulses act.
     """
     return _advance(
-        steps, substep, stage, named_plan(plan), named_motion(motion), named_motion(kept),
-        named_sizes(sizes), named_materials(materials), named_inverse(inverse), sub_integrated,
-        named_acting(acting), named_gravity(gravity), named_sleepers(sleepers), damping, fat,
-        named_bounds(bounds), named_near(near), opened, named_softness(softness), impulse_dt, impacts, cost,
+        steps, substep, stage, Plan(*plan), Motion(*motion), Motion(*kept),
+        Sizes(*sizes), Materials(*materials), Inverse(*inverse), sub_integrated,
+        Acting(*acting), Gravity(*gravity), Sleepers(*sleepers), damping, fat,
+        Bounds(*bounds), named_near(near), opened, Softness(*softness), impulse_dt, impacts, cost,
     )  # fmt: skip

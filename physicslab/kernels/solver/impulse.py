@@ -2,9 +2,11 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined, kernel
-from physicslab.kernels.records import Manifolds, Point, Points
-from physicslab.kernels.wide.solve import soft_normal_impulse, sweep_wide, warm_start_wide
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, fused, inlined, kernel
+from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
+from physicslab.kernels.near_counts import WIDE_COUNT
+from physicslab.kernels.records import Manifold, Manifolds, Point, Points
+from physicslab.kernels.wide.solve import SoftConstraint, soft_normal_impulse, sweep_wide, warm_start_wide
 
 __all__ = [
     "HEAVY_RATIO", "MAX_SUBSTEP_FACTOR", "apply_impulse", "deepest", "follow_drift", "relative_velocity",
@@ -22,57 +24,37 @@ MAX_SUBSTEP_FACTOR = 16
 
 @inlined
 def apply_impulse(
-    point: Point,
-    px: float,
-    py: float,
-    a: int,
-    b: int,
-    linear: Vectors,
-    angular: Numbers,
-    inverse_mass: Numbers,
-    inverse_inertia: Numbers,
+    point: Point, px: float, py: float, a: int, b: int, motion: Motion, inverse: Inverse
 ) -> None:
     """Change the velocities of A by the impulse -(px, py) [N s] at the point and those of B by (px, py)."""
-    linear[a, 0] -= inverse_mass[a] * px
-    linear[a, 1] -= inverse_mass[a] * py
-    angular[a] -= inverse_inertia[a] * (point.arm_ax * py - point.arm_ay * px)
-    linear[b, 0] += inverse_mass[b] * px
-    linear[b, 1] += inverse_mass[b] * py
-    angular[b] += inverse_inertia[b] * (point.arm_bx * py - point.arm_by * px)
+    linear, angular = motion.linear, motion.angular
+    linear[a, 0] -= inverse.mass[a] * px
+    linear[a, 1] -= inverse.mass[a] * py
+    angular[a] -= inverse.inertia[a] * (point.arm_ax * py - point.arm_ay * px)
+    linear[b, 0] += inverse.mass[b] * px
+    linear[b, 1] += inverse.mass[b] * py
+    angular[b] += inverse.inertia[b] * (point.arm_bx * py - point.arm_by * px)
 
 
 @inlined
-def relative_velocity(point: Point, a: int, b: int, linear: Vectors, angular: Numbers) -> tuple[float, float]:
+def relative_velocity(point: Point, a: int, b: int, motion: Motion) -> tuple[float, float]:
     """Return the velocity of B's contact point against A's [m/s]."""
+    linear, angular = motion.linear, motion.angular
     vx = linear[b, 0] - angular[b] * point.arm_by - linear[a, 0] + angular[a] * point.arm_ay
     vy = linear[b, 1] + angular[b] * point.arm_bx - linear[a, 1] - angular[a] * point.arm_ax
     return vx, vy
 
 
 @inlined
-def _sweep(
-    manifolds: Manifolds,
-    points: Points,
-    touching: Rows,
-    count: int,
-    linear: Vectors,
-    angular: Numbers,
-    inverse_mass: Numbers,
-    inverse_inertia: Numbers,
-    inverse_h: float,
-    push_rate: float,
-    mass_scale: float,
-    impulse_scale: float,
-    slop: float,
-    force_cap: float,
-) -> None:
+def _sweep(contacts: Contacts, motion: Motion, inverse: Inverse, soft: SoftConstraint) -> None:
     """Solve all contacts once; friction is limited by the newest normal impulse."""
-    for k in range(count):
-        p = touching[k]
-        manifold = manifolds[p]
+    points, linear, angular = contacts.points, motion.linear, motion.angular
+    for k in range(contacts.number):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         a, b = manifold.a, manifold.b
         nx, ny = manifold.normal_x, manifold.normal_y
-        ma, mb, ia, ib = inverse_mass[a], inverse_mass[b], inverse_inertia[a], inverse_inertia[b]
+        ma, mb, ia, ib = inverse.mass[a], inverse.mass[b], inverse.inertia[a], inverse.inertia[b]
         vax, vay, wa = linear[a, 0], linear[a, 1], angular[a]
         vbx, vby, wb = linear[b, 0], linear[b, 1], angular[b]
         for j in range(2 * p, 2 * p + manifold.count):
@@ -82,9 +64,8 @@ def _sweep(
                 continue
             vn = nx * (vbx - wb * rby - vax + wa * ray) + ny * (vby + wb * rbx - vay - wa * rax)
             total = soft_normal_impulse(
-                point.normal_impulse, point.normal_mass, vn, point.separation, manifold.size, inverse_h,
-                push_rate, mass_scale, impulse_scale, slop, force_cap,
-            )  # fmt: skip
+                point.normal_impulse, point.normal_mass, vn, point.separation, manifold.size, soft
+            )
             change = total - point.normal_impulse
             point.normal_impulse = total
             px, py = change * nx, change * ny
@@ -106,49 +87,15 @@ def _sweep(
         linear[b, 0], linear[b, 1], angular[b] = vbx, vby, wb
 
 
-@inlined
-def solve(
-    manifolds: Manifolds,
-    points: Points,
-    touching: Rows,
-    count: int,
-    discs: Numbers,
-    disc_blocks: int,
-    disc_order: Rows,
-    disc_a: Rows,
-    disc_b: Rows,
-    boxes: Numbers,
-    box_blocks: int,
-    box_order: Rows,
-    box_a: Rows,
-    box_b: Rows,
-    linear: Vectors,
-    angular: Numbers,
-    inverse_mass: Numbers,
-    inverse_inertia: Numbers,
-    force: Vectors,
-    has_forces: bool,
-    h: float,
-    warm_start_scale: float,
-    iterations: int,
-    hertz: float,
-    damping_ratio: float,
-    slop: float,
-) -> None:
-    """Start from the last substep's impulses, then go through all contacts, correcting overlap.
-
-    ``warm_start_scale`` is the ratio of this substep to the last one: the impulses of resting contacts grow
-    by that factor.
-
-    The contact spring of frequency ``hertz`` is integrated implicitly over h (Catto, Soft Constraints, GDC
-    2011): with omega = 2 pi hertz and q = 2 zeta + h omega, it takes omega / q of the overlap a second.
-    """
-    for k in range(count):
-        p = touching[k]
-        manifold = manifolds[p]
+@fused
+def _warm_start(contacts: Contacts, motion: Motion, inverse: Inverse, warm_start_scale: float) -> None:
+    """Apply the impulses of the last substep, ``warm_start_scale`` times as large, at scalar contacts."""
+    for k in range(contacts.number):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         nx, ny = manifold.normal_x, manifold.normal_y
         for j in range(2 * p, 2 * p + manifold.count):
-            point = points[j]
+            point = contacts.points[j]
             if point.ahead:
                 point.normal_impulse = point.tangent_impulse = 0.0
                 continue
@@ -156,98 +103,124 @@ def solve(
             point.tangent_impulse *= warm_start_scale
             px = point.normal_impulse * nx - point.tangent_impulse * ny
             py = point.normal_impulse * ny + point.tangent_impulse * nx
-            apply_impulse(
-                point, px, py, manifold.a, manifold.b, linear, angular, inverse_mass, inverse_inertia
-            )
-    constraints = discs, disc_blocks, disc_order, disc_a, disc_b, boxes, box_blocks, box_order, box_a, box_b
-    warm_start_wide(*constraints, linear, angular, warm_start_scale)
+            apply_impulse(point, px, py, manifold.a, manifold.b, motion, inverse)
+
+
+@fused
+def _soft_constraint(softness: Softness, acting: Acting, h: float) -> SoftConstraint:
+    """Return the contact spring of :class:`Softness`, integrated implicitly over h.
+
+    (Catto, Soft Constraints, GDC 2011): with omega = 2 pi hertz and q = 2 zeta + h omega, it takes omega / q
+    of the overlap a second.
+    """
     force_cap = 0.0
-    if has_forces:
-        for i in range(len(inverse_mass)):
+    if acting.any:
+        force = acting.force
+        for i in range(len(force)):
             force_cap += h * math.sqrt(force[i, 0] * force[i, 0] + force[i, 1] * force[i, 1])
-    omega = 2.0 * math.pi * min(hertz, 0.25 / h)
-    q = 2.0 * damping_ratio + h * omega
+    omega = 2.0 * math.pi * min(softness.hertz, 0.25 / h)
+    q = 2.0 * softness.damping_ratio + h * omega
     stiffness = h * omega * q
+    return SoftConstraint(
+        1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), softness.slop, force_cap
+    )
+
+
+@fused
+def solve(
+    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
+    h: float, warm_start_scale: float, iterations: int,
+) -> None:  # fmt: skip
+    """Start from the last substep's impulses, then go through all contacts, correcting overlap.
+
+    ``warm_start_scale`` is the ratio of this substep to the last one: the impulses of resting contacts grow
+    by that factor.
+    """
+    _warm_start(contacts, motion, inverse, warm_start_scale)
+    if near.counts[WIDE_COUNT] > 0:
+        warm_start_wide(near, motion, warm_start_scale)
+    soft = _soft_constraint(softness, acting, h)
     for _ in range(iterations):
-        _sweep(
-            manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
-            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, force_cap,
-        )  # fmt: skip
-        sweep_wide(
-            *constraints, linear, angular, 0.0,
-            1.0 / h, omega / q, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), slop, force_cap,
-        )  # fmt: skip
+        _sweep(contacts, motion, inverse, soft)
+        if near.counts[WIDE_COUNT] > 0:
+            sweep_wide(near, motion, 0.0, soft)
 
 
 @inlined
-def follow_drift(
-    manifolds: Manifolds,
-    points: Points,
-    touching: Rows,
-    count: int,
-    linear: Vectors,
-    angular: Numbers,
-    h: float,
-) -> None:
+def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
     """Bring separations up to date for a drift of h at the present velocities."""
-    for k in range(count):
-        p = touching[k]
-        manifold = manifolds[p]
+    for k in range(contacts.number):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
         for j in range(2 * p, 2 * p + manifold.count):
-            point = points[j]
-            vx, vy = relative_velocity(point, manifold.a, manifold.b, linear, angular)
+            point = contacts.points[j]
+            vx, vy = relative_velocity(point, manifold.a, manifold.b, motion)
             point.separation += h * (vx * manifold.normal_x + vy * manifold.normal_y)
 
 
-@inlined
+@fused
 def relax(
-    manifolds: Manifolds,
-    points: Points,
-    touching: Rows,
-    count: int,
-    discs: Numbers,
-    disc_blocks: int,
-    disc_order: Rows,
-    disc_a: Rows,
-    disc_b: Rows,
-    boxes: Numbers,
-    box_blocks: int,
-    box_order: Rows,
-    box_a: Rows,
-    box_b: Rows,
-    linear: Vectors,
-    angular: Numbers,
-    inverse_mass: Numbers,
-    inverse_inertia: Numbers,
-    h: float,
-    iterations: int,
+    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: float, iterations: int
 ) -> None:
     """Go through all contacts without correction, so that pushing bodies apart leaves no velocity behind.
 
     ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call.
     """
-    follow_drift(manifolds, points, touching, count, linear, angular, h)
-    constraints = discs, disc_blocks, disc_order, disc_a, disc_b, boxes, box_blocks, box_order, box_a, box_b
-    drift = h
+    follow_drift(contacts, motion, h)
+    rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0), h
     for _ in range(iterations):
-        _sweep(
-            manifolds, points, touching, count, linear, angular, inverse_mass, inverse_inertia,
-            1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0,
-        )  # fmt: skip
-        sweep_wide(*constraints, linear, angular, drift, 1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0)
+        _sweep(contacts, motion, inverse, rigid)
+        if near.counts[WIDE_COUNT] > 0:
+            sweep_wide(near, motion, drift, rigid)
         drift = 0.0
 
 
+@inlined
+def _lowest(manifold: Manifold, points: Points, p: int) -> float:
+    """Return the lowest separation of a pair's points [m]."""
+    lowest: float = points[2 * p].separation
+    return min(lowest, points[2 * p + 1].separation) if manifold.count == 2 else lowest
+
+
+@inlined
+def _push_apart(contacts: Contacts, position: Vectors, before: Vectors, inverse_mass: Numbers) -> None:
+    """Move the bodies of each pair that overlaps deeply apart, the lighter one further."""
+    for k in range(contacts.number):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
+        if manifold.swept == 1:
+            continue
+        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        moved_x = position[b, 0] - before[b, 0] - position[a, 0] + before[a, 0]
+        moved_y = position[b, 1] - before[b, 1] - position[a, 1] + before[a, 1]
+        depth = -(_lowest(manifold, contacts.points, p) + moved_x * nx + moved_y * ny) - _DEEP * manifold.size
+        if depth > 0.0:
+            share = 0.6 * depth / (inverse_mass[a] + inverse_mass[b])
+            position[a, 0] -= share * inverse_mass[a] * nx
+            position[a, 1] -= share * inverse_mass[a] * ny
+            position[b, 0] += share * inverse_mass[b] * nx
+            position[b, 1] += share * inverse_mass[b] * ny
+
+
+@inlined
+def _put_back(contacts: Contacts, position: Vectors, before: Vectors, inverse_mass: Numbers) -> None:
+    """Move what overlaps a fixed body, or the world's bounds, out of it."""
+    for k in range(contacts.number):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
+        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        if manifold.swept == 1 or (inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0):
+            continue
+        i, sign = (b, 1.0) if inverse_mass[b] > 0.0 else (a, -1.0)
+        moved = sign * ((position[i, 0] - before[i, 0]) * nx + (position[i, 1] - before[i, 1]) * ny)
+        depth = -(_lowest(manifold, contacts.points, p) + moved) - _DEEP * manifold.size
+        if depth > 0.0:
+            position[i, 0] += sign * depth * nx
+            position[i, 1] += sign * depth * ny
+
+
 @allocating
-def separate(
-    manifolds: Manifolds,
-    points: Points,
-    touching: Rows,
-    count: int,
-    position: Vectors,
-    inverse_mass: Numbers,
-    farthest: float,
-) -> None:
+def separate(contacts: Contacts, position: Vectors, inverse_mass: Numbers, farthest: float) -> None:
     """Move bodies that overlap deeply apart, six tenths of the way and by at most ``farthest`` [m].
 
     Only positions change: however many bodies are on one spot, separating them gives them no speed. A body
@@ -255,52 +228,22 @@ def separate(
     press another one through a floor.
     """
     deep = False
-    for k in range(count):
-        manifold = manifolds[touching[k]]
-        for j in range(2 * touching[k], 2 * touching[k] + manifold.count):
-            deep = deep or points[j].separation < -_DEEP * manifold.size
+    for k in range(contacts.number):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
+        for j in range(2 * p, 2 * p + manifold.count):
+            deep = deep or contacts.points[j].separation < -_DEEP * manifold.size
     if not deep:
         return
     before = position.copy()
-    for k in range(count):
-        p = touching[k]
-        manifold = manifolds[p]
-        if manifold.swept == 1:
-            continue
-        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-        lowest = points[2 * p].separation
-        if manifold.count == 2:
-            lowest = min(lowest, points[2 * p + 1].separation)
-        moved_x = position[b, 0] - before[b, 0] - position[a, 0] + before[a, 0]
-        moved_y = position[b, 1] - before[b, 1] - position[a, 1] + before[a, 1]
-        depth = -(lowest + moved_x * nx + moved_y * ny) - _DEEP * manifold.size
-        if depth > 0.0:
-            share = 0.6 * depth / (inverse_mass[a] + inverse_mass[b])
-            position[a, 0] -= share * inverse_mass[a] * nx
-            position[a, 1] -= share * inverse_mass[a] * ny
-            position[b, 0] += share * inverse_mass[b] * nx
-            position[b, 1] += share * inverse_mass[b] * ny
+    _push_apart(contacts, position, before, inverse_mass)
     for i in range(len(inverse_mass)):
         x, y = position[i, 0] - before[i, 0], position[i, 1] - before[i, 1]
         way = math.sqrt(x * x + y * y)
         if way > farthest:
             position[i, 0] = before[i, 0] + x * farthest / way
             position[i, 1] = before[i, 1] + y * farthest / way
-    for k in range(count):
-        p = touching[k]
-        manifold = manifolds[p]
-        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-        if manifold.swept == 1 or (inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0):
-            continue
-        i, sign = (b, 1.0) if inverse_mass[b] > 0.0 else (a, -1.0)
-        moved = sign * ((position[i, 0] - before[i, 0]) * nx + (position[i, 1] - before[i, 1]) * ny)
-        lowest = points[2 * p].separation
-        if manifold.count == 2:
-            lowest = min(lowest, points[2 * p + 1].separation)
-        depth = -(lowest + moved) - _DEEP * manifold.size
-        if depth > 0.0:
-            position[i, 0] += sign * depth * nx
-            position[i, 1] += sign * depth * ny
+    _put_back(contacts, position, before, inverse_mass)
 
 
 @kernel

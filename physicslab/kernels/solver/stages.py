@@ -3,14 +3,11 @@
 Systems call them one by one through :mod:`physicslab.kernels.solver.entries`.
 """
 
-from physicslab.kernels import Numbers, Rows, fused, inlined
-from physicslab.kernels.broad.near_pairs import activate, sort_scalar
-from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE, find_contacts
-from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
-from physicslab.kernels.solver import impulse
-from physicslab.kernels.solver.arguments import (
+from physicslab.kernels import fused, inlined
+from physicslab.kernels.arguments import (
     Acting,
     Bounds,
+    Contacts,
     Inverse,
     Log,
     Materials,
@@ -19,14 +16,10 @@ from physicslab.kernels.solver.arguments import (
     Sizes,
     Softness,
 )
-from physicslab.kernels.solver.impact import resolve_impacts
-from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
-from physicslab.kernels.wide.layout import BOX, DISC
-from physicslab.kernels.wide.refresh import refresh
-from physicslab.kernels.wide.slots import (
+from physicslab.kernels.broad.near_pairs import activate, sort_scalar
+from physicslab.kernels.narrow.contact import find_contacts
+from physicslab.kernels.near_counts import (
     ACTIVE,
-    BOX_BLOCKS,
-    DISC_BLOCKS,
     LEFT,
     LOGGED,
     PROXIMITY,
@@ -34,13 +27,20 @@ from physicslab.kernels.wide.slots import (
     SCALAR,
     UNORDERED,
     WIDE_COUNT,
-    wake,
 )
+from physicslab.kernels.solver import impulse
+from physicslab.kernels.solver.impact import resolve_impacts
+from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
+from physicslab.kernels.wide.refresh import refresh
+from physicslab.kernels.wide.slots import wake
 
 __all__ = ["find_touching", "press", "relax", "resolve_all_impacts"]
 
-Solved = tuple[Numbers, int, Rows, Rows, Rows, Numbers, int, Rows, Rows, Rows]
-"""Blocks of discs and of boxes: data, how many, their order, rows of A and B."""
+
+@fused
+def _contacts(near: Near) -> Contacts:
+    """Return the scalar pairs that touch now."""
+    return Contacts(near.manifolds, near.points, near.touching, near.counts[ACTIVE])
 
 
 @inlined
@@ -56,14 +56,8 @@ def find_touching(
     counts, manifolds, points, scalar = near.counts, near.manifolds, near.points, near.scalar
     if counts[WIDE_COUNT] > 0:
         before = counts[SCALAR]
-        for kind in (DISC, BOX):
-            data, a, b, pair, colour, used, _ = near.discs if kind == DISC else near.boxes
-            counts[SCALAR] = refresh(
-                kind, data, counts[DISC_BLOCKS if kind == DISC else BOX_BLOCKS], a, b, pair, colour, used,
-                manifolds, points, scalar, counts[SCALAR],
-                motion.position, motion.angle, motion.linear, motion.angular, first, h,
-                SWEEP_THRESHOLD, CONTACT_MARGIN, speculative_margin, CACHE_TOLERANCE, CACHE_TURN_TOLERANCE,
-            )  # fmt: skip
+        for slots in (near.discs, near.boxes):
+            refresh(slots, near, motion, first, h, speculative_margin)
         came = counts[SCALAR] - before
         counts[WIDE_COUNT] -= came
         if came > 0:
@@ -76,12 +70,8 @@ def find_touching(
         scalar, counts[SCALAR], near.entities, motion.position, motion.linear, h, speculative_margin,
     )  # fmt: skip
     counts[ACTIVE] = find_contacts(
-        manifolds, points, scalar, counts[SCALAR], near.touching,
-        motion.position, motion.angle, motion.linear, motion.angular,
-        sizes.kind, sizes.radius, sizes.width, sizes.height, materials.restitution, materials.friction,
-        inverse.mass, inverse.inertia, bounds.walls, bounds.restitution, bounds.friction,
-        first, h, start, speculative_margin,
-    )  # fmt: skip
+        near, counts[SCALAR], motion, sizes, materials, inverse, bounds, first, h, start, speculative_margin
+    )
 
 
 @inlined
@@ -96,23 +86,14 @@ def resolve_all_impacts(
     counts[LEFT] = 0
     while counts[ACTIVE] > 0:
         came, counts[LEFT] = resolve_impacts(
-            near.manifolds, near.points, near.touching, counts[ACTIVE],
-            motion.position, motion.angle, motion.linear, motion.angular,
-            acting.force, inverse.mass, inverse.inertia, acting.any, h, start, end,
-            log.impacts, counts[LOGGED], log.time,
-        )  # fmt: skip
+            _contacts(near), motion, inverse, acting, log, counts[LOGGED], h, start, end
+        )
         impacts += came
         counts[LOGGED] += came if len(log.impacts) > 0 else 0
         before = counts[ACTIVE]
         if came > 0 and counts[WIDE_COUNT] > 0:
-            for kind in (DISC, BOX):
-                data, a, b, pair, colour, used, _ = near.discs if kind == DISC else near.boxes
-                counts[SCALAR], counts[ACTIVE] = wake(
-                    kind, data, counts[DISC_BLOCKS if kind == DISC else BOX_BLOCKS], a, b, pair, colour, used,
-                    near.manifolds, near.points, near.scalar, counts[SCALAR], near.touching, counts[ACTIVE],
-                    motion.position, motion.angle, motion.linear, motion.angular, acting.force,
-                    inverse.mass, h,
-                )  # fmt: skip
+            for slots in (near.discs, near.boxes):
+                wake(slots, near, motion, acting, inverse, h)
         if counts[ACTIVE] == before:
             break
         counts[WIDE_COUNT] -= counts[ACTIVE] - before
@@ -120,7 +101,7 @@ def resolve_all_impacts(
     return impacts
 
 
-@inlined
+@fused
 def _warm_start_scale(h: float, impulse_dt: float) -> float:
     """Return the ratio of a substep to the time over which the points' impulses act.
 
@@ -130,16 +111,6 @@ def _warm_start_scale(h: float, impulse_dt: float) -> float:
 
 
 @fused
-def _solved(near: Near) -> Solved:
-    """Return the arrays of the blocks that the solver takes."""
-    discs, boxes = near.discs, near.boxes
-    return (
-        discs[0], near.counts[DISC_BLOCKS], discs[6], discs[1], discs[2],
-        boxes[0], near.counts[BOX_BLOCKS], boxes[6], boxes[1], boxes[2],
-    )  # fmt: skip
-
-
-@inlined
 def press(
     near: Near, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
     h: float, impulse_dt: float, iterations: int,
@@ -150,27 +121,18 @@ def press(
     """
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return impulse_dt
-    impulse.solve(
-        near.manifolds, near.points, near.touching, near.counts[ACTIVE], *_solved(near),
-        motion.linear, motion.angular, inverse.mass, inverse.inertia, acting.force, acting.any,
-        h, _warm_start_scale(h, impulse_dt), iterations,
-        softness.hertz, softness.damping_ratio, softness.slop,
-    )  # fmt: skip
+    scale = _warm_start_scale(h, impulse_dt)
+    impulse.solve(_contacts(near), near, motion, inverse, acting, softness, h, scale, iterations)
     return h
 
 
-@inlined
+@fused
 def relax(
     near: Near, motion: Motion, inverse: Inverse, softness: Softness, h: float, iterations: int
 ) -> None:
     """Remove the velocity that came from correcting overlap, ``h`` seconds after :func:`press`."""
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return
-    impulse.relax(
-        near.manifolds, near.points, near.touching, near.counts[ACTIVE], *_solved(near),
-        motion.linear, motion.angular, inverse.mass, inverse.inertia, h, iterations,
-    )  # fmt: skip
-    impulse.separate(
-        near.manifolds, near.points, near.touching, near.counts[ACTIVE],
-        motion.position, inverse.mass, softness.max_push * h,
-    )  # fmt: skip
+    contacts = _contacts(near)
+    impulse.relax(contacts, near, motion, inverse, h, iterations)
+    impulse.separate(contacts, motion.position, inverse.mass, softness.max_push * h)

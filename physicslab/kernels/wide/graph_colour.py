@@ -3,34 +3,37 @@
 import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.arguments import (
+    Inverse,
+    InverseTuple,
+    Materials,
+    MaterialsTuple,
+    Motion,
+    MotionTuple,
+    Near,
+    NearTuple,
+    Sizes,
+    SizesTuple,
+    named_near,
+)
 from physicslab.kernels.broad.near_pairs import sort_scalar
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
-from physicslab.kernels.records import Manifold, Manifolds, Point, Points
-from physicslab.kernels.wide.layout import (
-    BOX,
-    BOX_ROWS,
-    DISC,
-    DISC_ROWS,
-    WIDE,
-)  # fmt: skip
-from physicslab.kernels.wide.restore_slots import fill_slot
-from physicslab.kernels.wide.slots import (
+from physicslab.kernels.near_counts import (
     ACTIVE,
     BOX_BLOCKS,
-    COLOURS,
     DISC_BLOCKS,
     RECORDED,
     SCALAR,
     SLEEPING,
     UNORDERED,
     WIDE_COUNT,
-    Masks,
-    Slots,
-    clear_slot,
-    list_scalar,
 )
+from physicslab.kernels.records import Manifold, Manifolds, Point
+from physicslab.kernels.wide.layout import DISC, WIDE, Masks, Slots, rows_of
+from physicslab.kernels.wide.restore_slots import fill_slot
+from physicslab.kernels.wide.slots import COLOURS, clear_slot, list_scalar
 
-__all__ = ["ADDED", "FULL", "MIN_WIDE", "SPARSE", "add_constraints", "sort_blocks"]
+__all__ = ["ADDED", "FULL", "MIN_WIDE", "SPARSE", "add_constraints", "add_to_blocks", "sort_blocks"]
 
 MIN_WIDE = 64
 """Smallest number of contacts for which blocks are made: solving fewer takes less time than sorting them."""
@@ -46,9 +49,7 @@ _OF_FIXED = 48
 
 
 @inlined
-def _is_steady(
-    manifold: Manifold, one: Point, two: Point, linear: Vectors, h: float, still: float, near: float
-) -> bool:
+def _is_steady(manifold: Manifold, one: Point, two: Point, linear: Vectors, h: float) -> bool:
     """Whether a contact may be in a block: it is slow for its size, and overlaps little."""
     if manifold.swept != 0 or manifold.impact_count != 0 or one.ahead != 0:
         return False
@@ -56,16 +57,17 @@ def _is_steady(
     if one.separation < deep or (manifold.count == 2 and (two.separation < deep or two.ahead != 0)):
         return False
     ux, uy = (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h
-    slow = still if manifold.found == 0 else near
+    slow = _ENTRY * (SWEEP_THRESHOLD if manifold.found == 0 else CONTACT_MARGIN)
     return bool(ux * ux + uy * uy <= slow * slow * manifold.size * manifold.size)
 
 
 @inlined
-def _survey(blocks: int, pair: Rows, colour: Rows, opened: Rows) -> tuple[int, int]:
+def _survey(blocks: int, slots: Slots, opened: Rows) -> tuple[int, int]:
     """Find the first block of each colour that has room, the first empty one, and how many are needed.
 
     None of this depends on what was there before: a world read from a file continues alike.
     """
+    pair, colour = slots.pair, slots.colour
     opened[:] = -1
     last = 0
     first_empty = -1
@@ -85,69 +87,81 @@ def _survey(blocks: int, pair: Rows, colour: Rows, opened: Rows) -> tuple[int, i
 
 
 @inlined
-def _free_slot(home: int, blocks: int, c: int, pair: Rows, colour: Rows) -> int:
+def _free_slot(home: int, blocks: int, c: int, slots: Slots) -> int:
     """Return the first free slot of the blocks of a colour from ``home`` on, or -1."""
     for k in range(home, blocks):
-        if colour[k] == c:
+        if slots.colour[k] == c:
             for slot in range(k * WIDE, (k + 1) * WIDE):
-                if pair[slot] < 0:
+                if slots.pair[slot] < 0:
                     return slot
     return -1
 
 
 @inlined
-def _assign_colour(
-    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    opened: Rows, manifolds: Manifolds, points: Points, touching: Rows, count: int,
-    shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
-    inverse_mass: Numbers, inverse_inertia: Numbers, asleep: Flags,
-    h: float, still: float, near: float,
+def _may_enter(
+    slots: Slots, near: Near, p: int, motion: Motion, shape: Rows, asleep: Flags, h: float
+) -> bool:
+    """Whether a contact is steady and of the kind of these blocks.
+
+    One with a body that is ``asleep``, which it is about to wake, stays scalar.
+    """
+    manifold = near.manifolds[p]
+    i, j = manifold.a, manifold.b
+    discs, boxes = shape[i] == 1 and shape[j] == 1, shape[i] == 2 and shape[j] == 2
+    if manifold.wall >= 0 or not (discs if slots.kind == DISC else boxes and manifold.found == 2):
+        return False
+    if asleep[i] or asleep[j]:
+        return False
+    return _is_steady(manifold, near.points[2 * p], near.points[2 * p + 1], motion.linear, h)
+
+
+@inlined
+def _first_colour(used: Masks, i: int, j: int, inverse_mass: Numbers) -> int:
+    """Return the first colour that no contact of either body has, or COLOURS; fixed bodies have none."""
+    taken = used[i] if inverse_mass[i] > 0.0 else np.uint64(0)
+    if inverse_mass[j] > 0.0:
+        taken |= used[j]
+    c = 0 if inverse_mass[i] > 0.0 and inverse_mass[j] > 0.0 else _OF_FIXED
+    while c < COLOURS and (taken >> np.uint64(c)) & np.uint64(1) != np.uint64(0):
+        c += 1
+    return c
+
+
+@inlined
+def _assign_colours(
+    slots: Slots, blocks: int, opened: Rows, near: Near, motion: Motion, sizes: Sizes, materials: Materials,
+    inverse: Inverse, asleep: Flags, h: float,
 ) -> tuple[int, int]:  # fmt: skip
     """Put the steady contacts of one kind into blocks; return how many blocks there are, and how many came.
 
     Two contacts of a body never share a block: each has one of ``COLOURS``, the first that neither of its
-    bodies has been given. ``used`` (rows,) are the colours of each body's contacts, ``opened`` (COLOURS,) the
-    block of each colour that may have room. A contact for which ``data`` has no room stays scalar, and so
-    does one with a body that is ``asleep``, which it is about to wake.
+    bodies has been given. ``opened`` (COLOURS,) is the block of each colour that may have room. A contact for
+    which there is no room stays scalar.
     """
-    rows, came = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
-    blocks, empty = _survey(blocks, pair, colour, opened)
-    for k in range(count):
-        p = touching[k]
-        manifold = manifolds[p]
-        i, j = manifold.a, manifold.b
-        discs, boxes = shape[i] == 1 and shape[j] == 1, shape[i] == 2 and shape[j] == 2
-        if manifold.wall >= 0 or not (discs if kind == DISC else boxes and manifold.found == 2):
+    rows, came = rows_of(slots.kind), 0
+    blocks, empty = _survey(blocks, slots, opened)
+    for k in range(near.counts[ACTIVE]):
+        p = near.touching[k]
+        manifold = near.manifolds[p]
+        if not _may_enter(slots, near, p, motion, sizes.kind, asleep, h):
             continue
-        if asleep[i] or asleep[j]:
-            continue
-        if not _is_steady(manifold, points[2 * p], points[2 * p + 1], linear, h, still, near):
-            continue
-        taken = used[i] if inverse_mass[i] > 0.0 else np.uint64(0)
-        if inverse_mass[j] > 0.0:
-            taken |= used[j]
-        c = 0 if inverse_mass[i] > 0.0 and inverse_mass[j] > 0.0 else _OF_FIXED
-        while c < COLOURS and (taken >> np.uint64(c)) & np.uint64(1) != np.uint64(0):
-            c += 1
+        c = _first_colour(slots.used, manifold.a, manifold.b, inverse.mass)
         if c == COLOURS:
             continue
-        slot = _free_slot(opened[c], blocks, c, pair, colour) if opened[c] >= 0 else -1
+        slot = _free_slot(opened[c], blocks, c, slots) if opened[c] >= 0 else -1
         if slot < 0:
             home = empty
-            if (home + 1) * rows > len(data):
+            if (home + 1) * rows > len(slots.data):
                 continue
-            for free in range(WIDE):
-                clear_slot(data, rows, home, free, a, b, pair)
-            colour[home], slot = c, home * WIDE
+            for free in range(home * WIDE, (home + 1) * WIDE):
+                clear_slot(slots, free)
+            slots.colour[home], slot = c, home * WIDE
             blocks = max(blocks, home + 1)
             empty += 1
-            while empty < blocks and colour[empty] >= 0:
+            while empty < blocks and slots.colour[empty] >= 0:
                 empty += 1
         opened[c] = slot // WIDE
-        fill_slot(
-            kind, data, slot, a, b, pair, used, c, manifolds, points, p, radius, restitution, friction,
-            inverse_mass, inverse_inertia,
-        )  # fmt: skip
+        fill_slot(slots, slot, c, near.manifolds, near.points, p, sizes, materials, inverse)
         came += 1
     return blocks, came
 
@@ -192,31 +206,24 @@ def _trimmed(blocks: int, pair: Rows) -> int:
 @inlined
 def _has_room(slots: Slots, blocks: int, active: int) -> bool:
     """Whether there is room for so many contacts, whatever colours they get."""
-    return blocks + active // WIDE + COLOURS <= len(slots[4])
+    return blocks + active // WIDE + COLOURS <= len(slots.colour)
 
 
-@kernel
-def add_constraints(
-    counts: Rows, discs: Slots, boxes: Slots, opened: Rows,
-    manifolds: Manifolds, points: Points, scalar: Rows, sleeping: Rows, touching: Rows, inactive: Flags,
-    asleep: Flags,
-    shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers, linear: Vectors,
-    inverse_mass: Numbers, inverse_inertia: Numbers, h: float,
+@inlined
+def add_to_blocks(
+    near: Near, opened: Rows, sleeping: Rows, inactive: Flags, asleep: Flags,
+    motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, h: float,
 ) -> int:  # fmt: skip
-    """Put steady contacts into blocks; return what must be done first if that is not possible.
-
-    ``counts`` are those of :mod:`physicslab.kernels.wide.slots`. Returns ``ADDED``, or ``SPARSE`` where
-    too many slots are empty, or ``FULL`` where there is no room for those that may come. Empty blocks at
-    the end are dropped in any case, so that the result does not depend on the past.
-    """
+    """Put steady contacts into blocks, as :func:`add_constraints` describes."""
+    counts, discs, boxes = near.counts, near.discs, near.boxes
     before = counts[DISC_BLOCKS], counts[BOX_BLOCKS]
-    counts[DISC_BLOCKS] = _trimmed(counts[DISC_BLOCKS], discs[3])
-    counts[BOX_BLOCKS] = _trimmed(counts[BOX_BLOCKS], boxes[3])
+    counts[DISC_BLOCKS] = _trimmed(counts[DISC_BLOCKS], discs.pair)
+    counts[BOX_BLOCKS] = _trimmed(counts[BOX_BLOCKS], boxes.pair)
     # At once: where this returns early, the next call finds nothing to drop.
     if counts[DISC_BLOCKS] != before[0]:
-        sort_blocks(counts[DISC_BLOCKS], discs[4], discs[6])
+        sort_blocks(counts[DISC_BLOCKS], discs.colour, discs.order)
     if counts[BOX_BLOCKS] != before[1]:
-        sort_blocks(counts[BOX_BLOCKS], boxes[4], boxes[6])
+        sort_blocks(counts[BOX_BLOCKS], boxes.colour, boxes.order)
     active, room = counts[ACTIVE], WIDE * (counts[DISC_BLOCKS] + counts[BOX_BLOCKS])
     if room > 2 * COLOURS * WIDE and counts[WIDE_COUNT] < _SPARSE * room:
         return SPARSE
@@ -226,23 +233,38 @@ def add_constraints(
             _has_room(discs, counts[DISC_BLOCKS], active) and _has_room(boxes, counts[BOX_BLOCKS], active)
         ):
             return FULL
-        for kind in (DISC, BOX):
-            data, a, b, pair, colour, used, _ = discs if kind == DISC else boxes
-            which = DISC_BLOCKS if kind == DISC else BOX_BLOCKS
-            counts[which], more = _assign_colour(
-                kind, data, counts[which], a, b, pair, colour, used, opened, manifolds, points, touching,
-                active, shape, radius, restitution, friction, linear, inverse_mass, inverse_inertia,
-                asleep, h, _ENTRY * SWEEP_THRESHOLD, _ENTRY * CONTACT_MARGIN,
-            )  # fmt: skip
+        for slots in (discs, boxes):
+            which = DISC_BLOCKS + slots.kind
+            counts[which], more = _assign_colours(
+                slots, counts[which], opened, near, motion, sizes, materials, inverse, asleep, h
+            )
             came += more
     if came > 0:
-        sort_blocks(counts[DISC_BLOCKS], discs[4], discs[6])
-        sort_blocks(counts[BOX_BLOCKS], boxes[4], boxes[6])
+        sort_blocks(counts[DISC_BLOCKS], discs.colour, discs.order)
+        sort_blocks(counts[BOX_BLOCKS], boxes.colour, boxes.order)
         counts[WIDE_COUNT] += came
-        counts[ACTIVE] = _keep_scalar(manifolds, touching, active)
+        counts[ACTIVE] = _keep_scalar(near.manifolds, near.touching, active)
         counts[SCALAR], counts[SLEEPING] = list_scalar(
-            manifolds, counts[RECORDED], inactive, scalar, sleeping
+            near.manifolds, counts[RECORDED], inactive, near.scalar, sleeping
         )
-        sort_scalar(manifolds, scalar, counts[SCALAR], len(shape))
+        sort_scalar(near.manifolds, near.scalar, counts[SCALAR], len(motion.angle))
         counts[UNORDERED] = 0
     return ADDED
+
+
+@kernel
+def add_constraints(
+    plain_near: NearTuple, opened: Rows, sleeping: Rows, inactive: Flags, asleep: Flags,
+    plain_motion: MotionTuple, plain_sizes: SizesTuple, plain_materials: MaterialsTuple,
+    plain_inverse: InverseTuple, h: float,
+) -> int:  # fmt: skip
+    """Put steady contacts into blocks; return what must be done first if that is not possible.
+
+    ``counts`` are those of :mod:`physicslab.kernels.wide.slots`. Returns ``ADDED``, or ``SPARSE`` where
+    too many slots are empty, or ``FULL`` where there is no room for those that may come. Empty blocks at
+    the end are dropped in any case, so that the result does not depend on the past.
+    """
+    return add_to_blocks(
+        named_near(plain_near), opened, sleeping, inactive, asleep, Motion(*plain_motion),
+        Sizes(*plain_sizes), Materials(*plain_materials), Inverse(*plain_inverse), h,
+    )  # fmt: skip

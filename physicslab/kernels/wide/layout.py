@@ -5,11 +5,19 @@ values, one cache line; all rows of a block are in one array at constant offsets
 they do not overlap, and does not vectorise the loops over its slots.
 """
 
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numba import uint64
+from numpy.typing import NDArray
+
+from physicslab.kernels import Numbers, Rows, fused
+
 __all__ = [
     "ANGLE_A", "ANGLE_B", "ARM_AX", "ARM_AY", "ARM_BX", "ARM_BY", "BASE_X", "BASE_Y", "BOX", "BOX_ROWS",
     "DISC", "DISC_ROWS", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS", "MASS_A",
     "MASS_B", "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "SEPARATION", "SIZE",
-    "TANGENT_IMPULSE", "TANGENT_MASS", "TWO", "WIDE",
+    "TANGENT_IMPULSE", "TANGENT_MASS", "TWO", "WIDE", "Masks", "Slots", "SlotsTuple", "rows_of",
 ]  # fmt: skip
 
 WIDE = 8
@@ -37,3 +45,32 @@ TWO = ONE + 10 * WIDE
 BASE_X, BASE_Y, ANGLE_A, ANGLE_B = (TWO + WIDE * i for i in range(10, 14))
 BOX_ROWS = TWO + 14 * WIDE
 """Numbers in a block of boxes."""
+
+Masks = Annotated[NDArray[np.uint64], uint64[::1]]
+"""A uint64 array (n,), bit by bit."""
+
+
+class Slots(NamedTuple):
+    """The blocks of a kind: what they hold, rows of A and B and the pair of each slot, the blocks' colours.
+
+    Then the colours that each body has been given, and the order in which the blocks are solved.
+    """
+
+    kind: int
+    data: Numbers
+    a: Rows
+    b: Rows
+    pair: Rows
+    colour: Rows
+    used: Masks
+    order: Rows
+
+
+SlotsTuple = tuple[int, Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
+"""The same, without names."""
+
+
+@fused
+def rows_of(kind: int) -> int:
+    """Return how many numbers a block of a kind has."""
+    return DISC_ROWS if kind == DISC else BOX_ROWS

@@ -1,7 +1,10 @@
 """Where wide contacts touch now, eight at a time; those that are not steady any more become scalar."""
 
-from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
-from physicslab.kernels.records import Manifolds, Points
+from physicslab.kernels import Numbers, fused, inlined, kernel
+from physicslab.kernels.arguments import Motion, Near
+from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE
+from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
+from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
 from physicslab.kernels.wide.float64x8 import (
     Wide,
     choose,
@@ -36,8 +39,10 @@ from physicslab.kernels.wide.layout import (
     SIZE,
     TWO,
     WIDE,
+    Slots,
+    rows_of,
 )  # fmt: skip
-from physicslab.kernels.wide.slots import Masks, empty_slot, store_slot
+from physicslab.kernels.wide.slots import set_scalar
 
 __all__ = ["deepest_wide", "refresh"]
 
@@ -48,30 +53,22 @@ _ONE_SPOT = 1e-300
 
 
 @fused
-def _restless(
-    data: Numbers, at: int, a: Rows, b: Rows, slot: int, linear: Vectors, still: float, h: float
-) -> int:
-    """Return the slots whose bodies move more than ``still`` of their size a substep, as bits."""
-    vax, vay = take_vectors(linear, a, slot)
-    vbx, vby = take_vectors(linear, b, slot)
-    ux, uy, limit = (vbx - vax) * h, (vby - vay) * h, still * take(data, at + SIZE)
+def _restless(slots: Slots, k: int, motion: Motion, h: float) -> int:
+    """Return the slots of a block whose bodies move too far for their size in a substep, as bits."""
+    still = 0.5 * SWEEP_THRESHOLD if slots.kind == DISC else 0.5 * CONTACT_MARGIN
+    vax, vay = take_vectors(motion.linear, slots.a, k * WIDE)
+    vbx, vby = take_vectors(motion.linear, slots.b, k * WIDE)
+    size = take(slots.data, k * rows_of(slots.kind) + SIZE)
+    ux, uy, limit = (vbx - vax) * h, (vby - vay) * h, still * size
     return mask_bits(ux * ux + uy * uy > limit * limit)
 
 
 @fused
-def _refresh_discs(
-    data: Numbers,
-    at: int,
-    a: Rows,
-    b: Rows,
-    slot: int,
-    position: Vectors,
-    near: float,
-    speculative_margin: float,
-) -> int:
+def _refresh_discs(slots: Slots, k: int, motion: Motion, speculative_margin: float) -> int:
     """Find normals and separations of a block of discs; return which are apart or overlap much."""
-    xa, ya = take_vectors(position, a, slot)
-    xb, yb = take_vectors(position, b, slot)
+    data, at = slots.data, k * DISC_ROWS
+    xa, ya = take_vectors(motion.position, slots.a, k * WIDE)
+    xb, yb = take_vectors(motion.position, slots.b, k * WIDE)
     dx, dy = xb - xa, yb - ya
     distance = root(dx * dx + dy * dy)
     size, ra, rb = take(data, at + SIZE), take(data, at + RADIUS_A), take(data, at + RADIUS_B)
@@ -80,7 +77,8 @@ def _refresh_discs(
     put(data, at + NORMAL_X, dx * scale)
     put(data, at + NORMAL_Y, dy * scale)
     put(data, at + ONE + SEPARATION, separation)
-    apart, on_one_spot = separation > 0.5 * near * size + speculative_margin, distance < _ONE_SPOT
+    apart = separation > 0.5 * CONTACT_MARGIN * size + speculative_margin
+    on_one_spot = distance < _ONE_SPOT
     return mask_bits((apart | on_one_spot | (separation < -_DEEP * size)) & (ra > 0.0))
 
 
@@ -99,24 +97,22 @@ def _separation(
 
 
 @fused
-def _refresh_boxes(
-    data: Numbers, at: int, a: Rows, b: Rows, slot: int, position: Vectors, angle: Numbers,
-    keep: float, keep_turn: float,
-) -> int:  # fmt: skip
+def _refresh_boxes(slots: Slots, k: int, motion: Motion) -> int:
     """Update the separations of a block of boxes; return which points must be found again."""
-    xa, ya = take_vectors(position, a, slot)
-    xb, yb = take_vectors(position, b, slot)
+    data, at = slots.data, k * BOX_ROWS
+    xa, ya = take_vectors(motion.position, slots.a, k * WIDE)
+    xb, yb = take_vectors(motion.position, slots.b, k * WIDE)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     x, y = xb - xa - take(data, at + BASE_X), yb - ya - take(data, at + BASE_Y)
-    turn_a = take_numbers(angle, a, slot) - take(data, at + ANGLE_A)
-    turn_b = take_numbers(angle, b, slot) - take(data, at + ANGLE_B)
+    turn_a = take_numbers(motion.angle, slots.a, k * WIDE) - take(data, at + ANGLE_A)
+    turn_b = take_numbers(motion.angle, slots.b, k * WIDE) - take(data, at + ANGLE_B)
     one = _separation(data, at + ONE, x, y, nx, ny, turn_a, turn_b)
     two = _separation(data, at + TWO, x, y, nx, ny, turn_a, turn_b)
     size = take(data, at + SIZE)
     moved = (
-        (size_of(x) + size_of(y) > keep * size)
-        | (size_of(turn_a) > keep_turn)
-        | (size_of(turn_b) > keep_turn)
+        (size_of(x) + size_of(y) > CACHE_TOLERANCE * size)
+        | (size_of(turn_a) > CACHE_TURN_TOLERANCE)
+        | (size_of(turn_b) > CACHE_TURN_TOLERANCE)
     )
     deep = -_DEEP * size
     return mask_bits(moved | (one < deep) | (two < deep))
@@ -124,54 +120,40 @@ def _refresh_boxes(
 
 @inlined
 def refresh(
-    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int,
-    position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers,
-    first: bool, h: float, still: float, near: float, speculative_margin: float, keep: float,
-    keep_turn: float,
-) -> int:  # fmt: skip
-    """Find where the contacts of all blocks of a kind touch now; return how many pairs are scalar.
+    slots: Slots, near: Near, motion: Motion, first: bool, h: float, speculative_margin: float
+) -> None:
+    """Find where the contacts of all blocks of a kind touch now.
 
     What is too fast (looked at in the ``first`` substep of a step), has come apart, overlaps deeply, or whose
-    points must be found again is written to its records and added to ``scalar``.
+    points must be found again is written to its records and added to the scalar pairs.
     """
-    rows = DISC_ROWS if kind == DISC else BOX_ROWS
-    slow = 0.5 * still if kind == DISC else 0.5 * near
-    for k in range(blocks):
-        at, slot = k * rows, k * WIDE
-        lost = _restless(data, at, a, b, slot, linear, slow, h) if first else 0
-        if kind == DISC:
-            lost |= _refresh_discs(data, at, a, b, slot, position, near, speculative_margin)
+    counts = near.counts
+    for k in range(counts[DISC_BLOCKS + slots.kind]):
+        lost = _restless(slots, k, motion, h) if first else 0
+        if slots.kind == DISC:
+            lost |= _refresh_discs(slots, k, motion, speculative_margin)
         else:
-            lost |= _refresh_boxes(data, at, a, b, slot, position, angle, keep, keep_turn)
+            lost |= _refresh_boxes(slots, k, motion)
         if lost != 0:
-            scalar_count = _set_scalar(
-                data, rows, k, lost, a, b, pair, colour, used, manifolds, points, scalar, scalar_count
-            )
-    return scalar_count
+            _lose(slots, k, lost, near)
 
 
 @inlined
-def _set_scalar(
-    data: Numbers, rows: int, k: int, lost: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int,
-) -> int:  # fmt: skip
-    """Write the slots of a block that are ``lost`` to their records; return how many pairs are scalar."""
-    for slot in range(WIDE):
-        p = pair[k * WIDE + slot]
-        if p >= 0 and (lost >> slot) & 1:
-            store_slot(data, rows, k * WIDE + slot, p, manifolds, points)
-            manifolds[p].slot = -1
-            scalar[scalar_count] = p
-            scalar_count += 1
-            empty_slot(data, rows, k * WIDE + slot, a, b, pair, colour, used)
-    return scalar_count
+def _lose(slots: Slots, k: int, lost: int, near: Near) -> None:
+    """Make the slots of a block that are ``lost`` scalar."""
+    for place in range(WIDE):
+        slot = k * WIDE + place
+        p = slots.pair[slot]
+        if p >= 0 and (lost >> place) & 1:
+            near.scalar[near.counts[SCALAR]] = p
+            near.counts[SCALAR] += 1
+            set_scalar(slots, slot, near.manifolds, near.points)
 
 
 @kernel
 def deepest_wide(kind: int, data: Numbers, blocks: int) -> float:
     """Return the deepest overlap in all blocks of a kind [m]."""
-    rows, depth = (DISC_ROWS if kind == DISC else BOX_ROWS), 0.0
+    rows, depth = rows_of(kind), 0.0
     for k in range(blocks):
         for slot in range(WIDE):
             depth = max(depth, -data[k * rows + ONE + SEPARATION + slot])

@@ -5,6 +5,14 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.arguments import (
+    Inverse,
+    InverseTuple,
+    Materials,
+    MaterialsTuple,
+    Sizes,
+    SizesTuple,
+)
 from physicslab.kernels.narrow.contact import effective_masses
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 from physicslab.kernels.wide.layout import (
@@ -16,9 +24,7 @@ from physicslab.kernels.wide.layout import (
     ARM_BY,
     BASE_X,
     BASE_Y,
-    BOX_ROWS,
     DISC,
-    DISC_ROWS,
     FOUND,
     FRICTION,
     IMPULSE,
@@ -38,21 +44,22 @@ from physicslab.kernels.wide.layout import (
     TANGENT_MASS,
     TWO,
     WIDE,
+    Slots,
+    SlotsTuple,
+    rows_of,
 )  # fmt: skip
-from physicslab.kernels.wide.slots import Masks, clear_slot
+from physicslab.kernels.wide.slots import clear_slot
 
 __all__ = ["fill_slot", "outdated", "remember", "restore_slots"]
 
 
 @inlined
-def _fill_common(
-    data: Numbers, at: int, manifold: Manifold, inverse_mass: Numbers, inverse_inertia: Numbers
-) -> None:
+def _fill_common(data: Numbers, at: int, manifold: Manifold, inverse: Inverse) -> None:
     a, b = manifold.a, manifold.b
     data[at + NORMAL_X], data[at + NORMAL_Y] = manifold.normal_x, manifold.normal_y
     data[at + FRICTION], data[at + SIZE] = manifold.friction, manifold.size
-    data[at + MASS_A], data[at + MASS_B] = inverse_mass[a], inverse_mass[b]
-    data[at + INERTIA_A], data[at + INERTIA_B] = inverse_inertia[a], inverse_inertia[b]
+    data[at + MASS_A], data[at + MASS_B] = inverse.mass[a], inverse.mass[b]
+    data[at + INERTIA_A], data[at + INERTIA_B] = inverse.inertia[a], inverse.inertia[b]
 
 
 @inlined
@@ -71,30 +78,27 @@ def _fill_arms(data: Numbers, at: int, point: Point) -> None:
 
 @inlined
 def fill_slot(
-    kind: int, data: Numbers, slot: int, a: Rows, b: Rows, pair: Rows, used: Masks, colour: int,
-    manifolds: Manifolds, points: Points, p: int,
-    radius: Numbers, restitution: Numbers, friction: Numbers,
-    inverse_mass: Numbers, inverse_inertia: Numbers,
+    slots: Slots, slot: int, colour: int, manifolds: Manifolds, points: Points, p: int,
+    sizes: Sizes, materials: Materials, inverse: Inverse,
 ) -> None:  # fmt: skip
     """Put a pair into a free slot of a block of that colour."""
-    rows = DISC_ROWS if kind == DISC else BOX_ROWS
-    at = slot // WIDE * rows + slot % WIDE
+    data, at = slots.data, slot // WIDE * rows_of(slots.kind) + slot % WIDE
     manifold, one, two = manifolds[p], points[2 * p], points[2 * p + 1]
-    i, j = manifold.a, manifold.b
-    manifold.restitution = min(restitution[i], restitution[j])
-    manifold.friction = math.sqrt(friction[i] * friction[j])
-    if kind == DISC:
+    i, j, radius = manifold.a, manifold.b, sizes.radius
+    manifold.restitution = min(materials.restitution[i], materials.restitution[j])
+    manifold.friction = math.sqrt(materials.friction[i] * materials.friction[j])
+    if slots.kind == DISC:
         manifold.size, manifold.swept = 2.0 * min(radius[i], radius[j]), 0
     else:
-        effective_masses(manifold, points, p, inverse_mass, inverse_inertia)
-    _fill_common(data, at, manifold, inverse_mass, inverse_inertia)
+        effective_masses(manifold, points, p, inverse)
+    _fill_common(data, at, manifold, inverse)
     _fill_point(data, at + ONE, one)
-    if kind == DISC:
-        ra, rb, linear = radius[i], radius[j], inverse_mass[i] + inverse_mass[j]
+    if slots.kind == DISC:
+        ra, rb, linear = radius[i], radius[j], inverse.mass[i] + inverse.mass[j]
         data[at + RADIUS_A], data[at + RADIUS_B] = ra, rb
         data[at + ONE + MASS] = 1.0 / linear
         data[at + ONE + TANGENT_MASS] = 1.0 / (
-            linear + inverse_inertia[i] * ra * ra + inverse_inertia[j] * rb * rb
+            linear + inverse.inertia[i] * ra * ra + inverse.inertia[j] * rb * rb
         )
     else:
         data[at + BASE_X], data[at + BASE_Y] = manifold.base_x, manifold.base_y
@@ -103,50 +107,54 @@ def fill_slot(
         if manifold.count == 2:
             _fill_point(data, at + TWO, two)
             _fill_arms(data, at + TWO, two)
-    a[slot], b[slot], pair[slot] = i, j, p
+    slots.a[slot], slots.b[slot], slots.pair[slot] = i, j, p
     bit = np.uint64(1) << np.uint64(colour)
-    used[i] |= bit
-    used[j] |= bit
-    manifold.slot = 2 * slot + kind
+    slots.used[i] |= bit
+    slots.used[j] |= bit
+    manifold.slot = 2 * slot + slots.kind
+
+
+@inlined
+def _may_hold(slots: Slots, slot: int, manifold: Manifold, shape: Rows, inverse_mass: Numbers) -> bool:
+    """Whether a pair can be in the slot that its record names."""
+    i, j, wanted = manifold.a, manifold.b, 1 if slots.kind == DISC else 2
+    bit = np.uint64(1) << np.uint64(slots.colour[slot // WIDE])
+    taken = (slots.used[i] if inverse_mass[i] > 0.0 else np.uint64(0)) | (
+        slots.used[j] if inverse_mass[j] > 0.0 else np.uint64(0)
+    )
+    fits = slots.pair[slot] < 0 and taken & bit == np.uint64(0) and manifold.wall < 0
+    fits = fits and shape[i] == wanted and shape[j] == wanted and manifold.count > 0
+    return bool(fits and inverse_mass[i] + inverse_mass[j] != 0.0)
 
 
 @kernel
 def restore_slots(
-    kind: int, data: Numbers, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    manifolds: Manifolds, points: Points, pairs: int,
-    shape: Rows, radius: Numbers, restitution: Numbers, friction: Numbers,
-    inverse_mass: Numbers, inverse_inertia: Numbers,
+    plain: SlotsTuple, manifolds: Manifolds, points: Points, pairs: int, plain_sizes: SizesTuple,
+    plain_materials: MaterialsTuple, plain_inverse: InverseTuple,
 ) -> tuple[int, int]:  # fmt: skip
     """Put the pairs whose records name a slot back there; return how many blocks and slots there are.
 
     A pair that cannot be there, as in a file that was edited by hand, stays scalar.
     """
-    rows, blocks, restored = (DISC_ROWS if kind == DISC else BOX_ROWS), 0, 0
+    slots, sizes, materials = Slots(*plain), Sizes(*plain_sizes), Materials(*plain_materials)
+    inverse, blocks, restored = Inverse(*plain_inverse), 0, 0
     for p in range(pairs):
-        if manifolds[p].slot >= 0 and manifolds[p].slot % 2 == kind:
+        if manifolds[p].slot >= 0 and manifolds[p].slot % 2 == slots.kind:
             blocks = max(blocks, manifolds[p].slot // 2 // WIDE + 1)
-    for k in range(blocks):
-        for slot in range(WIDE):
-            clear_slot(data, rows, k, slot, a, b, pair)
+    for slot in range(blocks * WIDE):
+        clear_slot(slots, slot)
     for p in range(pairs):
-        named = manifolds[p].slot
-        if named >= 0 and named % 2 == kind:
-            slot, manifold = named // 2, manifolds[p]
-            i, j, wanted = manifold.a, manifold.b, 1 if kind == DISC else 2
-            bit = np.uint64(1) << np.uint64(colour[slot // WIDE])
-            taken = (used[i] if inverse_mass[i] > 0.0 else np.uint64(0)) | (
-                used[j] if inverse_mass[j] > 0.0 else np.uint64(0)
-            )
-            fits = pair[slot] < 0 and taken & bit == np.uint64(0) and manifold.wall < 0
-            fits = fits and shape[i] == wanted and shape[j] == wanted and manifold.count > 0
-            if not fits or inverse_mass[i] + inverse_mass[j] == 0.0:
-                manifold.slot = -1
-                continue
+        manifold = manifolds[p]
+        if manifold.slot < 0 or manifold.slot % 2 != slots.kind:
+            continue
+        slot = manifold.slot // 2
+        if _may_hold(slots, slot, manifold, sizes.kind, inverse.mass):
             fill_slot(
-                kind, data, slot, a, b, pair, used, colour[slot // WIDE], manifolds, points, p,
-                radius, restitution, friction, inverse_mass, inverse_inertia,
-            )  # fmt: skip
+                slots, slot, slots.colour[slot // WIDE], manifolds, points, p, sizes, materials, inverse
+            )
             restored += 1
+        else:
+            manifold.slot = -1
     return blocks, restored
 
 

@@ -1,23 +1,20 @@
 """Which wide contact is in which slot of which block: filling, storing and emptying slots."""
 
 import math
-from typing import Annotated
 
 import numpy as np
-from numba import uint64
-from numpy.typing import NDArray
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
+from physicslab.kernels import Flags, Rows, allocating, allocating_kernel, inlined, kernel
+from physicslab.kernels.arguments import Acting, Inverse, Motion, Near
 from physicslab.kernels.narrow.contact import follow_pose
+from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, SCALAR
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.wide.layout import (
     ARM_AX,
     ARM_AY,
     ARM_BX,
     ARM_BY,
-    BOX_ROWS,
     DISC,
-    DISC_ROWS,
     FOUND,
     IMPULSE,
     MASS,
@@ -32,76 +29,49 @@ from physicslab.kernels.wide.layout import (
     TANGENT_MASS,
     TWO,
     WIDE,
+    Slots,
+    SlotsTuple,
+    rows_of,
 )  # fmt: skip
 
 __all__ = [
-    "ACTIVE",
-    "BOX_BLOCKS",
-    "COLOURS",
-    "COUNTED",
-    "DISC_BLOCKS",
-    "LEFT",
-    "LOGGED",
-    "PROXIMITY",
-    "RECORDED",
-    "SCALAR",
-    "SLEEPING",
-    "UNORDERED",
-    "WIDE_COUNT",
-    "Masks",
-    "Slots",
-    "clear_slot",
-    "empty_slot",
-    "follow_pairs",
-    "list_scalar",
-    "release",
-    "store",
-    "store_slot",
-    "wake",
+    "COLOURS", "clear_slot", "empty_slot", "follow_pairs", "list_scalar", "release", "set_scalar", "store",
+    "store_slot", "wake",
 ]  # fmt: skip
 
 COLOURS = 64
 """Largest number of blocks that may move one body; its further contacts stay scalar."""
-Masks = Annotated[NDArray[np.uint64], uint64[::1]]
-"""A uint64 array (n,), bit by bit."""
-Slots = tuple[Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
-"""The blocks of a kind: data, rows of A and B, pairs, colours, the colours of each body, their order."""
-COUNTED = 11
-(
-    PROXIMITY, RECORDED, SCALAR, SLEEPING, ACTIVE, LEFT, WIDE_COUNT, DISC_BLOCKS, BOX_BLOCKS, UNORDERED,
-    LOGGED,
-) = range(COUNTED)  # fmt: skip
-"""Counts that kernels keep: near pairs without records; those with records; of these the scalar ones, those
-that sleep, those that touch, those that impacts have left to the solver; slots in use; blocks of discs and of
-boxes; whether scalar pairs are out of order; and all impacts logged so far."""
 
 
 @inlined
-def clear_slot(data: Numbers, rows: int, k: int, slot: int, a: Rows, b: Rows, pair: Rows) -> None:
-    """Empty slot number ``slot`` of block k: it moves no body, and no check ever selects it."""
-    block = data[k * rows : (k + 1) * rows]
+def clear_slot(slots: Slots, slot: int) -> None:
+    """Clear a slot: it moves no body, and no check ever selects it."""
+    rows = rows_of(slots.kind)
+    k, place = slot // WIDE, slot % WIDE
+    block = slots.data[k * rows : (k + 1) * rows]
     for row in range(0, rows, WIDE):
-        block[row + slot] = 0.0
-    block[SIZE + slot] = block[NORMAL_X + slot] = block[ONE + SEPARATION + slot] = 1.0
-    if rows == DISC_ROWS:
-        block[RADIUS_A + slot] = block[RADIUS_B + slot] = -0.5
+        block[row + place] = 0.0
+    block[SIZE + place] = block[NORMAL_X + place] = block[ONE + SEPARATION + place] = 1.0
+    if slots.kind == DISC:
+        block[RADIUS_A + place] = block[RADIUS_B + place] = -0.5
     else:
-        block[TWO + SEPARATION + slot] = block[ONE + FOUND + slot] = block[TWO + FOUND + slot] = 1.0
-    a[k * WIDE + slot] = b[k * WIDE + slot] = 0
-    pair[k * WIDE + slot] = -1
+        block[TWO + SEPARATION + place] = block[ONE + FOUND + place] = block[TWO + FOUND + place] = 1.0
+    slots.a[slot] = slots.b[slot] = 0
+    slots.pair[slot] = -1
 
 
 @inlined
-def store_slot(data: Numbers, rows: int, slot: int, p: int, manifolds: Manifolds, points: Points) -> None:
+def store_slot(slots: Slots, slot: int, manifolds: Manifolds, points: Points) -> None:
     """Write what the slot holds, impulses above all, into the records of its pair."""
-    at = slot // WIDE * rows + slot % WIDE
+    data, p = slots.data, slots.pair[slot]
+    at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
     manifold = manifolds[p]
     for j in range(manifold.count):
         point = points[2 * p + j]
         base = at + (ONE if j == 0 else TWO)
         point.normal_impulse, point.tangent_impulse = data[base + IMPULSE], data[base + TANGENT_IMPULSE]
         point.separation = data[base + SEPARATION]
-    if rows == DISC_ROWS:
+    if slots.kind == DISC:
         nx, ny, point = data[at + NORMAL_X], data[at + NORMAL_Y], points[2 * p]
         manifold.normal_x, manifold.normal_y = nx, ny
         point.arm_ax, point.arm_ay = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
@@ -110,11 +80,12 @@ def store_slot(data: Numbers, rows: int, slot: int, p: int, manifolds: Manifolds
 
 
 @kernel
-def store(data: Numbers, rows: int, blocks: int, pair: Rows, manifolds: Manifolds, points: Points) -> None:
+def store(plain: SlotsTuple, blocks: int, manifolds: Manifolds, points: Points) -> None:
     """Write what every slot holds into the records of its pair; the slots stay in use."""
+    slots = Slots(*plain)
     for slot in range(blocks * WIDE):
-        if pair[slot] >= 0:
-            store_slot(data, rows, slot, pair[slot], manifolds, points)
+        if slots.pair[slot] >= 0:
+            store_slot(slots, slot, manifolds, points)
 
 
 @kernel
@@ -141,81 +112,99 @@ def list_scalar(
 
 
 @kernel
-def release(
-    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    manifolds: Manifolds, points: Points, asleep: Flags,
-) -> int:  # fmt: skip
+def release(plain: SlotsTuple, blocks: int, manifolds: Manifolds, points: Points, asleep: Flags) -> int:
     """Write the slots of sleeping bodies to their records and empty them; return how many."""
-    rows, released = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
+    slots, released = Slots(*plain), 0
     for slot in range(blocks * WIDE):
-        p = pair[slot]
-        if p >= 0 and (asleep[a[slot]] or asleep[b[slot]]):
-            store_slot(data, rows, slot, p, manifolds, points)
-            manifolds[p].slot = -1
-            empty_slot(data, rows, slot, a, b, pair, colour, used)
+        if slots.pair[slot] >= 0 and (asleep[slots.a[slot]] or asleep[slots.b[slot]]):
+            set_scalar(slots, slot, manifolds, points)
             released += 1
     return released
 
 
 @allocating_kernel
-def follow_pairs(
-    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    manifolds: Manifolds, pairs: int,
-) -> int:  # fmt: skip
+def follow_pairs(plain: SlotsTuple, blocks: int, manifolds: Manifolds, pairs: int) -> int:
     """Find the new numbers of the slots' pairs after a broad phase; return how many slots are in use.
 
     A slot whose pair is not near any more is emptied.
     """
-    rows, kept = (DISC_ROWS if kind == DISC else BOX_ROWS), 0
-    before = pair[: blocks * WIDE].copy()
+    slots, kept = Slots(*plain), 0
+    before = slots.pair[: blocks * WIDE].copy()
     for slot in range(blocks * WIDE):
-        pair[slot] = -1
+        slots.pair[slot] = -1
     for p in range(pairs):
         slot = manifolds[p].slot
-        if slot >= 0 and slot % 2 == kind:
-            pair[slot // 2] = p
+        if slot >= 0 and slot % 2 == slots.kind:
+            slots.pair[slot // 2] = p
             kept += 1
     for slot in range(blocks * WIDE):
-        if before[slot] >= 0 and pair[slot] < 0:
-            empty_slot(data, rows, slot, a, b, pair, colour, used)
+        if before[slot] >= 0 and slots.pair[slot] < 0:
+            empty_slot(slots, slot)
     return kept
 
 
 @inlined
-def empty_slot(
-    data: Numbers, rows: int, slot: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks
-) -> None:
+def empty_slot(slots: Slots, slot: int) -> None:
     """Empty a slot, and free its colour for the bodies."""
-    k = slot // WIDE
-    bit = np.uint64(1) << np.uint64(colour[k])
-    used[a[slot]] &= ~bit
-    used[b[slot]] &= ~bit
-    clear_slot(data, rows, k, slot % WIDE, a, b, pair)
+    bit = np.uint64(1) << np.uint64(slots.colour[slot // WIDE])
+    slots.used[slots.a[slot]] &= ~bit
+    slots.used[slots.b[slot]] &= ~bit
+    clear_slot(slots, slot)
 
 
 @inlined
-def _resting_speed(a: int, b: int, linear: Vectors, force: Vectors, inverse_mass: Numbers, h: float) -> float:
+def set_scalar(slots: Slots, slot: int, manifolds: Manifolds, points: Points) -> None:
+    """Write a slot to the records of its pair, which is scalar from now on, and empty it."""
+    store_slot(slots, slot, manifolds, points)
+    manifolds[slots.pair[slot]].slot = -1
+    empty_slot(slots, slot)
+
+
+@inlined
+def _resting_speed(a: int, b: int, motion: Motion, acting: Acting, inverse: Inverse, h: float) -> float:
     """Return the speed up to which an approach counts as rest: what forces cause in two substeps [m/s]."""
+    linear, force = motion.linear, acting.force
     speed = abs(linear[a, 0]) + abs(linear[a, 1]) + abs(linear[b, 0]) + abs(linear[b, 1])
-    pull_a = math.sqrt(force[a, 0] * force[a, 0] + force[a, 1] * force[a, 1]) * inverse_mass[a]
-    pull_b = math.sqrt(force[b, 0] * force[b, 0] + force[b, 1] * force[b, 1]) * inverse_mass[b]
+    pull_a = math.sqrt(force[a, 0] * force[a, 0] + force[a, 1] * force[a, 1]) * inverse.mass[a]
+    pull_b = math.sqrt(force[b, 0] * force[b, 0] + force[b, 1] * force[b, 1]) * inverse.mass[b]
     limit: float = 1e-9 * speed + 2.0 * h * max(pull_a, pull_b)
     return limit
 
 
 @inlined
-def _measure_now(
-    kind: int, data: Numbers, at: int, manifolds: Manifolds, points: Points, p: int,
-    position: Vectors, angle: Numbers,
-) -> None:  # fmt: skip
+def _approach(slots: Slots, slot: int, count: int, motion: Motion) -> float:
+    """Return the lowest speed along the normal of the ``count`` points of a slot, or 0 [m/s]."""
+    data, i, j = slots.data, slots.a[slot], slots.b[slot]
+    at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
+    nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
+    lowest = 0.0
+    for k in range(count):
+        base = at + (ONE if k == 0 else TWO)
+        if slots.kind == DISC:
+            rax, ray = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
+            rbx, rby = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny
+        else:
+            rax, ray = data[base + ARM_AX], data[base + ARM_AY]
+            rbx, rby = data[base + ARM_BX], data[base + ARM_BY]
+        linear, angular = motion.linear, motion.angular
+        vx = linear[j, 0] - angular[j] * rby - linear[i, 0] + angular[i] * ray
+        vy = linear[j, 1] + angular[j] * rbx - linear[i, 1] - angular[i] * rax
+        lowest = min(lowest, vx * nx + vy * ny)
+    return lowest
+
+
+@inlined
+def _measure_now(slots: Slots, slot: int, manifolds: Manifolds, points: Points, motion: Motion) -> None:
     """Bring the separations of a pair that had a slot up to date after impacts have moved bodies.
 
     A slot has no offset: that of the record is as old as the contact.
     """
+    data, position, angle, p = slots.data, motion.position, motion.angle, slots.pair[slot]
     manifold, one = manifolds[p], points[2 * p]
     i, j = manifold.a, manifold.b
     dx, dy = position[j, 0] - position[i, 0], position[j, 1] - position[i, 1]
-    if kind == DISC:
+    if slots.kind == DISC:
+        at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
         along = dx * manifold.normal_x + dy * manifold.normal_y
         one.separation = along - data[at + RADIUS_A] - data[at + RADIUS_B]
     else:
@@ -225,45 +214,27 @@ def _measure_now(
 
 
 @allocating
-def wake(
-    kind: int, data: Numbers, blocks: int, a: Rows, b: Rows, pair: Rows, colour: Rows, used: Masks,
-    manifolds: Manifolds, points: Points, scalar: Rows, scalar_count: int, touching: Rows, count: int,
-    position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers, force: Vectors,
-    inverse_mass: Numbers, h: float,
-) -> tuple[int, int]:  # fmt: skip
+def wake(slots: Slots, near: Near, motion: Motion, acting: Acting, inverse: Inverse, h: float) -> None:
     """Make those contacts scalar that may bounce, approach faster than rest, and have a body with an impact.
 
-    Returns how many pairs are scalar, and how many of them touch.
+    They are added to the scalar pairs and to those of them that touch.
     """
-    rows = DISC_ROWS if kind == DISC else BOX_ROWS
-    had_impact = np.zeros(len(angular), np.bool_)
-    for k in range(count):
-        manifold = manifolds[touching[k]]
+    counts, manifolds = near.counts, near.manifolds
+    had_impact = np.zeros(len(motion.angle), np.bool_)
+    for k in range(counts[ACTIVE]):
+        manifold = manifolds[near.touching[k]]
         if manifold.impact_count > 0:
             had_impact[manifold.a] = had_impact[manifold.b] = True
-    for slot in range(blocks * WIDE):
-        p = pair[slot]
-        if p < 0 or not (had_impact[a[slot]] | had_impact[b[slot]]) or manifolds[p].restitution == 0.0:
+    for slot in range(counts[DISC_BLOCKS + slots.kind] * WIDE):
+        p, i, j = slots.pair[slot], slots.a[slot], slots.b[slot]
+        if p < 0 or not (had_impact[i] | had_impact[j]) or manifolds[p].restitution == 0.0:
             continue
-        at, i, j = slot // WIDE * rows + slot % WIDE, a[slot], b[slot]
-        nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
-        lowest = 0.0
-        for k in range(manifolds[p].count):
-            base = at + (ONE if k == 0 else TWO)
-            if kind == DISC:
-                rax, ray = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
-                rbx, rby = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny
-            else:
-                rax, ray = data[base + ARM_AX], data[base + ARM_AY]
-                rbx, rby = data[base + ARM_BX], data[base + ARM_BY]
-            vx = linear[j, 0] - angular[j] * rby - linear[i, 0] + angular[i] * ray
-            vy = linear[j, 1] + angular[j] * rbx - linear[i, 1] - angular[i] * rax
-            lowest = min(lowest, vx * nx + vy * ny)
-        if lowest < 0.0 and lowest < -_resting_speed(i, j, linear, force, inverse_mass, h):
-            store_slot(data, rows, slot, p, manifolds, points)
-            _measure_now(kind, data, at, manifolds, points, p, position, angle)
+        lowest = _approach(slots, slot, manifolds[p].count, motion)
+        if lowest < 0.0 and lowest < -_resting_speed(i, j, motion, acting, inverse, h):
+            near.scalar[counts[SCALAR]] = near.touching[counts[ACTIVE]] = p
+            counts[SCALAR] += 1
+            counts[ACTIVE] += 1
+            store_slot(slots, slot, manifolds, near.points)
+            _measure_now(slots, slot, manifolds, near.points, motion)
             manifolds[p].slot = -1
-            scalar[scalar_count], touching[count] = p, p
-            scalar_count, count = scalar_count + 1, count + 1
-            empty_slot(data, rows, slot, a, b, pair, colour, used)
-    return scalar_count, count
+            empty_slot(slots, slot)

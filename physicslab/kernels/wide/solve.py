@@ -1,6 +1,10 @@
 """Impulses at wide contacts, eight at a time, by the formulas of ``kernels/solver/impulse.py``."""
 
-from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
+from typing import NamedTuple
+
+from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels.arguments import Motion, Near
+from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
 from physicslab.kernels.wide.float64x8 import (
     Wide,
     choose,
@@ -38,9 +42,10 @@ from physicslab.kernels.wide.layout import (
     TANGENT_MASS,
     TWO,
     WIDE,
+    Slots,
 )  # fmt: skip
 
-__all__ = ["DEEPER", "SOFT", "soft_normal_impulse", "sweep_wide", "warm_start_wide"]
+__all__ = ["DEEPER", "SOFT", "SoftConstraint", "soft_normal_impulse", "sweep_wide", "warm_start_wide"]
 
 SOFT = 0.01
 """Share of the smaller body's size that the contact spring corrects at its full rate, in addition to what the
@@ -51,41 +56,53 @@ DEEPER = 0.15
 """Share beyond which overlap is not corrected by impulses."""
 
 
+class SoftConstraint(NamedTuple):
+    """How contacts are corrected in an iteration.
+
+    One over the substep [1/s], the share of the overlap that is corrected a second, the shares of the
+    effective mass and of the impulse so far that take part, the share of the size that may overlap, and the
+    impulse of all forces [N s].
+    """
+
+    inverse_h: float
+    push_rate: float
+    mass_scale: float
+    impulse_scale: float
+    slop: float
+    force_cap: float
+
+
 @fused
 def soft_normal_impulse[N: (float, Wide)](
-    impulse: N, mass: N, v: N, separation: N, size: N, inverse_h: float, push_rate: float,
-    mass_scale: float, impulse_scale: float, slop: float, force_cap: float,
-) -> N:  # fmt: skip
+    impulse: N, mass: N, v: N, separation: N, size: N, soft: SoftConstraint
+) -> N:
     """Return the normal impulse [N s] after one more iteration at a point that approaches at -v [m/s].
 
     Below the slop the contact is a stiff, overdamped spring that corrects ``push_rate`` of the overlap a
     second, no faster than balances twice the load: else a pile of overlapping bodies would burst. Bodies
     that are apart may close the separation within the substep, and not more.
     """
-    load = least(impulse, force_cap) * (2.0 * impulse_scale / mass_scale)
-    limit = mass * size * (push_rate * SOFT) + load
-    push = greater(mass * push_rate * least(separation + slop * size, 0.0), -limit)
+    load = least(impulse, soft.force_cap) * (2.0 * soft.impulse_scale / soft.mass_scale)
+    limit = mass * size * (soft.push_rate * SOFT) + load
+    push = greater(mass * soft.push_rate * least(separation + soft.slop * size, 0.0), -limit)
     push = choose(separation < -DEEPER * size, 0.0, push)
-    soft = impulse - mass_scale * (mass * v + push) - impulse_scale * impulse
-    hard = impulse - mass * (v + separation * inverse_h)
-    total: N = greater(choose(separation > -_ROUNDING * size, hard, soft), 0.0)
+    corrected = impulse - soft.mass_scale * (mass * v + push) - soft.impulse_scale * impulse
+    hard = impulse - mass * (v + separation * soft.inverse_h)
+    total: N = greater(choose(separation > -_ROUNDING * size, hard, corrected), 0.0)
     return total
 
 
 @fused
 def _update_normal(
-    data: Numbers, point: int, size: Wide, v: Wide, drift: float, inverse_h: float,
-    push_rate: float, mass_scale: float, impulse_scale: float, slop: float, force_cap: float,
-) -> Wide:  # fmt: skip
+    data: Numbers, point: int, size: Wide, v: Wide, drift: float, soft: SoftConstraint
+) -> Wide:
     """Update separations by the velocity, then the normal impulses; return the change of these [N s]."""
     separation = take(data, point + SEPARATION)
     if drift != 0.0:
         separation = separation + drift * v
         put(data, point + SEPARATION, separation)
     impulse, mass = take(data, point + IMPULSE), take(data, point + MASS)
-    total = soft_normal_impulse(
-        impulse, mass, v, separation, size, inverse_h, push_rate, mass_scale, impulse_scale, slop, force_cap
-    )
+    total = soft_normal_impulse(impulse, mass, v, separation, size, soft)
     put(data, point + IMPULSE, total)
     return total - impulse
 
@@ -100,30 +117,31 @@ def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide
 
 
 @fused
-def _sweep_discs(
-    data: Numbers, at: int, a: Rows, b: Rows, slot: int, linear: Vectors, angular: Numbers,
-    drift: float, inverse_h: float, push_rate: float,
-    mass_scale: float, impulse_scale: float, slop: float, force_cap: float,
-) -> None:  # fmt: skip
+def _velocities(slots: Slots, k: int, motion: Motion) -> tuple[Wide, Wide, Wide, Wide, Wide, Wide]:
+    """Return the velocities and angular velocities of A and of B in a block."""
+    vax, vay = take_vectors(motion.linear, slots.a, k * WIDE)
+    vbx, vby = take_vectors(motion.linear, slots.b, k * WIDE)
+    wa, wb = take_numbers(motion.angular, slots.a, k * WIDE), take_numbers(motion.angular, slots.b, k * WIDE)
+    return vax, vay, wa, vbx, vby, wb
+
+
+@fused
+def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> None:
     """Solve a block of discs; normal impulses turn no disc, so friction does not depend on them."""
-    vax, vay = take_vectors(linear, a, slot)
-    vbx, vby = take_vectors(linear, b, slot)
-    wa, wb = take_numbers(angular, a, slot), take_numbers(angular, b, slot)
+    data, at = slots.data, k * DISC_ROWS
+    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     ra, rb = take(data, at + RADIUS_A), take(data, at + RADIUS_B)
     vx, vy = vbx - vax, vby - vay
-    push = _update_normal(
-        data, at + ONE, take(data, at + SIZE), nx * vx + ny * vy, drift, inverse_h, push_rate, mass_scale,
-        impulse_scale, slop, force_cap,
-    )  # fmt: skip
+    push = _update_normal(data, at + ONE, take(data, at + SIZE), nx * vx + ny * vy, drift, soft)
     across = nx * vy - ny * vx - rb * wb - ra * wa
     friction_impulse = _update_friction(data, at + ONE, take(data, at + FRICTION), across)
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
-    put_vectors(linear, a, slot, vax - ma * px, vay - ma * py)
-    put_vectors(linear, b, slot, vbx + mb * px, vby + mb * py)
-    put_numbers(angular, a, slot, wa - take(data, at + INERTIA_A) * ra * friction_impulse)
-    put_numbers(angular, b, slot, wb - take(data, at + INERTIA_B) * rb * friction_impulse)
+    put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
+    put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
+    put_numbers(motion.angular, slots.a, k * WIDE, wa - take(data, at + INERTIA_A) * ra * friction_impulse)
+    put_numbers(motion.angular, slots.b, k * WIDE, wb - take(data, at + INERTIA_B) * rb * friction_impulse)
 
 
 @fused
@@ -135,19 +153,14 @@ def _levers(data: Numbers, point: int, nx: Wide, ny: Wide) -> tuple[Wide, Wide, 
 
 
 @fused
-def _sweep_boxes(
-    data: Numbers, at: int, a: Rows, b: Rows, slot: int, linear: Vectors, angular: Numbers,
-    drift: float, inverse_h: float, push_rate: float,
-    mass_scale: float, impulse_scale: float, slop: float, force_cap: float,
-) -> None:  # fmt: skip
+def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> None:
     """Solve a block of boxes: both normal impulses, then both points' friction.
 
     Velocities at the points are computed once; the effect of one point's impulse on the other's velocity is
     added (by the effective mass between them), which is a shorter dependency than the bodies' velocities.
     """
-    vax, vay = take_vectors(linear, a, slot)
-    vbx, vby = take_vectors(linear, b, slot)
-    wa, wb = take_numbers(angular, a, slot), take_numbers(angular, b, slot)
+    data, at = slots.data, k * BOX_ROWS
+    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
     ia, ib = take(data, at + INERTIA_A), take(data, at + INERTIA_B)
@@ -156,47 +169,28 @@ def _sweep_boxes(
     n2a, n2b, t2a, t2b = _levers(data, at + TWO, nx, ny)
     vx, vy = vbx - vax, vby - vay
     along, across = nx * vx + ny * vy, nx * vy - ny * vx
-    push1 = _update_normal(
-        data, at + ONE, size, along + wb * n1b - wa * n1a, drift, inverse_h, push_rate, mass_scale,
-        impulse_scale, slop, force_cap,
-    )  # fmt: skip
+    push1 = _update_normal(data, at + ONE, size, along + wb * n1b - wa * n1a, drift, soft)
     coupled = push1 * (ma + mb + ia * n1a * n2a + ib * n1b * n2b)
-    push2 = _update_normal(
-        data, at + TWO, size, along + wb * n2b - wa * n2a + coupled, drift, inverse_h, push_rate,
-        mass_scale, impulse_scale, slop, force_cap,
-    )  # fmt: skip
+    push2 = _update_normal(data, at + TWO, size, along + wb * n2b - wa * n2a + coupled, drift, soft)
     wa, wb = wa - ia * (n1a * push1 + n2a * push2), wb + ib * (n1b * push1 + n2b * push2)
     friction1 = _update_friction(data, at + ONE, friction, across + wb * t1b - wa * t1a)
     coupled = friction1 * (ma + mb + ia * t1a * t2a + ib * t1b * t2b)
     friction2 = _update_friction(data, at + TWO, friction, across + wb * t2b - wa * t2a + coupled)
     push, friction_impulse = push1 + push2, friction1 + friction2
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
-    put_vectors(linear, a, slot, vax - ma * px, vay - ma * py)
-    put_vectors(linear, b, slot, vbx + mb * px, vby + mb * py)
-    put_numbers(angular, a, slot, wa - ia * (t1a * friction1 + t2a * friction2))
-    put_numbers(angular, b, slot, wb + ib * (t1b * friction1 + t2b * friction2))
+    put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
+    put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
+    put_numbers(motion.angular, slots.a, k * WIDE, wa - ia * (t1a * friction1 + t2a * friction2))
+    put_numbers(motion.angular, slots.b, k * WIDE, wb + ib * (t1b * friction1 + t2b * friction2))
 
 
 @inlined
-def sweep_wide(
-    discs: Numbers, disc_blocks: int, disc_order: Rows, disc_a: Rows, disc_b: Rows,
-    boxes: Numbers, box_blocks: int, box_order: Rows, box_a: Rows, box_b: Rows,
-    linear: Vectors, angular: Numbers, drift: float, inverse_h: float, push_rate: float,
-    mass_scale: float, impulse_scale: float, slop: float, force_cap: float,
-) -> None:  # fmt: skip
+def sweep_wide(near: Near, motion: Motion, drift: float, soft: SoftConstraint) -> None:
     """Solve all blocks once. Separations are first advanced by ``drift`` s at the present velocities."""
-    for number in range(disc_blocks):
-        k = disc_order[number]
-        _sweep_discs(
-            discs, k * DISC_ROWS, disc_a, disc_b, k * WIDE, linear, angular,
-            drift, inverse_h, push_rate, mass_scale, impulse_scale, slop, force_cap,
-        )  # fmt: skip
-    for number in range(box_blocks):
-        k = box_order[number]
-        _sweep_boxes(
-            boxes, k * BOX_ROWS, box_a, box_b, k * WIDE, linear, angular,
-            drift, inverse_h, push_rate, mass_scale, impulse_scale, slop, force_cap,
-        )  # fmt: skip
+    for number in range(near.counts[DISC_BLOCKS]):
+        _sweep_discs(near.discs, near.discs.order[number], motion, drift, soft)
+    for number in range(near.counts[BOX_BLOCKS]):
+        _sweep_boxes(near.boxes, near.boxes.order[number], motion, drift, soft)
 
 
 @fused
@@ -213,28 +207,18 @@ def _warm_start(
 
 
 @fused
-def _start_discs(
-    data: Numbers,
-    at: int,
-    a: Rows,
-    b: Rows,
-    slot: int,
-    linear: Vectors,
-    angular: Numbers,
-    warm_start_scale: float,
-) -> None:
-    vax, vay = take_vectors(linear, a, slot)
-    vbx, vby = take_vectors(linear, b, slot)
-    wa, wb = take_numbers(angular, a, slot), take_numbers(angular, b, slot)
+def _start_discs(slots: Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
+    data, at = slots.data, k * DISC_ROWS
+    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
     px, py, friction_impulse = _warm_start(
         data, at + ONE, take(data, at + NORMAL_X), take(data, at + NORMAL_Y), warm_start_scale
     )
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
     ra, rb = take(data, at + RADIUS_A), take(data, at + RADIUS_B)
-    put_vectors(linear, a, slot, vax - ma * px, vay - ma * py)
-    put_vectors(linear, b, slot, vbx + mb * px, vby + mb * py)
-    put_numbers(angular, a, slot, wa - take(data, at + INERTIA_A) * ra * friction_impulse)
-    put_numbers(angular, b, slot, wb - take(data, at + INERTIA_B) * rb * friction_impulse)
+    put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
+    put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
+    put_numbers(motion.angular, slots.a, k * WIDE, wa - take(data, at + INERTIA_A) * ra * friction_impulse)
+    put_numbers(motion.angular, slots.b, k * WIDE, wb - take(data, at + INERTIA_B) * rb * friction_impulse)
 
 
 @fused
@@ -246,19 +230,9 @@ def _turning(data: Numbers, point: int, px: Wide, py: Wide) -> tuple[Wide, Wide]
 
 
 @fused
-def _start_boxes(
-    data: Numbers,
-    at: int,
-    a: Rows,
-    b: Rows,
-    slot: int,
-    linear: Vectors,
-    angular: Numbers,
-    warm_start_scale: float,
-) -> None:
-    vax, vay = take_vectors(linear, a, slot)
-    vbx, vby = take_vectors(linear, b, slot)
-    wa, wb = take_numbers(angular, a, slot), take_numbers(angular, b, slot)
+def _start_boxes(slots: Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
+    data, at = slots.data, k * BOX_ROWS
+    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     x1, y1, _ = _warm_start(data, at + ONE, nx, ny, warm_start_scale)
     x2, y2, _ = _warm_start(data, at + TWO, nx, ny, warm_start_scale)
@@ -266,22 +240,16 @@ def _start_boxes(
     turn2_a, turn2_b = _turning(data, at + TWO, x2, y2)
     px, py = x1 + x2, y1 + y2
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
-    put_vectors(linear, a, slot, vax - ma * px, vay - ma * py)
-    put_vectors(linear, b, slot, vbx + mb * px, vby + mb * py)
-    put_numbers(angular, a, slot, wa - take(data, at + INERTIA_A) * (turn1_a + turn2_a))
-    put_numbers(angular, b, slot, wb + take(data, at + INERTIA_B) * (turn1_b + turn2_b))
+    put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
+    put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
+    put_numbers(motion.angular, slots.a, k * WIDE, wa - take(data, at + INERTIA_A) * (turn1_a + turn2_a))
+    put_numbers(motion.angular, slots.b, k * WIDE, wb + take(data, at + INERTIA_B) * (turn1_b + turn2_b))
 
 
 @inlined
-def warm_start_wide(
-    discs: Numbers, disc_blocks: int, disc_order: Rows, disc_a: Rows, disc_b: Rows,
-    boxes: Numbers, box_blocks: int, box_order: Rows, box_a: Rows, box_b: Rows,
-    linear: Vectors, angular: Numbers, warm_start_scale: float,
-) -> None:  # fmt: skip
+def warm_start_wide(near: Near, motion: Motion, warm_start_scale: float) -> None:
     """Apply the impulses of the last substep, ``warm_start_scale`` times as large, at all blocks."""
-    for number in range(disc_blocks):
-        k = disc_order[number]
-        _start_discs(discs, k * DISC_ROWS, disc_a, disc_b, k * WIDE, linear, angular, warm_start_scale)
-    for number in range(box_blocks):
-        k = box_order[number]
-        _start_boxes(boxes, k * BOX_ROWS, box_a, box_b, k * WIDE, linear, angular, warm_start_scale)
+    for number in range(near.counts[DISC_BLOCKS]):
+        _start_discs(near.discs, near.discs.order[number], motion, warm_start_scale)
+    for number in range(near.counts[BOX_BLOCKS]):
+        _start_boxes(near.boxes, near.boxes.order[number], motion, warm_start_scale)

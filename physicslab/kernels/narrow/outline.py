@@ -1,0 +1,37 @@
+"""The outline of a body and its way against another one, as the narrow phase takes them."""
+
+import math
+from typing import NamedTuple
+
+from physicslab.kernels import Numbers, fused
+from physicslab.kernels.arguments import Sizes
+
+__all__ = ["Outline", "Way", "outline_of"]
+
+
+class Outline(NamedTuple):
+    """Whether a body is a box; cosine and sine of its angle and its half extents [m]; a disc's radius [m]."""
+
+    box: bool
+    c: float
+    s: float
+    half_x: float
+    half_y: float
+    radius: float
+
+
+class Way(NamedTuple):
+    """From A's centre to B's (dx, dy) [m], and how far B moves against A in a substep (ux, uy) [m]."""
+
+    dx: float
+    dy: float
+    ux: float
+    uy: float
+
+
+@fused
+def outline_of(i: int, angle: Numbers, sizes: Sizes) -> Outline:
+    """Return the outline of row i."""
+    box = sizes.kind[i] == 2
+    c, s = (math.cos(angle[i]), math.sin(angle[i])) if box else (1.0, 0.0)
+    return Outline(box, c, s, 0.5 * sizes.width[i], 0.5 * sizes.height[i], sizes.radius[i])
