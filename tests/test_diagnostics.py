@@ -8,10 +8,12 @@ from physicslab.components import Held, Mass, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import Drift, Energy, measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.prefabs import circle
 from physicslab.state.state import State
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
+from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import ForceSystem, Stage, at
 from physicslab.world import World
 
@@ -81,7 +83,8 @@ def test_drift_keeps_the_largest_departure() -> None:
     for speed in (2.2, 1.0, 2.0):
         velocity.linear = (speed, 0)
         drift.sample(world)
-    assert drift.largest == 1.5 and drift.relative == 0.75
+    assert drift.largest == 1.5 and drift.relative == pytest.approx(1.5 / 2.42)
+    assert drift.causes == () and drift.error == drift.relative
     assert drift.latest.total == 2.0
 
 
@@ -97,6 +100,58 @@ def test_drift_from_nothing_is_relative_to_the_kinetic_energy_seen() -> None:
     world.component(ball, Transform).position = (0, 0)
     drift.sample(world)
     assert drift.relative == pytest.approx(1.0)
+
+
+def gas(height: float, restitution: float, friction: float = 0.0) -> World:
+    """Return a gas of discs in bounds that stand so high [m]."""
+    bounds = (-2.0, height - 2.0, 2.0, height + 2.0)
+    world = World(*standard_systems(), physics=PhysicsConfig(bounds=bounds, bounds_friction=0.0))
+    for i in range(6):
+        place = (0.7 * (i % 3) - 0.7, height + 0.7 * (i // 3) - 0.4)
+        circle(
+            world, place, radius=0.2, velocity=(1.0 + i, 2.0 - i), restitution=restitution, friction=friction
+        )
+    return world
+
+
+def test_drift_does_not_depend_on_where_the_origin_is() -> None:
+    found = []
+    for height in (0.0, 1000.0):
+        world = gas(height, restitution=0.8, friction=0.4)
+        drift = Drift(world)
+        for _ in world.stepping(seconds=1.0):
+            drift.sample(world)
+        found.append((drift.relative, drift.error))
+    (change, error), (high_change, high_error) = found
+    assert high_change == pytest.approx(change, rel=1e-6) and change > 0.05
+    assert error is not None and high_error == pytest.approx(error, abs=1e-9)
+
+
+def test_what_impacts_and_friction_take_is_no_drift() -> None:
+    world = gas(0.0, restitution=0.5, friction=0.4)
+    drift = Drift(world)
+    for _ in world.stepping(seconds=3.0):
+        drift.sample(world)
+    assert drift.causes == ("impacts and friction",)
+    assert drift.relative > 0.5
+    assert drift.error is not None and drift.error < 0.02
+
+
+def test_energy_that_is_gained_is_drift_whatever_takes_some() -> None:
+    world = gas(0.0, restitution=0.5, friction=0.4)
+    drift = Drift(world)
+    world.table(Velocity)["linear"][1:] *= 2.0
+    drift.sample(world)
+    assert drift.error == pytest.approx(0.75)
+
+
+def test_where_something_is_driven_no_change_is_called_drift() -> None:
+    world = gas(0.0, restitution=0.5)
+    world.spawn(Transform((0.0, -1.5)), Velocity((1.0, 0.0)))
+    drift = Drift(world)
+    world.run(seconds=0.5)
+    drift.sample(world)
+    assert drift.error is None and "bodies that are driven" in drift.causes
 
 
 def test_drift_does_not_hide_what_is_no_number() -> None:

@@ -62,7 +62,10 @@ def test_the_drift_is_what_was_lost_since_the_start() -> None:
     assert change < -0.1
     assert row(canvas, "Energy change") == quantity(change, "J")
     assert "by impacts and friction" in canvas.words
-    assert row(canvas, "largest so far") == f"{quantity(-change, 'J')}, {percentage(change / -before)}"
+    lost, share = row(canvas, "largest so far").split(", ")
+    fallen = 3.75 * 9.81  # [J] by 3.75 m, of 1 kg; figures are measured too seldom to see the last of it
+    assert lost == quantity(-change, "J")
+    assert float(share.rstrip(" %")) == pytest.approx(-100.0 * change / fallen, rel=0.1)
 
 
 EDITS: dict[str, Callable[[Desk], None]] = {

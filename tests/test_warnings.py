@@ -159,6 +159,37 @@ def test_a_heavy_body_beside_or_below_a_light_one_is_no_load() -> None:
     assert find_warnings(world) == ()
 
 
+def squeezed(substeps: int) -> World:
+    """Return a heavy box that drives a light one against a wall, without gravity, friction or losses."""
+    scene = {"restitution": 1.0, "friction": 0.0}
+    laws = PhysicsConfig(gravity_mode="none")
+    world = World(*standard_systems(), physics=laws, simulation=SimulationConfig(substeps=substeps))
+    box(world, (-0.5, 0.0), width=1.0, height=4.0, static=True, **scene)  # type: ignore[arg-type]
+    box(world, (1.25, 0.0), width=0.5, height=0.5, mass=1.0, **scene)  # type: ignore[arg-type]
+    box(world, (3.0, 0.0), width=1.0, height=1.0, mass=65536.0, velocity=(-1.0, 0.0), **scene)  # type: ignore[arg-type]
+    return world
+
+
+def test_without_gravity_nothing_carries_and_the_setting_that_is_named_was_checked() -> None:
+    counts, warnings = [], WorstWarnings()
+    for substeps in (4, 13):
+        world, warnings = squeezed(substeps), WorstWarnings()
+        for _ in world.stepping(seconds=5.0):
+            warnings.add(find_warnings(world))
+        assert not any("carries" in warning.what for warning in warnings.all)
+        if substeps == 4:
+            (found,) = (warning for warning in warnings.all if "impacts after the first" in warning.what)
+            assert found.setting == "simulation.substeps = 13"
+        counts.append(world.collisions)
+    assert not any("impacts after the first" in warning.what for warning in warnings.all)
+    assert counts[0] != 804 and counts[1] == 804, "as many as there are"
+
+
+def test_where_no_setting_is_known_the_words_are_plain() -> None:
+    warning = ModelWarning("box", "sinks", 2.0, "m", 1.0, "")
+    assert str(warning) == "box: sinks: 2 m, well up to 1; no setting is known to help"
+
+
 def test_overlap_is_said_until_it_is_gone() -> None:
     world = open_world()
     for n in range(40):

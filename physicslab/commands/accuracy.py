@@ -9,12 +9,13 @@ from functools import partial
 
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
+from physicslab.commands.numbers import positive_duration
 from physicslab.ecs.text import printable
 from physicslab.files.scene import load_scene
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.accuracy.document import document
 from physicslab.lab.accuracy.problem import Problem
-from physicslab.lab.accuracy.scene_study import SceneStudy, study_scene
+from physicslab.lab.accuracy.scene_study import DEFAULT_S, SceneStudy, study_scene
 from physicslab.lab.accuracy.study import Study, study
 from physicslab.lab.accuracy.tables import left_out_text, scene_text, study_text, summary_text
 from physicslab.lab.case import Job
@@ -27,6 +28,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
     what = "a problem, a family of them, a built-in scene or a scene file; every problem, sparsely, if none"
     add_lab_arguments(parser, "problem", what, "draw a work-precision plot of each problem, as PNG")
+    seconds = f"how long scenes are run, in their time ({DEFAULT_S:g})"
+    parser.add_argument("--seconds", metavar="T", type=positive_duration, default=DEFAULT_S, help=seconds)
     parser.epilog = f"families: {', '.join(PROBLEMS.families)}; --list names the {len(PROBLEMS)} problems"
 
 
@@ -42,7 +45,9 @@ def execute(arguments: Namespace) -> int:
     jobs: list[tuple[float, Job[Study | SceneStudy]]] = [
         (1.0, study(problem, sparse=not arguments.names)) for problem in problems
     ]
-    jobs += [(1.0, study_scene(printable(name), partial(load_scene, name))) for name in scenes]
+    jobs += [
+        (1.0, study_scene(printable(name), partial(load_scene, name), arguments.seconds)) for name in scenes
+    ]
     studies: list[Study] = []
     scene_studies: list[SceneStudy] = []
     results: Iterator[Study | SceneStudy] = run.results(jobs)

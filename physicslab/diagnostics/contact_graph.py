@@ -66,14 +66,15 @@ class ContactGraph:
     def mass_ratios(self, world: World) -> NDArray[np.float64]:
         """Return the mass ratio of each touching pair in which the heavier body lies on the lighter; else 0.
 
-        Only pairs count whose lighter body touches a third, which supports it. Without uniform gravity no
-        direction is down, and every pair with such a lighter body counts.
+        Only pairs count whose lighter body touches a third, which supports it. Where planets attract each
+        other no direction is down, and every pair with such a lighter body counts; where no force acts,
+        nothing carries anything.
         """
         a, b = self.a[self.touching], self.b[self.touching]
         inverse = world.bodies.inverse_mass
         free = (inverse[a] > 0.0) & (inverse[b] > 0.0)
         ratio = np.zeros(len(a))
-        if not free.any():
+        if not (free.any() and world.has_forces):
             return ratio
         mass = world.table(Mass)["mass"]
         ratio[free] = np.maximum(mass[a[free]] / mass[b[free]], mass[b[free]] / mass[a[free]])

@@ -111,7 +111,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
     }
 
 
-def _energy(now: Energy, drift: Drift) -> dict[str, float]:
+def _energy(now: Energy, drift: Drift) -> dict[str, Any]:
     potential = {"gravity": 0.0, "spring": 0.0} | now.potential
     return {
         "initial": drift.initial.total,
@@ -119,8 +119,18 @@ def _energy(now: Energy, drift: Drift) -> dict[str, float]:
         "kinetic_linear": now.kinetic_linear,
         "kinetic_angular": now.kinetic_angular,
         **{f"potential_{name}": stored for name, stored in potential.items()},
-        "max_relative_drift": drift.relative,
+        "max_relative_drift": drift.error,
+        "max_relative_change": drift.relative,
+        "changed_by": list(drift.causes),
     }
+
+
+def _drift_words(energy: Mapping[str, Any]) -> str:
+    """Return how much of the energy was changed by laws, and how much by error."""
+    drift, causes = energy["max_relative_drift"], " and ".join(energy["changed_by"])
+    change = f"changed by {causes}, {energy['max_relative_change']:.3g} at most" if causes else ""
+    error = "" if drift is None else f"largest relative drift {drift:.3g}"
+    return ", ".join(words for words in (change, error) if words)
 
 
 def _bodies(world: World) -> dict[str, dict[str, Any]]:
@@ -167,7 +177,7 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         f"  collisions  {report['collision_method']}: {report['collision_reason']}",
         f"  took        {wall:.3g} s, and {report['compile_s']:.3g} s to compile or load kernels",
         f"  energy      {energy['initial']:.9g} J before, {energy['final']:.9g} J after; "
-        f"largest relative drift {energy['max_relative_drift']:.3g}",
+        f"{_drift_words(energy)}",
         f"  momentum    [{momentum[0]:.6g}, {momentum[1]:.6g}] kg m/s, "
         f"angular {report['angular_momentum']:.6g} kg m^2/s",
         f"  contacts    {report['contacts']} of {report['candidate_pairs']} near pairs, "

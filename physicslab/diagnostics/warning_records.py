@@ -44,7 +44,9 @@ class ModelWarning:
         if self.value is not None and self.limit is not None:
             unit = f" {self.unit}" if self.unit else ""
             words += f": {self.value:.3g}{unit}, well up to {self.limit:.3g}"
-        return f"{words}; {self.setting} would help" if self.setting else words
+        return (
+            f"{words}; {self.setting} would help" if self.setting else f"{words}; no setting is known to help"
+        )
 
 
 class WorstWarnings:

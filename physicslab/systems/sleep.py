@@ -30,9 +30,10 @@ __all__ = ["SleepSystem"]
 class SleepSystem(System):
     """Puts islands of bodies that have rested to sleep, and wakes those that are touched or pushed.
 
-    An island, bodies that touch each other, sleeps when all of them have been slower than 0.05 m/s for half a
-    second without getting faster, and a fixed body supports it. A body stays awake that touches a kinematic
-    one, or on which a spring or drag acts.
+    An island, bodies that touch each other, sleeps when all of them have been slower than 0.05 m/s for half
+    a second without getting faster, friction holds each of them or stops it within 1e-5 of its size, and a
+    fixed body supports it. A body stays awake that rolls freely, touches a kinematic one, or on which a
+    spring or drag acts.
     """
 
     engine = True
@@ -128,9 +129,11 @@ class SleepSystem(System):
     def _held(self, state: State, ready: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Return which of the rows that are ready to sleep belong to an island that may."""
         contacts, velocity, held = state.contacts, state.table(Velocity), np.zeros(len(ready), np.bool_)
+        impulse_dt = contacts.impulse_dt or state.simulation.dt / state.simulation.substeps
         islands.find_held(
-            contacts.manifolds, contacts.points, contacts.recorded, state.bodies.inverse_mass,
-            velocity["linear"], velocity["angular"], ready, held,
+            contacts.manifolds, contacts.points, contacts.recorded, impulse_dt, state.table(Shape)["kind"],
+            state.bodies.inverse_mass, state.bodies.force, velocity["linear"], velocity["angular"],
+            ready, held,
         )  # fmt: skip
         return held
 

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, inlined, kernel
-from physicslab.kernels.records import Manifolds, Points
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
+from physicslab.kernels.records import Manifold, Manifolds, Points
 
 __all__ = ["READY", "REST", "SLOW", "count_rest", "find_held", "find_touched", "join_marked", "list_sleeping"]
 
@@ -17,6 +17,21 @@ _GAIN = 0.002
 """Gain of speed [m/s] of a slow body by which its rest starts again: it is about to move."""
 _PERIOD = 0.1
 """Interval [s] at which islands are checked, while some body has rested long enough."""
+_STOPS_WITHIN = 1e-5
+"""Way, as a share of the smaller body's size, within which friction must stop what is to sleep."""
+_STILL = 1e-6
+"""Speed along a surface, in sizes of the smaller body a second, below which it counts as none."""
+_ROLLING = 1e-2
+"""The same for a disc that rolls: nothing stops it, and without a limit strays would keep piles awake."""
+_LEVEL = 1e-6
+"""Slope of a fixed surface [rad], from the plane normal to the force, from which on a disc rolls down. What
+moves gives way, and tilts by more."""
+_SATURATED = 0.999
+"""Share of the largest friction from which on a contact that moves slides."""
+_LOADED = 0.01
+"""Share of a body's largest load from which on a contact carries it."""
+_PARALLEL = 0.999
+"""Cosine between normals of contacts that hold a disc no better than one of them."""
 _ROUNDING = 1e-9
 """Rounding [s] of a time that was added up step by step."""
 READY = REST - _ROUNDING
@@ -69,15 +84,116 @@ def _join(parent: Rows, i: int, j: int) -> None:
         parent[max(i, j)] = min(i, j)
 
 
+@inlined
+def _load(manifold: Manifold, points: Points, p: int) -> float:
+    """Return the normal impulse of a pair in a substep."""
+    impulse = 0.0
+    for j in range(2 * p, 2 * p + manifold.count):
+        impulse += points[j].normal_impulse
+    return impulse
+
+
+@inlined
+def _slips(
+    manifold: Manifold, points: Points, p: int, impulse_dt: float,
+    inverse_mass: Numbers, linear: Vectors, angular: Numbers,
+) -> tuple[bool, bool]:  # fmt: skip
+    """Return whether the bodies of a pair slide on each other, and whether friction does not stop that soon.
+
+    Friction takes v^2 / (2 mu g_n) to stop a speed v, where g_n is the pressure over the mass.
+    """
+    a, b = manifold.a, manifold.b
+    fastest, friction = 0.0, 0.0
+    for j in range(2 * p, 2 * p + manifold.count):
+        point = points[j]
+        vx = linear[b, 0] - angular[b] * point.arm_by - linear[a, 0] + angular[a] * point.arm_ay
+        vy = linear[b, 1] + angular[b] * point.arm_bx - linear[a, 1] - angular[a] * point.arm_ax
+        fastest = max(fastest, abs(manifold.normal_x * vy - manifold.normal_y * vx))
+        friction += abs(point.tangent_impulse)
+    if fastest <= _STILL * manifold.size:
+        return False, False
+    limit = manifold.friction * _load(manifold, points, p)
+    lightest = max(inverse_mass[a], inverse_mass[b])
+    room = 2.0 * _STOPS_WITHIN * manifold.size * limit * lightest / impulse_dt
+    return friction >= _SATURATED * limit, fastest * fastest > room
+
+
+@inlined
+def _rolls(
+    manifold: Manifold, disc: int, fixed: bool, points: Points, p: int, force: Vectors, linear: Vectors,
+    angular: Numbers,
+) -> bool:  # fmt: skip
+    """Whether a disc goes along the surface on which it lies or, if that is ``fixed``, is pulled along it."""
+    point, other = points[2 * p], manifold.a
+    ax, ay = point.arm_ax, point.arm_ay
+    if other == disc:
+        other, ax, ay = manifold.b, point.arm_bx, point.arm_by
+    vx = linear[disc, 0] - linear[other, 0] + angular[other] * ay
+    vy = linear[disc, 1] - linear[other, 1] - angular[other] * ax
+    nx, ny, fx, fy = manifold.normal_x, manifold.normal_y, force[disc, 0], force[disc, 1]
+    if fixed and abs(nx * fy - ny * fx) > _LEVEL * math.sqrt(fx * fx + fy * fy):
+        return True
+    return bool(abs(nx * vy - ny * vx) > _ROLLING * manifold.size)
+
+
+@allocating
+def _mark_moving(
+    manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, kind: Rows,
+    inverse_mass: Numbers, force: Vectors, linear: Vectors, angular: Numbers, moving: Flags,
+) -> None:  # fmt: skip
+    """Mark the bodies that go on moving: friction does not stop them soon, or they slide or roll freely.
+
+    A body slides if no contact that carries it sticks. A disc rolls freely if all contacts that press on it
+    have one normal: nothing else can hold it, and friction does no work where it rolls.
+    """
+    number = len(inverse_mass)
+    load, carrier = np.zeros(number), np.zeros(number, np.int64)
+    for p in range(pairs):
+        manifold = manifolds[p]
+        if manifold.count <= 0:
+            continue
+        pressed = _load(manifold, points, p)
+        for i in (manifold.a, manifold.b):
+            if pressed > load[i]:
+                load[i], carrier[i] = pressed, p
+    sticks, caged = np.zeros(number, np.bool_), np.zeros(number, np.bool_)
+    for p in range(pairs):
+        manifold = manifolds[p]
+        if manifold.count <= 0:
+            continue
+        pressed = _load(manifold, points, p)
+        if pressed <= 0.0:
+            continue
+        slides, far = _slips(manifold, points, p, impulse_dt, inverse_mass, linear, angular)
+        for i in (manifold.a, manifold.b):
+            if far:
+                moving[i] = True
+            if pressed >= _LOADED * load[i]:
+                sticks[i] |= not slides
+            main = manifolds[carrier[i]]
+            along = manifold.normal_x * main.normal_x + manifold.normal_y * main.normal_y
+            caged[i] |= abs(along) < _PARALLEL
+    for i in range(number):
+        if inverse_mass[i] == 0.0 or load[i] <= 0.0:
+            continue
+        p = carrier[i]
+        free = kind[i] == 1 and not caged[i]
+        main = manifolds[p]
+        fixed = inverse_mass[main.a] == 0.0 or inverse_mass[main.b] == 0.0
+        if not sticks[i] or (free and _rolls(main, i, fixed, points, p, force, linear, angular)):
+            moving[i] = True
+
+
 @allocating_kernel
 def find_held(
-    manifolds: Manifolds, points: Points, pairs: int,
-    inverse_mass: Numbers, linear: Vectors, angular: Numbers, ready: Flags, held: Flags,
+    manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, kind: Rows,
+    inverse_mass: Numbers, force: Vectors, linear: Vectors, angular: Numbers, ready: Flags, held: Flags,
 ) -> int:  # fmt: skip
     """Mark the bodies of islands that may sleep; return how many there are.
 
-    All bodies of such an island are ``ready``, none had an impact in this step, and one of them is pressed
-    with friction against a fixed body at rest: without friction or support it would move on for ever.
+    All bodies of such an island are ``ready``, none had an impact in this step, friction holds or soon stops
+    all of them, and one of them is pressed with friction against a fixed body at rest: without friction or
+    support it would move on for ever. ``impulse_dt`` is the time [s] over which the points' impulses act.
     """
     parent = np.arange(len(inverse_mass))
     for p in range(pairs):
@@ -86,8 +202,10 @@ def find_held(
             _join(parent, manifold.a, manifold.b)
     restless = np.zeros(len(inverse_mass), np.bool_)
     supported = np.zeros(len(inverse_mass), np.bool_)
+    moving = ~ready
+    _mark_moving(manifolds, points, pairs, impulse_dt, kind, inverse_mass, force, linear, angular, moving)
     for i in range(len(inverse_mass)):
-        if inverse_mass[i] > 0.0 and not ready[i]:
+        if inverse_mass[i] > 0.0 and moving[i]:
             restless[_root(parent, i)] = True
     for p in range(pairs):
         manifold = manifolds[p]

@@ -95,7 +95,7 @@ def _row(problem: Problem, row: Row) -> dict[str, Any]:
 def _scene(study: SceneStudy) -> dict[str, Any]:
     return {
         "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.tightest,
-        "rows": [_scene_row(row) for row in study.rows],
+        "estimate": asdict(study.estimate), "rows": [_scene_row(row) for row in study.rows],
     }  # fmt: skip
 
 

@@ -14,14 +14,19 @@ from physicslab.components import Trail, Transform, Velocity
 from physicslab.diagnostics.energy import Drift
 from physicslab.ecs.config import SimulationConfig
 from physicslab.integrators import INTEGRATORS
+from physicslab.lab.accuracy.estimate import Estimate, estimate_error
+from physicslab.lab.accuracy.twins import finer_settings
 from physicslab.lab.case import Job, attempt, cpu_time
 from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
 
-__all__ = ["ESTIMATE", "SceneRow", "SceneStudy", "study_scene"]
+__all__ = ["DEFAULT_S", "ESTIMATE", "SceneRow", "SceneStudy", "study_scene"]
 
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"
-_SECONDS = 5.0
+DEFAULT_S = 5.0
+"""How long a scene is run, where nothing else is asked for."""
+_ESTIMATE_SHARE = 0.3
+"""Of the work of a study, roughly, that goes into the estimate."""
 _TIGHTEST = 1e-17
 _SUBSTEP_FACTORS = (0.5, 1.0, 2.0, 4.0)
 """The rungs of a ladder of steps: so many times the scene's own substeps."""
@@ -56,7 +61,7 @@ class SceneRow:
     tightest : float, optional
         The same from where the tightest method has it; ``None`` where there is no such method.
     energy : float, optional
-        The relative drift of the energy at the end.
+        The relative drift of the energy at the end; ``None`` where what is driven changes it.
     failure : str
         Why there are no figures.
     """
@@ -75,32 +80,54 @@ class SceneRow:
 
 @dataclass(slots=True)
 class SceneStudy:
-    """What was found of a scene; ``tightest`` names the method that the others were compared with."""
+    """What was found of a scene.
+
+    Attributes
+    ----------
+    name : str
+        Of the scene.
+    seconds : float
+        How long it was run [s].
+    tightest : str
+        The method that the others were compared with.
+    estimate : Estimate
+        The error of the scene as it is configured.
+    rows : list of SceneRow
+        Its methods.
+    """
 
     name: str
     seconds: float
     tightest: str
+    estimate: Estimate = field(default_factory=Estimate)
     rows: list[SceneRow] = field(default_factory=list)
 
 
-def study_scene(name: str, load: Callable[[], World]) -> Job[SceneStudy]:
+def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S) -> Job[SceneStudy]:
     """Run a scene with every method; yield the share of the work that is done, then the result.
 
     Parameters
     ----------
     load : callable
         Returns the scene's world, a new one each time.
+    seconds : float
+        How long it is run [s].
     """
     load = _without_trails(load)
     plain = dataclasses.replace(load().simulation, sleeping=False)  # so that errors are those of methods
     auto = dataclasses.replace(plain, integrator="auto")
     methods = [method for method in INTEGRATORS if _takes(load, plain, method)]
     wanted = [auto, *(rung for method in methods for rung in _ladder(plain, method))]
-    best, tight = _tightest(load, plain)
-    study = SceneStudy(name, _SECONDS, tight)
+    best, tight = _tightest(load, plain, seconds)
+    study = SceneStudy(name, seconds, tight)
+    for found in estimate_error(load, seconds):
+        if isinstance(found, Estimate):
+            study.estimate = found
+        else:
+            yield _ESTIMATE_SHARE * found
     for i, simulation in enumerate(wanted):
-        study.rows.append(_row(load, simulation, best))
-        yield (i + 1) / len(wanted)
+        study.rows.append(_row(load, simulation, best, seconds))
+        yield _ESTIMATE_SHARE + (1.0 - _ESTIMATE_SHARE) * (i + 1) / len(wanted)
     yield study
 
 
@@ -146,7 +173,9 @@ def _prepared(load: Callable[[], World], simulation: SimulationConfig) -> World:
     return world
 
 
-def _tightest(load: Callable[[], World], plain: SimulationConfig) -> tuple[NDArray[np.float64] | None, str]:
+def _tightest(
+    load: Callable[[], World], plain: SimulationConfig, seconds: float
+) -> tuple[NDArray[np.float64] | None, str]:
     """Return where bodies end with the tightest method that the scene allows, and what it is called."""
     for method, changes, words in (
         ("exact", {}, "the closed form"),
@@ -155,14 +184,14 @@ def _tightest(load: Callable[[], World], plain: SimulationConfig) -> tuple[NDArr
     ):
         if _takes(load, plain, method):
             simulation = dataclasses.replace(plain, integrator=method, **changes)
-            places, failure = attempt(partial(_end, _prepared(load, simulation)))
+            places, failure = attempt(partial(_end, _prepared(load, simulation), seconds))
             if not failure:
                 return places, words
     return None, "nothing: every method fails"
 
 
 def _row(
-    load: Callable[[], World], simulation: SimulationConfig, best: NDArray[np.float64] | None
+    load: Callable[[], World], simulation: SimulationConfig, best: NDArray[np.float64] | None, seconds: float
 ) -> SceneRow:
     world = _prepared(load, simulation)
     method = world.plan
@@ -172,41 +201,36 @@ def _row(
         tolerance = tolerance_for(world, world.schedule.forces)
         step = "" if method.integrator.name == "exact" else f"tol {tolerance:g}"
     row = SceneRow(method.integrator.name, method.reason, simulation.integrator, step)
-    _, row.failure = attempt(partial(_fill, row, load, simulation, best))
+    _, row.failure = attempt(partial(_fill, row, load, simulation, best, seconds))
     return row
 
 
 def _fill(
-    row: SceneRow, load: Callable[[], World], simulation: SimulationConfig, best: NDArray[np.float64] | None
+    row: SceneRow,
+    load: Callable[[], World],
+    simulation: SimulationConfig,
+    best: NDArray[np.float64] | None,
+    seconds: float,
 ) -> None:
     """Run a scene by a configuration, and write its cost and its errors into a row."""
     for _ in range(_REPEATS):  # the shortest: the first also compiles, and other programs run as well
         world = _prepared(load, simulation)
         drift = Drift(world)
-        taken, places = cpu_time(partial(_end, world))
+        taken, places = cpu_time(partial(_end, world, seconds))
         row.cpu_s = min(row.cpu_s or taken, taken)
         if taken > _REPEATED_BELOW_S:
             break
     row.evaluations = world.force_evaluations
     drift.sample(world)
-    row.energy = drift.relative
-    row.half_step = _apart(places, _end(_prepared(load, _other_step(simulation))))
+    row.energy = drift.error
+    row.half_step = _apart(places, _end(_prepared(load, finer_settings(simulation, 2)), seconds))
     if best is not None:
         row.tightest = _apart(places, best)
 
 
-def _other_step(simulation: SimulationConfig) -> SimulationConfig:
-    """Return the same with steps half as long, and a tolerance that doubles those of order 8.
-
-    A tighter tolerance than the scene's might be more than rounding allows.
-    """
-    tolerance = min(1e-2, simulation.tolerance * 2.0**8)
-    return dataclasses.replace(simulation, dt=0.5 * simulation.dt, tolerance=tolerance)
-
-
-def _end(world: World) -> NDArray[np.float64]:
+def _end(world: World, seconds: float) -> NDArray[np.float64]:
     """Run a world, and return where its moving bodies are then (n, 2) [m]."""
-    world.run(seconds=_SECONDS)
+    world.run(seconds=seconds)
     rows = world.batch(Transform, Velocity).rows
     places: NDArray[np.float64] = world.table(Transform)["position"][rows].copy()
     return places

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from physicslab.lab.accuracy.catalogue import LEFT_OUT
+from physicslab.lab.accuracy.estimate import Spread
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
@@ -93,12 +94,36 @@ def scene_text(study: SceneStudy) -> str:
     head = ("method", "ran", "step", "forces", "CPU ms", "half step", "tightest", "energy", "")
     return "\n".join([
         f"{study.name}: {ESTIMATE}",
+        *_estimate_lines(study),
         f"  how far bodies are [m] after {study.seconds:g} s from where they are with half the step "
         f"(dop853: twice the step), and with {study.tightest}",
         table([head, *map(_scene_cells, study.rows)], words=(0, 1, 8), indent="  "),
         f"  auto: {study.rows[0].reason}",
         "",
     ])  # fmt: skip
+
+
+def _estimate_lines(study: SceneStudy) -> list[str]:
+    """Return how far the scene as it is configured is from its twins."""
+    found = study.estimate
+    if found.error is None:
+        return [f"  no estimate: {found.failure or 'no twin of the scene could be run'}"]
+    head = ("twin", "place [m]", "angle [rad]", "velocity [m/s]", "spin [rad/s]", "")
+    rows = [("largest: the error", *_spread_cells(found.error), "")]
+    rows += [(twin.name, *_spread_cells(twin.spread), twin.failure or twin.what) for twin in found.twins]
+    order = "none" if found.order is None else f"{found.order:.1f}"
+    return [
+        f"  as it is configured, and how far its twins end from it after {study.seconds:g} s, of any body",
+        table([head, *rows], words=(0, 5), indent="  "),
+        f"  order of the error in the step: {order} ({found.order_reason})",
+        "",
+    ]
+
+
+def _spread_cells(spread: Spread | None) -> tuple[str, str, str, str]:
+    if spread is None:
+        return ("-", "-", "-", "-")
+    return f"{spread.position:.1e}", f"{spread.angle:.1e}", f"{spread.velocity:.1e}", f"{spread.spin:.1e}"
 
 
 def _scene_cells(row: SceneRow) -> tuple[str, ...]:

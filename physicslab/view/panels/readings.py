@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from physicslab.diagnostics.energy import summation
+from physicslab.diagnostics.energy import energy_changers, summation
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity
 from physicslab.view.panels.figures import FrameMeter, WorldFigures
-from physicslab.view.panels.laws import energy_changers, gravity_in_words
+from physicslab.view.panels.laws import gravity_in_words
 from physicslab.view.panels.panels import Line
 from physicslab.world import World
 

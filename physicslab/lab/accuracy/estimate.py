@@ -1,0 +1,205 @@
+"""How far the twins of a scene end apart: an estimate of its error, and of the order of that in the step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Transform, Velocity
+from physicslab.files.writer import write_scene
+from physicslab.lab.accuracy.twins import TWINS, Twin, finer, with_ids
+from physicslab.lab.case import attempt
+from physicslab.world import World
+
+__all__ = ["Estimate", "Spread", "TwinResult", "estimate_error"]
+
+type _End = NDArray[np.float64]
+"""Columns x, y, angle, vx, vy, spin of every body that can move (n, 6)."""
+
+_LIMITED_BY_STEP = 0.25
+"""Share of the estimate that halving the step must explain for the step to be what limits the results."""
+_MIRROR = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
+_ORDER_MARGIN = 2.0
+"""An observed order that is further from none than the method's own and this is chance."""
+_ROUNDINGS = 1e3
+"""A spread of fewer roundings than this has no order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """The largest difference of any body between two runs.
+
+    Attributes
+    ----------
+    position, angle, velocity, spin : float
+        Of places [m], angles [rad], velocities [m/s] and angular velocities [rad/s].
+    """
+
+    position: float
+    angle: float
+    velocity: float
+    spin: float
+
+
+@dataclass(frozen=True, slots=True)
+class TwinResult:
+    """A twin, how it differs from the scene, and how far apart both end.
+
+    Attributes
+    ----------
+    name, what : str
+        The twin.
+    spread : Spread, optional
+        ``None`` where it failed.
+    failure : str
+        Why.
+    """
+
+    name: str
+    what: str
+    spread: Spread | None
+    failure: str = ""
+
+
+@dataclass(slots=True)
+class Estimate:
+    """The estimate of the error of a scene, run as it is configured.
+
+    Attributes
+    ----------
+    error : Spread, optional
+        The largest spread of any twin; ``None`` where the scene or all of its twins fail.
+    worst : str
+        The twin that is furthest off in place.
+    order : float, optional
+        The power of the step with which the error falls; ``None`` where it has none.
+    order_reason : str
+        How the order was found, or why there is none.
+    twins : list of TwinResult
+        All that the scene has.
+    failure : str
+        Why the scene itself could not be run.
+    """
+
+    error: Spread | None = None
+    worst: str = ""
+    order: float | None = None
+    order_reason: str = ""
+    twins: list[TwinResult] = field(default_factory=list)
+    failure: str = ""
+
+
+def estimate_error(load: Callable[[], World], seconds: float) -> Iterator[float | Estimate]:
+    """Run a scene and its twins; yield the share of the work that is done, then the estimate.
+
+    Parameters
+    ----------
+    load : callable
+        Returns the scene's world, a new one each time.
+    seconds : float
+        How long it is run [s].
+    """
+    scene, found = load(), Estimate()
+    document = with_ids(write_scene(scene))
+    scene.synchronise()
+    run = _Runs([entity["id"] for entity in document["entities"] if "Velocity" in entity], seconds)
+    own, found.failure = attempt(partial(run.end, load()))
+    if own is None:
+        yield found
+        return
+    ends: dict[str, _End] = {}
+    for i, twin in enumerate(TWINS):
+        result = _compared(twin, twin.make(document, scene), run, own, ends)
+        if result is not None:
+            found.twins.append(result)
+        yield (i + 1) / (len(TWINS) + 1)
+    _summarise(found)
+    if found.error is not None:
+        found.order, found.order_reason = _order(
+            found, scene, partial(run.end, finer(document, 4)), own, ends
+        )
+    yield found
+
+
+class _Runs:
+    """Runs worlds for one time, and reads the state of the same bodies at the end."""
+
+    def __init__(self, bodies: list[str], seconds: float) -> None:
+        self._bodies, self._seconds = bodies, seconds
+
+    def end(self, world: World) -> _End:
+        rows = {world.label(int(entity)): row for entity, row in self._rows(world)}
+        world.run(seconds=self._seconds)
+        kept = [rows[name] for name in self._bodies if name in rows]
+        transform, velocity = world.table(Transform), world.table(Velocity)
+        columns = (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
+        return np.column_stack([column[kept] for column in columns])
+
+    @staticmethod
+    def _rows(world: World) -> Iterator[tuple[int, int]]:
+        world.synchronise()
+        batch = world.batch(Transform, Velocity)
+        return zip(batch.entities.tolist(), batch.rows.tolist(), strict=True)
+
+
+def _compared(
+    twin: Twin, world: World | None, run: _Runs, own: _End, ends: dict[str, _End]
+) -> TwinResult | None:
+    """Run a twin, if there is one, and keep where it ends."""
+    if world is None:
+        return None
+    end, failure = attempt(partial(run.end, world))
+    if end is None:
+        return TwinResult(twin.name, twin.what, None, failure)
+    ends[twin.name] = end * _MIRROR if twin.mirrored else end
+    return TwinResult(twin.name, twin.what, _spread(own, ends[twin.name]))
+
+
+def _spread(own: _End, other: _End) -> Spread:
+    apart = np.abs(own - other)
+    places, speeds = np.hypot(apart[:, 0], apart[:, 1]), np.hypot(apart[:, 3], apart[:, 4])
+    return Spread(*(float(column.max(initial=0.0)) for column in (places, apart[:, 2], speeds, apart[:, 5])))
+
+
+def _summarise(found: Estimate) -> None:
+    spreads = {result.name: result.spread for result in found.twins if result.spread is not None}
+    if not spreads:
+        return
+    found.worst = max(spreads, key=lambda name: spreads[name].position)
+    names = ("position", "angle", "velocity", "spin")
+    found.error = Spread(*(max(getattr(spread, name) for spread in spreads.values()) for name in names))
+
+
+def _order(
+    found: Estimate, scene: World, quarter: Callable[[], _End], own: _End, ends: dict[str, _End]
+) -> tuple[float | None, str]:
+    """Return the power of the step with which places approach the truth, and how it was found."""
+    assert found.error is not None
+    error = found.error.position
+    if error <= _ROUNDINGS * math.ulp(float(np.abs(own[:, :2]).max(initial=1.0))):
+        return None, "the error is that of rounding"
+    if found.worst == "nudged":
+        return None, "a rounding at the start has grown to this: no step is short enough"
+    if scene.plan.integrator.chooses_steps and not scene.event_driven:
+        return None, f"{scene.plan.integrator.name} chooses its steps"
+    half = ends.get("half step")
+    if half is None:
+        return None, "half the step fails"
+    coarse = _spread(own, half).position
+    if coarse < _LIMITED_BY_STEP * error:
+        return math.log2(error / (error - coarse)), f'the step matters less than the twin "{found.worst}"'
+    end, failure = attempt(quarter)
+    if end is None:
+        return None, f"a quarter of the step fails: {failure}"
+    fine = _spread(half, end).position
+    if fine == 0.0:
+        return None, "no difference is left between half and a quarter of the step"
+    order = math.log2(coarse / fine)
+    if abs(order) > scene.plan.integrator.order + _ORDER_MARGIN:
+        return None, "halving the step does not change places regularly"
+    return order, "from the step, its half and its quarter"

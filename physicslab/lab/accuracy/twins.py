@@ -1,0 +1,183 @@
+"""Twins of a scene: the same laws from the same start, computed in another way.
+
+The spread of where twins end is an estimate of the error. Runs that differ in their step alone share the
+model of contacts, with its overlap and its softness, and the order in which contacts are solved: the errors
+that these make do not show, so some of the twins differ in them.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.text import unique_name
+from physicslab.files.reader import read_scene
+from physicslab.systems.resolve import ResolveSystem
+from physicslab.world import World
+
+__all__ = ["TWINS", "Document", "Twin", "finer", "finer_settings", "with_ids"]
+
+type Document = dict[str, Any]
+"""A scene as :func:`physicslab.files.writer.write_scene` returns it, in which every entity has an id."""
+
+_PAST = ("contacts", "rests", "solver")
+"""What a scene keeps of the steps before it; a mirrored or permuted one begins without."""
+_MIRRORED: dict[str, tuple[str, ...]] = {
+    "Transform": ("position", "angle"),
+    "Velocity": ("linear", "angular"),
+    "Mass": (),
+    "Shape": (),
+    "Material": (),
+    "Spring": ("anchor_a", "anchor_b"),
+    "Drag": (),
+    "Trail": (),
+}
+"""Fields that a mirror changes; a scene with another component is not mirrored."""
+_ULP_SCALE = 1e-2
+"""Coordinates [m], [m/s], [rad] smaller than this are moved by a rounding of this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Twin:
+    """One way to compute a scene differently.
+
+    Attributes
+    ----------
+    name, what : str
+        What it is called, and how it differs.
+    make : callable
+        Takes the scene's document, which it leaves as it is, and a world made from it, ready to be stepped;
+        returns the twin's world, or ``None`` where a scene has no such twin.
+    mirrored : bool
+        Whether its x coordinates and angles have the opposite sign.
+    """
+
+    name: str
+    what: str
+    make: Callable[[Document, World], World | None]
+    mirrored: bool = False
+
+
+def with_ids(document: Document) -> Document:
+    """Return a scene in which every entity has an id, so that its twins can be compared."""
+    document = copy.deepcopy(document)
+    taken = {entity["id"] for entity in document["entities"] if "id" in entity}
+    for i, entity in enumerate(document["entities"], 1):
+        if "id" not in entity:
+            entity["id"] = unique_name(f"entity {i}", taken)
+            taken.add(entity["id"])
+    return document
+
+
+def finer_settings(simulation: SimulationConfig, factor: int) -> SimulationConfig:
+    """Return the same with steps shorter by a factor.
+
+    Methods that choose their steps accept errors that are larger by the factor to the power of 8, for steps
+    of order 8 that are longer by it: a tighter tolerance than the scene's might be more than rounding allows.
+    """
+    tolerance = min(1e-2, simulation.tolerance * float(factor) ** 8)
+    return replace(simulation, dt=simulation.dt / factor, tolerance=tolerance)
+
+
+def finer(document: Document, factor: int) -> World:
+    """Return the scene with :func:`finer_settings`."""
+    settings = finer_settings(SimulationConfig(**document["simulation"]), factor)
+    return _with_settings(document, dt=settings.dt, tolerance=settings.tolerance)
+
+
+def _with_settings(document: Document, **changes: Any) -> World:
+    return read_scene(document | {"simulation": document["simulation"] | changes})
+
+
+def _stiffer(document: Document, world: World) -> World | None:
+    """Return the scene with harder contacts, at half the step: the step limits their frequency."""
+    if world.plan.collisions == "none":
+        return None
+    simulation = world.simulation
+    sweeps = min(1000, 2 * (simulation.iterations or 1))
+    twin = _with_settings(document, dt=0.5 * simulation.dt, iterations=sweeps)
+    for system in twin.schedule.systems:
+        if isinstance(system, ResolveSystem):
+            system.hertz *= 2.0
+            system.slop *= 0.5
+    return twin
+
+
+def _mirror(document: Document, world: World) -> World | None:
+    if any(set(entity) - {"id", "Name", *_MIRRORED} for entity in document["entities"]):
+        return None
+    mirrored = _without_past(document)
+    for entity in mirrored["entities"]:
+        for name, fields in _MIRRORED.items():
+            for field in fields:
+                value = entity.get(name, {}).get(field)
+                if value is not None:
+                    entity[name][field] = [-value[0], value[1]] if isinstance(value, list) else -value
+    physics = mirrored["physics"]
+    physics["gravity"] = [-physics["gravity"][0], physics["gravity"][1]]
+    if physics["bounds"] is not None:
+        left, low, right, high = physics["bounds"]
+        physics["bounds"] = [-right, low, -left, high]
+    return read_scene(mirrored)
+
+
+def _permute(document: Document, world: World) -> World | None:
+    if len(document["entities"]) < 2:
+        return None
+    permuted = _without_past(document)
+    permuted["entities"].reverse()
+    return read_scene(permuted)
+
+
+def _without_past(document: Document) -> Document:
+    return {key: copy.deepcopy(value) for key, value in document.items() if key not in _PAST}
+
+
+def _nudge(document: Document, world: World) -> World | None:
+    """Return the scene with places and velocities of bodies moved by one rounding, some up and some down."""
+    twin = copy.deepcopy(document)
+    ways = _alternating()
+    for entity in twin["entities"]:
+        if "Velocity" not in entity:
+            continue
+        for name, fields in (("Transform", ("position", "angle")), ("Velocity", ("linear", "angular"))):
+            part = entity.setdefault(name, {})
+            for field in fields:
+                value = part.get(field, 0.0 if field.startswith("ang") else [0.0, 0.0])
+                part[field] = (
+                    [_moved(v, ways) for v in value] if isinstance(value, list) else _moved(value, ways)
+                )
+    return read_scene(twin)
+
+
+def _alternating() -> Iterator[float]:
+    """Yield signs of which neither neighbours nor every second, third or sixth are all alike."""
+    i = 0
+    while True:
+        i += 1
+        yield 1.0 if (i * i // 3 + i) % 2 else -1.0
+
+
+def _moved(value: float, ways: Iterator[float]) -> float:
+    return value + next(ways) * math.ulp(max(abs(value), _ULP_SCALE))
+
+
+def _awake(document: Document, world: World) -> World | None:
+    return _with_settings(document, sleeping=False) if world.sleep.on else None
+
+
+TWINS: tuple[Twin, ...] = (
+    Twin("half step", "steps half as long, or for a method that chooses them twice as long",
+         lambda document, world: finer(document, 2)),
+    Twin("stiffer", "contacts of twice the frequency, half the slop and twice the sweeps, at half the step",
+         _stiffer),
+    Twin("mirrored", "left and right exchanged", _mirror, mirrored=True),
+    Twin("permuted", "entities in the opposite order", _permute),
+    Twin("nudged", "the start moved by one rounding", _nudge),
+    Twin("awake", "nothing falls asleep", _awake),
+)  # fmt: skip
+"""All of them. Another way to compute the same laws is added here, and nowhere else."""
