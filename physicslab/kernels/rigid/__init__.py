@@ -1,0 +1,1 @@
+"""Rigid contacts: constrained motion between located events."""

@@ -1,0 +1,267 @@
+"""Forces of contacts that may open and slide: a linear complementarity problem, solved to rounding.
+
+Point i has a normal and a tangential unknown, z[2 i] and z[2 i + 1]: forces, or impulses. What they cause is
+w = A z + b: accelerations, or velocities. The laws are 0 <= z_n, 0 <= w_n, z_n w_n = 0, and Coulomb's
+|z_t| <= mu z_n, with w_t = 0 where that holds strictly and w_t against z_t where not. In two dimensions the
+cone has two edges, and all of that is linear (Acary & Brogliato, Numerical Methods for Nonsmooth Dynamical
+Systems, 2008, ch. 9). A point that slides already has its edge given.
+
+At first all points are taken to be closed; the equations are solved directly, and points whose law is
+violated change over, one at a time. Where that does not end, Lemke's pivots do. Where forces are not
+determined, as under a table with four legs, they are those of the least norm.
+"""
+
+import math
+
+from physicslab.kernels import fused, inlined
+from physicslab.kernels.rigid.equations import (
+    CAUSED,
+    FREE,
+    OPEN,
+    RIGHT,
+    SLIDES_BACK,
+    SLIDES_ON,
+    STICKS,
+    UNKNOWN,
+    Equations,
+    edge_of,
+)
+from physicslab.kernels.rigid.features import GIVEN, MU, STATUS
+from physicslab.kernels.rigid.lemke import find_by_pivots
+
+__all__ = ["solve_complementarity", "solve_equations"]
+
+_ROUNDING = 1e-4
+"""Share of the motion of points that slide in any case, whose rounding is in all that they touch."""
+_TOLERANCE = 1e-11
+"""Share of the largest free acceleration, or of the largest force, up to which a law counts as kept."""
+_DAMPED = 1e-13
+"""Share of the diagonal that is added to a matrix that may be singular; refinement removes its effect."""
+_REFINEMENTS = 40
+"""Largest number of refinements of a solution."""
+
+
+@fused
+def _take_equations(equations: Equations, count: int, friction: float) -> int:
+    """Write the matrix of the unknowns that are not given, M; return how many they are.
+
+    Rows and columns are divided by the roots of the diagonal, so that masses of all sizes count alike.
+    """
+    n, order, a = 0, equations.order, equations.a
+    for i in range(count):
+        status = equations.points[i, STATUS]
+        if status != OPEN:
+            order[1, n] = 2 * i
+            n += 1
+            if status == STICKS:
+                order[1, n] = 2 * i + 1
+                n += 1
+    for k in range(n):
+        row = order[1, k]
+        for j in range(n):
+            column = order[1, j]
+            value, status = a[row, column], equations.points[column // 2, STATUS]
+            if column % 2 == 0 and status != STICKS:
+                value += friction * edge_of(status, equations.measures[column // 2, MU]) * a[row, column + 1]
+            equations.matrix[k, j] = value / math.sqrt(a[row, row] * a[column, column])
+    return n
+
+
+@fused
+def _factorise(equations: Equations, n: int) -> None:
+    """Write the Cholesky factor of M M^T, slightly damped, into the tableau."""
+    matrix, factor, largest = equations.matrix, equations.tableau, 0.0
+    for i in range(n):
+        for j in range(i + 1):
+            product = 0.0
+            for k in range(n):
+                product += matrix[i, k] * matrix[j, k]
+            factor[i, j] = product
+        largest = max(largest, factor[i, i])
+    for i in range(n):
+        factor[i, i] += _DAMPED * largest
+        for j in range(i + 1):
+            value = factor[i, j]
+            for k in range(j):
+                value -= factor[i, k] * factor[j, k]
+            if i == j:
+                factor[i, i] = math.sqrt(max(value, _DAMPED * largest))
+            else:
+                factor[i, j] = value / factor[j, j]
+
+
+@fused
+def _substitute(equations: Equations, n: int) -> None:
+    """Replace the right side r by M^T (M M^T)^-1 r."""
+    factor, vectors = equations.tableau, equations.vectors
+    for i in range(n):
+        for k in range(i):
+            vectors[RIGHT, i] -= factor[i, k] * vectors[RIGHT, k]
+        vectors[RIGHT, i] /= factor[i, i]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            vectors[RIGHT, i] -= factor[k, i] * vectors[RIGHT, k]
+        vectors[RIGHT, i] /= factor[i, i]
+    for j in range(n):
+        vectors[CAUSED, j] = 0.0
+        for k in range(n):
+            vectors[CAUSED, j] += equations.matrix[k, j] * vectors[RIGHT, k]
+    for j in range(n):
+        vectors[RIGHT, j] = vectors[CAUSED, j]
+
+
+@inlined
+def solve_equations(equations: Equations, count: int, friction: float) -> None:
+    """Solve w = 0 for the points that are not open, along the tangent for those that stick.
+
+    Those that slide have ``friction`` (0 or 1) times their friction. Where the equations are singular the
+    solution is that of least norm: it is of the form M^T u, and refined until rounding is left.
+    """
+    vectors, order, a = equations.vectors, equations.order, equations.a
+    largest, previous = 0.0, math.inf
+    for i in range(2 * count):
+        vectors[UNKNOWN, i] = 0.0
+        largest = max(largest, abs(vectors[FREE, i]))
+    n = _take_equations(equations, count, friction)
+    _factorise(equations, n)
+    for _ in range(_REFINEMENTS):
+        residual = 0.0
+        for k in range(n):
+            row = order[1, k]
+            w = vectors[FREE, row]
+            for j in range(2 * count):
+                w += a[row, j] * vectors[UNKNOWN, j]
+            vectors[RIGHT, k] = -w / math.sqrt(a[row, row])
+            residual = max(residual, abs(w))
+        if residual <= 2e-16 * largest or residual >= 0.5 * previous:
+            break
+        previous = residual
+        _substitute(equations, n)
+        for k in range(n):
+            row = order[1, k]
+            change, status = vectors[RIGHT, k] / math.sqrt(a[row, row]), equations.points[row // 2, STATUS]
+            vectors[UNKNOWN, row] += change
+            if row % 2 == 0 and status != STICKS:
+                edge = friction * edge_of(status, equations.measures[row // 2, MU])
+                vectors[UNKNOWN, row + 1] += edge * change
+
+
+@inlined
+def _find_caused(equations: Equations, count: int) -> None:
+    for i in range(2 * count):
+        caused = equations.vectors[FREE, i]
+        for j in range(2 * count):
+            caused += equations.a[i, j] * equations.vectors[UNKNOWN, j]
+        equations.vectors[CAUSED, i] = caused
+
+
+@inlined
+def _closed_status(equations: Equations, i: int, opening: float, along: float) -> int:
+    """Return what a point does that is to be closed: it slides where friction could not stop it alone."""
+    given: int = equations.points[i, GIVEN]
+    needed = abs(along) * equations.a[2 * i, 2 * i]
+    if (
+        given == STICKS
+        and needed > equations.measures[i, MU] * max(-opening, 0.0) * equations.a[2 * i + 1, 2 * i + 1]
+    ):
+        return SLIDES_ON if along > 0.0 else SLIDES_BACK
+    return given
+
+
+@fused
+def _change_most_violated(equations: Equations, count: int, w_scale: float, z_scale: float) -> bool:
+    """Let the point whose law is violated most do what it must instead; return whether there is any."""
+    worst, change, amount = -1, OPEN, _TOLERANCE
+    vectors = equations.vectors
+    for i in range(count):
+        status, given, mu = equations.points[i, STATUS], equations.points[i, GIVEN], equations.measures[i, MU]
+        pressed, rubbed = vectors[UNKNOWN, 2 * i] / z_scale, vectors[UNKNOWN, 2 * i + 1] / z_scale
+        opening, along = vectors[CAUSED, 2 * i] / w_scale, vectors[CAUSED, 2 * i + 1] / w_scale
+        if status == OPEN:
+            if -opening > amount:
+                worst, change, amount = i, _closed_status(equations, i, opening, along), -opening
+        elif -pressed > amount:
+            worst, change, amount = i, OPEN, -pressed
+        elif given == STICKS and mu > 0.0:
+            if status == STICKS:
+                if abs(rubbed) - mu * pressed > amount:
+                    worst, amount = i, abs(rubbed) - mu * pressed
+                    change = SLIDES_ON if rubbed < 0.0 else SLIDES_BACK
+            else:  # friction must not drive the sliding
+                driven = -along if status == SLIDES_ON else along
+                if driven > amount:
+                    worst, change, amount = i, STICKS, driven
+    if worst >= 0:
+        equations.points[worst, STATUS] = change
+    return worst >= 0
+
+
+@inlined
+def _settle_by_changes(
+    equations: Equations, count: int, changes: int, w_scale: float, z_scale: float
+) -> bool:
+    """Solve for what the points do, and change what violates its law most, until all laws are kept.
+
+    Returns whether that took no more than so many changes.
+    """
+    for _ in range(changes):
+        solve_equations(equations, count, 1.0)
+        _find_caused(equations, count)
+        if not _change_most_violated(equations, count, w_scale, z_scale):
+            return True
+    return False
+
+
+@inlined
+def _take_pivots(equations: Equations, count: int, closed: float, sticking: float) -> None:
+    """Let points do what the pivots found: closed where w_n is below ``closed``, sticking likewise."""
+    _find_caused(equations, count)
+    vectors, points = equations.vectors, equations.points
+    for i in range(count):
+        pressed, rubbed = vectors[UNKNOWN, 2 * i], vectors[UNKNOWN, 2 * i + 1]
+        edge = equations.measures[i, MU] * pressed
+        if pressed <= 0.0 and vectors[CAUSED, 2 * i] > closed:
+            points[i, STATUS] = OPEN
+        elif points[i, GIVEN] != STICKS:
+            points[i, STATUS] = points[i, GIVEN]
+        elif abs(vectors[CAUSED, 2 * i + 1]) <= sticking or abs(rubbed) < (1.0 - 1e-9) * edge:
+            points[i, STATUS] = STICKS
+        else:
+            points[i, STATUS] = SLIDES_ON if rubbed < 0.0 else SLIDES_BACK
+
+
+@inlined
+def solve_complementarity(equations: Equations, count: int, scale: float) -> bool:
+    """Find forces that keep all laws, and what each point does; return whether there are any.
+
+    A point's GIVEN is STICKS if it may stick or slide either way, else the edge of its cone. Accelerations or
+    speeds below ``scale`` are measured by that.
+    """
+    points, vectors = equations.points, equations.vectors
+    w_scale, z_scale, largest = 0.0, 0.0, 0.0
+    for i in range(2 * count):
+        vectors[UNKNOWN, i], vectors[CAUSED, i] = 0.0, vectors[FREE, i]
+        largest = max(largest, abs(vectors[FREE, i]))
+        # How fast a point slides that slides in any case is no measure for what rests.
+        if i % 2 == 0 or points[i // 2, GIVEN] == STICKS:
+            w_scale = max(w_scale, abs(vectors[FREE, i]))
+            z_scale = max(z_scale, abs(vectors[FREE, i]) / equations.a[i, i])
+    w_scale = max(w_scale, _ROUNDING * largest, scale)
+    z_scale = z_scale if z_scale > 0.0 else 1.0
+    for i in range(count):
+        free_n, free_t = vectors[FREE, 2 * i], vectors[FREE, 2 * i + 1]
+        points[i, STATUS] = _closed_status(equations, i, free_n, free_t) if free_n < 0.0 else points[i, GIVEN]
+    if largest == 0.0:
+        return True
+    if _settle_by_changes(equations, count, 4 + 2 * count, w_scale, z_scale):
+        return True
+    # Of what the pivots leave open or sliding, some may rest with the others: forces are of least norm then.
+    for share in (1e-9, -1.0):
+        if not find_by_pivots(equations, count):
+            return False
+        for i in range(2 * count):
+            z_scale = max(z_scale, abs(vectors[UNKNOWN, i]))
+        _take_pivots(equations, count, share * w_scale, share * w_scale)
+        if _settle_by_changes(equations, count, 2 + count, w_scale, z_scale):
+            return True
+    return False

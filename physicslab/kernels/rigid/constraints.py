@@ -1,0 +1,144 @@
+"""The equations of bodies that touch: how contact forces act on what the points measure."""
+
+from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels.forces.force_calls import accelerate
+from physicslab.kernels.rigid.complementarity import solve_equations
+from physicslab.kernels.rigid.equations import FREE, UNKNOWN, Equations
+from physicslab.kernels.rigid.features import (
+    BIAS_N,
+    BIAS_T,
+    GAP,
+    NA,
+    NB,
+    NX,
+    NY,
+    ONE,
+    OTHER,
+    TA,
+    TB,
+    VN,
+    VT,
+    Scene,
+    measure,
+)
+
+__all__ = ["apply", "assemble", "constrained_acceleration", "find_free_rates", "measure_all", "project"]
+
+
+@inlined
+def measure_all(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
+    """Measure the first ``count`` points in a state."""
+    for i in range(count):
+        measure(scene, equations.points, i, q, v, equations.measures)
+
+
+@inlined
+def _coupling(scene: Scene, equations: Equations, i: int, j: int) -> tuple[float, float, float, float]:
+    """Return what unit forces at point j cause at point i: n n, n t, t n, t t."""
+    points, measures = equations.points, equations.measures
+    nn, nt, tn, tt = 0.0, 0.0, 0.0, 0.0
+    cosine = measures[i, NX] * measures[j, NX] + measures[i, NY] * measures[j, NY]
+    sine = measures[i, NX] * measures[j, NY] - measures[i, NY] * measures[j, NX]  # of j's normal against i's
+    for side_i in range(2):
+        body = points[i, ONE + side_i]
+        mass, inertia = scene.inverse_mass[2 * body], scene.inverse_mass[2 * scene.rows + body]
+        if mass == 0.0 and inertia == 0.0:
+            continue
+        arm_ti, arm_ni = measures[i, TA + side_i], measures[i, NA + side_i]
+        for side_j in range(2):
+            if points[j, ONE + side_j] != body:
+                continue
+            sign = mass if side_i == side_j else -mass
+            turn = inertia if side_i == side_j else -inertia
+            arm_tj, arm_nj = measures[j, TA + side_j], measures[j, NA + side_j]
+            # The moment arm of a unit force along the normal is -t . r, along the tangent n . r.
+            nn += sign * cosine + turn * arm_ti * arm_tj
+            nt += -sign * sine - turn * arm_ti * arm_nj
+            tn += sign * sine - turn * arm_ni * arm_tj
+            tt += sign * cosine + turn * arm_ni * arm_nj
+    return nn, nt, tn, tt
+
+
+@inlined
+def assemble(scene: Scene, equations: Equations, count: int) -> None:
+    """Fill the matrix with what each unit force causes at each point."""
+    a = equations.a
+    for i in range(count):
+        for j in range(i + 1):
+            nn, nt, tn, tt = _coupling(scene, equations, i, j)
+            a[2 * i, 2 * j], a[2 * i, 2 * j + 1], a[2 * i + 1, 2 * j], a[2 * i + 1, 2 * j + 1] = (
+                nn,
+                nt,
+                tn,
+                tt,
+            )
+            a[2 * j, 2 * i], a[2 * j + 1, 2 * i], a[2 * j, 2 * i + 1], a[2 * j + 1, 2 * i + 1] = (
+                nn,
+                nt,
+                tn,
+                tt,
+            )
+
+
+@inlined
+def apply(scene: Scene, equations: Equations, count: int, target: Numbers) -> None:
+    """Add to velocities what the impulses found cause, or to accelerations what forces do."""
+    rows, measures, points = scene.rows, equations.measures, equations.points
+    for i in range(count):
+        along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
+        nx, ny = measures[i, NX], measures[i, NY]
+        fx, fy = along * nx - across * ny, along * ny + across * nx
+        for side in range(2):
+            body = points[i, ONE + side]
+            turn = across * measures[i, NA + side] - along * measures[i, TA + side]
+            sign = 1.0 if side == 1 else -1.0
+            target[2 * body] += sign * scene.inverse_mass[2 * body] * fx
+            target[2 * body + 1] += sign * scene.inverse_mass[2 * body + 1] * fy
+            target[2 * rows + body] += sign * scene.inverse_mass[2 * rows + body] * turn
+
+
+@inlined
+def find_free_rates(scene: Scene, equations: Equations, count: int, acceleration: Numbers) -> None:
+    """Find how the speeds of points would change without contact forces."""
+    rows, measures, points = scene.rows, equations.measures, equations.points
+    for i in range(count):
+        one, other = points[i, ONE], points[i, OTHER]
+        nx, ny = measures[i, NX], measures[i, NY]
+        dx = acceleration[2 * other] - acceleration[2 * one]
+        dy = acceleration[2 * other + 1] - acceleration[2 * one + 1]
+        turn_one, turn_other = acceleration[2 * rows + one], acceleration[2 * rows + other]
+        opening = nx * dx + ny * dy - turn_other * measures[i, TB] + turn_one * measures[i, TA]
+        sliding = nx * dy - ny * dx + turn_other * measures[i, NB] - turn_one * measures[i, NA]
+        equations.vectors[FREE, 2 * i] = opening + measures[i, BIAS_N]
+        equations.vectors[FREE, 2 * i + 1] = sliding + measures[i, BIAS_T]
+
+
+@inlined
+def constrained_acceleration(
+    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, acceleration: Numbers
+) -> None:
+    """Compute v' of a state in which each point goes on with what it does, and the forces of the points."""
+    accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
+    if count > 0:
+        measure_all(scene, equations, count, q, v)
+        assemble(scene, equations, count)
+        find_free_rates(scene, equations, count, acceleration)
+        solve_equations(equations, count, 1.0)
+        apply(scene, equations, count, acceleration)
+
+
+@fused
+def project(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
+    """Move bodies by the least that closes the gaps of closed points, and remove their speeds across.
+
+    What sticks loses its speed along the surface as well.
+    """
+    for turn in range(3):
+        measure_all(scene, equations, count, q, v)
+        assemble(scene, equations, count)
+        for i in range(count):
+            gap = equations.measures[i, GAP]
+            equations.vectors[FREE, 2 * i] = gap if turn < 2 else equations.measures[i, VN]
+            equations.vectors[FREE, 2 * i + 1] = 0.0 if turn < 2 else equations.measures[i, VT]
+        solve_equations(equations, count, 0.0)
+        apply(scene, equations, count, q if turn < 2 else v)

@@ -1,0 +1,184 @@
+"""Which points of a pair touch, or would next: at most two, however its shapes lie."""
+
+import math
+
+from physicslab.kernels import Numbers, Vectors, inlined
+from physicslab.kernels.rigid.features import (
+    BOX,
+    CENTRE,
+    CORNER,
+    FEATURE,
+    HEIGHT,
+    KIND,
+    ONE,
+    OTHER,
+    PAIR,
+    VERTEX,
+    WALL,
+    WIDTH,
+    Points,
+    Scene,
+    face_of,
+    vertex_of,
+)
+
+__all__ = ["find_points"]
+
+_TIE = 1e-9
+"""Share of the size within which two faces are equally far, so that speeds decide."""
+
+
+@inlined
+def _write(points: Points, n: int, pair: int, one: int, feature: int, other: int, vertex: int) -> int:
+    points[n, PAIR], points[n, ONE], points[n, OTHER] = pair, one, other
+    points[n, FEATURE], points[n, VERTEX] = feature, vertex
+    return n + 1
+
+
+@inlined
+def _seen_from(q: Numbers, rows: int, row: int, x: float, y: float) -> tuple[float, float]:
+    """Return a place of the world in a body's own directions, from its centre [m]."""
+    c, s = math.cos(q[2 * rows + row]), math.sin(q[2 * rows + row])
+    dx, dy = x - q[2 * row], y - q[2 * row + 1]
+    return c * dx + s * dy, c * dy - s * dx
+
+
+@inlined
+def _corner(q: Numbers, rows: int, outlines: Vectors, row: int, vertex: int) -> tuple[float, float]:
+    """Return where a corner of a box is [m]."""
+    ux, uy, _ = vertex_of(outlines, row, vertex)
+    c, s = math.cos(q[2 * rows + row]), math.sin(q[2 * rows + row])
+    return q[2 * row] + c * ux - s * uy, q[2 * row + 1] + s * ux + c * uy
+
+
+@inlined
+def _disc_to_box(
+    points: Points, n: int, pair: int, q: Numbers, rows: int, outlines: Vectors, box: int, disc: int
+) -> int:
+    """Find the face or the corner of a box that is nearest to a disc."""
+    x, y = _seen_from(q, rows, box, q[2 * disc], q[2 * disc + 1])
+    over_x, over_y = abs(x) - 0.5 * outlines[box, WIDTH], abs(y) - 0.5 * outlines[box, HEIGHT]
+    if over_x > 0.0 and over_y > 0.0:
+        corner = (0 if x > 0.0 else 1) if y > 0.0 else (3 if x > 0.0 else 2)
+        return _write(points, n, pair, box, CORNER + corner, disc, CENTRE)
+    face = (0 if x > 0.0 else 2) if over_x > over_y else (1 if y > 0.0 else 3)
+    return _write(points, n, pair, box, face, disc, CENTRE)
+
+
+@inlined
+def _box_to_wall(
+    points: Points, n: int, pair: int, q: Numbers, rows: int, outlines: Vectors, box: int, wall: int
+) -> int:
+    """Find the two corners of a box that are nearest to a wall."""
+    axis, sign = (0 if wall == 0 or wall == 2 else 1), (1.0 if wall < 2 else -1.0)
+    first, second, low, next_low = 0, 0, math.inf, math.inf
+    for vertex in range(4):
+        place = _corner(q, rows, outlines, box, vertex)
+        height = sign * (place[0] if axis == 0 else place[1])
+        if height < low:
+            second, next_low = first, low
+            first, low = vertex, height
+        elif height < next_low:
+            second, next_low = vertex, height
+    n = _write(points, n, pair, 0, WALL + wall, box, min(first, second))
+    return _write(points, n, pair, 0, WALL + wall, box, max(first, second))
+
+
+@inlined
+def _farthest_face(
+    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, other: int, tie: float
+) -> tuple[int, float, float]:
+    """Return the face of ONE from which all of OTHER is farthest, how far [m], and how fast that grows [m/s].
+
+    Of faces that are equally far, as where two corners meet, the one that recedes faster: only there could
+    they pass each other, and a box that slides over the joint of two tiles is not stopped by the side of
+    the next.
+    """
+    best, best_gap, best_rate = 0, -math.inf, 0.0
+    for face in range(4):
+        fx, fy, distance, _ = face_of(outlines, one, face)
+        gap, rate = math.inf, 0.0
+        for vertex in range(4):
+            cx, cy = _corner(q, rows, outlines, other, vertex)
+            x, y = _seen_from(q, rows, one, cx, cy)
+            found = fx * x + fy * y - distance
+            if found < gap:
+                gap = found
+                rate = _face_rate(q, v, rows, one, other, fx, fy, cx, cy)
+        if gap > best_gap + tie or (gap > best_gap - tie and rate > best_rate):
+            best, best_gap, best_rate = face, gap, rate
+    return best, best_gap, best_rate
+
+
+@inlined
+def _face_rate(
+    q: Numbers, v: Numbers, rows: int, one: int, other: int, fx: float, fy: float, x: float, y: float
+) -> float:
+    """Return how fast OTHER recedes from ONE at a place, along a normal of ONE [m/s]."""
+    c, s = math.cos(q[2 * rows + one]), math.sin(q[2 * rows + one])
+    nx, ny = c * fx - s * fy, s * fx + c * fy
+    vx = v[2 * other] - v[2 * rows + other] * (y - q[2 * other + 1])
+    vy = v[2 * other + 1] + v[2 * rows + other] * (x - q[2 * other])
+    vx -= v[2 * one] - v[2 * rows + one] * (y - q[2 * one + 1])
+    vy -= v[2 * one + 1] + v[2 * rows + one] * (x - q[2 * one])
+    rate: float = nx * vx + ny * vy
+    return rate
+
+
+@inlined
+def _facing(q: Numbers, rows: int, one: int, face: int, other: int) -> int:
+    """Return the face of OTHER that lies most against a face of ONE."""
+    turn = q[2 * rows + other] - q[2 * rows + one] - 0.5 * math.pi * face
+    opposite = math.floor((math.pi - turn) / (0.5 * math.pi) + 0.5)
+    face_of_other: int = opposite % 4
+    return face_of_other
+
+
+@inlined
+def _box_to_box(
+    points: Points, n: int, pair: int, q: Numbers, v: Numbers, rows: int, outlines: Vectors,
+    a: int, b: int, tie: float,
+) -> int:  # fmt: skip
+    """Find the ends of the stretch along which two boxes face each other."""
+    face_a, gap_a, rate_a = _farthest_face(q, v, rows, outlines, a, b, tie)
+    face_b, gap_b, rate_b = _farthest_face(q, v, rows, outlines, b, a, tie)
+    one, other, face = a, b, face_a
+    if gap_b > gap_a + tie or (gap_b > gap_a - tie and rate_b > rate_a + tie):
+        one, other, face = b, a, face_b
+    against = _facing(q, rows, one, face, other)
+    for k in range(2):
+        vertex = (against + 3) % 4 if k == 0 else against
+        if _within(q, rows, outlines, one, face, other, vertex) >= -tie:
+            n = _write(points, n, pair, one, face, other, vertex)
+    for k in range(2):
+        vertex = (face + 3) % 4 if k == 0 else face
+        if _within(q, rows, outlines, other, against, one, vertex) > tie:
+            n = _write(points, n, pair, other, against, one, vertex)
+    return n
+
+
+@inlined
+def _within(q: Numbers, rows: int, outlines: Vectors, one: int, face: int, other: int, vertex: int) -> float:
+    """Return how far a corner of OTHER is from the nearer end of a face of ONE, along it [m]."""
+    fx, fy, _, half = face_of(outlines, one, face)
+    cx, cy = _corner(q, rows, outlines, other, vertex)
+    x, y = _seen_from(q, rows, one, cx, cy)
+    return half - abs(fx * y - fy * x)
+
+
+@inlined
+def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points, n: int) -> int:
+    """Write the points where pair ``p`` touches, or would, from number ``n`` on; return the next."""
+    rows, outlines = scene.rows, scene.outlines
+    a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
+    if wall >= 0:
+        if outlines[b, KIND] == BOX:
+            return _box_to_wall(points, n, p, q, rows, outlines, b, wall)
+        return _write(points, n, p, 0, WALL + wall, b, CENTRE)
+    if outlines[a, KIND] == BOX and outlines[b, KIND] == BOX:
+        return _box_to_box(points, n, p, q, v, rows, outlines, a, b, _TIE * scene.coefficients[p, 2])
+    if outlines[a, KIND] == BOX:
+        return _disc_to_box(points, n, p, q, rows, outlines, a, b)
+    if outlines[b, KIND] == BOX:
+        return _disc_to_box(points, n, p, q, rows, outlines, b, a)
+    return _write(points, n, p, a, CENTRE, b, CENTRE)

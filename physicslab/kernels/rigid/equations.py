@@ -1,0 +1,48 @@
+"""The equations of points that touch: what unit forces cause, and what each point does."""
+
+from typing import NamedTuple
+
+from physicslab.kernels import Vectors, fused, inlined
+from physicslab.kernels.rigid.features import Points
+
+__all__ = [
+    "CAUSED", "FREE", "OPEN", "RIGHT", "SLIDES_BACK", "SLIDES_ON", "STICKS", "UNKNOWN", "VECTORS",
+    "Equations", "EquationsTuple", "edge_of", "named_equations",
+]  # fmt: skip
+
+OPEN, STICKS, SLIDES_ON, SLIDES_BACK = 0, 1, 2, 3
+"""What a point does. One that slides on has z_t = -mu z_n, one that slides back z_t = +mu z_n."""
+FREE, UNKNOWN, CAUSED, RIGHT, VECTORS = range(5)
+"""Rows of vectors: what happens without contact forces, these, what happens with them, a right side."""
+
+
+class Equations(NamedTuple):
+    """Points that touch, and room for their equations.
+
+    ``points`` and ``measures`` (n, ...); ``a`` (2 n, 2 n): what unit forces cause; ``vectors`` (VECTORS, 2
+    n); ``matrix`` (2 n, 2 n) and ``order`` (2, 4 n) for the solution; ``tableau`` (4 n, 8 n + 2) for
+    pivots.
+    """
+
+    points: Points
+    measures: Vectors
+    a: Vectors
+    vectors: Vectors
+    matrix: Vectors
+    order: Points
+    tableau: Vectors
+
+
+EquationsTuple = tuple[Points, Vectors, Vectors, Vectors, Vectors, Points, Vectors]
+
+
+@fused
+def named_equations(plain: EquationsTuple) -> Equations:
+    """Give names to a tuple."""
+    return Equations(plain[0], plain[1], plain[2], plain[3], plain[4], plain[5], plain[6])
+
+
+@inlined
+def edge_of(status: int, mu: float) -> float:
+    """Return z_t / z_n of a point that slides."""
+    return -mu if status == SLIDES_ON else (mu if status == SLIDES_BACK else 0.0)

@@ -1,0 +1,220 @@
+"""Motion of few rigid bodies that touch: smooth pieces between located events.
+
+While no contact opens, closes, begins to slide or stops, bodies are a constrained system: contact forces
+follow from the equations of motion, and any Runge-Kutta method integrates it. An event ends such a piece;
+it is located to rounding, and what happens then - an impact, another set of forces - begins the next
+(Pfeiffer & Glocker, Multibody Dynamics with Unilateral Contacts, 1996). Nothing is remembered between
+steps.
+"""
+
+import math
+
+from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.forces.force_calls import accelerate
+from physicslab.kernels.ode.dop853_tableau import LAST
+from physicslab.kernels.records import Impacts
+from physicslab.kernels.rigid.blows import resolve_blows
+from physicslab.kernels.rigid.constraints import project
+from physicslab.kernels.rigid.equations import (
+    OPEN,
+    SLIDES_BACK,
+    SLIDES_ON,
+    STICKS,
+    UNKNOWN,
+    Equations,
+    EquationsTuple,
+    named_equations,
+)
+from physicslab.kernels.rigid.features import (
+    BOX,
+    GIVEN,
+    KIND,
+    MU,
+    PAIR,
+    REACH,
+    STATUS,
+    VT,
+    Points,
+    Scene,
+    SceneTuple,
+    named_scene,
+)
+from physicslab.kernels.rigid.piece_end import HOLDS, PRESSES, cut_at_first_event, note_start
+from physicslab.kernels.rigid.pieces import StagesTuple, begin_piece, make_piece, named_stages
+from physicslab.kernels.rigid.touching import far_apart, find_touching, hold_closed, length_of, rest_limits
+
+__all__ = [
+    "DONE",
+    "NO_FORCES",
+    "OVERLAP",
+    "TOO_MANY",
+    "UNRESOLVED",
+    "advance_piece",
+    "begin_motion",
+    "collide",
+]
+
+DONE, OVERLAP, NO_FORCES, UNRESOLVED, TOO_MANY = 0, 1, 2, 3, 4
+"""Why the motion cannot go on: it can;
+bodies overlap; no contact forces keep all laws; an impact has no solution; more points touch than there is
+room for."""
+_SAME_MOMENT = 1e-9
+"""Share of its load within which a point that sticks reaches the limit of friction with another one."""
+_OVERLAP = 1e-3
+"""Share of a size beyond which bodies are not moved apart: soft contacts leave half of that."""
+_REPEATS = 8
+"""How often contacts are found again after impacts at one time."""
+_SHORTENINGS = 60
+"""How often a piece is shortened for its error."""
+_SHORTEST = 1e-9
+"""Share of the time that is left below which a piece is not shortened."""
+_MAX_TURN = 0.25
+"""Largest angle of a piece [rad]."""
+_STRIDE = 0.2
+"""Share of the smaller size that a pair may approach in a piece, beyond its gap."""
+
+
+@inlined
+def _longest_piece(scene: Scene, q: Numbers, v: Numbers, left: float) -> float:
+    """Return for how long no pair can pass through each other unseen, and no box turn far [s]."""
+    rows, longest = scene.rows, left
+    for p in range(len(scene.pairs)):
+        a, b = scene.pairs[p, 0], scene.pairs[p, 1]
+        speed = length_of(v[2 * b] - v[2 * a], v[2 * b + 1] - v[2 * a + 1])
+        speed += (
+            abs(v[2 * rows + b]) * scene.outlines[b, REACH] + abs(v[2 * rows + a]) * scene.outlines[a, REACH]
+        )
+        if speed > 0.0:
+            free = max(far_apart(scene, p, q), 0.0) + _STRIDE * scene.coefficients[p, 2]
+            longest = min(longest, free / speed)
+    for row in range(rows):
+        spin = abs(v[2 * rows + row])
+        if spin > 0.0 and scene.outlines[row, KIND] == BOX:
+            longest = min(longest, _MAX_TURN / spin)
+    return longest
+
+
+@inlined
+def _note_changes(
+    kind: int, index: int, equations: Equations, count: int, changed: Points, rest: float
+) -> None:
+    """Note what points do from now on, where the laws alone would leave that to rounding.
+
+    Several can reach the same limit in one moment, as the corners of a box do that begins to slide; and what
+    has just begun to slide goes on.
+    """
+    n, forces = 0, equations.vectors
+    limit = _SAME_MOMENT * abs(forces[UNKNOWN, 2 * index]) if kind <= HOLDS else 0.0
+    for i in range(count if kind <= HOLDS else 0):
+        pressing, rubbing = forces[UNKNOWN, 2 * i], forces[UNKNOWN, 2 * i + 1]
+        left = equations.measures[i, MU] * pressing - abs(rubbing)
+        status = -1
+        if kind == PRESSES and i == index:
+            status = OPEN
+        elif kind == HOLDS and (i == index or (equations.points[i, STATUS] == STICKS and left <= limit)):
+            status = SLIDES_ON if rubbing < 0.0 else SLIDES_BACK
+        elif equations.points[i, STATUS] > STICKS and abs(equations.measures[i, VT]) <= rest:
+            status = equations.points[i, STATUS]
+        if status >= 0:
+            for column in range(GIVEN):
+                changed[n, column] = equations.points[i, column]
+            changed[n, STATUS] = status
+            n += 1
+    if n < len(changed):
+        changed[n, PAIR] = -1
+
+
+@inlined
+def _at_rest(scene: Scene, acceleration: Numbers, v: Numbers, rest: float, least: float) -> bool:
+    """Whether nothing moves, and nothing accelerates."""
+    still = True
+    for i in range(3 * scene.rows):
+        free = scene.inverse_mass[i] > 0.0
+        if abs(v[i]) > (1e-3 * rest if free else 0.0) or (free and abs(acceleration[i]) > 10.0 * least):
+            still = False
+    return still
+
+
+@kernel
+def collide(
+    scene: SceneTuple, equations: EquationsTuple, room: EquationsTuple, acceleration: Numbers,
+    q: Numbers, v: Numbers, entities: Rows, log: Impacts, logged: int, time: float,
+) -> tuple[int, int, int, bool]:  # fmt: skip
+    """Find which points touch, and resolve the impacts of those that approach.
+
+    Returns why the motion cannot go on (DONE if it can), how many points touch, how many impacts there
+    were, and whether restitutions were lowered to keep the energy.
+    """
+    of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
+    accelerate(q, v, acceleration, of.inverse_mass, of.damping, of.calls)
+    rest, _ = rest_limits(of, acceleration, v)
+    impacts, count, lowered = 0, 0, False
+    for _ in range(_REPEATS):  # an impact can change which faces two boxes turn to each other
+        count, deepest = find_touching(of, points, scratch, q, v)
+        if count > len(points.points):
+            return TOO_MANY, 0, impacts, lowered
+        if deepest > _OVERLAP:
+            return OVERLAP, 0, impacts, lowered
+        new, solved, kept = resolve_blows(
+            of, points, count, scratch, q, v, rest, entities, log, logged + impacts, time
+        )
+        impacts += new
+        lowered = lowered or kept
+        if not solved:
+            return UNRESOLVED, 0, impacts, lowered
+        if new == 0:
+            break
+    return DONE, count, impacts, lowered
+
+
+@kernel
+def begin_motion(
+    scene: SceneTuple, equations: EquationsTuple, count: int, stages: StagesTuple, changed: Points,
+    q: Numbers, v: Numbers, steady: bool,
+) -> tuple[int, int, float, bool]:  # fmt: skip
+    """Find what each of ``count`` points that touch does, and with what force; begin a piece of motion.
+
+    ``changed`` has the points that ended the piece before; ``steady`` whether forces depend on the state of
+    motion alone. Returns why the motion cannot go on (DONE if it can), the number of closed points, the
+    speed that counts as none [m/s], and whether nothing moves or accelerates.
+    """
+    of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
+    accelerate(q, v, at.acceleration, of.inverse_mass, of.damping, of.calls)
+    rest, least = rest_limits(of, at.acceleration, v)
+    closed, solved = hold_closed(of, points, count, changed, q, v, at.acceleration, rest, least)
+    if not solved:
+        return NO_FORCES, 0, rest, False
+    if closed > 0:
+        project(of, points, closed, q, v)
+    begin_piece(of, points, closed, q, v, at)
+    still = steady and _at_rest(of, at.acceleration, v, rest, least)
+    if still:
+        for i in range(3 * of.rows):
+            v[i] = 0.0
+    return DONE, closed, rest, still
+
+
+@kernel
+def advance_piece(
+    scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, stages: StagesTuple,
+    start: Vectors, changed: Points, q: Numbers, v: Numbers, left: float, tolerance: float, rest: float,
+) -> tuple[float, int]:  # fmt: skip
+    """Advance from where :func:`begin_motion` left it to the next event, for ``left`` seconds at most.
+
+    Returns the time that passed [s], and how many force evaluations the piece took, its beginning included.
+    """
+    of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
+    scratch = named_equations(room)
+    note_start(of, points, count, scratch, q, v, start)
+    h, pieces = _longest_piece(of, q, v, left), 0
+    for _ in range(_SHORTENINGS):
+        error = make_piece(of, points, count, q, v, h, tolerance, at)
+        pieces += 1
+        if error <= 1.0 or h <= _SHORTEST * left:
+            break
+        h *= max(0.1, 0.9 * math.pow(error, -0.125))
+    h, kind, index, more = cut_at_first_event(of, points, count, scratch, start, at, q, v, h, tolerance, rest)
+    _note_changes(kind, index, points, count if kind >= 0 else 0, changed, rest)
+    for i in range(len(q)):
+        q[i], v[i] = at.q[i], at.v[i]
+    return h, 4 + LAST * (pieces + more)

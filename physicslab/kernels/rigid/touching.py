@@ -1,0 +1,195 @@
+"""Which points touch, and what each of them does: opens, sticks or slides."""
+
+import math
+
+from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels.forces.force_calls import accelerate
+from physicslab.kernels.rigid.complementarity import solve_complementarity, solve_equations
+from physicslab.kernels.rigid.constraints import apply, assemble, find_free_rates, measure_all
+from physicslab.kernels.rigid.detect import find_points
+from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
+from physicslab.kernels.rigid.features import (
+    GAP,
+    GIVEN,
+    MEASURES,
+    MU,
+    PAIR,
+    POINT_FIELDS,
+    REACH,
+    RESTITUTION,
+    STATUS,
+    VN,
+    VT,
+    Points,
+    Scene,
+    measure,
+)
+
+__all__ = ["far_apart", "find_touching", "hold_closed", "length_of", "open_gap", "rest_limits"]
+
+_TOUCH = 1e-10
+"""Share of the smaller size within which a gap is closed."""
+_REST = 1e-6
+"""Speeds below this, times the speed of a fall over the smallest size, are none."""
+
+
+@inlined
+def length_of(x: float, y: float) -> float:
+    """Return the length of a vector, rounded alike compiled and as Python, which hypot is not."""
+    return math.sqrt(x * x + y * y)
+
+
+@inlined
+def far_apart(scene: Scene, p: int, q: Numbers) -> float:
+    """Return a distance that the shapes of a pair have at least [m]; negative where they may touch."""
+    a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
+    reach = scene.outlines[b, REACH]
+    if wall >= 0:
+        place = q[2 * b] if wall == 0 or wall == 2 else q[2 * b + 1]
+        to_wall: float = (place - scene.walls[wall] if wall < 2 else scene.walls[wall] - place) - reach
+        return to_wall
+    dx, dy = q[2 * b] - q[2 * a], q[2 * b + 1] - q[2 * a + 1]
+    apart: float = math.sqrt(dx * dx + dy * dy) - reach - scene.outlines[a, REACH]
+    return apart
+
+
+@inlined
+def _is_same(points: Points, i: int, others: Points, k: int) -> bool:
+    """Whether two points are of one pair and the same features."""
+    same = True
+    for column in range(GIVEN):
+        same = same and points[i, column] == others[k, column]
+    return same
+
+
+@inlined
+def open_gap(
+    scene: Scene, equations: Equations, count: int, scratch: Equations, p: int, q: Numbers, v: Numbers
+) -> float:
+    """Return the smallest gap of the points of a pair that are not closed [m], at most the size."""
+    size: float = scene.coefficients[p, 2]
+    if far_apart(scene, p, q) > size:
+        return size
+    n = find_points(scene, p, q, v, scratch.points, 0)
+    gap: float = size
+    for k in range(n):
+        closed = False
+        for i in range(count):
+            closed = closed or _is_same(equations.points, i, scratch.points, k)
+        if not closed:
+            measure(scene, scratch.points, k, q, v, scratch.measures)
+            gap = min(gap, scratch.measures[k, GAP])
+    return gap
+
+
+@inlined
+def find_touching(
+    scene: Scene, equations: Equations, scratch: Equations, q: Numbers, v: Numbers
+) -> tuple[int, float]:
+    """List the points that touch; return how many there are, and the deepest overlap as a share of a size.
+
+    Only as many as there is room for are listed.
+    """
+    count, deepest = 0, 0.0
+    for p in range(len(scene.pairs)):
+        size = scene.coefficients[p, 2]
+        if far_apart(scene, p, q) > _TOUCH * size:
+            continue
+        n = find_points(scene, p, q, v, scratch.points, 0)
+        for k in range(n):
+            measure(scene, scratch.points, k, q, v, scratch.measures)
+            gap = scratch.measures[k, GAP]
+            deepest = max(deepest, -gap / size)
+            if gap > _TOUCH * size:
+                continue
+            if count < len(equations.points):
+                for column in range(GIVEN):
+                    equations.points[count, column] = scratch.points[k, column]
+                equations.measures[count, MU] = scene.coefficients[p, 0]
+                equations.measures[count, RESTITUTION] = scene.coefficients[p, 1]
+            count += 1
+    return count, deepest
+
+
+@inlined
+def rest_limits(scene: Scene, acceleration: Numbers, v: Numbers) -> tuple[float, float]:
+    """Return the speed [m/s] and the acceleration [m/s^2] below which there is none."""
+    strongest, fastest, smallest = 0.0, 0.0, math.inf
+    for row in range(scene.rows):
+        if scene.inverse_mass[2 * row] > 0.0:
+            strongest = max(strongest, length_of(acceleration[2 * row], acceleration[2 * row + 1]))
+        turning = abs(v[2 * scene.rows + row]) * scene.outlines[row, REACH]
+        fastest = max(fastest, length_of(v[2 * row], v[2 * row + 1]) + turning)
+    for p in range(len(scene.pairs)):
+        smallest = min(smallest, scene.coefficients[p, 2])
+    if smallest == math.inf:
+        return 0.0, 0.0
+    strongest += fastest * fastest / smallest  # what moves round a corner, or spins, accelerates towards it
+    return _REST * math.sqrt(strongest * smallest), 1e-12 * strongest
+
+
+@inlined
+def _keep(equations: Equations, i: int, n: int) -> int:
+    """Move point i to place n; return the next place."""
+    for column in range(POINT_FIELDS):
+        equations.points[n, column] = equations.points[i, column]
+    for column in range(MEASURES):
+        equations.measures[n, column] = equations.measures[i, column]
+    return n + 1
+
+
+@inlined
+def _changed_status(equations: Equations, i: int, changed: Points) -> int:
+    """Return what point i does since the event that ended the piece before, -1 if it is not of it."""
+    status, noted = -1, True
+    for k in range(len(changed)):
+        noted = noted and changed[k, PAIR] >= 0
+        if noted and _is_same(equations.points, i, changed, k):
+            status = changed[k, STATUS]
+    return status
+
+
+@fused
+def hold_closed(
+    scene: Scene, equations: Equations, count: int, changed: Points,
+    q: Numbers, v: Numbers, acceleration: Numbers, rest: float, least: float,
+) -> tuple[int, bool]:  # fmt: skip
+    """Keep the points that stay closed and find what they do; return how many, and whether all laws are kept.
+
+    ``changed`` has the points that ended the piece before and what they do from now on, where the laws alone
+    would leave that to rounding.
+    """
+    n = 0
+    measure_all(scene, equations, count, q, v)
+    for i in range(count):
+        if equations.measures[i, VN] <= rest and _changed_status(equations, i, changed) != OPEN:
+            n = _keep(equations, i, n)
+    count, n = n, 0
+    if count == 0:
+        return 0, True
+    assemble(scene, equations, count)
+    # Speeds below the limit are none: they would make equations of points that rest contradict each other.
+    for i in range(count):
+        equations.points[i, STATUS] = SLIDES_ON
+        equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = equations.measures[i, VN], 0.0
+    solve_equations(equations, count, 0.0)
+    apply(scene, equations, count, v)
+    measure_all(scene, equations, count, q, v)
+    accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
+    find_free_rates(scene, equations, count, acceleration)
+    for i in range(count):
+        sliding, given = equations.measures[i, VT], STICKS
+        changed_to = _changed_status(equations, i, changed)
+        if equations.measures[i, MU] == 0.0 or sliding > rest:
+            given = SLIDES_ON
+        elif sliding < -rest:
+            given = SLIDES_BACK
+        elif changed_to > STICKS:
+            given = changed_to
+        equations.points[i, GIVEN] = given
+    solved = solve_complementarity(equations, count, least)
+    for i in range(count):
+        pressing = equations.vectors[UNKNOWN, 2 * i] * equations.a[2 * i, 2 * i]
+        if equations.points[i, STATUS] != OPEN and pressing > least:
+            n = _keep(equations, i, n)
+    return n, solved
