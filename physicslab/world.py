@@ -117,12 +117,16 @@ class World(State):
     def _advance(self, h: float, steps: int) -> Advance:
         """Advance with the best stepper; choose again where its numbers do not apply any more."""
         try:
-            return self._best(h).advance(self, h, steps)
+            made = self._best(h).advance(self, h, steps)
         except NoClosedForm:  # a body was given another velocity, or another spring
             self._choose()
+            made = self._best(h).advance(self, h, steps)
         except NotSmooth:
             self._choose(plan_for_jumps(self, self.schedule, self.plan))
-        return self._best(h).advance(self, h, steps)
+            made = self._best(h).advance(self, h, steps)
+        while not made.steps:  # it cannot make this step, and is not ready for it any more
+            made = self._best(h).advance(self, h, steps)
+        return made
 
     def _best(self, h: float) -> Stepper:
         """Return the best stepper for the coming step, with its kernels compiled."""

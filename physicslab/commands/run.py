@@ -19,7 +19,7 @@ from physicslab.desktop.rescue import save_last_good
 from physicslab.diagnostics.run_report import find_not_finite, run_report, run_summary
 from physicslab.diagnostics.trajectory import TrajectoryWriter
 from physicslab.ecs.component import InvalidValue
-from physicslab.ecs.config import INTEGRATORS
+from physicslab.ecs.config import CONTACTS, INTEGRATORS
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
@@ -46,6 +46,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--dt", metavar="S", type=positive_duration, help="length of a step, in place of the scene's")
     add("--substeps", metavar="N", type=positive_count, help="parts of a step, in place of the scene's")
     add("--integrator", metavar="NAME", help=f"one of {', '.join(INTEGRATORS)}")
+    add("--contacts", metavar="NAME", help=f"one of {', '.join(CONTACTS)}")
     budget = "stop after so many seconds of wall clock, compiling left out: exit 1, with what was reached"
     add("--at-most", metavar="SECONDS", type=positive_duration, help=budget)
     add("--json", metavar="FILE", help="write energies, momenta, costs and the final state (- for stdout)")
@@ -122,7 +123,7 @@ def _outputs(arguments: Namespace) -> dict[str, Output]:
 
 def _configure(world: World, arguments: Namespace) -> None:
     """Configure the world by the command line, and prepare it, so that only the run itself is timed."""
-    changes = {name: getattr(arguments, name) for name in ("dt", "substeps", "integrator")}
+    changes = {name: getattr(arguments, name) for name in ("dt", "substeps", "integrator", "contacts")}
     changes = {name: value for name, value in changes.items() if value is not None}
     scene = shown(arguments.scene)
     try:
@@ -134,6 +135,8 @@ def _configure(world: World, arguments: Namespace) -> None:
         raise CommandError(f"{scene}: {error}") from error
     if world.plan.refused and arguments.integrator is not None:
         raise CommandError(f"--integrator {arguments.integrator}: {world.plan.refused}")
+    if arguments.contacts == "rigid" and world.plan.contacts != "rigid":
+        raise CommandError(f"--contacts rigid: {world.plan.contact_reason}")
     if arguments.steps is not None and not math.isfinite(arguments.steps * world.simulation.dt):
         raise CommandError(
             f"--steps {arguments.steps}: must take a finite time at {world.simulation.dt:g} s each"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -31,6 +32,9 @@ class ContactPoint:
         Speed at which the surfaces met in an impact of the last step [m/s]; 0 if there was none.
     impact_normal, impact_tangent : float
         Impulses of the impacts of the last step [N s], on B.
+    normal_force, tangent_force : float
+        The forces that these impulses come to [N], on B; impacts left out. Those of rigid contacts keep
+        the laws to rounding.
     """
 
     position: Vector2
@@ -40,6 +44,8 @@ class ContactPoint:
     approach_speed: float
     impact_normal: float
     impact_tangent: float
+    normal_force: float
+    tangent_force: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,22 +115,26 @@ def _reported(contacts: Contacts) -> list[int]:
 def _describe(state: State, p: int) -> Contact:
     manifold = state.contacts.manifolds[p]
     centre = Vector2(*state.table(Transform)["position"][manifold["b"]].tolist())
+    rate = 1.0 / state.contacts.impulse_dt if state.contacts.impulse_dt > 0.0 else 0.0
     points = tuple(
-        ContactPoint(
-            centre + Vector2(float(point["arm_bx"]), float(point["arm_by"])),
-            *(
-                float(point[name])
-                for name in (
-                    "separation", "normal_impulse", "tangent_impulse",
-                    "approach_speed", "impact_normal", "impact_tangent",
-                )
-            ),
-        )
+        _describe_point(point, centre, rate)
         for k, point in enumerate(state.contacts.points[2 * p : 2 * p + 2])
         if k < manifold["count"] or point["impact_normal"] > 0.0
-    )  # fmt: skip
+    )
     return Contact(
         int(manifold["entity_a"]), int(manifold["entity_b"]),
         Vector2(float(manifold["normal_x"]), float(manifold["normal_y"])),
         float(manifold["restitution"]), float(manifold["friction"]), points,
+    )  # fmt: skip
+
+
+def _describe_point(point: Any, centre: Vector2, rate: float) -> ContactPoint:
+    """Return a point, of which impulses times ``rate`` [1/s] are forces."""
+    names = (
+        "separation", "normal_impulse", "tangent_impulse", "approach_speed", "impact_normal", "impact_tangent"
+    )  # fmt: skip
+    separation, normal, tangent, approach, impact_normal, impact_tangent = (float(point[n]) for n in names)
+    return ContactPoint(
+        centre + Vector2(float(point["arm_bx"]), float(point["arm_by"])),
+        separation, normal, tangent, approach, impact_normal, impact_tangent, rate * normal, rate * tangent,
     )  # fmt: skip

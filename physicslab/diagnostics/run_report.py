@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from physicslab.components import Transform, Velocity
+from physicslab.contacts.report import list_contacts
 from physicslab.diagnostics.energy import Drift, Energy, measure_momentum, summation
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
 from physicslab.ecs.text import unique_name
@@ -103,6 +104,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "candidate_pairs": int(world.contacts.candidate_pairs),
         "contacts": int(world.contacts.count),
         "asleep": world.sleep.count,
+        "contact_forces": _contact_forces(world),
         "collisions": int(world.collisions),
         "max_penetration": record.max_penetration,
         "divided": record.divided,
@@ -123,6 +125,25 @@ def _energy(now: Energy, drift: Drift) -> dict[str, Any]:
         "max_relative_change": drift.relative,
         "changed_by": list(drift.causes),
     }
+
+
+def _contact_forces(world: World) -> list[dict[str, Any]]:
+    """Return the forces of the contacts that press: on B, along the normal from A and across [N]."""
+    names, forces = body_names(world), []
+    for contact in list_contacts(world):
+        normal = sum(point.normal_force for point in contact.points)
+        if normal > 0.0:
+            tangent = sum(point.tangent_force for point in contact.points)
+            forces.append(
+                {
+                    "a": names.get(contact.a, "bounds"),
+                    "b": names.get(contact.b, "bounds"),
+                    "normal": list(contact.normal),
+                    "normal_force": normal,
+                    "tangent_force": tangent,
+                }
+            )
+    return forces
 
 
 def _drift_words(energy: Mapping[str, Any]) -> str:

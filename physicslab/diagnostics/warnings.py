@@ -18,6 +18,7 @@ from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
 from physicslab.diagnostics.forces import fastest_force
 from physicslab.diagnostics.warning_records import ModelWarning, WorstWarnings
 from physicslab.state.packed import spring_ends
+from physicslab.stepping.rigid import Rigid
 from physicslab.world import World
 
 __all__ = [
@@ -60,7 +61,11 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
     Nothing is changed; the figures are those of the last step.
     """
     found = [*_refusals(world), *_division(world), *_rates(world), *_order(world), *_distance(world)]
-    if world.plan.collisions == "step":
+    rigid = next((stepper for stepper in world.steppers.usable if isinstance(stepper, Rigid)), None)
+    if rigid is not None and rigid.left_to_soft:
+        what = f"steps were left to soft contacts, at last because {rigid.why_soft}"
+        found.append(ModelWarning(None, what, float(rigid.left_to_soft), "", 0.0, ""))
+    if world.plan.collisions == "step" and (rigid is None or rigid.left_to_soft):
         graph = contact_graph(world)
         found += [
             *_overlap(world, graph), *_mass_ratios(world, graph), *_speeds(world, graph),
@@ -74,7 +79,10 @@ def _refusals(world: World) -> Iterator[ModelWarning]:
     method = world.plan
     if method.refused:
         yield ModelWarning(None, method.refused, None, "", None, 'simulation.integrator = "auto"')
-    if world.simulation.collisions == "exact" and method.collisions == "step":
+    if world.simulation.contacts == "rigid" and method.contacts == "soft" and method.collisions != "none":
+        yield ModelWarning(None, method.contact_reason, None, "", None, 'simulation.contacts = "soft"')
+    asked_for_exact = world.simulation.collisions == "exact" and method.contacts == "soft"
+    if asked_for_exact and method.collisions == "step":
         yield ModelWarning(None, method.collision_reason, None, "", None, 'simulation.collisions = "auto"')
 
 

@@ -25,6 +25,7 @@ INTEGRATORS = (
     "implicit_midpoint",
 )
 COLLISIONS = ("auto", "step", "exact")
+CONTACTS = ("auto", "rigid", "soft")
 MIN_TIME = 1e-100
 """The shortest step [s]: the parts of shorter ones, and their squares, would soon underflow to zero."""
 
@@ -129,6 +130,9 @@ class SimulationConfig:
         Whether bodies at rest may stop being simulated.
     collisions : str
         ``"step"`` (found and resolved within steps), ``"exact"`` (contact times located) or ``"auto"``.
+    contacts : str
+        ``"rigid"`` (laws solved to rounding, events located; few bodies), ``"soft"`` (stiff springs, any
+        number) or ``"auto"``, which is soft as yet.
     tolerance : float
         Error a step that an adaptive method accepts, as a share of the largest coordinate and speed. Where
         stiff springs are damped, ``auto`` takes 1e-13 in place of the default.
@@ -140,6 +144,7 @@ class SimulationConfig:
     integrator: str = "auto"
     sleeping: bool = True
     collisions: str = "auto"
+    contacts: str = "auto"
     tolerance: float = 1e-17
 
     section: ClassVar[str] = "simulation"
@@ -150,6 +155,7 @@ class SimulationConfig:
         Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),
         Field("sleeping", "flag", meaning="whether bodies at rest may stop being simulated"),
         Field("collisions", "choice", choices=COLLISIONS, meaning="how contacts are found"),
+        Field("contacts", "choice", choices=CONTACTS, meaning="how bodies that touch are held apart"),
         Field("tolerance", "number", minimum=1e-20, maximum=1e-2, meaning="error a step of adaptive methods"),
     )
 

@@ -63,14 +63,25 @@ class OdeSystem:
         What acts.
     part : bool array (rows,), optional
         The rows that take part; all by default.
+    every_row : bool, optional
+        Whether every row has its coordinates and its angle, be it fixed or not.
     """
 
     def __init__(
-        self, state: State, forces: Sequence[ForceSystem], part: NDArray[np.bool_] | None = None
+        self,
+        state: State,
+        forces: Sequence[ForceSystem],
+        part: NDArray[np.bool_] | None = None,
+        *,
+        every_row: bool = False,
     ) -> None:
         self.forces = tuple(forces)
         self.interpreted = any(not type(system).packs() for system in self.forces)
-        self.layout = StateLayout(state, part, all_turn=self.interpreted)
+        self.layout = (
+            StateLayout.of_rows(len(state.entity_index))
+            if every_row
+            else StateLayout(state, part, all_turn=self.interpreted)
+        )
         entities, self._carries = state.entity_index.entities, part is None
         self._keys = coordinate_keys(entities[self.layout.moving], entities[self.layout.turning])
         self._low: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None

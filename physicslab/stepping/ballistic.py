@@ -16,8 +16,10 @@ from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
 
 __all__ = [
+    "CONTACT_STEP",
     "MAX_BODIES",
     "MAX_PAIRS",
+    "count_pairs",
     "pairs_that_may_meet",
     "turning_boxes",
     "why_not_exact",
@@ -28,7 +30,8 @@ MAX_BODIES = 32
 """Number of moving bodies above which ``auto`` prefers the contact step."""
 MAX_PAIRS = 20_000
 """Largest number of pairs: every impact searches all of them, which would take too long for more."""
-_CONTACT_STEP = (IntegrateSystem, BroadPhaseSystem, ContactSystem, ResolveSystem)
+CONTACT_STEP = (IntegrateSystem, BroadPhaseSystem, ContactSystem, ResolveSystem)
+"""The systems of the contact step: what rests, or cannot be solved otherwise, is left to them."""
 _OBSERVING = OF_FRAMES | AROUND | {Stage.IMPACT}
 """The stages at which a system may observe without changing a ballistic path."""
 _CONTACT_DISTANCE = 0.01
@@ -55,14 +58,14 @@ def why_not_exact(state: State, schedule: Schedule) -> str | None:
     if len(rows):
         label = state.label_of_row(int(rows[0]))
         return f"{label} is a box that may turn (Mass.fixed_rotation would keep it as it is)"
-    if _count_pairs(state) > MAX_PAIRS:
+    if count_pairs(state) > MAX_PAIRS:
         return f"more than {MAX_PAIRS} pairs may meet"
     return None
 
 
 def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
     """Return what acts within a step that is neither uniform gravity nor the contact step, or ``None``."""
-    for needed in _CONTACT_STEP:
+    for needed in CONTACT_STEP:
         if schedule.find(needed) is None:
             return f"{needed.__name__} is not among the systems, which moves what rests"
     for system in schedule.running:
@@ -89,7 +92,7 @@ def turning_boxes(state: State) -> NDArray[np.int64]:
     return turning
 
 
-def _count_pairs(state: State) -> int:
+def count_pairs(state: State) -> int:
     """Return how many pairs may meet, without making a list of what may be thousands of millions."""
     shaped = state.batch(Shape, Transform).rows
     count, movable = len(shaped), int(np.count_nonzero(state.bodies.inverse_mass[shaped] > 0.0))

@@ -18,6 +18,7 @@ from physicslab.integrators.rk4 import RK4
 from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import why_not_exact, why_not_worthwhile
+from physicslab.stepping.contact_model import choose_contacts
 from physicslab.stepping.split_forces import sees_velocity_in_python, sub_integrated_rows
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.integrate import IntegrateSystem
@@ -66,6 +67,10 @@ class StepPlan:
         within steps) or ``"none"`` (nothing can touch).
     collision_reason : str
         The reason, for people.
+    contacts : str
+        ``"rigid"`` or ``"soft"``.
+    contact_reason : str
+        The reason, for people.
     obstacle : str
         What acts within a step besides forces, if anything does.
     stages : Integrator
@@ -83,6 +88,8 @@ class StepPlan:
     refused: str = ""
     collisions: str = "none"
     collision_reason: str = "nothing can touch"
+    contacts: str = "soft"
+    contact_reason: str = "nothing can touch"
     obstacle: str = ""
     stages: Integrator = LEAPFROG
     split_forces: Integrator | None = None
@@ -120,6 +127,20 @@ def choose_plan(state: State, schedule: Schedule, collisions: str | None = None)
     """
     if not schedule.runs(Stage.CONTACT):
         return _mover(state, schedule)
+    contacts, reason = choose_contacts(state, schedule)
+    if contacts == "rigid":
+        # The rest of the plan is for steps that are left to soft contacts.
+        plan = replace(
+            _mover(state, schedule), integrator=DOP853, reason="contacts are rigid: the step follows events",
+            collisions="step", collision_reason="rigid contacts locate their own events",
+        )  # fmt: skip
+    else:
+        plan = _plan_of_collisions(state, schedule, collisions)
+    return replace(plan, contacts=contacts, contact_reason=reason)
+
+
+def _plan_of_collisions(state: State, schedule: Schedule, collisions: str | None) -> StepPlan:
+    """Return the method where bodies can touch, and how their collisions are found."""
     wish = collisions or state.simulation.collisions
     if wish == "step":
         return replace(_mover(state, schedule), collisions="step", collision_reason="asked for")

@@ -11,12 +11,13 @@ from physicslab.stepping.event_driven import EventDriven
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.fused_contact import FusedContact
 from physicslab.stepping.plan import StepPlan, choose_plan, resumed_plan
+from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.stepper import Stepper
 from physicslab.systems.schedule import LeftOut, Schedule
 
 __all__ = ["STEPPERS", "Steppers", "choose", "remake", "resume", "select_steppers"]
 
-STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, FusedContact, Contact)
+STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, Rigid, FusedContact, Contact)
 """All of them, the best first. The last can advance any world."""
 
 

@@ -1,0 +1,97 @@
+"""What rigid contacts leave to be read: records of pairs, with points, impulses and impacts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Transform
+from physicslab.contacts.near_pairs import list_all
+from physicslab.kernels.rigid.equations import UNKNOWN
+from physicslab.kernels.rigid.features import GAP, MU, NX, NY, ONE, PAIR, PX, PY, RESTITUTION
+from physicslab.state.state import State
+
+__all__ = ["RigidRecords"]
+
+_IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
+
+
+class RigidRecords:
+    """Writes the points that are closed, and the impacts of a step, into the records of their pairs.
+
+    Parameters
+    ----------
+    pairs : int64 array (n, 3)
+        The pairs that may meet.
+    """
+
+    def __init__(self, pairs: NDArray[np.int64]) -> None:
+        self._pairs = pairs
+
+    def write(self, state: State, equations: tuple[Any, ...], count: int, impacts: int, h: float) -> None:
+        """Write ``count`` closed points and the last ``impacts`` impacts, of a step of ``h`` seconds."""
+        contacts = state.contacts
+        contacts.wide.reset(len(state.entity_index))
+        list_all(state, self._pairs, len(self._pairs))
+        records, points = contacts.manifolds[: contacts.recorded], contacts.points[: 2 * contacts.recorded]
+        records["count"] = records["impact_count"] = records["found"] = 0
+        for name in (*_IMPACT_FIELDS, "normal_impulse", "tangent_impulse"):
+            points[name] = 0.0
+        contacts.impulse_dt = h / state.simulation.substeps
+        position = state.table(Transform)["position"]
+        of, measures, forces = equations[0], equations[1], equations[3][UNKNOWN]
+        touching: list[int] = []
+        for i in range(count):
+            p = int(of[i, PAIR])
+            record = records[p]
+            a, b = record["a"], record["b"]
+            k = int(record["count"])
+            if k == 2:
+                continue
+            if k == 0:
+                touching.append(p)
+            sign = 1.0 if of[i, ONE] == a else -1.0
+            record["count"] = k + 1
+            record["normal_x"], record["normal_y"] = (
+                0.0 + sign * measures[i, NX],
+                0.0 + sign * measures[i, NY],
+            )
+            record["friction"], record["restitution"] = measures[i, MU], measures[i, RESTITUTION]
+            point = points[2 * p + k]
+            place = measures[i, PX : PY + 1]
+            point["arm_ax"], point["arm_ay"] = place - position[a]
+            point["arm_bx"], point["arm_by"] = place - position[b]
+            point["separation"] = measures[i, GAP]
+            point["normal_impulse"] = forces[2 * i] * contacts.impulse_dt
+            point["tangent_impulse"] = forces[2 * i + 1] * contacts.impulse_dt
+        self._write_impacts(state, impacts)
+        contacts.active = len(touching)
+        contacts.touching[: len(touching)] = touching
+        contacts.stale = True  # for the contact step, should it have to go on
+
+    def _write_impacts(self, state: State, impacts: int) -> None:
+        """Write the impacts of the last step into their pairs' records, at their first point."""
+        contacts = state.contacts
+        if not impacts:
+            return
+        records = contacts.manifolds[: contacts.recorded]
+        keys = zip(
+            records["entity_a"].tolist(), records["entity_b"].tolist(), records["wall"].tolist(), strict=True
+        )
+        number = {key: p for p, key in enumerate(keys)}
+        position = state.table(Transform)["position"]
+        for n in range(max(0, contacts.logged - min(impacts, len(contacts.log))), contacts.logged):
+            impact = contacts.log[n % len(contacts.log)]
+            p = number[int(impact["entity_a"]), int(impact["entity_b"]), int(impact["wall"])]
+            record, point = records[p], contacts.points[2 * p]
+            record["impact_count"] += 1
+            if not record["count"]:
+                record["normal_x"], record["normal_y"] = impact["normal_x"], impact["normal_y"]
+                place = np.array((impact["x"], impact["y"]))
+                point["arm_ax"], point["arm_ay"] = place - position[record["a"]]
+                point["arm_bx"], point["arm_by"] = place - position[record["b"]]
+            point["approach_speed"] = max(point["approach_speed"], impact["approach_speed"])
+            point["impact_normal"] += impact["normal_impulse"]
+            point["impact_tangent"] += impact["tangent_impulse"]
