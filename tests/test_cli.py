@@ -54,7 +54,7 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
         "collision_method", "collision_reason", "summation", "interpreted", "force_evaluations", "wall_s",
         "compile_s", "interpreted_steps", "interpreted_s", "stepper", "steppers_left_out",
         "systems", "left_out", "energy", "momentum", "angular_momentum", "candidate_pairs", "contacts",
-        "asleep", "collisions", "max_penetration", "divided", "advice", "entities",
+        "asleep", "contact_forces", "collisions", "max_penetration", "divided", "advice", "entities",
     ]  # fmt: skip
     assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
     assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "exact")

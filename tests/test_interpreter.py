@@ -10,6 +10,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -171,9 +172,18 @@ def built_in() -> None:
         world.run(steps=6)
 
 
+def rigid_contacts() -> None:
+    for name, steps in (("drop", 120), ("slope", 30), ("stack", 4)):
+        world = load_scene(name)
+        world.simulation = replace(world.simulation, contacts="rigid")
+        world.run(steps=steps)
+        assert world.stepper is not None and world.stepper.name == "rigid"
+
+
 def test_every_kernel_gives_the_same_bits_as_python() -> None:
     calls: Counter[str] = Counter()
-    for drive in (built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, forces_by_hand, drawn):
+    scenes = built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, rigid_contacts
+    for drive in (*scenes, forces_by_hand, drawn):
         with compared(calls):
             drive()
     own = {name_of(jitted) for jitted in KERNELS if jitted.__module__.startswith("physicslab.")}
