@@ -36,6 +36,8 @@ _TOLERANCE = 1e-13
 """Error of a smooth piece, as a share of the largest coordinate and speed."""
 _MAX_EVENTS = 400
 """Largest number of events in a step."""
+_REPEATS = 8
+"""How often contacts are found again after impacts at one time."""
 _MAX_STALLED = 60
 """Largest number of events in a row without time between them."""
 _NO_TIME = 1e-13
@@ -67,7 +69,8 @@ class Rigid:
     leaps: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (
-        motion.collide, motion.begin_motion, motion.advance_piece, near_pairs.carry_over, slots.list_scalar,
+        motion.touch, motion.advance_piece, motion.begin_motion, motion.collide,
+        near_pairs.carry_over, slots.list_scalar,
     )  # fmt: skip
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
@@ -139,15 +142,11 @@ class Rigid:
 
         Returns how many points are closed at its end, how many impacts there were, and why it cannot be made.
         """
-        q, v, entities, log = self._ode.q, self._ode.v, state.entity_index.entities, state.contacts.log
+        q, v = self._ode.q, self._ode.v
         changed, done, impacts, stalled = self._changed, 0.0, 0, 0
         changed[0, PAIR] = -1
         for _ in range(_MAX_EVENTS):
-            why, count, new, _ = motion.collide(
-                scene, self._equations, self._room, self._stages[-1], q, v, entities, log,
-                state.contacts.logged, at + done,
-            )  # fmt: skip
-            state.contacts.logged += new
+            why, count, new = self._collide(scene, state, at + done)
             impacts += new
             rest, still = 0.0, False
             if why == motion.DONE:
@@ -168,6 +167,29 @@ class Rigid:
                 return 0, impacts, "events follow each other without time between them"
             done = h if piece == h - done else done + piece
         return 0, impacts, f"more than {_MAX_EVENTS} events in a step"
+
+    def _collide(self, scene: tuple[Any, ...], state: State, time: float) -> tuple[int, int, int]:
+        """Find what touches, and resolve impacts; return why that failed, and how many there are of both.
+
+        An impact can change which faces two boxes turn to each other, so contacts are then found again.
+        """
+        q, v, contacts, impacts = self._ode.q, self._ode.v, state.contacts, 0
+        entities, acceleration = state.entity_index.entities, self._stages[-1]
+        for _ in range(_REPEATS):
+            why, count, rest, approaching = motion.touch(
+                scene, self._equations, self._room, acceleration, q, v
+            )
+            if why != motion.DONE or not approaching:
+                break
+            why, new, _ = motion.collide(
+                scene, self._equations, count, self._room, rest, q, v, entities, contacts.log,
+                contacts.logged, time,
+            )  # fmt: skip
+            contacts.logged += new
+            impacts += new
+            if why != motion.DONE:
+                break
+        return why, count, impacts
 
     def _scene(self, state: State) -> tuple[Any, ...]:
         """Return what the kernels take of the state, beside the state of motion."""

@@ -29,7 +29,7 @@ from physicslab.kernels.rigid.features import (
     Scene,
 )
 
-__all__ = ["resolve_blows"]
+__all__ = ["approaches", "resolve_blows"]
 
 _MAX_ROUNDS = 500
 """Rounds of impacts at one time; after them all points that touch are inelastic."""
@@ -39,6 +39,12 @@ _SPEEDS = 100.0
 """Multiple of the speed that counts as none that impulses are measured by: smaller ones go by rounding."""
 _HALVINGS = 46
 """Bisections for the restitution that keeps the energy."""
+
+
+@inlined
+def approaches(speed: float, rest: float) -> bool:
+    """Whether a point approaches faster than rounding; ``rest`` is the speed that counts as none [m/s]."""
+    return speed < -_NOISE * rest
 
 
 @inlined
@@ -66,7 +72,7 @@ def _gather(equations: Equations, count: int, blow: Equations, rest: float, last
             if last or -equations.measures[i, RESTITUTION] * speed <= rest
             else equations.measures[i, RESTITUTION]
         )
-        if speed < -_NOISE * rest:
+        if approaches(speed, rest):
             approaching = True
             n = _take(equations, i, blow, n, e)
         elif speed <= rest and (equations.measures[i, RESTITUTION] == 0.0 or last):

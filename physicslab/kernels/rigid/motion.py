@@ -13,8 +13,8 @@ from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.records import Impacts
-from physicslab.kernels.rigid.blows import resolve_blows
-from physicslab.kernels.rigid.constraints import project
+from physicslab.kernels.rigid.blows import approaches, resolve_blows
+from physicslab.kernels.rigid.constraints import measure_all, project
 from physicslab.kernels.rigid.equations import (
     OPEN,
     SLIDES_BACK,
@@ -33,6 +33,7 @@ from physicslab.kernels.rigid.features import (
     PAIR,
     REACH,
     STATUS,
+    VN,
     VT,
     Points,
     Scene,
@@ -52,6 +53,7 @@ __all__ = [
     "advance_piece",
     "begin_motion",
     "collide",
+    "touch",
 ]
 
 DONE, OVERLAP, NO_FORCES, UNRESOLVED, TOO_MANY = 0, 1, 2, 3, 4
@@ -62,8 +64,6 @@ _SAME_MOMENT = 1e-9
 """Share of its load within which a point that sticks reaches the limit of friction with another one."""
 _OVERLAP = 1e-3
 """Share of a size beyond which bodies are not moved apart: soft contacts leave half of that."""
-_REPEATS = 8
-"""How often contacts are found again after impacts at one time."""
 _SHORTENINGS = 60
 """How often a piece is shortened for its error."""
 _SHORTEST = 1e-9
@@ -136,35 +136,54 @@ def _at_rest(scene: Scene, acceleration: Numbers, v: Numbers, rest: float, least
 
 
 @kernel
-def collide(
+def touch(
     scene: SceneTuple, equations: EquationsTuple, room: EquationsTuple, acceleration: Numbers,
-    q: Numbers, v: Numbers, entities: Rows, log: Impacts, logged: int, time: float,
-) -> tuple[int, int, int, bool]:  # fmt: skip
-    """Find which points touch, and resolve the impacts of those that approach.
+    q: Numbers, v: Numbers,
+) -> tuple[int, int, float, bool]:  # fmt: skip
+    """Find which points touch.
 
-    Returns why the motion cannot go on (DONE if it can), how many points touch, how many impacts there
-    were, and whether restitutions were lowered to keep the energy.
+    Returns why the motion cannot go on (DONE if it can), how many points touch, the speed that counts as none
+    [m/s], and whether any point approaches faster than rounding.
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
     accelerate(q, v, acceleration, of.inverse_mass, of.damping, of.calls)
     rest, _ = rest_limits(of, acceleration, v)
-    impacts, count, lowered = 0, 0, False
-    for _ in range(_REPEATS):  # an impact can change which faces two boxes turn to each other
-        count, deepest = find_touching(of, points, scratch, q, v)
-        if count > len(points.points):
-            return TOO_MANY, 0, impacts, lowered
-        if deepest > _OVERLAP:
-            return OVERLAP, 0, impacts, lowered
-        new, solved, kept = resolve_blows(
-            of, points, count, scratch, q, v, rest, entities, log, logged + impacts, time
-        )
-        impacts += new
-        lowered = lowered or kept
-        if not solved:
-            return UNRESOLVED, 0, impacts, lowered
-        if new == 0:
+    count, deepest = find_touching(of, points, scratch, q, v)
+    if count > len(points.points):
+        return TOO_MANY, 0, rest, False
+    if deepest > _OVERLAP:
+        return OVERLAP, 0, rest, False
+    approaching = False
+    measure_all(of, points, count, q, v)
+    for i in range(count):
+        approaching = approaching or approaches(points.measures[i, VN], rest)
+    return DONE, count, rest, approaching
+
+
+@kernel
+def advance_piece(
+    scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, stages: StagesTuple,
+    start: Vectors, changed: Points, q: Numbers, v: Numbers, left: float, tolerance: float, rest: float,
+) -> tuple[float, int]:  # fmt: skip
+    """Advance from where :func:`begin_motion` left it to the next event, for ``left`` seconds at most.
+
+    Returns the time that passed [s], and how many force evaluations the piece took, its beginning included.
+    """
+    of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
+    scratch = named_equations(room)
+    note_start(of, points, count, scratch, q, v, start)
+    h, pieces = _longest_piece(of, q, v, left), 0
+    for _ in range(_SHORTENINGS):
+        error = make_piece(of, points, count, q, v, h, tolerance, at)
+        pieces += 1
+        if error <= 1.0 or h <= _SHORTEST * left:
             break
-    return DONE, count, impacts, lowered
+        h *= max(0.1, 0.9 * math.pow(error, -0.125))
+    h, kind, index, more = cut_at_first_event(of, points, count, scratch, start, at, q, v, h, tolerance, rest)
+    _note_changes(kind, index, points, count if kind >= 0 else 0, changed, rest)
+    for i in range(len(q)):
+        q[i], v[i] = at.q[i], at.v[i]
+    return h, 4 + LAST * (pieces + more)
 
 
 @kernel
@@ -195,26 +214,17 @@ def begin_motion(
 
 
 @kernel
-def advance_piece(
-    scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, stages: StagesTuple,
-    start: Vectors, changed: Points, q: Numbers, v: Numbers, left: float, tolerance: float, rest: float,
-) -> tuple[float, int]:  # fmt: skip
-    """Advance from where :func:`begin_motion` left it to the next event, for ``left`` seconds at most.
+def collide(
+    scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, rest: float,
+    q: Numbers, v: Numbers, entities: Rows, log: Impacts, logged: int, time: float,
+) -> tuple[int, int, bool]:  # fmt: skip
+    """Resolve the impacts of the points that touch.
 
-    Returns the time that passed [s], and how many force evaluations the piece took, its beginning included.
+    Returns why the motion cannot go on (DONE if it can), how many impacts there were, and whether
+    restitutions were lowered to keep the energy.
     """
-    of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
-    scratch = named_equations(room)
-    note_start(of, points, count, scratch, q, v, start)
-    h, pieces = _longest_piece(of, q, v, left), 0
-    for _ in range(_SHORTENINGS):
-        error = make_piece(of, points, count, q, v, h, tolerance, at)
-        pieces += 1
-        if error <= 1.0 or h <= _SHORTEST * left:
-            break
-        h *= max(0.1, 0.9 * math.pow(error, -0.125))
-    h, kind, index, more = cut_at_first_event(of, points, count, scratch, start, at, q, v, h, tolerance, rest)
-    _note_changes(kind, index, points, count if kind >= 0 else 0, changed, rest)
-    for i in range(len(q)):
-        q[i], v[i] = at.q[i], at.v[i]
-    return h, 4 + LAST * (pieces + more)
+    of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
+    impacts, solved, lowered = resolve_blows(
+        of, points, count, scratch, q, v, rest, entities, log, logged, time
+    )
+    return DONE if solved else UNRESOLVED, impacts, lowered
