@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from physicslab import World
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.prefabs import box, circle
 from physicslab.stepping.rigid import Rigid
@@ -373,3 +374,15 @@ def test_a_disc_that_rolls_against_a_wall_leaves_it_as_the_impact_alone_would() 
     after = world.time - meets
     assert motion(world, disc)[:2] == pytest.approx([-e * speed, lift - G * after], abs=1e-9)
     assert motion(world, disc)[2] == pytest.approx(-speed / r + 2.0 * lift / r, abs=1e-9)
+
+
+@pytest.mark.parametrize(("mu", "lowered"), [(0.3, True), (0.0, False)])
+def test_a_restitution_that_was_lowered_is_told(mu: float, lowered: bool) -> None:
+    """A rod that slides on its end would gain energy by Newton's law."""
+    world, angle = laboratory(gravity_mode="none"), math.radians(45)
+    box(world, (0, -0.5), width=20, height=1, static=True, restitution=1.0, friction=mu)
+    y = 0.1 + 0.5 * (2 * math.sin(angle) + 0.02 * math.cos(angle))
+    box(world, (0, y), width=2, height=0.02, angle=angle, velocity=(0.8, -1), restitution=1.0, friction=mu)
+    world.run(seconds=0.3)
+    told = any("lower restitution" in warning.what for warning in find_warnings(world))
+    assert world.collisions and told is lowered

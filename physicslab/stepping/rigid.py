@@ -62,6 +62,8 @@ class Rigid:
         How many steps were.
     why_soft : str
         Why, at the last of them.
+    restitutions_lowered : int
+        How often impacts at one time got lower restitutions, as Newton's law would have made energy.
     """
 
     name: ClassVar[str] = "rigid"
@@ -81,6 +83,7 @@ class Rigid:
         self._pairs = pairs_that_may_meet(state)
         self._records = RigidRecords(self._pairs)
         self._refused, self.left_to_soft, self.why_soft = -1, 0, ""
+        self.restitutions_lowered = 0
         rows, m = len(state.entity_index), 2 * MAX_POINTS
         n = 3 * rows + 1
         self._equations, self._room = (
@@ -181,12 +184,13 @@ class Rigid:
             )
             if why != motion.DONE or not approaching:
                 break
-            why, new, _ = motion.collide(
+            why, new, lowered = motion.collide(
                 scene, self._equations, count, self._room, rest, q, v, entities, contacts.log,
                 contacts.logged, time,
             )  # fmt: skip
             contacts.logged += new
             impacts += new
+            self.restitutions_lowered += lowered
             if why != motion.DONE:
                 break
         return why, count, impacts
