@@ -278,7 +278,7 @@ def test_the_impact_of_two_free_boxes_keeps_angular_momentum() -> None:
         restitution=1, friction=0,
     )  # fmt: skip
     before, energy = measure_momentum(world), measure_energy(world).kinetic
-    world.run(seconds=1.0)
+    world.run(seconds=0.3)  # they turn, and graze each other once more at 0.344 s
     check_rigid(world)
     assert world.contacts.logged == 1
     after = measure_momentum(world)

@@ -132,7 +132,7 @@ class SimulationConfig:
         ``"step"`` (found and resolved within steps), ``"exact"`` (contact times located) or ``"auto"``.
     contacts : str
         ``"rigid"`` (laws solved to rounding, events located; few bodies), ``"soft"`` (stiff springs, any
-        number) or ``"auto"``, which is soft as yet.
+        number) or ``"auto"``: rigid where few bodies can touch, and beside exact collisions where they rest.
     tolerance : float
         Error a step that an adaptive method accepts, as a share of the largest coordinate and speed. Where
         stiff springs are damped, ``auto`` takes 1e-13 in place of the default.
@@ -144,7 +144,7 @@ class SimulationConfig:
     integrator: str = "auto"
     sleeping: bool = True
     collisions: str = "auto"
-    contacts: str = "auto"
+    contacts: str = "soft"
     tolerance: float = 1e-17
 
     section: ClassVar[str] = "simulation"

@@ -60,7 +60,7 @@ class FusedContact:
 
     name: ClassVar[str] = "fused_contact"
     title: ClassVar[str] = "Compiled steps, contacts within them"
-    leaps: ClassVar[bool] = False
+    leaps: bool = False
     leaves_forces: ClassVar[bool] = True
     kernels: tuple[Any, ...] = (
         fused.advance, fat_boxes, grid.find_pairs, near_pairs.partition, near_pairs.carry_over,

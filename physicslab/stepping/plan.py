@@ -19,6 +19,7 @@ from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import why_not_exact, why_not_worthwhile
 from physicslab.stepping.contact_model import choose_contacts
+from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.split_forces import sees_velocity_in_python, sub_integrated_rows
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.integrate import IntegrateSystem
@@ -128,14 +129,13 @@ def choose_plan(state: State, schedule: Schedule, collisions: str | None = None)
     if not schedule.runs(Stage.CONTACT):
         return _mover(state, schedule)
     contacts, reason = choose_contacts(state, schedule)
-    if contacts == "rigid":
+    plan = _plan_of_collisions(state, schedule, collisions)
+    if contacts == "rigid" and (state.simulation.contacts == "rigid" or plan.collisions == "step"):
         # The rest of the plan is for steps that are left to soft contacts.
         plan = replace(
             _mover(state, schedule), integrator=DOP853, reason="contacts are rigid: the step follows events",
             collisions="step", collision_reason="rigid contacts locate their own events",
         )  # fmt: skip
-    else:
-        plan = _plan_of_collisions(state, schedule, collisions)
     return replace(plan, contacts=contacts, contact_reason=reason)
 
 
@@ -247,7 +247,7 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
         why = str(error)
     attractors = max((force.attractors for force in forces), default=0)
     planets = attractors > 1
-    rate = _fastest(state, [force for force in forces if not force.attractors > 1])
+    rate = fastest_rate(state, [force for force in forces if not force.attractors > 1])
     needed = _steps(rate, h)
     if needed > MAX_STEPS:
         return StepPlan(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
@@ -283,7 +283,7 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     attractors = max((force.attractors for force in forces), default=0)
     if attractors >= _SAMPLED_LIMIT:
         return kicks
-    rate, half = _fastest(state, forces), 0.5 * state.simulation.dt / substeps
+    rate, half = fastest_rate(state, forces), 0.5 * state.simulation.dt / substeps
     needed = _steps(rate, half)
     if needed * 2 * substeps > MAX_STEPS:
         method, needed, how = IMPLICIT_MIDPOINT, 1, _too_fast(rate)
@@ -312,12 +312,6 @@ def tolerance_for(state: State, forces: Sequence[ForceSystem]) -> float:
     chosen = simulation.integrator == "auto" and simulation.tolerance == SimulationConfig().tolerance
     planets = any(force.attractors > 1 for force in forces)
     return _OF_STIFF if stiff and chosen and not planets else simulation.tolerance
-
-
-def _fastest(state: State, forces: Sequence[ForceSystem]) -> float:
-    """Return the fastest rate that forces and damping give any body [rad/s]."""
-    rate = max((system.strongest_rate(state) for system in forces), default=0.0)
-    return max(rate, state.physics.linear_damping, state.physics.angular_damping)
 
 
 def _steps(rate: float, h: float) -> int:

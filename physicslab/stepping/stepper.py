@@ -48,11 +48,14 @@ class Stepper(Protocol):
 
     name: ClassVar[str]
     title: ClassVar[str]
-    leaps: ClassVar[bool]
     leaves_forces: ClassVar[bool]
     reason: str
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...
+
+    @property
+    def leaps(self) -> bool:
+        """Whether several steps are one advance."""
 
     @property
     def kernels(self) -> tuple[Any, ...]:

@@ -58,7 +58,7 @@ class SleepSystem(System):
             return "sleeping is switched off"
         if state.physics.gravity_mode == "planet":
             return "planets attract each other"
-        if state.event_driven:
+        if state.event_driven or state.rigid_contacts:
             return "impacts are located exactly"
         return None
 
