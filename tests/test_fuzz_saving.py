@@ -52,6 +52,7 @@ THOROUGH = settings().max_examples > 40
 @example(3368, 40).via("impulses of a contact that exact collisions had taken apart")
 @example(3552, 40).via("the order of blocks, of which the last were empty when there was no room")
 @example(115681, 120).via("the forces under which a body on a spring fell asleep")
+@example(705758920, 1).via("a deep overlap without an impulse, which exact collisions leave to contacts")
 @example(226807876, 40).via("an approach noted at a point that had been lost and found since")
 @example(36669189, 1).via("a box that turned fast, whose pair with a wall was not listed")
 def test_a_scene_goes_on_from_a_file_with_the_same_bits(seed: int, steps: int) -> None:
