@@ -8,7 +8,7 @@ from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
 
-__all__ = ["choose_contacts"]
+__all__ = ["choose_contacts", "why_not_rigid"]
 
 _MAX_PAIRS = 10_000
 """Number of pairs above which contacts are soft: each is looked at in every piece of motion."""
@@ -21,11 +21,11 @@ def choose_contacts(state: State, schedule: Schedule) -> tuple[str, str]:
     wish = state.simulation.contacts
     if wish != "rigid":
         return "soft", "asked for" if wish == "soft" else "rigid contacts are not asked for"
-    obstacle = _why_not_rigid(state, schedule)
+    obstacle = why_not_rigid(state, schedule)
     return ("rigid", "asked for") if obstacle is None else ("soft", f"rigid was asked for, and {obstacle}")
 
 
-def _why_not_rigid(state: State, schedule: Schedule) -> str | None:
+def why_not_rigid(state: State, schedule: Schedule) -> str | None:
     """Return why contacts cannot be rigid, or ``None``."""
     if state.simulation.integrator not in ("auto", "dop853"):
         return f"{state.simulation.integrator} was asked for, and rigid contacts go by dop853"
