@@ -36,8 +36,8 @@ def kept_rows(contacts: Contacts) -> Iterator[list[float] | None]:
 
     A row starts with the two entities (0 for the world's bounds) and the wall. Points that will be found
     again leave their features and impulses; those that will be kept, or that overlap deeply, everything;
-    ``None`` is for a pair of which nothing is kept. A wide contact adds its slot, and the colour of its block; one that will have
-    an impact in the next substep, which of its points do: 1, 2, or 3 for both.
+    ``None`` is for a pair of which nothing is kept. A wide contact adds its slot, and the colour of its
+    block; one that will have an impact in the next substep, which of its points do: 1, 2, or 3 for both.
     """
     for p in ordered_records(contacts):
         manifold = contacts.manifolds[p]
