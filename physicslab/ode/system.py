@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
+from physicslab.kernels.forces.gravity import PLAIN_LIMIT
 from physicslab.state.packed import StateLayout
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
@@ -48,6 +49,8 @@ class OdeSystem:
     near : int64 array and int, optional
         An order of the coordinates in which those that forces couple are near, and how near; found
         once by the method that needs it, as it depends on the layout alone.
+    free_bodies : int
+        How many bodies move, where no force depends on the origin and they are few; else 0.
     tolerance : float
         Relative error a step for methods that choose their steps.
     forces : tuple of ForceSystem
@@ -133,6 +136,9 @@ class OdeSystem:
             rates_of = np.repeat(rates, (2 * len(moving), len(turning)))
             self.damping = rates_of * (bodies.inverse_mass[pulled] > 0.0)
         self._calls(state)
+        few = len(moving) <= PLAIN_LIMIT and self._carries
+        free = few and not any(force.needs_origin(state) for force in self.forces)
+        self.free_bodies = len(moving) if free else 0
 
     def gather_state(self, state: State) -> None:
         """Take the state alone, where masses and forces are those of the last :meth:`gather`."""

@@ -29,6 +29,10 @@ class DragSystem(ForceSystem):
         indices = np.concatenate(([len(rows)], layout.place[rows]))
         return PackedForce(packed_forces.drag, parameters, indices, drag_resistance)
 
+    def needs_origin(self, state: State) -> bool:
+        """Drag depends on velocities alone."""
+        return False
+
     def inputs(self, state: State, layout: StateLayout) -> bytes:
         """Return both coefficients of every body."""
         return self.settings(state)

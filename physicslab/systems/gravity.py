@@ -75,6 +75,10 @@ class GravitySystem(ForceSystem):
         parameters = np.concatenate(((physics.G, physics.softening), mass[rows], (0.0,)))
         return PackedForce(packed_forces.planet_gravity, parameters, indices, steepest=2 + len(rows))
 
+    def needs_origin(self, state: State) -> bool:
+        """Only the pull of bodies that stay where they are depends on it."""
+        return self._pairwise and not state.table(Velocity).present[self._attracting].all()
+
     def inputs(self, state: State, layout: StateLayout) -> bytes:
         """Return every mass: those of fixed bodies pull too."""
         return state.table(Mass)["mass"].tobytes()

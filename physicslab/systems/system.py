@@ -229,6 +229,10 @@ class ForceSystem(System):
         """
         return None
 
+    def needs_origin(self, state: State) -> bool:
+        """Whether the force is another where everything that moves is moved by the same distance."""
+        return True
+
     def inputs(self, state: State, layout: StateLayout) -> bytes | None:
         """Return, bit by bit, all that :meth:`packed` depends on besides the layout, the laws and masses.
 
