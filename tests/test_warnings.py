@@ -319,7 +319,7 @@ def heavy_load() -> World:
     world = open_world(contacts="soft")
     floor(world)
     box(world, (0, 0.5), width=1, height=1, mass=1.0)
-    box(world, (0, 1.5), width=1, height=1, mass=1e5)
+    box(world, (0, 1.5), width=1, height=1, mass=3e4)
     return world
 
 

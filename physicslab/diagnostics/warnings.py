@@ -44,8 +44,8 @@ _PEAK_MARGIN = 1.5
 """Between two looks at a run speeds are higher than those seen: so many more substeps are advised."""
 RIGID_LIMIT = 64
 """Number of contacts up to which rigid ones are advised for what is pressed deep or carries too much."""
-_RIGID_MASS_RATIO = 1e5
-"""Mass ratio that rigid contacts were seen to hold to 1e-15 m; ten times as much is left to soft ones."""
+_RIGID_MASS_RATIO = 3e4
+"""Mass ratio up to which rigid contacts were seen to hold to 1e-15 m without shorter steps."""
 DISTANCE_LIMIT = 1e9
 """Coordinate in sizes of a body: float64 keeps places there to 1e-7 of the body, and a tower to 1e-3."""
 
