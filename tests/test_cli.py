@@ -138,10 +138,10 @@ def test_a_scene_goes_on_from_its_own_time(capsys: pytest.CaptureFixture[str], t
 
 
 def test_run_reports_how_many_sleep(capsys: pytest.CaptureFixture[str]) -> None:
-    report = document(capsys, "run", "stack", "--contacts", "soft", "--seconds", "5")
-    assert (report["asleep"], report["contacts"]) == (10, 10)
-    assert cli.main(["run", "stack", "--contacts", "soft", "--seconds", "5"]) == 0
-    assert "asleep      10 of 11 bodies, at rest" in capsys.readouterr().out
+    report = document(capsys, "run", "pyramid", "--seconds", "6")
+    assert (report["asleep"], report["contacts"]) == (465, 900)
+    assert cli.main(["run", "pyramid", "--seconds", "6"]) == 0
+    assert "asleep      465 of 466 bodies, at rest" in capsys.readouterr().out
 
 
 def test_run_writes_a_row_a_step_and_body(capsys: pytest.CaptureFixture[str]) -> None:

@@ -124,7 +124,7 @@ def test_it_leaves_for_the_blocks_in_the_middle_of_a_step() -> None:
 
 def test_steps_that_are_passed_over_are_counted_alike() -> None:
     def resting() -> World:
-        world = World(*standard_systems())
+        world = World(*standard_systems(), simulation=SimulationConfig(sleeping=True))
         box(world, (0.0, -0.5), width=9.0, height=1.0, static=True, friction=0.5)
         box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
         return world

@@ -76,7 +76,8 @@ def settled(shape: str, struck: bool = True) -> World:
     places = [(1.001 * (i % 9) - 4.0, 0.5 + 0.999 * (i // 9)) for i in range(63)]
     ball = body(0.3, 13.0, "disc", Velocity={"linear": [0.5, -6.0]})
     heap = [*(body(x, y, shape) for x, y in places), *([ball] if struck else [])]
-    return scene(FLOOR, *heap, physics={"bounds": [-4.6, -1, 4.6, 20]})
+    laws = {"bounds": [-4.6, -1, 4.6, 20]}
+    return scene(FLOOR, *heap, physics=laws, sleeping=True)
 
 
 def heaps() -> None:
@@ -97,13 +98,14 @@ def heaps() -> None:
 
 def heavy_loads() -> None:
     heavy = body(0.0, 1.5, "box", Mass={"mass": 500.0}, Drag={"linear": 0.1})
-    world = scene(FLOOR, body(0.0, 0.5, "box"), heavy, collisions="step")
+    world = scene(FLOOR, body(0.0, 0.5, "box"), heavy, collisions="step", sleeping=True)
     for _ in range(3):
         world.step(0.01)
 
 
 def sleepers() -> None:
-    world = scene(FLOOR, *(body(x, 0.5, "box") for x in (0.0, 1.0, 5.0)), collisions="step")
+    boxes = (body(x, 0.5, "box") for x in (0.0, 1.0, 5.0))
+    world = scene(FLOOR, *boxes, collisions="step", sleeping=True)
     world.run(seconds=0.4)
     for _ in range(30):
         world.step()

@@ -11,7 +11,7 @@ from physicslab.stepping.forces import fastest_rate
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
 
-__all__ = ["choose_contacts"]
+__all__ = ["choose_contacts", "why_not_rigid"]
 
 _MAX_PAIRS = 10_000
 """Number of pairs above which contacts are soft: each is looked at in every piece of motion."""
@@ -28,7 +28,7 @@ def choose_contacts(state: State, schedule: Schedule) -> tuple[str, str]:
     wish = state.simulation.contacts
     if wish == "soft":
         return "soft", "asked for"
-    obstacle = _why_not_rigid(state, schedule)
+    obstacle = why_not_rigid(state, schedule)
     if wish == "rigid":
         why = "asked for" if obstacle is None else f"rigid was asked for, and {obstacle}"
         return "rigid" if obstacle is None else "soft", why
@@ -47,7 +47,7 @@ def _why_not_worthwhile(state: State, schedule: Schedule) -> str | None:
     return None
 
 
-def _why_not_rigid(state: State, schedule: Schedule) -> str | None:
+def why_not_rigid(state: State, schedule: Schedule) -> str | None:
     """Return why contacts cannot be rigid, or ``None``."""
     if state.simulation.integrator not in ("auto", "dop853"):
         return f"{state.simulation.integrator} was asked for, and rigid contacts go by dop853"

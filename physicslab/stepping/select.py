@@ -30,7 +30,10 @@ class Steppers:
 
     def ready(self, state: State, h: float) -> Stepper:
         """Return the best of them that can make the coming step."""
-        return next(stepper for stepper in self.usable if stepper.ready(state, h))
+        for stepper in self.usable[:-1]:
+            if stepper.ready(state, h):
+                return stepper
+        return self.usable[-1]
 
     def main(self, state: State) -> Stepper:
         """Return the best of them for awake bodies and steps of the scene's own length, for reports."""

@@ -84,6 +84,8 @@ class Stepper(Protocol):
 def divisions(state: State, h: float) -> int:
     """Return into how many parts a step of ``h`` seconds is divided, so that none exceeds the scene's own."""
     own = state.simulation.dt
+    if h <= own:
+        return 1
     if h / own > _MAX_DIVISIONS:
         raise ValueError(f"dt = {h!r}: must be at most {_MAX_DIVISIONS} times simulation.dt = {own!r} s")
     return max(1, math.ceil(h / own - _TOLERATED))
