@@ -99,9 +99,11 @@ def _row(problem: Problem, row: Row) -> dict[str, Any]:
 
 
 def _scene(study: SceneStudy) -> dict[str, Any]:
+    estimate = asdict(study.estimate)
+    del estimate["reference"]
     return {
         "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.tightest,
-        "estimate": asdict(study.estimate), "rows": [_scene_row(row) for row in study.rows],
+        "estimate": estimate, "rows": [_scene_row(row) for row in study.rows],
     }  # fmt: skip
 
 

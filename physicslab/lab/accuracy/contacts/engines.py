@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -11,10 +11,9 @@ from physicslab.lab.peers.box2d3_mirror import Box2D3Mirror
 from physicslab.lab.peers.box2d_mirror import Box2DMirror
 from physicslab.lab.peers.peer import Peer
 from physicslab.lab.peers.pymunk_mirror import PymunkMirror
-from physicslab.stepping.rigid import Rigid
 from physicslab.world import World
 
-__all__ = ["ENGINES", "OWN", "Engine", "left_to_soft"]
+__all__ = ["ENGINES", "OWN", "Engine"]
 
 type Advance = Callable[[float], None]
 """Advances one world by a time [s]."""
@@ -42,12 +41,6 @@ class Engine:
     simulation: Callable[[float], SimulationConfig]
     start: Callable[[World, float], Advance]
     own: bool = False
-
-
-def left_to_soft(worlds: Sequence[World]) -> int:
-    """Return how many steps rigid contacts have left to soft ones."""
-    steppers = (stepper for world in worlds for stepper in world.steppers.usable)
-    return sum(stepper.left_to_soft for stepper in steppers if isinstance(stepper, Rigid))
 
 
 def _simulation(contacts: str, collisions: str, dt: float) -> SimulationConfig:

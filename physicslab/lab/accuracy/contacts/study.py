@@ -11,10 +11,11 @@ from functools import partial
 import numpy as np
 
 from physicslab.lab.accuracy.contacts.case import ContactCase
-from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN, Engine, left_to_soft
+from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN, Engine
 from physicslab.lab.accuracy.verdict import Verdict
 from physicslab.lab.case import Job, attempt, cpu_time
 from physicslab.lab.peers.peer import CannotBuild
+from physicslab.lab.worlds import steps_left_to_soft
 from physicslab.world import World
 
 __all__ = [
@@ -185,7 +186,7 @@ def _run(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
         if error is None:
             return ContactRow(dt, None, _share(spent, t, worlds, compiled), failure=failure)
         largest = float(np.maximum(largest, error))
-    return ContactRow(dt, largest, _share(spent, reached, worlds, compiled), left_to_soft(worlds))
+    return ContactRow(dt, largest, _share(spent, reached, worlds, compiled), steps_left_to_soft(*worlds))
 
 
 def _share(spent: float, seconds: float, worlds: Sequence[World], compiled: float) -> float:
