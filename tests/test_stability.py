@@ -44,9 +44,7 @@ def test_slow_cases_are_cases() -> None:
     assert all("soft" in name for name in SHORT), "rigid contacts fall short nowhere"
 
 
-@pytest.mark.parametrize(
-    "case", [parameter(case) for case in CASES.values() if not case.long and case.name not in SHORT]
-)
+@pytest.mark.parametrize("case", [parameter(case) for case in TESTED])
 def test_the_case_passes(case: StabilityCase) -> None:
     outcome = run_case(case)
     assert outcome.verdict is Verdict.PASSED, f"{outcome.figure} > {case.limit}; {outcome.failure}"

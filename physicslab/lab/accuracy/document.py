@@ -50,6 +50,7 @@ def _study(study: Study) -> dict[str, Any]:
         "note": problem.note,
         "best": finite(study.best),
         "auto": _row(problem, study.auto),
+        "rigid": None if study.rigid is None else _row(problem, study.rigid),
         "integrators": [_curve(problem, curve) for curve in study.curves],
     }
 
