@@ -197,7 +197,7 @@ def test_sparsely_only_ours_are_run() -> None:
     assert [len(curve.rows) for curve in found.curves] == [3, 3]
     assert found.curves[0].verdict is Verdict.EXCELLENT
     text = contact_text(found)
-    assert "1/60 s" in text and "1/3840 s" in text and "rigid contacts  rounding" in text
+    assert "1/60 s" in text and "1/960 s" in text and "rigid contacts  rounding" in text
 
 
 def test_what_is_written_of_a_case(capsys: pytest.CaptureFixture[str]) -> None:

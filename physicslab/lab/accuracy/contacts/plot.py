@@ -22,7 +22,7 @@ _STYLES: dict[str, tuple[str, str, Any]] = {
     "box2d_v3": (COLOURS["vermilion"], "^", "-."),
 }
 _LOWEST, _HIGHEST = 1e-17, 1e1
-"""What the axes of errors span; an error of zero is drawn at the lower end."""
+"""What the axes of errors span; an error of zero, and one beyond them, is drawn at the end."""
 _COLUMNS = 4
 _WORDS = "#444444"
 
@@ -91,7 +91,7 @@ def _panel(axes: Axes, study: ContactStudy, by: str, *, markersize: float) -> No
     axes.axhline(study.case.wanted, color=_WORDS, linewidth=0.8, linestyle=(0, (1, 2)))
     for curve in study.curves:
         points = [
-            (work(row), max(row.error, _LOWEST))
+            (work(row), min(max(row.error, _LOWEST), _HIGHEST))
             for row in curve.rows
             if row.error is not None and work(row) > 0.0
         ]

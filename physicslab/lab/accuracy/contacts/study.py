@@ -7,6 +7,7 @@ import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -25,6 +26,8 @@ __all__ = [
 
 HALVINGS = 6
 """How often the step of 1/60 s is halved."""
+_SPARSE = (0, 2, 4)
+"""How often it is halved for the rungs of a sparse study."""
 ROUNDING = 1e-11
 """An error below this is put down to rounding, and has no order."""
 _SOFT_ORDER = 0.9
@@ -100,18 +103,19 @@ class ContactStudy:
 
 
 def fitted_order(steps: Sequence[float], errors: Sequence[float | None]) -> float | None:
-    """Return the slope of the straight line through errors over steps, both as logarithms.
+    """Return the power of the step with which errors fall: the median of what each next step shows.
 
-    Errors of rounding are left out; ``None`` where fewer than three others are left.
+    A jump, where another thing happens from some step on, so counts as one of them. Errors of rounding are left
+    out; ``None`` where fewer than three others are left.
 
-    >>> fitted_order([0.1, 0.05, 0.025], [1e-4, 5e-5, 2.5e-5])
+    >>> fitted_order([0.1, 0.05, 0.025, 0.0125], [1e-4, 5e-5, 2.5e-5, 1e-9])
     1.0
     """
     clear = [(h, e) for h, e in zip(steps, errors, strict=True) if e is not None and e > ROUNDING]
     if len(clear) < 3:
         return None
-    logarithms = [[math.log(number) for number in column] for column in zip(*clear, strict=True)]
-    return round(statistics.linear_regression(*logarithms).slope, 12)
+    slopes = [math.log(e / finer) / math.log(h / shorter) for (h, e), (shorter, finer) in pairwise(clear)]
+    return round(statistics.median(slopes), 12)
 
 
 def study_case(case: ContactCase, *, sparse: bool = False) -> Job[ContactStudy]:
@@ -120,7 +124,7 @@ def study_case(case: ContactCase, *, sparse: bool = False) -> Job[ContactStudy]:
     Where ``sparse``, with our own engines alone, and three steps in place of seven.
     """
     engines = OWN if sparse else ENGINES
-    steps = [2.0**-k / 60.0 for k in range(0, HALVINGS + 1, 3 if sparse else 1)]
+    steps = [2.0**-k / 60.0 for k in (_SPARSE if sparse else range(HALVINGS + 1))]
     curves, whole = [], len(engines) * len(steps)
     for n, engine in enumerate(engines):
         curve = ContactCurve(engine)
