@@ -16,7 +16,7 @@ from typing import Any
 def errors(engine: dict[str, Any]) -> str:
     """Return a cell: the largest error, or the first one and the order."""
     if engine["refused"]:
-        return engine["refused"]
+        return str(engine["refused"])
     found = [row["error"] for row in engine["rows"]]
     if None in found:
         return "failed"
@@ -28,7 +28,7 @@ def errors(engine: dict[str, Any]) -> str:
 
 def cost(engine: dict[str, Any]) -> str:
     """Return a cell: processor time [ms] of a second at the longest step."""
-    return engine["refused"] or f"{1e3 * engine['rows'][0]['cpu_s_per_s']:.2g}"
+    return str(engine["refused"]) or f"{1e3 * engine['rows'][0]['cpu_s_per_s']:.2g}"
 
 
 def main() -> None:

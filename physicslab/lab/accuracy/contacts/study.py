@@ -105,8 +105,8 @@ class ContactStudy:
 def fitted_order(steps: Sequence[float], errors: Sequence[float | None]) -> float | None:
     """Return the power of the step with which errors fall: the median of what each next step shows.
 
-    A jump, where another thing happens from some step on, so counts as one of them. Errors of rounding are left
-    out; ``None`` where fewer than three others are left.
+    A jump, where another thing happens from some step on, so counts as one of them. Errors of rounding are
+    left out; ``None`` where fewer than three others are left.
 
     >>> fitted_order([0.1, 0.05, 0.025, 0.0125], [1e-4, 5e-5, 2.5e-5, 1e-9])
     1.0
