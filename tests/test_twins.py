@@ -149,7 +149,8 @@ def test_the_rigid_twin_of_soft_contacts_is_as_far_off_as_the_truth() -> None:
 def test_rigid_contacts_have_no_stiffer_twin_and_no_rigid_one() -> None:
     (world,) = CONTACTS["slide_stop"].build(SimulationConfig(contacts="rigid"))
     found = estimate(lambda: CONTACTS["slide_stop"].build(SimulationConfig(contacts="rigid"))[0], 0.5)
-    assert {twin.name for twin in found.twins} == {"half step", "mirrored", "permuted", "nudged", "awake"}
+    names = {twin.name for twin in found.twins}
+    assert names >= {"half step", "mirrored", "permuted", "nudged"} and names.isdisjoint({"stiffer", "rigid"})
     assert found.reference is None
     document = with_ids(write_scene(world))
     world.synchronise()
