@@ -1,8 +1,9 @@
 """Print the tables of docs/accuracy.md from what the accuracy lab found of contact cases.
 
-``uv run --group peers physicslab accuracy contacts --json FILE``, then ``uv run python
-benchmarks/contact_tables.py FILE``: for each case the largest error of rigid contacts at any step, and for the
-others the error at 1/60 s and the fitted order; then the processor time of a simulated second at 1/60 s.
+``uv run --group peers physicslab accuracy contacts --json FILE``, then
+``uv run python benchmarks/contact_tables.py FILE``: for each case the largest error of rigid contacts at any
+step, and for the others the error at 1/60 s and the order; then the processor time [ms] of a simulated second
+at 1/60 s.
 """
 
 from __future__ import annotations

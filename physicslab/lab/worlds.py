@@ -17,7 +17,7 @@ from physicslab.world import World
 
 __all__ = [
     "GRAVITY", "PLANETS", "empty_world", "energy_change", "energy_growth", "floor", "largest",
-    "open_space", "place", "spawn_point", "steps_left_to_soft", "velocity",
+    "open_space", "place", "spawn_point", "steps_not_rigid", "velocity",
 ]  # fmt: skip
 
 GRAVITY = 9.81
@@ -102,10 +102,11 @@ def velocity(world: World, body: int | str) -> Vector2:
     return world.component(world.entity(body) if isinstance(body, str) else body, Velocity).linear
 
 
-def steps_left_to_soft(*worlds: World) -> int:
-    """Return how many steps of worlds with rigid contacts were left to soft ones."""
-    steppers = (stepper for world in worlds for stepper in world.steppers.usable)
-    return sum(stepper.left_to_soft for stepper in steppers if isinstance(stepper, Rigid))
+def steps_not_rigid(*worlds: World) -> tuple[int, int]:
+    """Return how many steps of worlds with rigid contacts were left to soft ones, and made by impulses."""
+    usable = (stepper for world in worlds for stepper in world.steppers.usable)
+    rigid = [stepper for stepper in usable if isinstance(stepper, Rigid)]
+    return sum(stepper.left_to_soft for stepper in rigid), sum(stepper.by_impulses for stepper in rigid)
 
 
 def largest(world: World, steps: int, look: Callable[[], float], every: int = 1) -> float:

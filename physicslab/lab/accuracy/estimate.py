@@ -15,7 +15,7 @@ from physicslab.components import Transform, Velocity
 from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.twins import TWINS, Twin, finer, with_ids
 from physicslab.lab.case import attempt
-from physicslab.lab.worlds import steps_left_to_soft
+from physicslab.lab.worlds import steps_not_rigid
 from physicslab.world import World
 
 __all__ = ["Estimate", "Spread", "TwinResult", "estimate_error"]
@@ -129,7 +129,7 @@ def estimate_error(load: Callable[[], World], seconds: float) -> Iterator[float 
         world = twin.make(document, scene) if soft or twin.name != "rigid" else None
         if world is not None:
             found.twins.append(_compared(twin, world, run, own, ends))
-            if twin.name == "rigid" and twin.name in ends and not steps_left_to_soft(world):
+            if twin.name == "rigid" and twin.name in ends and not any(steps_not_rigid(world)):
                 found.reference = ends[twin.name][:, :2]
         yield (i + 1) / (len(TWINS) + 1)
     _summarise(found)
@@ -182,8 +182,10 @@ def _compared(twin: Twin, world: World, run: _Runs, own: _End, ends: dict[str, _
     if end is None:
         return TwinResult(twin.name, twin.what, None, failure)
     ends[twin.name] = end * _MIRROR if twin.mirrored else end
-    soft = steps_left_to_soft(world)
-    what = f"{twin.what}; {soft} steps were left to soft ones" if soft else twin.what
+    soft, by_impulses = steps_not_rigid(world)
+    what = twin.what
+    what += f"; {soft} steps were left to soft ones" if soft else ""
+    what += f"; {by_impulses} steps were made by impulses, with an error of order one" if by_impulses else ""
     return TwinResult(twin.name, what, _spread(own, ends[twin.name]))
 
 

@@ -16,7 +16,7 @@ from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN, Engine
 from physicslab.lab.accuracy.verdict import Verdict
 from physicslab.lab.case import Job, attempt, cpu_time
 from physicslab.lab.peers.peer import CannotBuild
-from physicslab.lab.worlds import steps_left_to_soft
+from physicslab.lab.worlds import steps_not_rigid
 from physicslab.world import World
 
 __all__ = [
@@ -50,8 +50,8 @@ class ContactRow:
         As the case measures it; ``None`` where the run diverged.
     cpu_s_per_s : float
         Process time of one world for each second that it is advanced, compiling and building left out.
-    left_to_soft : int
-        How many steps rigid contacts left to soft ones.
+    left_to_soft, by_impulses : int
+        How many steps rigid contacts left to soft ones, and made by impulses in short steps.
     failure : str
         Why there is no error; empty where there is one.
     """
@@ -60,6 +60,7 @@ class ContactRow:
     error: float | None
     cpu_s_per_s: float
     left_to_soft: int = 0
+    by_impulses: int = 0
     failure: str = ""
 
 
@@ -190,7 +191,7 @@ def _run(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
         if error is None:
             return ContactRow(dt, None, _share(spent, t, worlds, compiled), failure=failure)
         largest = float(np.maximum(largest, error))
-    return ContactRow(dt, largest, _share(spent, reached, worlds, compiled), steps_left_to_soft(*worlds))
+    return ContactRow(dt, largest, _share(spent, reached, worlds, compiled), *steps_not_rigid(*worlds))
 
 
 def _share(spent: float, seconds: float, worlds: Sequence[World], compiled: float) -> float:

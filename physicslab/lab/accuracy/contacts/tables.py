@@ -11,10 +11,14 @@ from physicslab.lab.table import cell, table
 __all__ = ["contact_summary", "contact_text", "order_text"]
 
 
+_STAR = "  * some steps were left to soft contacts, or made by impulses in short steps: an error of order one"
+
+
 def contact_text(study: ContactStudy) -> str:
     """Return a case's table: a line for each engine, a column for each step."""
     case = study.case
     rows = max((curve.rows for curve in study.curves), key=len)
+    starred = any(row.left_to_soft or row.by_impulses for curve in study.curves for row in curve.rows)
     head = ("engine", "order", *(f"1/{1.0 / row.dt:.0f} s" for row in rows), "ms / s", "to", "")
     refused = [f"  not {curve.engine.title}: {curve.refused}" for curve in study.curves if curve.refused]
     lines = [_cells(curve, len(rows)) for curve in study.curves if not curve.refused]
@@ -24,6 +28,7 @@ def contact_text(study: ContactStudy) -> str:
         f"  error: {case.measure}; with rigid contacts {case.wanted:.0e} is wanted",
         table([head, *lines], words=(0, len(head) - 1), indent="  "),
         *refused,
+        *([_STAR] if starred else []),
         "",
     ])  # fmt: skip
 
@@ -56,5 +61,5 @@ def _cells(curve: ContactCurve, count: int) -> tuple[str, ...]:
 
 
 def _error(row: ContactRow) -> str:
-    """Return an error, with a star where steps were left to soft contacts."""
-    return cell(row.error, ".1e") + ("*" if row.left_to_soft else "")
+    """Return an error, with a star where steps were left to soft contacts or made by impulses."""
+    return cell(row.error, ".1e") + ("*" if row.left_to_soft or row.by_impulses else "")
