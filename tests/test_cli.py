@@ -23,6 +23,7 @@ from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
 from physicslab.diagnostics.run_report import find_not_finite
 from physicslab.lab.accuracy.catalogue import PROBLEMS
+from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
 from physicslab.lab.stability.catalogue import CASES
 from physicslab.scenes import SCENES
 
@@ -361,7 +362,7 @@ def test_names_are_listed_where_help_says_so(capsys: pytest.CaptureFixture[str])
     cases = [line.split()[:2] for line in capsys.readouterr().out.splitlines()]
     assert [name for name, _ in cases] == list(CASES) and ["spring_1_rest", "springs"] in cases
     assert cli.main(["accuracy", "--list"]) == 0
-    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(PROBLEMS)
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == [*PROBLEMS, *CONTACTS]
 
 
 def test_without_packages_one_line_says_what_to_do() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,10 +22,10 @@ from physicslab.systems.standard import standard_systems
 G = 9.81
 
 
-def laboratory(contacts: str, **physics: object) -> World:
+def laboratory(contacts: str, **physics: Any) -> World:
     return World(
         *standard_systems(),
-        physics=PhysicsConfig(**physics),  # type: ignore[arg-type]
+        physics=PhysicsConfig(**physics),
         simulation=SimulationConfig(contacts=contacts),
     )
 
@@ -152,7 +153,7 @@ def heap(seed: int) -> World:
         box(world, (1.6 * side, 1.0), width=4, height=0.3, angle=0.7 * side, static=True, friction=0.3)
     for i in range(12):
         size, place = random.uniform(0.15, 0.3), (float(random.uniform(-0.4, 0.4)), 1.2 + 0.4 * i)
-        surface = {"restitution": 0.4, "friction": 0.5, "mass": float(random.uniform(0.3, 3.0))}
+        surface: Any = {"restitution": 0.4, "friction": 0.5, "mass": float(random.uniform(0.3, 3.0))}
         if i % 2:
             circle(world, place, radius=0.5 * size, **surface)
         else:

@@ -133,7 +133,7 @@ def _find_impulses(blow: Equations, n: int, rest: float, rate: float) -> tuple[b
             return True, False
         if trial == 1 or (solved and work <= 0.0):
             low, work_low = share, work
-            if not solved or work >= -1e-13 * scale or high - low <= 1e-12 or trial == _TRIALS - 1:
+            if not solved or work >= -1e-13 * scale or high - low <= 1e-13 or trial == _TRIALS - 1:
                 return solved, True
             work_high *= 0.5 if side == -1 else 1.0
             side = -1
@@ -147,7 +147,7 @@ def _find_impulses(blow: Equations, n: int, rest: float, rate: float) -> tuple[b
             share = (low * work_high - high * work_low) / (work_high - work_low)
         if trial == 0:
             share = 0.0
-        elif high - low <= 1e-12 or trial == _TRIALS - 2:
+        elif high - low <= 1e-13 or trial == _TRIALS - 2:
             share = low
     return False, True
 
