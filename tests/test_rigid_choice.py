@@ -92,6 +92,7 @@ def test_what_rests_beside_exact_collisions_is_rigid() -> None:
     for _ in range(60):
         world.step()
         alone.step()
+        assert world.stepper is not None
         steppers.add(world.stepper.name)
     assert steppers == {"rigid", "event_driven"}
     place, other = world.component(3, Transform), alone.component(3, Transform)
