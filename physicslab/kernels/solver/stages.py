@@ -122,7 +122,8 @@ def press(
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return impulse_dt
     scale = _warm_start_scale(h, impulse_dt)
-    impulse.solve(_contacts(near), near, motion, inverse, acting, softness, h, scale, iterations)
+    sweeps = impulse.sweeps_of(near, iterations)
+    impulse.solve(_contacts(near), near, motion, inverse, acting, softness, h, scale, sweeps)
     return h
 
 
@@ -134,5 +135,5 @@ def relax(
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return
     contacts = _contacts(near)
-    impulse.relax(contacts, near, motion, inverse, h, iterations)
+    impulse.relax(contacts, near, motion, inverse, h, impulse.sweeps_of(near, iterations))
     impulse.separate(contacts, motion.position, inverse.mass, softness.max_push * h)
