@@ -94,7 +94,7 @@ def test_scenes_that_touch_and_are_not_observed_qualify() -> None:
 @pytest.mark.parametrize("name", compiled_scenes())
 def test_a_run_gives_the_bits_of_single_steps(name: str) -> None:
     stepped, ran = watched(load_scene(name)), load_scene(name)
-    steps = 80 if name == "stack" else STEPS  # then it falls asleep, but where a system looks at substeps
+    steps = 25 if name == "stack" else STEPS  # then it falls asleep, but where a system looks at substeps
     for _ in range(steps):
         stepped.step()
     ran.run(steps=steps)

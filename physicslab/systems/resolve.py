@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from physicslab.contacts.arguments import acting_in, inverse_in, motion_of, near_in
+from physicslab.contacts.arguments import acting_in, inverse_in, motion_of, near_in, sizes_of
 from physicslab.kernels.arguments import SoftnessTuple
 from physicslab.kernels.solver import entries, impulse
 from physicslab.state.state import State
@@ -68,7 +68,7 @@ class ResolveSystem(System):
         """Bounce the pairs that meet within the substep."""
         start, end = state.window
         state.collisions += entries.impact_stage(
-            near_in(state), motion_of(state), inverse_in(state), acting_in(state),
+            near_in(state), motion_of(state), sizes_of(state), inverse_in(state), acting_in(state),
             state.contacts.step_log, state.moment, h, start * h, end * h,
         )  # fmt: skip
 

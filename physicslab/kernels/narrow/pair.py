@@ -97,7 +97,11 @@ def touch_with_circle(
     near = CONTACT_MARGIN * size + speculative_margin
     if separation > max(reach, near):
         return
-    if reach > SWEEP_THRESHOLD * size:
+    fast = reach > SWEEP_THRESHOLD * size
+    approach = -(ux * nx + uy * ny)
+    # What rests on each other touches as it does now: the normal of another moment would do work on it.
+    loaded = point.normal_impulse > 0.0 and separation < near
+    if not loaded and (fast or approach > max(4.0 * speculative_margin, _ROUNDING * size)):
         # The normal is that of the moment of contact, if there is one in this substep.
         x, y = dx + start * ux, dy + start * uy
         t = _sweep_circle(x, y, way, a, b)
@@ -111,7 +115,7 @@ def touch_with_circle(
             manifold.swept = 1
         elif separation > near:
             return
-        elif t == MISS:
+        elif t == MISS and fast:
             manifold.swept = 2
     elif separation > near:
         return
@@ -134,7 +138,8 @@ def touch_boxes(
     travel = math.sqrt(ux * ux + uy * uy)
     x, y, lead_x, lead_y, margin = dx, dy, 0.0, 0.0, CONTACT_MARGIN * size + travel + speculative_margin
     manifold.swept, manifold.size, manifold.gap = 0, size, -math.inf
-    if travel > _FAST * size:
+    loaded = manifold.count > 0 and one.normal_impulse + two.normal_impulse > 0.0
+    if travel > _FAST * size and not loaded:
         margin = CONTACT_MARGIN * size + speculative_margin
         x, y = dx + start * ux, dy + start * uy
         t = 0.0

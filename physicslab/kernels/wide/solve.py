@@ -53,7 +53,7 @@ __all__ = [
 SOFT = 0.01
 """Share of the smaller body's size that the contact spring corrects at its full rate, in addition to what the
 load causes."""
-_ROUNDING = 1e-12
+_ROUNDING = 1e-9
 """Share that does not count as overlap: rounding may put a corner of a box on a floor below its surface."""
 _SEPARATE = 1.0 + 1e-9
 """One, and so much more that two points of a pair are never quite one."""
