@@ -8,7 +8,7 @@ from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion,
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.blow import Lever, Weights, one_blow, two_blows
 from physicslab.kernels.solver.impact_log import write_impact
-from physicslab.kernels.solver.impact_pose import Meeting, meeting_at
+from physicslab.kernels.solver.impact_pose import Meeting, is_known, meeting_at
 from physicslab.kernels.solver.impulse import follow_drift, relative_velocity
 
 __all__ = ["resolve_impacts"]
@@ -89,7 +89,7 @@ def _lever(meeting: Meeting, a: int, b: int, motion: Motion, gained: float) -> L
     )  # fmt: skip
 
 
-@inlined
+@fused
 def _strike(
     manifold: Manifold, point: Point, meeting: Meeting, lever: Lever, normal: float, tangent: float,
     motion: Motion, inverse: Inverse,
@@ -109,7 +109,7 @@ def _strike(
     point.impact_tangent += tangent
 
 
-@inlined
+@fused
 def _exchange(
     manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, motion: Motion, sizes: Sizes,
     inverse: Inverse, pull: float, t: float,
@@ -133,7 +133,12 @@ def _exchange(
         _strike(manifold, two, where2, lever2, blow.normal2, blow.tangent2, motion, inverse)
         return blow.normal1, blow.normal2, lever1.v, lever2.v, lowered
     point = one if meets_1 else two
-    where = meeting_at(manifold, point, motion, sizes, t)
+    if is_known(manifold, motion, sizes):
+        where = Meeting(
+            manifold.normal_x, manifold.normal_y, point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by
+        )
+    else:
+        where = meeting_at(manifold, point, motion, sizes, t)
     lever = _lever(where, a, b, motion, pull * t)
     if lever.v >= 0.0:  # it turns away until then
         return 0.0, 0.0, 0.0, 0.0, False
@@ -172,26 +177,18 @@ def _meeting_times(
 @inlined
 def _resolve_pair(
     manifold: Manifold, one: Point, two: Point, motion: Motion, sizes: Sizes, inverse: Inverse,
-    approach: Approach, window: Window, log: Log, number: int,
+    pull: float, t1: float, t2: float, log: Log, number: int,
 ) -> tuple[bool, bool]:  # fmt: skip
-    """Bounce one pair if it meets within the window.
+    """Bounce a pair of which one point meets, or both do, at ``t1`` and ``t2`` from now.
 
     Returns whether it did, and whether its restitution had to be lowered.
     """
-    if manifold.swept == 2:
-        one.ahead = 1
-        return False, False
-    t1, t2 = _meeting_times(manifold, one, two, motion, approach, window)
     meets_1, meets_2 = abs(t1) < math.inf, abs(t2) < math.inf
-    if not (meets_1 or meets_2):
-        return False, False
     t = min(t1, t2) if meets_1 and meets_2 else (t1 if meets_1 else t2)
     a, b, position, linear, angular = manifold.a, manifold.b, motion.position, motion.linear, motion.angular
     before = (linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
     earlier = one.impact_normal + two.impact_normal, one.impact_tangent + two.impact_tangent
-    j1, j2, v1, v2, lowered = _exchange(
-        manifold, one, two, meets_1, meets_2, motion, sizes, inverse, approach.pull, t
-    )
+    j1, j2, v1, v2, lowered = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, inverse, pull, t)
     if (j1 > 0.0 or j2 > 0.0) and len(log.impacts) > 0:
         where, v = (one, v1) if j1 >= j2 else (two, v2)
         x, y = position[b, 0] + t * before[3], position[b, 1] + t * before[4]
@@ -212,7 +209,8 @@ def _forced(
     """Return how B accelerates against A along the normal, and the speed up to which an approach is rest.
 
     ``load`` is the change of speed [m/s] that the pair's contact made in the last substep: in a pile it is
-    not the pair's own weight that presses it together.
+    not the pair's own weight that presses it together. The solver makes slow approaches of inelastic pairs
+    inelastic as well, and all of them at once.
     """
     a, b, linear, force = manifold.a, manifold.b, motion.linear, acting.force
     # An approach must at least exceed rounding.
@@ -222,7 +220,10 @@ def _forced(
     ax, ay = force[a, 0] * inverse.mass[a], force[a, 1] * inverse.mass[a]
     bx, by = force[b, 0] * inverse.mass[b], force[b, 1] * inverse.mass[b]
     pull = (bx - ax) * manifold.normal_x + (by - ay) * manifold.normal_y
-    return pull, 1e-9 * speed + 2.0 * max(-h * pull, load)
+    pressed = max(-h * pull, load)
+    if manifold.restitution == 0.0:
+        pressed = h * math.sqrt(max(ax * ax + ay * ay, bx * bx + by * by))
+    return pull, 1e-9 * speed + 2.0 * pressed
 
 
 @fused
@@ -264,14 +265,17 @@ def _resolve_once(
             continue
         if window.start >= 0.0:  # in symplectic Euler the forces have acted already
             pull = 0.0
-        approach = Approach(v1, v2, pull, resting_speed)
-        met, less = _resolve_pair(
-            manifold, one, two, motion, sizes, inverse, approach, window, log, logged + bounced
-        )
-        if met:
-            bounced += 1
-            manifold.impact_count += 1
-        lowered += 1 if less else 0
+        if manifold.swept == 2:
+            one.ahead = 1
+            continue
+        t1, t2 = _meeting_times(manifold, one, two, motion, Approach(v1, v2, pull, resting_speed), window)
+        if abs(t1) < math.inf or abs(t2) < math.inf:
+            met, less = _resolve_pair(
+                manifold, one, two, motion, sizes, inverse, pull, t1, t2, log, logged + bounced
+            )
+            bounced += 1 if met else 0
+            manifold.impact_count += 1 if met else 0
+            lowered += 1 if less else 0
         left += 1 - one.ahead
     return bounced, left, lowered
 

@@ -3,13 +3,13 @@
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import inlined
+from physicslab.kernels import fused, inlined
 from physicslab.kernels.arguments import Motion, Sizes
 from physicslab.kernels.narrow.manifold import circle_box
 from physicslab.kernels.narrow.outline import Outline
 from physicslab.kernels.records import Manifold, Point
 
-__all__ = ["Meeting", "meeting_at"]
+__all__ = ["Meeting", "is_known", "meeting_at"]
 
 _BOX = 2
 _FLIPPED = 33
@@ -78,22 +78,28 @@ def _corner_on_face(manifold: Manifold, point: Point, motion: Motion, t: float) 
     return Meeting(nx, ny, dx + x, dy + y, x, y)
 
 
+@fused
+def is_known(manifold: Manifold, motion: Motion, sizes: Sizes) -> bool:
+    """Whether normal and arms of a pair are those of the moment at which it meets: of discs they are.
+
+    A box must not turn for that.
+    """
+    a, b = manifold.a, manifold.b
+    if sizes.kind[b] != _BOX:
+        return bool(manifold.wall >= 0 or sizes.kind[a] != _BOX or motion.angular[a] == 0.0)
+    return bool(manifold.wall < 0 and sizes.kind[a] != _BOX and motion.angular[b] == 0.0)
+
+
 @inlined
 def meeting_at(manifold: Manifold, point: Point, motion: Motion, sizes: Sizes, t: float) -> Meeting:
-    """Return where a pair meets at the time t from now, each body having moved as it does now.
+    """Return where a pair that is not known meets at the time t from now, each body moving as it does now.
 
-    Of discs, normal and arms are known for that moment already. Both arms lead to one point: angular momentum
-    is kept to rounding.
+    Both arms lead to one point: angular momentum is kept to rounding.
     """
     a, b, walled = manifold.a, manifold.b, manifold.wall >= 0
-    round_a, round_b = not walled and sizes.kind[a] != _BOX, sizes.kind[b] != _BOX
-    if round_b and not walled and not round_a and motion.angular[a] != 0.0:
+    if sizes.kind[b] != _BOX:
         return _circle_on_box(b, a, motion, sizes, t)
-    if round_a and not round_b and motion.angular[b] != 0.0:
+    if not walled and sizes.kind[a] != _BOX:
         nx, ny, ax, ay, bx, by = _circle_on_box(a, b, motion, sizes, t)
         return Meeting(-nx, -ny, bx, by, ax, ay)
-    if round_a or round_b:
-        return Meeting(
-            manifold.normal_x, manifold.normal_y, point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by
-        )
     return _corner_on_face(manifold, point, motion, t)
