@@ -508,7 +508,7 @@ def test_a_step_that_rigid_contacts_cannot_make_is_left_to_soft_ones() -> None:
     boxes = [box(world, (0, y), width=1, height=1) for y in (0.4, 1.3)]
     world.step()
     assert rigid_of(world).left_to_soft == 1
-    assert rigid_of(world).why_soft == "bodies overlap"
+    assert rigid_of(world).why_soft == "bodies overlap by 0.1 of their size"
     assert world.stepper is not None and world.stepper.name != "rigid"
     world.run(seconds=5.0)
     assert place(world, boxes[0])[1] == pytest.approx(0.5, abs=1e-3)

@@ -84,7 +84,8 @@ class Screen:
 @pytest.fixture
 def screen(tmp_path: Path) -> Iterator[Screen]:
     reader, writer = os.pipe()
-    # Without -noreset the server starts over when its last client leaves, and drops those that come meanwhile.
+    # Without -noreset the server starts over when its last client leaves, and drops those that come
+    # meanwhile.
     size = ["-screen", "0", "1280x720x24"]
     command = ["Xvfb", "-displayfd", str(writer), *size, "-nolisten", "tcp", "-noreset"]
     with subprocess.Popen(command, pass_fds=(writer,), stderr=subprocess.DEVNULL) as server:

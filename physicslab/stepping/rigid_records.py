@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform
 from physicslab.contacts.near_pairs import list_all
-from physicslab.kernels.rigid.equations import UNKNOWN
 from physicslab.kernels.rigid.features import GAP, MU, NX, NY, ONE, PAIR, PX, PY, RESTITUTION
 from physicslab.state.state import State
+from physicslab.stepping.rigid_motion import MadeStep
 
 __all__ = ["RigidRecords"]
 
@@ -30,8 +28,8 @@ class RigidRecords:
     def __init__(self, pairs: NDArray[np.int64]) -> None:
         self._pairs = pairs
 
-    def write(self, state: State, equations: tuple[Any, ...], count: int, impacts: int, h: float) -> None:
-        """Write ``count`` closed points and the last ``impacts`` impacts, of a step of ``h`` seconds."""
+    def write(self, state: State, made: MadeStep, h: float) -> None:
+        """Write the closed points and the impacts of a step of ``h`` seconds."""
         contacts = state.contacts
         contacts.wide.reset(len(state.entity_index))
         list_all(state, self._pairs, len(self._pairs))
@@ -41,9 +39,9 @@ class RigidRecords:
             points[name] = 0.0
         contacts.impulse_dt = h / state.simulation.substeps
         position = state.table(Transform)["position"]
-        of, measures, forces = equations[0], equations[1], equations[3][UNKNOWN]
+        of, measures, forces = made.points, made.measures, made.forces
         touching: list[int] = []
-        for i in range(count):
+        for i in range(made.closed):
             p = int(of[i, PAIR])
             record = records[p]
             a, b = record["a"], record["b"]
@@ -66,7 +64,7 @@ class RigidRecords:
             point["separation"] = measures[i, GAP]
             point["normal_impulse"] = forces[2 * i] * contacts.impulse_dt
             point["tangent_impulse"] = forces[2 * i + 1] * contacts.impulse_dt
-        self._write_impacts(state, impacts)
+        self._write_impacts(state, made.impacts)
         contacts.active = len(touching)
         contacts.touching[: len(touching)] = touching
         contacts.stale = True  # for the contact step, should it have to go on

@@ -7,12 +7,15 @@ Inelastic ones take all inelastic contacts that touch with them. Where Newton's 
 it can where a body sticks with one end and pivots, restitutions are lowered until it makes none.
 """
 
+import math
+
 from physicslab.kernels import Numbers, Rows, fused, inlined
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.complementarity import solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
+    GAP,
     GIVEN,
     MEASURES,
     MU,
@@ -31,14 +34,14 @@ from physicslab.kernels.rigid.features import (
 
 __all__ = ["approaches", "resolve_blows"]
 
-_MAX_ROUNDS = 500
-"""Rounds of impacts at one time; after them all points that touch are inelastic."""
+_MAX_ROUNDS, _SHORT_ROUNDS = 500, 3
+"""Rounds of impacts at one time, and within a short step; after them all points that touch are inelastic."""
 _NOISE = 1e-4
 """Share of the speed that counts as none up to which an approach is rounding."""
 _SPEEDS = 100.0
 """Multiple of the speed that counts as none that impulses are measured by: smaller ones go by rounding."""
-_HALVINGS = 46
-"""Bisections for the restitution that keeps the energy."""
+_TRIALS = 60
+"""Trials for the restitution that keeps the energy."""
 
 
 @inlined
@@ -58,8 +61,17 @@ def _take(equations: Equations, i: int, blow: Equations, n: int, restitution: fl
     return n + 1
 
 
+@inlined
+def _closing_speed(equations: Equations, i: int, rate: float) -> float:
+    """Return how fast a point moves along its normal beyond what its gap allows in 1 / ``rate`` seconds."""
+    speed: float = equations.measures[i, VN] + max(equations.measures[i, GAP], 0.0) * rate
+    return speed
+
+
 @fused
-def _gather(equations: Equations, count: int, blow: Equations, rest: float, last: bool) -> tuple[int, bool]:
+def _gather(
+    equations: Equations, count: int, blow: Equations, rest: float, rate: float, last: bool
+) -> tuple[int, bool]:
     """Take the points that approach, and inelastic ones that rest.
 
     Returns how many they are, and whether any approaches.
@@ -72,24 +84,25 @@ def _gather(equations: Equations, count: int, blow: Equations, rest: float, last
             if last or -equations.measures[i, RESTITUTION] * speed <= rest
             else equations.measures[i, RESTITUTION]
         )
-        if approaches(speed, rest):
+        closing = _closing_speed(equations, i, rate)
+        if approaches(closing, rest):
             approaching = True
             n = _take(equations, i, blow, n, e)
-        elif speed <= rest and (equations.measures[i, RESTITUTION] == 0.0 or last):
+        elif closing <= rest and (equations.measures[i, RESTITUTION] == 0.0 or last):
             n = _take(equations, i, blow, n, 0.0)
     return n, approaching
 
 
 @fused
-def _solve(blow: Equations, n: int, share: float, rest: float) -> bool:
+def _solve(blow: Equations, n: int, share: float, rest: float, rate: float) -> bool:
     """Find the impulses at ``share`` of the restitutions; return whether there are any."""
     for i in range(n):
-        speed = blow.measures[i, VN]
+        back = share * blow.measures[i, RESTITUTION] * min(blow.measures[i, VN], 0.0)
         blow.vectors[FREE, 2 * i] = (
-            (1.0 + share * blow.measures[i, RESTITUTION]) * speed if speed < 0.0 else speed
+            blow.measures[i, VN] + back if back < 0.0 else _closing_speed(blow, i, rate)
         )
         blow.vectors[FREE, 2 * i + 1] = blow.measures[i, VT]
-    return solve_complementarity(blow, n, _SPEEDS * rest)
+    return solve_complementarity(blow, n, _SPEEDS * rest, rate == 0.0)
 
 
 @fused
@@ -110,22 +123,35 @@ def _energy_gained(blow: Equations, n: int) -> tuple[float, float]:
 
 
 @fused
-def _find_impulses(blow: Equations, n: int, rest: float) -> tuple[bool, bool]:
+def _find_impulses(blow: Equations, n: int, rest: float, rate: float) -> tuple[bool, bool]:
     """Find the impulses, with restitutions lowered where they would make energy.
 
     Returns whether there are any, and whether restitutions were lowered.
     """
-    low, high, share = 0.0, 1.0, 1.0
-    for trial in range(_HALVINGS):
-        solved = _solve(blow, n, share, rest)
+    low, high, work_low, work_high, share, side = 0.0, 1.0, 0.0, 0.0, 1.0, 0
+    for trial in range(_TRIALS):
+        solved = _solve(blow, n, share, rest, rate)
         work, scale = _energy_gained(blow, n)
-        if trial == _HALVINGS - 1 or (solved and work <= (1e-12 * scale if trial == 0 else 0.0)):
-            if trial == 0 or trial == _HALVINGS - 1:
-                return solved, trial > 0
-            low = share
+        if trial == 0 and solved and work <= 1e-12 * scale:
+            return True, False
+        if trial == 1 or (solved and work <= 0.0):
+            low, work_low = share, work
+            if not solved or work >= -1e-12 * scale or high - low <= 1e-12 or trial == _TRIALS - 1:
+                return solved, True
+            work_high *= 0.5 if side == -1 else 1.0
+            side = -1
         else:
-            high = share
-        share = 0.5 * (low + high) if trial < _HALVINGS - 2 else low
+            high, work_high = share, work if solved else math.inf
+            work_low *= 0.5 if side == 1 else 1.0
+            side = 1
+        # By regula falsi with the Illinois rule, and by bisection where there is no solution above.
+        share = 0.5 * (low + high) if work_high == math.inf else low
+        if work_high > 0.0 and work_high < math.inf:
+            share = (low * work_high - high * work_low) / (work_high - work_low)
+        if trial == 0:
+            share = 0.0
+        elif high - low <= 1e-12 or trial == _TRIALS - 2:
+            share = low
     return False, True
 
 
@@ -168,23 +194,26 @@ def _write(
 @fused
 def resolve_blows(
     scene: Scene, equations: Equations, count: int, blow: Equations, q: Numbers, v: Numbers, rest: float,
-    entities: Rows, log: Impacts, logged: int, time: float,
-) -> tuple[int, bool, bool]:  # fmt: skip
+    rate: float, entities: Rows, log: Impacts, logged: int, time: float,
+) -> tuple[int, bool, bool, int, int]:  # fmt: skip
     """Let all points that approach faster than ``rest`` bounce, until none does.
 
-    Returns how many impacts there were, whether each could be resolved, and whether energy had to be kept.
+    Those that do not bounce may use up their gap in 1 / ``rate`` seconds. Returns how many impacts there
+    were, whether each could be resolved, whether energy had to be kept, how many points the last impulses
+    act at, and how many rounds there were.
     """
-    impacts, lowered = 0, False
-    for turn in range(_MAX_ROUNDS + 2):
+    impacts, lowered, last = 0, False, 0
+    most = _SHORT_ROUNDS if rate > 0.0 else _MAX_ROUNDS
+    for turn in range(most + 2):
         measure_all(scene, equations, count, q, v)
-        n, approaching = _gather(equations, count, blow, rest, turn >= _MAX_ROUNDS)
+        n, approaching = _gather(equations, count, blow, rest, rate, turn >= most)
         if not approaching:
-            return impacts, True, lowered
+            return impacts, True, lowered, last, turn
         assemble(scene, blow, n)
-        solved, kept = _find_impulses(blow, n, rest)
+        solved, kept = _find_impulses(blow, n, rest, rate)
         if not solved:
-            return impacts, False, lowered
-        lowered = lowered or kept
+            return impacts, False, lowered, last, turn
+        lowered, last = lowered or kept, n
         impacts += _write(scene, blow, n, rest, entities, log, logged + impacts, time)
         apply(scene, blow, n, v)
-    return impacts, True, lowered
+    return impacts, True, lowered, last, most

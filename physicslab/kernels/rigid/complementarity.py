@@ -37,6 +37,15 @@ _TOLERANCE = 1e-11
 """Share of the largest free acceleration, or of the largest force, up to which a law counts as kept."""
 _DAMPED = 1e-13
 """Share of the diagonal that is added to a matrix that may be singular; refinement removes its effect."""
+_FEW_CHANGES = 4
+"""Number of changes that are tried before the pivots where they are good enough."""
+_SLACKS = (1e-10, 1e-12, 1e-8)
+"""Slacks of the pivots, one after the other."""
+_AT_REST = 1e-7
+"""Share of the largest free acceleration below which what pivots leave open or sliding may be at rest."""
+_INSIDE = 1e-6
+"""Share of a friction cone within which pivots leave the force on its edge: they are found with raised
+sides."""
 _REFINEMENTS = 40
 """Largest number of refinements of a solution."""
 
@@ -224,18 +233,31 @@ def _take_pivots(equations: Equations, count: int, closed: float, sticking: floa
             points[i, STATUS] = OPEN
         elif points[i, GIVEN] != STICKS:
             points[i, STATUS] = points[i, GIVEN]
-        elif abs(vectors[CAUSED, 2 * i + 1]) <= sticking or abs(rubbed) < (1.0 - 1e-9) * edge:
+        elif abs(vectors[CAUSED, 2 * i + 1]) <= sticking or abs(rubbed) < (1.0 - _INSIDE) * edge:
             points[i, STATUS] = STICKS
         else:
             points[i, STATUS] = SLIDES_ON if rubbed < 0.0 else SLIDES_BACK
 
 
 @inlined
-def solve_complementarity(equations: Equations, count: int, scale: float) -> bool:
+def _largest_violation(equations: Equations, count: int, w_scale: float, z_scale: float) -> float:
+    """Return the largest violation of a law by what is known, as a share of the largest of its kind."""
+    vectors, worst = equations.vectors, 0.0
+    for i in range(count):
+        pressed, rubbed = vectors[UNKNOWN, 2 * i] / z_scale, vectors[UNKNOWN, 2 * i + 1] / z_scale
+        opening = vectors[CAUSED, 2 * i] / w_scale
+        worst = max(worst, -pressed, -opening, min(pressed, opening))
+        worst = max(worst, abs(rubbed) - equations.measures[i, MU] * pressed)
+    return worst
+
+
+@inlined
+def solve_complementarity(equations: Equations, count: int, scale: float, exactly: bool) -> bool:
     """Find forces that keep all laws, and what each point does; return whether there are any.
 
     A point's GIVEN is STICKS if it may stick or slide either way, else the edge of its cone. Accelerations or
-    speeds below ``scale`` are measured by that.
+    speeds below ``scale`` are measured by that. What pivots find is solved for again where it is wanted
+    ``exactly``; else, with 1e-9 of them, it is good enough.
     """
     points, vectors = equations.points, equations.vectors
     w_scale, z_scale, largest = 0.0, 0.0, 0.0
@@ -253,15 +275,19 @@ def solve_complementarity(equations: Equations, count: int, scale: float) -> boo
         points[i, STATUS] = _closed_status(equations, i, free_n, free_t) if free_n < 0.0 else points[i, GIVEN]
     if largest == 0.0:
         return True
-    if _settle_by_changes(equations, count, 4 + 2 * count, w_scale, z_scale):
+    if _settle_by_changes(equations, count, 4 + 2 * count if exactly else _FEW_CHANGES, w_scale, z_scale):
         return True
     # Of what the pivots leave open or sliding, some may rest with the others: forces are of least norm then.
-    for share in (1e-9, -1.0):
-        if not find_by_pivots(equations, count):
-            return False
+    for attempt in range(3):
+        if not find_by_pivots(equations, count, _SLACKS[attempt]):
+            continue
         for i in range(2 * count):
             z_scale = max(z_scale, abs(vectors[UNKNOWN, i]))
-        _take_pivots(equations, count, share * w_scale, share * w_scale)
+        limit = _AT_REST * w_scale if attempt == 0 else -1.0
+        _take_pivots(equations, count, limit, limit)
+        fits = _largest_violation(equations, count, w_scale, z_scale) <= _AT_REST
+        if fits and (attempt == 2 or not exactly):
+            return True
         if _settle_by_changes(equations, count, 2 + count, w_scale, z_scale):
             return True
     return False

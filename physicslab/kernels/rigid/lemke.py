@@ -25,11 +25,29 @@ _NOTHING = 1e-13
 
 
 @inlined
+def _scaled_friction(equations: Equations, i: int) -> float:
+    """Return the coefficient of friction between scaled unknowns."""
+    ratio = equations.a[2 * i + 1, 2 * i + 1] / equations.a[2 * i, 2 * i]
+    friction: float = equations.measures[i, MU] * math.sqrt(ratio)
+    return friction
+
+
+@inlined
 def _coefficient(equations: Equations, row: int, j: int) -> tuple[float, float, float]:
-    """Return what the normal force of point j, and friction to either side, cause in a row of the matrix."""
-    normal, tangent = equations.a[row, 2 * j], equations.a[row, 2 * j + 1]
+    """Return what the normal force of point j, and friction to either side, cause in a row of the matrix.
+
+    Unknowns and rows are scaled by the roots of the diagonal, so that bodies of all masses count alike.
+    """
+    a = equations.a
+    own = math.sqrt(a[row, row])
+    normal = a[row, 2 * j] / (own * math.sqrt(a[2 * j, 2 * j]))
+    tangent = a[row, 2 * j + 1] / (own * math.sqrt(a[2 * j + 1, 2 * j + 1]))
     if equations.points[j, GIVEN] != STICKS:
-        return normal + edge_of(equations.points[j, GIVEN], equations.measures[j, MU]) * tangent, 0.0, 0.0
+        return (
+            normal + edge_of(equations.points[j, GIVEN], _scaled_friction(equations, j)) * tangent,
+            0.0,
+            0.0,
+        )
     return normal, tangent, -tangent
 
 
@@ -54,7 +72,7 @@ def _write_tableau(equations: Equations, count: int) -> int:
                 parts = 4 if equations.points[j, GIVEN] == STICKS else 1
                 if side == 3:  # mu z_n less both frictions
                     if mine:
-                        tableau[row, column] = -equations.measures[i, MU]
+                        tableau[row, column] = -_scaled_friction(equations, i)
                         tableau[row, column + 1] = tableau[row, column + 2] = 1.0
                 else:
                     normal, left, right = _coefficient(equations, source, j)
@@ -64,7 +82,11 @@ def _write_tableau(equations: Equations, count: int) -> int:
                         tableau[row, column + 3] = -1.0 if mine and side > 0 else 0.0
                 column += parts
             tableau[row, 2 * size] = -1.0
-            tableau[row, 2 * size + 1] = 0.0 if side == 3 else sign * equations.vectors[FREE, source]
+            tableau[row, 2 * size + 1] = (
+                0.0
+                if side == 3
+                else sign * equations.vectors[FREE, source] / math.sqrt(equations.a[source, source])
+            )
             row += 1
     return size
 
@@ -85,32 +107,36 @@ def _pivot(equations: Equations, size: int, row: int, column: int) -> None:
 
 
 @fused
-def _leaving(equations: Equations, size: int, column: int) -> int:
+def _leaving(equations: Equations, size: int, column: int, slack: float) -> int:
     """Return the row whose variable reaches zero first as a column grows, -1 if none does.
 
-    Of equal ones that of the covering variable, else the one with the largest pivot.
+    Of those that reach it within a ``slack`` of their values the one with the largest pivot (Harris), as
+    small pivots are mostly rounding; the covering variable before all.
     """
-    tableau, best, least, largest = equations.tableau, -1, math.inf, 0.0
+    tableau, best, first, largest = equations.tableau, -1, math.inf, 0.0
     for row in range(size):
         largest = max(largest, abs(tableau[row, column]))
     for row in range(size):
         pivot = tableau[row, column]
         if pivot > _NOTHING * largest:
-            ratio = max(tableau[row, 2 * size + 1], 0.0) / pivot
-            tie = best >= 0 and abs(ratio - least) <= 1e-12 * (abs(least) + abs(ratio))
-            if tie and (
-                equations.order[0, row] == 2 * size
-                or (equations.order[0, best] != 2 * size and pivot > tableau[best, column])
-            ):
-                best, least = row, min(ratio, least)
-            elif not tie and ratio < least:
-                best, least = row, ratio
+            first = min(first, (max(tableau[row, 2 * size + 1], 0.0) + slack) / pivot)
+    for row in range(size):
+        pivot = tableau[row, column]
+        if pivot > _NOTHING * largest and max(tableau[row, 2 * size + 1], 0.0) / pivot <= first:
+            if equations.order[0, row] == 2 * size:
+                return row
+            if best < 0 or pivot > tableau[best, column]:
+                best = row
     return best
 
 
 @inlined
-def find_by_pivots(equations: Equations, count: int) -> bool:
-    """Find forces that keep all laws; they are left as the unknowns. Return whether there are any."""
+def find_by_pivots(equations: Equations, count: int, slack: float) -> bool:
+    """Find forces that keep all laws but for a share ``slack`` of the largest right side.
+
+    They are left as the unknowns. Returns whether any were found: rounding can hide them, and another slack
+    show them.
+    """
     size, tableau, vectors = _write_tableau(equations, count), equations.tableau, equations.vectors
     row, scale = 0, 0.0
     for k in range(size):
@@ -129,7 +155,7 @@ def find_by_pivots(equations: Equations, count: int) -> bool:
             if left == 2 * size:
                 break
             entering = left + size if left < size else left - size
-            leaving = _leaving(equations, size, entering)
+            leaving = _leaving(equations, size, entering, slack * scale)
             if leaving < 0:
                 return False
     column = size
@@ -142,6 +168,8 @@ def find_by_pivots(equations: Equations, count: int) -> bool:
                 pressed = tableau[row, 2 * size + 1]
             elif sticks and (place == 1 or place == 2):
                 rubbed += (1.0 if place == 1 else -1.0) * tableau[row, 2 * size + 1]
+        pressed /= math.sqrt(equations.a[2 * i, 2 * i])
+        rubbed /= math.sqrt(equations.a[2 * i + 1, 2 * i + 1])
         edge = edge_of(equations.points[i, GIVEN], equations.measures[i, MU])
         vectors[UNKNOWN, 2 * i], vectors[UNKNOWN, 2 * i + 1] = pressed, rubbed if sticks else edge * pressed
         column += 4 if sticks else 1

@@ -47,7 +47,6 @@ from physicslab.kernels.rigid.touching import far_apart, find_touching, hold_clo
 __all__ = [
     "DONE",
     "NO_FORCES",
-    "OVERLAP",
     "TOO_MANY",
     "UNRESOLVED",
     "advance_piece",
@@ -56,14 +55,11 @@ __all__ = [
     "touch",
 ]
 
-DONE, OVERLAP, NO_FORCES, UNRESOLVED, TOO_MANY = 0, 1, 2, 3, 4
-"""Why the motion cannot go on: it can;
-bodies overlap; no contact forces keep all laws; an impact has no solution; more points touch than there is
-room for."""
+DONE, NO_FORCES, UNRESOLVED, TOO_MANY = 0, 1, 2, 3
+"""Why the motion cannot go on: it can; no contact forces keep all laws; an impact has no solution; more
+points touch than there is room for."""
 _SAME_MOMENT = 1e-9
 """Share of its load within which a point that sticks reaches the limit of friction with another one."""
-_OVERLAP = 1e-3
-"""Share of a size beyond which bodies are not moved apart: soft contacts leave half of that."""
 _SHORTENINGS = 60
 """How often a piece is shortened for its error."""
 _SHORTEST = 1e-9
@@ -138,26 +134,24 @@ def _at_rest(scene: Scene, acceleration: Numbers, v: Numbers, rest: float, least
 @kernel
 def touch(
     scene: SceneTuple, equations: EquationsTuple, room: EquationsTuple, acceleration: Numbers,
-    q: Numbers, v: Numbers,
-) -> tuple[int, int, float, bool]:  # fmt: skip
-    """Find which points touch.
+    q: Numbers, v: Numbers, within: float,
+) -> tuple[int, int, float, bool, float]:  # fmt: skip
+    """Find which points touch, or are ``within`` a share of a size of that.
 
     Returns why the motion cannot go on (DONE if it can), how many points touch, the speed that counts as none
-    [m/s], and whether any point approaches faster than rounding.
+    [m/s], whether any point approaches faster than rounding, and the deepest overlap as a share of a size.
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
     accelerate(q, v, acceleration, of.inverse_mass, of.damping, of.calls)
     rest, _ = rest_limits(of, acceleration, v)
-    count, deepest = find_touching(of, points, scratch, q, v)
+    count, deepest = find_touching(of, points, scratch, q, v, within)
     if count > len(points.points):
-        return TOO_MANY, 0, rest, False
-    if deepest > _OVERLAP:
-        return OVERLAP, 0, rest, False
+        return TOO_MANY, 0, rest, False, deepest
     approaching = False
     measure_all(of, points, count, q, v)
     for i in range(count):
         approaching = approaching or approaches(points.measures[i, VN], rest)
-    return DONE, count, rest, approaching
+    return DONE, count, rest, approaching, deepest
 
 
 @kernel
@@ -216,15 +210,16 @@ def begin_motion(
 @kernel
 def collide(
     scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, rest: float,
-    q: Numbers, v: Numbers, entities: Rows, log: Impacts, logged: int, time: float,
-) -> tuple[int, int, bool]:  # fmt: skip
-    """Resolve the impacts of the points that touch.
+    rate: float, q: Numbers, v: Numbers, entities: Rows, log: Impacts, logged: int, time: float,
+) -> tuple[int, int, bool, int, int]:  # fmt: skip
+    """Resolve the impacts of the points that touch, or will in 1 / ``rate`` seconds.
 
-    Returns why the motion cannot go on (DONE if it can), how many impacts there were, and whether
-    restitutions were lowered to keep the energy.
+    Returns why the motion cannot go on (DONE if it can), how many impacts there were, whether restitutions
+    were lowered to keep the energy, how many points the last impulses act at, which are left in ``room``, and
+    how many rounds of impulses there were.
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
-    impacts, solved, lowered = resolve_blows(
-        of, points, count, scratch, q, v, rest, entities, log, logged, time
+    impacts, solved, lowered, last, rounds = resolve_blows(
+        of, points, count, scratch, q, v, rest, rate, entities, log, logged, time
     )
-    return DONE if solved else UNRESOLVED, impacts, lowered
+    return DONE if solved else UNRESOLVED, impacts, lowered, last, rounds

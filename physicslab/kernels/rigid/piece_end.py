@@ -3,8 +3,10 @@
 import math
 
 from physicslab.kernels import Numbers, Vectors, fused, inlined
+from physicslab.kernels.rigid.constraints import constrained_acceleration
+from physicslab.kernels.rigid.curve import keep_ends, place_on_curve
 from physicslab.kernels.rigid.equations import SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import MARGIN, MU, STATUS, VT, Scene
+from physicslab.kernels.rigid.features import MARGIN, MU, STATUS, VT, Scene, measure
 from physicslab.kernels.rigid.pieces import Stages, make_piece
 from physicslab.kernels.rigid.touching import open_gap
 
@@ -17,10 +19,20 @@ _CLOSED = 1e-13
 """Share of a size by which a gap may change by rounding."""
 _NO_FORCE = 1e-9
 """Share of the largest force that is rounding."""
+_ROUNDING = 1e-14
+"""Share of a size, or of the speed that counts as none, that is rounding."""
 _HALVINGS = 40
 """How often a piece is halved to find a time at which a point that has bounced is above the other body."""
-_TRIALS = 80
-"""Largest number of pieces that are made to locate an event."""
+_TRIALS = 120
+"""Largest number of trials to locate an event."""
+_ON_CURVE = 1e-12
+"""Share of a piece to which an event is located on its curve."""
+_STEEP = 1e-7
+"""Share of a piece below which rounding may be most of a slope."""
+_LOCATED = 1e-13
+"""Share of a piece by which its end may be past the event."""
+_BY_SLOPE = 6
+"""Trials that follow the slope of the curve; later ones do without it."""
 _CUTS = 16
 """Largest number of times that an event is found to come after another one."""
 
@@ -31,14 +43,14 @@ def _value(
     q: Numbers, v: Numbers,
 ) -> float:  # fmt: skip
     """Return what must stay positive, of a point that is measured in the state or of a pair."""
-    pressing, rubbing = equations.vectors[UNKNOWN, 2 * index], equations.vectors[UNKNOWN, 2 * index + 1]
-    value: float = equations.measures[index, MARGIN]
     if kind == APART:
-        value = open_gap(scene, equations, count, scratch, index, q, v)
-    elif kind == PRESSES:
-        value = pressing
-    elif kind == HOLDS:
-        value = equations.measures[index, MU] * pressing - abs(rubbing)
+        return open_gap(scene, equations, count, scratch, index, q, v)
+    value: float = equations.measures[index, MARGIN]
+    if kind <= HOLDS:
+        value = equations.vectors[UNKNOWN, 2 * index]
+        if kind == HOLDS:
+            rubbing = abs(equations.vectors[UNKNOWN, 2 * index + 1])
+            value = equations.measures[index, MU] * value - rubbing
     elif kind == SLIDES:
         sliding = equations.measures[index, VT]
         value = sliding if equations.points[index, STATUS] == SLIDES_ON else -sliding
@@ -58,12 +70,10 @@ def note_start(
 @inlined
 def _can_end(kind: int, i: int, equations: Equations, start: float) -> bool:
     """Whether a function can end the piece."""
-    sticks: bool = equations.points[i, STATUS] == STICKS
-    if kind == HOLDS:
-        return sticks
-    if kind == SLIDES:
+    if kind in (HOLDS, SLIDES):
+        sticks: bool = equations.points[i, STATUS] == STICKS
         rubs: bool = equations.measures[i, MU] > 0.0
-        return rubs and not sticks
+        return sticks if kind == HOLDS else rubs and not sticks
     return kind != REACHES or start > 0.0
 
 
@@ -76,6 +86,17 @@ def _allowance(kind: int, i: int, scene: Scene, start: float, rest: float) -> fl
         allowance: float = _CLOSED * scene.coefficients[i, 2] - min(start, 0.0)
         return allowance
     return 0.0
+
+
+@inlined
+def _noise(kind: int, index: int, scene: Scene, equations: Equations, rest: float) -> float:
+    """Return by how much rounding may change a function."""
+    noise: float = _ROUNDING * rest
+    if kind == APART:
+        noise = _ROUNDING * scene.coefficients[index, 2]
+    elif kind <= HOLDS:
+        noise = _NO_FORCE * abs(equations.vectors[UNKNOWN, 2 * index])
+    return noise
 
 
 @inlined
@@ -104,6 +125,62 @@ def _first_event(
     return first_kind, first
 
 
+@inlined
+def _cross(
+    on_curve: bool, kind: int, index: int, scene: Scene, equations: Equations, count: int, scratch: Equations,
+    stages: Stages, q: Numbers, v: Numbers, h: float, t: float, end: float, slope: float, f_low: float,
+    allowance: float, noise: float, tolerance: float,
+) -> tuple[float, float, bool, int]:  # fmt: skip
+    """Find where a function falls below zero, from ``t`` on and before ``end``, in a piece of ``h`` seconds.
+
+    On its curve, or by pieces that end there. By the slope where one is given, then by regula falsi with the
+    Illinois rule, and by bisection where that is slow. Returns the time, just past it; the slope; whether it
+    falls below zero at all; how many trials there were. The state is left in ``stages``.
+    """
+    low, high, f_high, side, wide = 0.0, end, slope * (end - t), 0, math.inf
+    moment = (_ON_CURVE if on_curve else _LOCATED) * h
+    depth, last = noise - slope * moment, _TRIALS - 1
+    # A point that has just bounced begins at nothing and rises: the fall back is looked for after that.
+    rising = _HALVINGS if on_curve and kind == APART and f_low <= 0.0 else 0
+    for trial in range(_TRIALS):
+        located = on_curve and trial > 0 and rising == 0 and (high - low <= moment or trial == last)
+        if on_curve:
+            t = high if located else t
+            place_on_curve(stages, q, v, h, t)
+            if located or kind <= HOLDS:
+                constrained_acceleration(scene, equations, count, stages.q, stages.v, stages.acceleration)
+            elif kind < APART:
+                measure(scene, equations.points, index, stages.q, stages.v, equations.measures)
+        else:
+            make_piece(scene, equations, count, q, v, t, tolerance, stages)
+        f = _value(kind, index, scene, equations, count, scratch, stages.q, stages.v) + allowance
+        if f <= 0.0:
+            high, f_high, rising = t, f, max(rising - 1, 0)
+            f_low *= 0.5 if side == -1 else 1.0
+            side = -1
+        else:
+            low, f_low, rising = t, f, 0
+            f_high *= 0.5 if side == 1 else 1.0
+            side = 1
+        if not on_curve:
+            located = t == end or (f <= 0.0 and (f >= -depth or high - low <= moment))
+        elif high - low > _STEEP * h:
+            slope = (f_high - f_low) / (high - low)
+        if located or trial == last:
+            return t, slope, f <= 0.0, trial + 1
+        if not on_curve and slope < 0.0 and trial < _BY_SLOPE and high - low > moment:
+            t -= (f + 0.5 * depth) / slope
+        elif rising > 0 or high - low <= moment:
+            t = 0.5 * high if rising > 0 else high
+        else:
+            t = high - f_high * (high - low) / (f_high - f_low)
+        if t != high and (not (low < t < high) or (high - low > 0.5 * wide and rising == 0)):
+            t = 0.5 * (low + high)
+            t = t if low < t < high else high
+        wide = high - low if trial % 2 == 1 and (on_curve or trial >= _BY_SLOPE) else wide
+    return t, slope, False, _TRIALS
+
+
 @fused
 def cut_at_first_event(
     scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
@@ -112,48 +189,26 @@ def cut_at_first_event(
     """Cut a piece that was made of ``h`` seconds where its first event is, if there is one in it.
 
     Returns its length, kind and index of the event, -1 if there is none, and how many pieces were made. The
-    time is located to rounding, just past the event, by regula falsi with the Illinois rule, and by
-    bisection where that is slow: each trial is a piece of its own.
+    event is found on the curve of the piece; pieces of other lengths then locate it to rounding.
     """
-    kind, index, pieces = -1, -1, 0
-    for _ in range(_CUTS):
+    kind, index, slope, at, end, f_low, allowance = -1, -1, 0.0, h, h, 0.0, 0.0
+    keep_ends(stages)
+    for cut in range(_CUTS + 1):
         next_kind, next_index = _first_event(
             scene, equations, count, scratch, start, stages, rest, kind, index
         )
-        if next_kind < 0:
+        on_curve = next_kind >= 0 and cut < _CUTS
+        if on_curve:
+            kind, index, end, slope = next_kind, next_index, at, 0.0
+            allowance = _allowance(kind, index, scene, start[kind, index], rest)
+            f_low = max(start[kind, index] + allowance, 0.0)
+        elif kind < 0:
+            return h, kind, index, 0
+        noise = 0.0 if on_curve else _noise(kind, index, scene, equations, rest)
+        at, slope, found, trials = _cross(
+            on_curve, kind, index, scene, equations, count, scratch, stages, q, v, h, at, end, slope, f_low,
+            allowance, noise, tolerance,
+        )  # fmt: skip
+        if not on_curve:
             break
-        kind, index = next_kind, next_index
-        allowance = _allowance(kind, index, scene, start[kind, index], rest)
-        low, high, side = 0.0, h, 0
-        f_low = max(start[kind, index] + allowance, 0.0)
-        f_high = _value(kind, index, scene, equations, count, scratch, stages.q, stages.v) + allowance
-        # A point that has just bounced begins at nothing and rises: the fall back is looked for after that.
-        rising = _HALVINGS if kind == APART and allowance > 0.0 else 0
-        for trial in range(_TRIALS + rising):
-            t = high - f_high * (high - low) / (f_high - f_low)
-            if trial < rising:
-                t = 0.5 * high
-            elif not (low < t < high) or trial % 8 == 7:
-                t = 0.5 * (low + high)
-            finished = trial >= rising and (high - low <= 2e-16 * h or f_high == 0.0)
-            if finished or not (low < t < high) or trial == _TRIALS + rising - 1:
-                t = high
-                finished = True
-            make_piece(scene, equations, count, q, v, t, tolerance, stages)
-            pieces += 1
-            if finished:
-                break
-            f = _value(kind, index, scene, equations, count, scratch, stages.q, stages.v) + allowance
-            if f <= 0.0:
-                high, f_high = t, f
-                if side == -1:
-                    f_low *= 0.5
-                side = -1
-            else:
-                low, f_low = t, f
-                rising = min(rising, trial + 1)
-                if side == 1:
-                    f_high *= 0.5
-                side = 1
-        h = high
-    return h, kind, index, pieces
+    return at, kind if found else -1, index, trials

@@ -84,23 +84,25 @@ def open_gap(
 
 @inlined
 def find_touching(
-    scene: Scene, equations: Equations, scratch: Equations, q: Numbers, v: Numbers
+    scene: Scene, equations: Equations, scratch: Equations, q: Numbers, v: Numbers, within: float
 ) -> tuple[int, float]:
-    """List the points that touch; return how many there are, and the deepest overlap as a share of a size.
+    """List the points that touch, or are ``within`` a share of the size of that.
 
-    Only as many as there is room for are listed.
+    Returns how many there are, and the deepest overlap as a share of a size. Only as many as there is room
+    for are listed.
     """
     count, deepest = 0, 0.0
     for p in range(len(scene.pairs)):
         size = scene.coefficients[p, 2]
-        if far_apart(scene, p, q) > _TOUCH * size:
+        limit = (_TOUCH + within) * size
+        if far_apart(scene, p, q) > limit:
             continue
         n = find_points(scene, p, q, v, scratch.points, 0)
         for k in range(n):
             measure(scene, scratch.points, k, q, v, scratch.measures)
             gap = scratch.measures[k, GAP]
             deepest = max(deepest, -gap / size)
-            if gap > _TOUCH * size:
+            if gap > limit:
                 continue
             if count < len(equations.points):
                 for column in range(GIVEN):
@@ -187,7 +189,7 @@ def hold_closed(
         elif changed_to > STICKS:
             given = changed_to
         equations.points[i, GIVEN] = given
-    solved = solve_complementarity(equations, count, least)
+    solved = solve_complementarity(equations, count, least, True)
     for i in range(count):
         pressing = equations.vectors[UNKNOWN, 2 * i] * equations.a[2 * i, 2 * i]
         if equations.points[i, STATUS] != OPEN and pressing > least:

@@ -1,0 +1,273 @@
+"""A step of rigid contacts: from event to event, and by impulses where events accumulate."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.kernels.rigid import motion, time_stepping
+from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
+from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS
+from physicslab.ode.system import OdeSystem
+from physicslab.state.state import State
+
+__all__ = ["MAX_POINTS", "MadeStep", "RigidMotion"]
+
+MAX_POINTS = 64
+"""Largest number of points that touch at one time: their equations are dense."""
+_TOLERANCE = 1e-13
+"""Error of a smooth piece, as a share of the largest coordinate and speed."""
+_MAX_EVENTS = 400
+"""Largest number of events in a step."""
+_MAX_WORK = 12_000
+"""Largest work of a step by events (:attr:`MadeStep.work`)."""
+_WORK_OF_A_ROUND = 3
+"""Force evaluations that take as long as a round of impulses."""
+_REPEATS = 8
+"""How often contacts are found again after impacts at one time."""
+_MAX_STALLED = 60
+"""Largest number of events in a row without time between them."""
+_NO_TIME = 1e-13
+"""Share of a step that is no time."""
+_SHORT_STEPS = 32
+"""Number of steps by impulses in a whole step."""
+_NONE = 2.0
+"""Multiple of what forces add to a speed in a short step up to which an approach is none."""
+_OVERLAP = 1e-3
+"""Largest overlap that is moved apart at the start of a step, as a share of a size; soft contacts leave
+half."""
+_SEPARATE = 1e-11
+"""Largest overlap that stays, as a share of a size."""
+_NEAR = 4.0
+"""Multiple of an overlap within which other gaps are looked at, as bodies that move apart may press into
+them."""
+_SEPARATIONS = 12
+"""How often bodies are moved apart, as that can press them into others."""
+_WHY = {
+    motion.NO_FORCES: "no contact forces keep all laws (Painleve's paradox, or bodies that are jammed)",
+    motion.UNRESOLVED: "an impact has no solution",
+    motion.TOO_MANY: f"more than {MAX_POINTS} points touch",
+}
+
+
+@dataclass(slots=True)
+class MadeStep:
+    """What a step leaves.
+
+    Attributes
+    ----------
+    points, measures, forces : arrays
+        Of the points that are closed at the end: what they are, where they are, and their forces [N].
+    closed, impacts, evaluations : int
+        How many points are closed at the end; how many impacts and force evaluations there were.
+    lowered : int
+        How often restitutions were lowered, as Newton's law would have made energy.
+    work : int
+        Force evaluations, each counted with 1 + n^2 / 8 for n points, and as much for impacts.
+    by_impulses : str
+        Why the step, or its last part, was made by impulses in short steps; empty if it was not.
+    refused : str
+        Why it cannot be made; empty if it was.
+    """
+
+    points: NDArray[np.int64]
+    measures: NDArray[np.float64]
+    forces: NDArray[np.float64]
+    closed: int = 0
+    impacts: int = 0
+    evaluations: int = 0
+    lowered: int = 0
+    work: int = 0
+    by_impulses: str = ""
+    refused: str = ""
+
+
+class RigidMotion:
+    """Moves the bodies of a world as a constrained system.
+
+    Parameters
+    ----------
+    ode : OdeSystem
+        Where the bodies are, how they move and what forces act on them.
+    pairs : int
+        How many pairs may touch.
+    steady : bool
+        Whether forces depend on the state of motion alone.
+    """
+
+    def __init__(self, ode: OdeSystem, rows: int, pairs: int, steady: bool) -> None:
+        self._ode, self._steady = ode, steady
+        m, n = 2 * MAX_POINTS, 3 * rows + 1
+        self._equations, self._room = (
+            (
+                np.zeros((MAX_POINTS, POINT_FIELDS), np.int64), np.zeros((MAX_POINTS, MEASURES)),
+                np.zeros((m, m)), np.zeros((VECTORS, m)), np.zeros((m, m)), np.zeros((2, 2 * m), np.int64),
+                np.zeros((2 * m, 4 * m + 2)),
+            )
+            for _ in range(2)
+        )  # fmt: skip
+        self._stages = np.zeros((n, 16)), np.zeros((n, 16)), np.zeros(n), np.zeros(n), np.zeros(n)
+        self._start = np.zeros((5, max(MAX_POINTS, pairs)))
+        self._changed = np.full((MAX_POINTS, POINT_FIELDS), -1)
+
+    def step(self, scene: tuple[Any, ...], state: State, at: float, h: float) -> MadeStep:
+        """Make a step of ``h`` seconds from time ``at``, by events, and by impulses where they accumulate."""
+        made = MadeStep(self._equations[0], self._equations[1], self._equations[3][UNKNOWN])
+        done = self._by_events(scene, state, at, h, made)
+        if made.by_impulses:
+            made.refused = self._by_impulses(scene, state, at + done, h - done, h / _SHORT_STEPS, made)
+        return made
+
+    def _by_events(self, scene: tuple[Any, ...], state: State, at: float, h: float, made: MadeStep) -> float:
+        """Go from event to event; return how far that leads [s]. What stops it is noted in ``made``."""
+        q, v, changed = self._ode.q, self._ode.v, self._changed
+        done, stalled = 0.0, 0
+        changed[0, PAIR] = -1
+        made.refused = self._move_apart(scene, _OVERLAP)
+        if made.refused:
+            return 0.0
+        for _ in range(_MAX_EVENTS):
+            why, count = self._collide(scene, state, at + done, made)
+            rest, still = 0.0, False
+            if why == motion.DONE:
+                why, count, rest, still = motion.begin_motion(
+                    scene, self._equations, count, self._stages, changed, q, v, self._steady
+                )
+            if why == motion.TOO_MANY:
+                made.refused = _WHY[why]
+                return done
+            if why != motion.DONE:
+                made.by_impulses = _WHY[why]
+                return done
+            made.closed = count
+            if done >= h or still:
+                return h
+            piece, evaluations = motion.advance_piece(
+                scene, self._equations, count, self._room, self._stages, self._start, changed, q, v,
+                h - done, _TOLERANCE, rest,
+            )  # fmt: skip
+            made.evaluations += evaluations
+            made.work += evaluations * (8 + count * count) // 8
+            stalled = stalled + 1 if piece <= _NO_TIME * h else 0
+            done = h if piece == h - done else done + piece
+            if not math.isfinite(piece):
+                made.refused = "a piece of motion is not finite"
+                return done
+            if stalled > _MAX_STALLED or made.work > _MAX_WORK:
+                break
+        made.by_impulses = "events follow each other almost without time between them"
+        return done
+
+    def _by_impulses(
+        self, scene: tuple[Any, ...], state: State, at: float, left: float, longest: float, made: MadeStep
+    ) -> str:
+        """Make the rest of a step by short ones; return why that is not possible, nothing if it is."""
+        q, v = self._ode.q, self._ode.v
+        self._changed[0, PAIR] = -1
+        count = math.ceil(left / longest)
+        h = left / max(count, 1)
+        for k in range(count):
+            time_stepping.drift(q, v, 0.5 * h)
+            none = _NONE * time_stepping.kick(scene, self._stages[-1], q, v, h)
+            made.evaluations, made.closed = made.evaluations + 1, 0
+            why = self._resist(scene, state, at + (k + 0.5) * h, 0.5 * h, none, made)
+            if why != motion.DONE:
+                return _WHY[why]
+            time_stepping.drift(q, v, 0.5 * h)
+        made.forces /= h
+        refused = self._move_apart(scene, math.inf)
+        if refused:
+            return refused
+        self._find_forces(scene, state, at + left, made)
+        return ""
+
+    def _find_forces(self, scene: tuple[Any, ...], state: State, at: float, made: MadeStep) -> None:
+        """Find the forces at the end of a step; where there are none, the mean ones of the last impulses."""
+        q, v, closed = self._ode.q, self._ode.v, made.closed
+        why, count = self._collide(scene, state, at, made)
+        if why == motion.DONE:
+            why, closed, _, _ = motion.begin_motion(
+                scene, self._equations, count, self._stages, self._changed, q, v, self._steady
+            )
+        if why == motion.DONE:
+            made.points, made.measures = self._equations[0], self._equations[1]
+            made.forces = self._equations[3][UNKNOWN]
+        made.closed = closed
+
+    def _move_apart(self, scene: tuple[Any, ...], allowed: float) -> str:
+        """Move bodies apart that overlap; return why that is not possible, nothing if it is.
+
+        An overlap beyond the share ``allowed`` of a size is left, and refused.
+        """
+        q, v, deepest = self._ode.q, self._ode.v, 0.0
+        for _ in range(_SEPARATIONS):
+            why, count, _, _, deepest = motion.touch(
+                scene, self._equations, self._room, self._stages[-1], q, v, _NEAR * deepest
+            )
+            if why != motion.DONE:
+                return _WHY[why]
+            if deepest <= _SEPARATE:
+                return ""
+            if deepest > allowed or not time_stepping.separate(scene, self._equations, count, q, v):
+                break
+        return f"bodies overlap by {deepest:.2g} of their size"
+
+    def _resist(
+        self, scene: tuple[Any, ...], state: State, time: float, ahead: float, none: float, made: MadeStep
+    ) -> int:
+        """Find the impulses of all points that will touch in ``ahead`` seconds; return why that failed.
+
+        Speeds up to ``none`` are none [m/s].
+        """
+        q, v, soon, acceleration = self._ode.q, self._ode.v, self._stages[2], self._stages[-1]
+        for _ in range(_REPEATS):
+            soon[:] = q
+            time_stepping.drift(soon, v, ahead)
+            why, count, rest, approaching, _ = motion.touch(
+                scene, self._equations, self._room, acceleration, soon, v, 0.0
+            )
+            if why != motion.DONE or not approaching:
+                return int(why)
+            points = self._resolve(scene, state, time, count, max(rest, none), 1.0 / ahead, made)
+            if points <= 0:
+                return motion.UNRESOLVED if points < 0 else motion.DONE
+            made.closed = points
+            made.points, made.measures = self._room[0].copy(), self._room[1].copy()
+            made.forces = self._room[3][UNKNOWN].copy()
+        return motion.DONE
+
+    def _resolve(
+        self, scene: tuple[Any, ...], state: State, time: float, count: int, rest: float, rate: float,
+        made: MadeStep,
+    ) -> int:  # fmt: skip
+        """Resolve impacts; return how many points the last impulses act at, -1 where there are none."""
+        contacts = state.contacts
+        why, new, lowered, points, rounds = motion.collide(
+            scene, self._equations, count, self._room, rest, rate, self._ode.q, self._ode.v,
+            state.entity_index.entities, contacts.log, contacts.logged, time,
+        )  # fmt: skip
+        contacts.logged += new
+        made.impacts += new
+        made.lowered += lowered
+        made.work += _WORK_OF_A_ROUND * rounds * (8 + count * count) // 8
+        return points if why == motion.DONE else -1
+
+    def _collide(self, scene: tuple[Any, ...], state: State, time: float, made: MadeStep) -> tuple[int, int]:
+        """Find what touches, and resolve impacts; return why that failed, and how many points touch.
+
+        An impact can change which faces two boxes turn to each other, so contacts are then found again.
+        """
+        for _ in range(_REPEATS):
+            why, count, rest, approaching, _ = motion.touch(
+                scene, self._equations, self._room, self._stages[-1], self._ode.q, self._ode.v, 0.0
+            )
+            if why != motion.DONE or not approaching:
+                break
+            if self._resolve(scene, state, time, count, rest, 0.0, made) < 0:
+                why = motion.UNRESOLVED
+                break
+        return why, count
