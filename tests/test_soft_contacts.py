@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from physicslab import Vector2, World
-from physicslab.components import Transform, Velocity
+from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.prefabs import box, circle
 from physicslab.systems.standard import standard_systems
@@ -123,7 +123,7 @@ def test_towers_of_small_cubes_stand(count: int, size: float, in_line: bool) -> 
     world, boxes = stacked(1 / 60, count, size, shifts)
     world.run(seconds=10.0)
     for i, one in enumerate(boxes):
-        assert place(world, one).x == pytest.approx(size * shifts[i], abs=0.02 * size)
+        assert place(world, one).x == pytest.approx(size * shifts[i], abs=0.05 * size)
     assert place(world, boxes[-1]).y == pytest.approx((count - 0.5) * size, abs=0.1 * size)
 
 
@@ -174,7 +174,7 @@ def test_a_smooth_slide_round_a_planet_keeps_its_energy() -> None:
         world = laboratory(dt, gravity_mode="planet")
         mass, r = 1000.0, 5.5
         speed = 0.5 * math.sqrt(mass / r)
-        circle(world, (0, 0), radius=5, mass=mass, static=False, friction=0)
+        world.spawn(Transform((0, 0)), Shape.circle(5.0), Material(0.0, 0.0), Mass(mass))
         rider = circle(world, (0, r), radius=0.5, mass=1e-3, velocity=(-speed, 0), friction=0)
         world.run(seconds=20.0)
         drifts.append(abs(world.component(rider, Velocity).linear.magnitude / speed - 1.0))

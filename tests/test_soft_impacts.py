@@ -20,9 +20,9 @@ from physicslab.systems.standard import standard_systems
 G = 9.81
 
 
-def laboratory(*, dt: float = 1 / 60, **physics: Any) -> World:
+def laboratory(*, dt: float = 1 / 60, substeps: int = 4, **physics: Any) -> World:
     """Return an empty world with soft contacts within steps, whose impacts are logged."""
-    config = SimulationConfig(contacts="soft", collisions="step", dt=dt, sleeping=False)
+    config = SimulationConfig(contacts="soft", collisions="step", dt=dt, substeps=substeps, sleeping=False)
     world = World(*standard_systems(), physics=PhysicsConfig(**physics), simulation=config)
     world.contacts.read = True
     return world
@@ -49,7 +49,8 @@ def reached(world: World, body: int) -> tuple[float, float, float]:
     impact, mass = world.contacts.impacts[0], world.component(body, Mass)
     t = float(impact["time"])
     before = np.array((start[0], start[1] - g * t, start[2]))
-    after = motion(world, body) + (0.0, g * (world.time - t), 0.0)
+    after = motion(world, body)
+    after[1] += g * (world.time - t)
     centre = np.array((x + start[0] * t, y + start[1] * t - 0.5 * g * t * t))
     masses = np.array((mass.mass, mass.mass, mass.inertia))
     impulse = masses * (after - before)
@@ -109,15 +110,18 @@ def test_a_box_that_falls_flat_with_speed_turns_alike_in_its_mirror_image() -> N
         world.run(seconds=0.5)
         assert world.collisions == 1
         found.append(motion(world, crate) * (sign, 1.0, sign))
-    assert found[0].tobytes() == found[1].tobytes()
-    assert found[0][0] < 2.0 and found[0][2] < 0.0
+    assert np.allclose(found[0], found[1], rtol=0.0, atol=1e-12)
+    assert found[0] == pytest.approx(
+        [0.0, 0.5 * G * math.sqrt(2.0 / G) - G * (0.5 - math.sqrt(2.0 / G)), 0.0], abs=1e-9
+    )
 
 
 def aimed(random: np.random.Generator, number: int) -> tuple[World, list[int], float]:
     """Return two bodies that fly at each other: of all pairs of shapes, with spin; and mu."""
-    e = float(random.choice((0.0, 0.3, 0.8, 1.0, random.random())))
+    e = float(random.choice((0.3, 0.8, 1.0, random.random())))
     mu = float(random.choice((0.0, 0.1, 0.5, 1.0, 1.5 * random.random())))
-    world, bodies = laboratory(dt=float(random.choice((1 / 60, 1 / 240))), gravity_mode="none"), []
+    dt = float(random.choice((1 / 240, 1 / 960)))
+    world, bodies = laboratory(dt=dt, substeps=1, gravity_mode="none"), []
     heading = random.uniform(0, math.tau)
     towards = np.array((math.cos(heading), math.sin(heading)))
     for k, sign in enumerate((-1.0, 1.0)):
@@ -147,7 +151,7 @@ def test_random_impacts_keep_momenta_and_gain_no_energy() -> None:
             for body in bodies
             for m in (world.component(body, Mass),)
         )
-        for _ in range(100):
+        for _ in range(1500):
             world.step()
             if world.contacts.logged:
                 break

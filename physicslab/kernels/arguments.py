@@ -105,9 +105,9 @@ class Log(NamedTuple):
 
 
 class Softness(NamedTuple):
-    """The contact spring: the share of overlap corrected in a substep, stiffness a sweep, fastest push [m/s].
+    """The contact spring: the share of overlap corrected in a substep, stiffness, fastest push [m/s].
 
-    Stiffness is that of a spring over a substep h: effective masses over h^2.
+    Stiffness is that of a spring over a substep h with one sweep: effective masses over h^2.
     """
 
     push: float

@@ -23,8 +23,8 @@ class ResolveSystem(System):
     push : float
         Share of the overlap that is corrected in a substep.
     stiffness : float
-        Stiffness of the contact spring, in effective masses over the substep squared, for each sweep over
-        the contacts: what rests sinks by its load / (mass * push * stiffness * sweeps) * h^2.
+        Stiffness of the contact spring, in effective masses over the substep squared. With n sweeps over the
+        contacts it is n^1.25 times as much: what rests sinks by its load h^2 / (m push stiffness n^1.25).
     max_push : float
         Largest speed [m/s] at which deep overlap is corrected.
     """

@@ -8,7 +8,6 @@ the restitution is lowered until it makes none.
 from typing import NamedTuple
 
 from physicslab.kernels import fused, inlined
-from physicslab.kernels.wide.solve import two_normals
 
 __all__ = ["Blow", "Lever", "Weights", "one_blow", "two_blows"]
 
@@ -16,6 +15,8 @@ _MAX_SWEEPS = 200
 """Largest number of sweeps over the two points of a pair."""
 _HALVINGS = 48
 """Bisections for the restitution that makes no energy."""
+_SEPARATE = 1.0 + 1e-9
+"""One, and so much more that two points of a pair are never quite one."""
 _ROUNDING = 1e-12
 """Share of the work of the impulses up to which a gain of energy is rounding."""
 
@@ -151,6 +152,26 @@ def _after(one: Lever, two: Lever, weights: Weights, blow: Blow) -> tuple[float,
 
 
 @inlined
+def _two_normals(
+    x1: float, x2: float, change1: float, change2: float, m1: float, m2: float, between: float
+) -> tuple[float, float]:
+    """Return the normal impulses of two points that act on each other, neither of which pulls [N s].
+
+    They are ``x1`` and ``x2`` so far; each by itself would change by ``change1`` or ``change2``, and has the
+    effective mass m. Where one would pull, the other acts alone.
+    """
+    to1, to2 = between * m1, between * m2
+    scale = 1.0 / (_SEPARATE - to1 * to2)
+    both1, both2 = x1 + (change1 - to1 * change2) * scale, x2 + (change2 - to2 * change1) * scale
+    if both1 > 0.0 and both2 > 0.0:
+        return both1, both2
+    alone = max(x1 + change1 + to1 * x2, 0.0)
+    if to2 * (alone - x1) > x2 + change2:  # the second point separates
+        return alone, 0.0
+    return 0.0, max(x2 + change2 + to2 * x1, 0.0)
+
+
+@inlined
 def _both(one: Lever, two: Lever, weights: Weights, restitution: float, friction: float) -> Blow:
     """Return the impulses of two points: normals together, then friction, shared alike, until they stay."""
     m1, m2 = 1.0 / _normal_element(weights, one, one), 1.0 / _normal_element(weights, two, two)
@@ -159,13 +180,12 @@ def _both(one: Lever, two: Lever, weights: Weights, restitution: float, friction
     blow = Blow(0.0, 0.0, 0.0, 0.0)
     for _ in range(_MAX_SWEEPS):
         v1, _s1, v2, _s2 = _after(one, two, weights, blow)
-        d1, d2 = two_normals(
+        n1, n2 = _two_normals(
             blow.normal1, blow.normal2, -m1 * (v1 + restitution * one.v), -m2 * (v2 + restitution * two.v),
             m1, m2, between,
         )  # fmt: skip
-        n1, n2 = blow.normal1 + d1, blow.normal2 + d2
         t1, t2 = blow.tangent1, blow.tangent2
-        changed = abs(d1) + abs(d2)
+        changed = abs(n1 - blow.normal1) + abs(n2 - blow.normal2)
         if friction > 0.0:
             _v1, s1, _v2, s2 = _after(one, two, weights, Blow(n1, t1, n2, t2))
             t1 = min(max(t1 - 0.5 * s1 / kt1, -friction * n1), friction * n1)

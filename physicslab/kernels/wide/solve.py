@@ -50,13 +50,11 @@ __all__ = [
     "warm_start_wide",
 ]  # fmt: skip
 
-SOFT = 0.01
+SOFT = 0.02
 """Share of the smaller body's size that the contact spring corrects at its full rate, in addition to what the
 load causes."""
 _ROUNDING = 1e-9
 """Share that does not count as overlap: rounding may put a corner of a box on a floor below its surface."""
-_SEPARATE = 1.0 + 1e-9
-"""One, and so much more that two points of a pair are never quite one."""
 DEEPER = 0.15
 """Share beyond which overlap is not corrected by impulses."""
 
@@ -112,18 +110,15 @@ def two_normals[N: (float, Wide)](
     """Return the changes of the normal impulses of two points that act on each other [N s].
 
     ``change1``, ``mass1`` and so on are those of :func:`free_change` for each by itself, ``between`` is how
-    an impulse at one changes the velocity of the other [1/kg]. Neither comes to pull: where one would, the
-    other acts alone. The two are treated alike, so that what is symmetric stays so.
+    an impulse at one changes the velocity of the other [1/kg]. Each is solved before the other, and the mean
+    of both is taken: what is symmetric stays so. Solved exactly, points that are nearly one would be given
+    large opposite impulses, and heaps of mixed bodies would never rest.
     """
-    to1, to2 = between * mass1, between * mass2
-    scale = 1.0 / (_SEPARATE - to1 * to2)
-    both1, both2 = impulse1 + (change1 - to1 * change2) * scale, impulse2 + (change2 - to2 * change1) * scale
-    alone1 = greater(impulse1 + (change1 + to1 * impulse2), 0.0)
-    alone2 = greater(impulse2 + (change2 + to2 * impulse1), 0.0)
-    parts = to2 * (alone1 - impulse1) > impulse2 + change2  # the second point separates
-    held = (both1 > 0.0) & (both2 > 0.0)
-    total1: N = choose(held, both1, choose(parts, alone1, 0.0))
-    total2: N = choose(held, both2, choose(parts, 0.0, alone2))
+    before1, before2 = greater(impulse1 + change1, 0.0), greater(impulse2 + change2, 0.0)
+    after1 = greater(impulse1 + change1 - between * mass1 * (before2 - impulse2), 0.0)
+    after2 = greater(impulse2 + change2 - between * mass2 * (before1 - impulse1), 0.0)
+    total1: N = 0.5 * (before1 + after1)
+    total2: N = 0.5 * (before2 + after2)
     return total1 - impulse1, total2 - impulse2
 
 
