@@ -181,10 +181,13 @@ def test_a_smooth_slide_round_a_planet_keeps_its_energy() -> None:
     assert drifts[0] < 1e-5 and drifts[1] < 0.3 * drifts[0]
 
 
-def test_mirror_images_of_a_box_that_falls_on_its_corner_stay_mirror_images() -> None:
+@pytest.mark.parametrize(("dt", "largest"), [(1 / 60, 1e-4), (1 / 240, 1e-5)])
+def test_mirror_images_of_boxes_that_fall_on_their_corners_stay_mirror_images(
+    dt: float, largest: float
+) -> None:
     found = []
     for sign in (1.0, -1.0):
-        world = laboratory(1 / 60)
+        world = laboratory(dt)
         box(world, (0, -0.5), width=40, height=1, static=True)
         boxes = [
             box(world, (sign * 0.2 * i, 1.0 + 1.5 * i), width=1, height=0.6, angle=sign * (0.3 + 0.2 * i))
@@ -192,6 +195,4 @@ def test_mirror_images_of_a_box_that_falls_on_its_corner_stay_mirror_images() ->
         ]
         world.run(seconds=1.0)
         found.append([(sign * place(world, one).x, place(world, one).y) for one in boxes])
-    assert (
-        found[0] == pytest.approx(found[1], abs=1e-9) if False else np.allclose(found[0], found[1], atol=1e-9)
-    )
+    assert np.abs(np.subtract(found[0], found[1])).max() < largest

@@ -129,7 +129,7 @@ def aimed(random: np.random.Generator, number: int) -> tuple[World, list[int], f
         velocity = -sign * random.uniform(0.5, 3.0) * towards + random.normal(0, 0.2, 2)
         options: Any = {
             "mass": float(10 ** random.uniform(-1, 1)), "velocity": (velocity[0], velocity[1]),
-            "angular_velocity": float(random.normal(0, 4)), "angle": float(random.uniform(-3, 3)),
+            "angular_velocity": float(random.normal(0, 1)), "angle": float(random.uniform(-3, 3)),
             "restitution": e, "friction": mu,
         }  # fmt: skip
         if (number >> k) & 1:

@@ -32,7 +32,7 @@ class ResolveSystem(System):
     engine = True
     kernels = (entries.impact_stage, entries.solve_stage, entries.relax_stage)
 
-    def __init__(self, push: float = 0.15, stiffness: float = 7.0, max_push: float = 1.5) -> None:
+    def __init__(self, push: float = 0.17, stiffness: float = 7.0, max_push: float = 1.5) -> None:
         self.push, self.stiffness, self.max_push = push, stiffness, max_push
 
     def why_left_out(self, state: State) -> str | None:

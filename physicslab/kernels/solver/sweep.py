@@ -1,11 +1,18 @@
-"""One sweep over scalar contacts: both normal impulses of a pair together, then its friction."""
+"""One sweep over scalar contacts: the normal impulses of a pair, then its friction, left and right alike."""
 
 from typing import NamedTuple
 
 from physicslab.kernels import fused, inlined
 from physicslab.kernels.arguments import Contacts, Inverse, Motion
 from physicslab.kernels.records import Manifold, Point
-from physicslab.kernels.wide.solve import SoftConstraint, free_change, one_normal, two_normals
+from physicslab.kernels.wide.solve import (
+    SoftConstraint,
+    free_change,
+    held_by_friction,
+    one_normal,
+    two_frictions,
+    two_normals,
+)
 
 __all__ = ["sweep"]
 
@@ -78,20 +85,31 @@ def _normals(
 
 
 @fused
-def _friction(manifold: Manifold, point: Point, v: Velocities, weights: Weights) -> tuple[Velocities, float]:
-    """Find the tangential impulse of a point, at most mu times the normal one.
+def _friction(
+    manifold: Manifold, one: Point, two: Point, v: Velocities, weights: Weights
+) -> tuple[Velocities, float]:
+    """Find the tangential impulses of a pair, each at most mu times the normal one.
 
-    Returns the velocities after it, and its change [N s].
+    Returns the velocities after them, and the largest change [N s].
     """
-    nx, ny = manifold.normal_x, manifold.normal_y
-    turn_a, turn_b = point.arm_ax * nx + point.arm_ay * ny, point.arm_bx * nx + point.arm_by * ny
-    vt = nx * (v.by - v.ay) - ny * (v.bx - v.ax) + v.wb * turn_b - v.wa * turn_a
-    limit = manifold.friction * point.normal_impulse
-    total = min(max(point.tangent_impulse - point.tangent_mass * vt, -limit), limit)
-    change = total - point.tangent_impulse
-    point.tangent_impulse = total
-    after = _pushed(v, weights, -change * ny, change * nx, change * turn_a, change * turn_b)
-    return after, abs(change)
+    nx, ny, mu = manifold.normal_x, manifold.normal_y, manifold.friction
+    across = nx * (v.by - v.ay) - ny * (v.bx - v.ax)
+    d2 = turn_2a = turn_2b = 0.0
+    turn_1a, turn_1b = one.arm_ax * nx + one.arm_ay * ny, one.arm_bx * nx + one.arm_by * ny
+    v1 = across + v.wb * turn_1b - v.wa * turn_1a
+    x1, m1, limit1 = one.tangent_impulse, one.tangent_mass, mu * one.normal_impulse
+    if manifold.count == 2:
+        turn_2a, turn_2b = two.arm_ax * nx + two.arm_ay * ny, two.arm_bx * nx + two.arm_by * ny
+        v2 = across + v.wb * turn_2b - v.wa * turn_2a
+        between = weights.ma + weights.mb + weights.ia * turn_1a * turn_2a + weights.ib * turn_1b * turn_2b
+        x2, m2, limit2 = two.tangent_impulse, two.tangent_mass, mu * two.normal_impulse
+        d1, d2 = two_frictions(x1, x2, v1, v2, m1, m2, limit1, limit2, between)
+        two.tangent_impulse = x2 + d2
+    else:
+        d1 = held_by_friction(x1, m1, v1, limit1) - x1
+    one.tangent_impulse = x1 + d1
+    turn_a, turn_b = d1 * turn_1a + d2 * turn_2a, d1 * turn_1b + d2 * turn_2b
+    return _pushed(v, weights, -(d1 + d2) * ny, (d1 + d2) * nx, turn_a, turn_b), max(abs(d1), abs(d2))
 
 
 @inlined
@@ -105,17 +123,15 @@ def sweep(contacts: Contacts, motion: Motion, inverse: Inverse, soft: SoftConstr
     for number in range(contacts.number):
         p = contacts.touching[contacts.number - 1 - number if backward else number]
         manifold, one, two = contacts.manifolds[p], contacts.points[2 * p], contacts.points[2 * p + 1]
-        a, b, paired = manifold.a, manifold.b, manifold.count == 2
+        a, b = manifold.a, manifold.b
         weights = Weights(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
         v = Velocities(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
         v, change = _normals(manifold, one, two, v, weights, soft)
         if manifold.friction > 0.0:
-            for i in range(2 if paired else 1):
-                point = contacts.points[2 * p + (i if not backward or not paired else 1 - i)]
-                v, slid = _friction(manifold, point, v, weights)
-                change = max(change, slid)
+            v, slid = _friction(manifold, one, two, v, weights)
+            change = max(change, slid)
         linear[a, 0], linear[a, 1], angular[a] = v.ax, v.ay, v.wa
         linear[b, 0], linear[b, 1], angular[b] = v.bx, v.by, v.wb
-        held = one.normal_impulse + (two.normal_impulse if paired else 0.0)
+        held = one.normal_impulse + (two.normal_impulse if manifold.count == 2 else 0.0)
         unsettled = unsettled or change > _SETTLED * held
     return unsettled

@@ -46,8 +46,8 @@ from physicslab.kernels.wide.layout import (
 )  # fmt: skip
 
 __all__ = [
-    "DEEPER", "SOFT", "SoftConstraint", "free_change", "one_normal", "sweep_wide", "two_normals",
-    "warm_start_wide",
+    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "one_normal", "sweep_wide",
+    "two_frictions", "two_normals", "warm_start_wide",
 ]  # fmt: skip
 
 SOFT = 0.02
@@ -123,6 +123,30 @@ def two_normals[N: (float, Wide)](
 
 
 @fused
+def held_by_friction[N: (float, Wide)](impulse: N, mass: N, v: N, limit: N) -> N:
+    """Return the tangential impulse [N s] that stops a point that slides at v [m/s], at most ``limit``."""
+    total: N = lesser(greater(impulse - mass * v, -limit), limit)
+    return total
+
+
+@fused
+def two_frictions[N: (float, Wide)](
+    impulse1: N, impulse2: N, v1: N, v2: N, mass1: N, mass2: N, limit1: N, limit2: N, between: N
+) -> tuple[N, N]:
+    """Return the changes of the tangential impulses of two points [N s], which are treated alike.
+
+    See :func:`two_normals`.
+    """
+    before1 = held_by_friction(impulse1, mass1, v1, limit1)
+    before2 = held_by_friction(impulse2, mass2, v2, limit2)
+    after1 = held_by_friction(impulse1, mass1, v1 + between * (before2 - impulse2), limit1)
+    after2 = held_by_friction(impulse2, mass2, v2 + between * (before1 - impulse1), limit2)
+    total1: N = 0.5 * (before1 + after1)
+    total2: N = 0.5 * (before2 + after2)
+    return total1 - impulse1, total2 - impulse2
+
+
+@fused
 def _free_change(
     data: Numbers, point: int, size: Wide, v: Wide, drift: float, soft: SoftConstraint
 ) -> tuple[Wide, Wide]:
@@ -138,7 +162,7 @@ def _free_change(
 def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide:
     """Update the tangential impulses, at most mu times the normal ones; return their change [N s]."""
     limit, friction_impulse = friction * take(data, point + IMPULSE), take(data, point + TANGENT_IMPULSE)
-    total: Wide = lesser(greater(friction_impulse - take(data, point + TANGENT_MASS) * v, -limit), limit)
+    total = held_by_friction(friction_impulse, take(data, point + TANGENT_MASS), v, limit)
     put(data, point + TANGENT_IMPULSE, total)
     return total - friction_impulse
 
@@ -207,9 +231,15 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     put(data, at + ONE + IMPULSE, impulse1 + push1)
     put(data, at + TWO + IMPULSE, impulse2 + push2)
     wa, wb = wa - ia * (n1a * push1 + n2a * push2), wb + ib * (n1b * push1 + n2b * push2)
-    friction1 = _update_friction(data, at + ONE, friction, across + wb * t1b - wa * t1a)
-    coupled = friction1 * (ma + mb + ia * t1a * t2a + ib * t1b * t2b)
-    friction2 = _update_friction(data, at + TWO, friction, across + wb * t2b - wa * t2a + coupled)
+    tangent1, tangent2 = take(data, at + ONE + TANGENT_IMPULSE), take(data, at + TWO + TANGENT_IMPULSE)
+    friction1, friction2 = two_frictions(
+        tangent1, tangent2, across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a,
+        take(data, at + ONE + TANGENT_MASS), take(data, at + TWO + TANGENT_MASS),
+        friction * (impulse1 + push1), friction * (impulse2 + push2),
+        ma + mb + ia * t1a * t2a + ib * t1b * t2b,
+    )  # fmt: skip
+    put(data, at + ONE + TANGENT_IMPULSE, tangent1 + friction1)
+    put(data, at + TWO + TANGENT_IMPULSE, tangent2 + friction2)
     push, friction_impulse = push1 + push2, friction1 + friction2
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
     put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
