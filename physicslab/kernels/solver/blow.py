@@ -7,7 +7,7 @@ the restitution is lowered until it makes none.
 
 from typing import NamedTuple
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import inlined
 
 __all__ = ["Blow", "Lever", "Weights", "one_blow", "two_blows"]
 
@@ -49,14 +49,14 @@ class Blow(NamedTuple):
     tangent2: float
 
 
-@fused
+@inlined
 def _normal_element(weights: Weights, one: Lever, two: Lever) -> float:
     """Return how a normal impulse at a point changes the normal velocity at another [1/kg]."""
     turned = weights.turn_a * one.normal_a * two.normal_a + weights.turn_b * one.normal_b * two.normal_b
     return weights.both + turned
 
 
-@fused
+@inlined
 def _across_element(weights: Weights, lever: Lever) -> float:
     """Return how a tangential impulse changes the sliding of its point [1/kg]."""
     turned = weights.turn_a * lever.across_a * lever.across_a
@@ -93,7 +93,7 @@ def _coupled(lever: Lever, weights: Weights, gained: float, friction: float) -> 
     return frictionless, 0.0
 
 
-@fused
+@inlined
 def _work(lever: Lever, weights: Weights, normal: float, tangent: float) -> tuple[float, float]:
     """Return the work of the impulses at a single point [J], and the sum of the magnitudes of its parts."""
     kn, kt = _normal_element(weights, lever, lever), _across_element(weights, lever)
@@ -131,7 +131,7 @@ def one_blow(
     return normal, tangent, True
 
 
-@fused
+@inlined
 def _after(one: Lever, two: Lever, weights: Weights, blow: Blow) -> tuple[float, float, float, float]:
     """Return the velocities of two points along the normal and across after a blow [m/s]."""
     normal, tangent = blow.normal1 + blow.normal2, blow.tangent1 + blow.tangent2

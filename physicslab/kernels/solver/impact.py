@@ -76,7 +76,7 @@ def _meeting_time(separation: float, v: float, pull: float, window: Window, load
     return -math.inf if loaded or t <= window.earliest else 0.0
 
 
-@fused
+@inlined
 def _lever(meeting: Meeting, a: int, b: int, motion: Motion, gained: float) -> Lever:
     """Return lever arms and velocities at a point; the forces add ``gained`` to the approach [m/s]."""
     nx, ny, ax, ay, bx, by = meeting
@@ -89,7 +89,7 @@ def _lever(meeting: Meeting, a: int, b: int, motion: Motion, gained: float) -> L
     )  # fmt: skip
 
 
-@fused
+@inlined
 def _strike(
     manifold: Manifold, point: Point, meeting: Meeting, lever: Lever, normal: float, tangent: float,
     motion: Motion, inverse: Inverse,
@@ -109,7 +109,7 @@ def _strike(
     point.impact_tangent += tangent
 
 
-@fused
+@inlined
 def _exchange(
     manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, motion: Motion, sizes: Sizes,
     inverse: Inverse, pull: float, t: float,
