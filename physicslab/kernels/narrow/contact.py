@@ -17,8 +17,8 @@ CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found again."""
 CACHE_TURN_TOLERANCE = 0.002
 """How far [rad] either may turn."""
-_PAIRS_FOUND_AGAIN = 64
-"""Number of scalar pairs up to which points are found again after any motion."""
+_ROWS_FOUND_AGAIN = 64
+"""Number of bodies up to which points of boxes are found again after any motion."""
 _ROUNDING = 1e-9
 """Share of these tolerances that is no motion."""
 _APART, _KEPT, _OUTDATED = range(3)
@@ -175,7 +175,7 @@ def find_contacts(
     position, linear, touching = motion.position, motion.linear, near.touching
     found, held = 0, count
     # The arms of kept points are those of the pose in which they were found.
-    tolerance = _ROUNDING if count <= _PAIRS_FOUND_AGAIN else 1.0
+    tolerance = _ROUNDING if len(motion.angle) <= _ROWS_FOUND_AGAIN else 1.0
     for number in range(count):
         p = near.scalar[number]
         manifold, one, two = near.manifolds[p], near.points[2 * p], near.points[2 * p + 1]
