@@ -298,6 +298,13 @@ def test_auto_is_excellent_or_as_good_as_chaos_allows(name: str) -> None:
     assert auto_verdict(name) in (Verdict.EXCELLENT, Verdict.CHAOS)
 
 
+@pytest.mark.parametrize("name", [name for name in PROBLEMS if PROBLEMS[name].group == "contact"])
+def test_rigid_contacts_are_excellent_where_bodies_rest_and_rub(name: str) -> None:
+    problem = PROBLEMS[name]
+    found = measure(problem, Setting("auto", contacts="rigid"))
+    assert verdict(found.error, problem.good, problem.excellent) is Verdict.EXCELLENT, found.error
+
+
 def test_auto_is_excellent_on_nine_of_ten_problems_in_which_nothing_touches() -> None:
     free = [name for name in PROBLEMS if not PROBLEMS[name].touches]
     assert len([name for name in free if name in SHORT]) <= 0.1 * len(free)
@@ -363,6 +370,7 @@ def test_the_document_holds_finite_numbers_alone(capsys: pytest.CaptureFixture[s
     (problem,) = json.loads(printed.out, parse_constant=pytest.fail)["problems"]
     assert problem["auto"]["integrator"] == "exact"
     assert problem["auto"]["verdict"] == "excellent"
+    assert problem["rigid"] is None, "nothing touches"
     assert [curve["name"] for curve in problem["integrators"]] == list(INTEGRATORS)
     wanted = {
         "integrator", "reason", "collisions", "dt", "tolerance", "steps", "force_evaluations", "cpu_ms",

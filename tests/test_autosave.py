@@ -47,8 +47,8 @@ def saved(autosave: Autosave, world: World, clock: Clock, seconds: float = 10.0)
 
 
 def test_the_state_is_saved_bit_for_bit_while_the_world_goes_on(tmp_path: Path) -> None:
-    clock, world = Clock(), load_scene("stack")
-    world.run(steps=10)
+    clock, world = Clock(), load_scene("slope")
+    world.run(steps=30)
     autosave = Autosave(tmp_path / "s.json", share=0.0, clock=clock)
     clock.now = 11.0
     autosave.advance(world)

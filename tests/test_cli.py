@@ -23,6 +23,7 @@ from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
 from physicslab.diagnostics.run_report import find_not_finite
 from physicslab.lab.accuracy.catalogue import PROBLEMS
+from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
 from physicslab.lab.stability.catalogue import CASES
 from physicslab.scenes import SCENES
 
@@ -96,7 +97,7 @@ def test_the_numbers_are_those_of_the_world(capsys: pytest.CaptureFixture[str]) 
 def test_time_is_exactly_as_requested(capsys: pytest.CaptureFixture[str]) -> None:
     report = document(capsys, "run", "drop", "--seconds", "0.1", "--dt", "0.03")
     assert (report["time"], report["steps"], report["dt"]) == (0.1, 4, 0.03)
-    report = document(capsys, "run", "stack", "--steps", "7", "--substeps", "2")
+    report = document(capsys, "run", "stack", "--contacts", "soft", "--steps", "7", "--substeps", "2")
     assert (report["steps"], report["substeps"], report["force_evaluations"]) == (7, 2, 14)
     report = document(capsys, "run", "drop", "--steps", "0")
     assert (report["steps"], report["time"], report["energy"]["max_relative_drift"]) == (0, 0.0, 0.0)
@@ -138,10 +139,10 @@ def test_a_scene_goes_on_from_its_own_time(capsys: pytest.CaptureFixture[str], t
 
 
 def test_run_reports_how_many_sleep(capsys: pytest.CaptureFixture[str]) -> None:
-    report = document(capsys, "run", "stack", "--seconds", "5")
-    assert (report["asleep"], report["contacts"]) == (10, 10)
-    assert cli.main(["run", "stack", "--seconds", "5"]) == 0
-    assert "asleep      10 of 11 bodies, at rest" in capsys.readouterr().out
+    report = document(capsys, "run", "pyramid", "--seconds", "6")
+    assert (report["asleep"], report["contacts"]) == (465, 900)
+    assert cli.main(["run", "pyramid", "--seconds", "6"]) == 0
+    assert "asleep      465 of 466 bodies, at rest" in capsys.readouterr().out
 
 
 def test_run_writes_a_row_a_step_and_body(capsys: pytest.CaptureFixture[str]) -> None:
@@ -301,9 +302,11 @@ def test_how_collisions_are_found_is_said_with_the_reason(
     report = document(capsys, "run", "drop", "--steps", "1")
     assert report["collision_method"] == "exact"
     assert report["collision_reason"] == "few bodies, which bounce"
-    report = document(capsys, "run", "stack", "--steps", "1")
+    report = document(capsys, "run", "stack", "--contacts", "soft", "--steps", "1")
     assert (report["collision_method"], report["integrator"]) == ("step", "leapfrog")
     assert "is a box that may turn" in report["collision_reason"]
+    report = document(capsys, "run", "stack", "--steps", "1")
+    assert (report["stepper"]["name"], report["integrator"]) == ("rigid", "dop853")
     path = tmp_path / "exact.json"
     scene = {"format": "physicslab-scene/1", "simulation": {"collisions": "exact"}, "entities": []}
     path.write_text(json.dumps(scene))
@@ -359,7 +362,7 @@ def test_names_are_listed_where_help_says_so(capsys: pytest.CaptureFixture[str])
     cases = [line.split()[:2] for line in capsys.readouterr().out.splitlines()]
     assert [name for name, _ in cases] == list(CASES) and ["spring_1_rest", "springs"] in cases
     assert cli.main(["accuracy", "--list"]) == 0
-    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(PROBLEMS)
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == [*PROBLEMS, *CONTACTS]
 
 
 def test_without_packages_one_line_says_what_to_do() -> None:

@@ -58,7 +58,7 @@ REFUSED: list[tuple[type[Any], str, Any, str]] = [
     (SimulationConfig, "substeps", True, "a whole number from 1 to 10000"),
     (SimulationConfig, "iterations", 0, "a whole number from 1 to 1000 or null"),
     (SimulationConfig, "integrator", "rk5", '"leapfrog"'),
-    (SimulationConfig, "sleeping", 1, "true or false"),
+    (SimulationConfig, "sleeping", 1, '"auto", true or false'),
     (SimulationConfig, "collisions", "some", 'one of "auto", "step", "exact"'),
 ]
 

@@ -11,11 +11,14 @@ from physicslab.files.writer import write_scene
 from physicslab.systems.standard import standard_systems
 
 
-def chain(stiffness: float, **simulation: float | str) -> World:
-    """Return a chain of 12 bodies of 1 kg that hangs between two points and swings, damped."""
+def chain(stiffness: float, ratio: float = 0.3, **simulation: float | str) -> World:
+    """Return a chain of 12 bodies of 1 kg that hangs between two points and swings, damped.
+
+    The ratio is that of a spring's damping to the critical one, where one of its ends is fixed.
+    """
     physics = PhysicsConfig(linear_damping=0.5)
     world = World(*standard_systems(), physics=physics, simulation=SimulationConfig(**simulation))  # type: ignore[arg-type]
-    damping, last = 0.6 * stiffness**0.5, 0
+    damping, last = 2.0 * ratio * stiffness**0.5, 0
     for n in range(12):
         body = world.spawn(Transform((0.1 * (n + 1), -0.02 * min(n, 11 - n))), Velocity(), Mass(1.0))
         link = {"rest_length": 0.1, "stiffness": stiffness, "damping": damping}
@@ -47,6 +50,20 @@ def test_auto_takes_three_times_the_evaluations_of_1e_10_at_most_and_is_better_t
     assert np.abs(places(auto) - places(best)).max() < 1e-11
     assert auto.force_evaluations < 3 * cheap.force_evaluations
     assert auto.force_evaluations < 0.5 * best.force_evaluations
+
+
+@pytest.mark.parametrize(("stiffness", "ratio"), [(1e3, 5.0), (1e4, 1.5), (1e4, 3.0), (1e5, 1.5)])
+def test_what_dampers_stop_from_swinging_takes_no_more_than_can_be_seen(
+    stiffness: float, ratio: float
+) -> None:
+    """It is better than 1e-11 m, in less than three times the evaluations of a tolerance of 1e-8."""
+    auto = chain(stiffness, ratio)
+    cheap, best = (chain(stiffness, ratio, integrator="dop853", tolerance=t) for t in (1e-8, 1e-14))
+    for world in (auto, cheap, best):
+        world.run(seconds=1.0)
+    assert "tolerance 1e-09" in auto.plan.reason
+    assert np.abs(places(auto) - places(best)).max() < 1e-11
+    assert auto.force_evaluations < 3 * cheap.force_evaluations
 
 
 def test_a_tolerance_that_was_chosen_and_springs_that_are_not_stiff_keep_theirs() -> None:

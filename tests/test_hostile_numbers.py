@@ -181,7 +181,7 @@ def test_a_body_too_small_to_have_an_inertia_does_not_turn() -> None:
     ("document", "line"),
     [
         (EXTREMES["a fast body"], r"ball: Transform .* at t = "),
-        (EXTREMES["gravity"], r"ball: (Transform|Velocity) .* at t = "),
+        (EXTREMES["gravity alone"], r"ball: (Transform|Velocity) .* at t = "),
     ],
 )
 def test_what_leaves_the_numbers_is_named_with_its_time(document: dict[str, Any], line: str) -> None:

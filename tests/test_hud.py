@@ -1,6 +1,7 @@
 """HudSystem: the right figures, readable at any size of window."""
 
 import itertools
+from dataclasses import replace
 from typing import Any
 
 import pygame
@@ -76,6 +77,7 @@ def test_bodies_asleep_are_counted_beside_the_bodies() -> None:
     box(world, (0, -0.5), width=10, height=1, static=True, friction=0.5)
     box(world, (0, 0.25), friction=0.5)
     circle(world, (3, 50))
+    world.simulation = replace(world.simulation, sleeping=True)
     desk, canvas = recorded(world)
     desk.frames(80)
     frame(desk, canvas)

@@ -213,8 +213,12 @@ def aimed(random: np.random.Generator, number: int) -> tuple[World, list[int], f
     return world, bodies, e, mu
 
 
-def test_random_impacts_keep_all_laws() -> None:
-    random = np.random.default_rng(20260723)
+@pytest.mark.parametrize(
+    "seed", [20260723, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(9))]
+)
+def test_random_impacts_keep_all_laws(seed: int) -> None:
+    """10,000 of all pairs of shapes, in ten parts."""
+    random = np.random.default_rng(seed)
     lowered = compared = 0
     for number in range(1000):
         world, bodies, e, mu = aimed(random, number)
@@ -278,7 +282,7 @@ def test_the_impact_of_two_free_boxes_keeps_angular_momentum() -> None:
         restitution=1, friction=0,
     )  # fmt: skip
     before, energy = measure_momentum(world), measure_energy(world).kinetic
-    world.run(seconds=1.0)
+    world.run(seconds=0.3)  # they turn, and graze each other once more at 0.344 s
     check_rigid(world)
     assert world.contacts.logged == 1
     after = measure_momentum(world)

@@ -140,7 +140,7 @@ SECTIONS = [
     ({"simulation": {"dt": 0}}, "simulation.dt = 0: must be a finite number >= 1e-100"),
     ({"simulation": {"substeps": 0}}, "simulation.substeps = 0: must be a whole number"),
     ({"simulation": {"substeps": 1.5}}, "simulation.substeps = 1.5: must be a whole number"),
-    ({"simulation": {"sleeping": "no"}}, 'simulation.sleeping = "no": must be true or false'),
+    ({"simulation": {"sleeping": "no"}}, 'simulation.sleeping = "no": must be "auto", true or false'),
     ({"simulation": {"collisions": "never"}}, 'simulation.collisions = "never": must be one of "auto"'),
     ({"simulation": {"integrator": "euler"}}, 'simulation.integrator = "euler": must be one of "auto"'),
     ({"contacts": {}}, "contacts = {}: must be a list of lists"),

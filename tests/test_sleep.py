@@ -16,7 +16,7 @@ from physicslab.contacts.islands import export_rests, wake
 from physicslab.contacts.memory import export_contacts
 from physicslab.contacts.report import contact_between, list_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
-from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
@@ -47,6 +47,34 @@ def sleepers(world: World) -> set[int]:
     """Return the entities that sleep."""
     assert world.sleep.count == np.count_nonzero(world.sleep.asleep)
     return set(world.entity_index.entities[world.sleep.asleep].tolist())
+
+
+# ---- which worlds sleep -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("sleeping", "boxes", "asleep"), [("auto", 64, 0), ("auto", 65, 65), (True, 1, 1), (False, 65, 0)]
+)
+def test_a_default_is_not_a_wish_and_a_file_keeps_each(sleeping: bool | str, boxes: int, asleep: int) -> None:
+    world, _ = resting_boxes(*(1.5 * place for place in range(-32, boxes - 32)), sleeping=sleeping)
+    assert SimulationConfig().sleeping == "auto"
+    document = json.loads(json_text(write_scene(world)))
+    assert document["simulation"]["sleeping"] is sleeping or sleeping == "auto"
+    loaded = read_scene(document)
+    assert loaded.simulation.sleeping == sleeping
+    loaded.run(seconds=1.0)
+    assert len(sleepers(loaded)) == asleep
+
+
+def test_a_world_that_has_become_one_of_few_bodies_wakes() -> None:
+    world, boxes = resting_boxes(*(1.5 * place for place in range(-32, 33)), sleeping="auto")
+    world.run(seconds=1.0)
+    assert len(sleepers(world)) == 65
+    world.remove(boxes[0])
+    world.step()
+    assert not sleepers(world)
+    reasons = {left.name: left.reason for left in world.schedule.left_out}
+    assert reasons["SleepSystem"] == "at most 64 bodies can move: simulating them costs little"
 
 
 # ---- falling asleep ----------------------------------------------------------------------------------------
@@ -171,7 +199,7 @@ def test_no_body_sleeps_on_which_a_spring_or_drag_acts(part: Spring | Drag) -> N
         ({"physics": PhysicsConfig(gravity_mode="planet")}, "planets attract each other"),
     ],
 )
-def test_it_says_why_it_is_left_out(change: dict[str, object], reason: str) -> None:
+def test_it_is_left_out_with_a_reason(change: dict[str, object], reason: str) -> None:
     world = open_space(**{"sleeping": True, **change})  # type: ignore[arg-type]
     floor(world)
     box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
@@ -389,7 +417,7 @@ class Wind(ForceSystem):
 
 def test_a_force_wakes() -> None:
     wind = Wind()
-    world = World(*standard_systems(), wind)
+    world = World(*standard_systems(), wind, simulation=SimulationConfig(sleeping=True))
     floor(world)
     first = box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
     wind.strength = 0.5
@@ -443,7 +471,7 @@ def test_where_everybody_sleeps_no_substep_is_made() -> None:
 
 def test_a_foreign_system_is_called_while_all_bodies_sleep() -> None:
     wind = Wind()
-    world = World(*standard_systems(), wind)
+    world = World(*standard_systems(), wind, simulation=SimulationConfig(sleeping=True))
     floor(world)
     box(world, (0.0, 0.5), width=1.0, height=1.0, friction=0.5)
     world.run(seconds=1.0)

@@ -4,6 +4,7 @@ import json
 import math
 import random
 from collections.abc import Callable
+from dataclasses import replace
 from decimal import Decimal, getcontext
 from functools import partial
 from pathlib import Path
@@ -13,8 +14,11 @@ import pytest
 
 from physicslab.cli import main
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
+from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene, read_scene, write_scene
+from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error
+from physicslab.lab.accuracy.scene_study import SceneStudy, study_scene
 from physicslab.lab.accuracy.twins import TWINS, Document, with_ids
 from physicslab.prefabs import pendulum
 from physicslab.world import World
@@ -38,13 +42,14 @@ def moving(place: Place, size: Place, *, speed: float = 0.0, **changes: Any) -> 
     return body(place, size, Velocity={"linear": [speed, 0.0]}, Mass={"mass": 1.0}, **changes)
 
 
-def scene(*bodies: dict[str, Any], **changes: Any) -> Document:
-    return {"format": "physicslab-scene/1", "entities": list(bodies), **changes}
+def scene(*bodies: dict[str, Any], contacts: str = "auto", **changes: Any) -> Document:
+    simulation = {"contacts": contacts}
+    return {"format": "physicslab-scene/1", "entities": list(bodies), "simulation": simulation, **changes}
 
 
 def tower(number: int, size: float) -> Document:
     boxes = [moving((0.0, (i + 0.5) * size), (size, size), friction=0.6) for i in range(number)]
-    return scene(body((0.0, -0.5), (10.0, 1.0), friction=0.6), *boxes)
+    return scene(body((0.0, -0.5), (10.0, 1.0), friction=0.6), *boxes, contacts="soft")
 
 
 def incline(slope: float, friction: float) -> Document:
@@ -53,6 +58,7 @@ def incline(slope: float, friction: float) -> Document:
     return scene(
         body((0.5 * ux, 0.5 * uy), (60.0, 1.0), angle=slope, friction=friction),
         moving((-0.25 * ux, -0.25 * uy), (1.0, 0.5), angle=slope, friction=friction),
+        contacts="soft",
     )
 
 
@@ -65,6 +71,7 @@ def sliding(speed: float, friction: float) -> Document:
     return scene(
         body((0.0, -0.5), (60.0, 1.0), friction=friction),
         moving((0.0, 0.25), (0.5, 0.5), speed=speed, friction=friction),
+        contacts="soft",
     )
 
 
@@ -72,6 +79,8 @@ SLOPE = math.pi / 6.0
 CASES: dict[str, tuple[Document, Place]] = {
     "one box": (tower(1, 1.0), (0.0, 0.5)),
     "ten boxes": (tower(10, 1.0), (0.0, 9.5)),
+    "twenty boxes": (tower(20, 1.0), (0.0, 19.5)),
+    "ten cubes of 10 cm": (tower(10, 0.1), (0.0, 0.95)),
     "five cubes of 2 cm": (tower(5, 0.02), (0.0, 0.09)),
     "down an incline": (incline(SLOPE, 0.4), slid_down(SLOPE, 0.4, 5.0)),
     "slides to a stop": (sliding(3.0, 0.3), (9.0 / (2.0 * 0.3 * G), 0.25)),
@@ -96,6 +105,77 @@ def test_the_estimate_of_contacts_is_within_a_factor_of_ten_of_the_truth(case: s
     assert 0.1 * true - FLOOR <= found.error.position <= 10.0 * true + FLOOR
     half_step = next(twin.spread for twin in found.twins if twin.name == "half step")
     assert half_step is not None and half_step.position <= found.error.position
+
+
+KNOWN = [name for name, case in CONTACTS.items() if case.group != "symmetry" and name != "free_boxes"]
+"""Contact cases in which the places of bodies are known."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("contacts", ["soft", "rigid"])
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_estimate_of_every_contact_case_is_within_a_factor_of_ten(name: str, contacts: str) -> None:
+    case = CONTACTS[name]
+    last = len(case.times) - 1
+
+    def load() -> World:
+        (world,) = case.build(SimulationConfig(contacts=contacts))
+        return world
+
+    found, world = estimate(load, case.seconds), load()
+    world.run(seconds=case.seconds)
+    true = case.error((world,), last)
+    assert found.error is not None
+    estimated = max(found.error.position, found.error.angle)
+    print(f"| {name} | {contacts} | {true:.1e} | {estimated:.1e} | {estimated / true if true else 1:.2g} "
+          f"| {found.worst} |")  # fmt: skip
+    assert 0.1 * true - FLOOR <= estimated <= 10.0 * true + FLOOR
+
+
+def test_the_rigid_twin_of_soft_contacts_is_as_far_off_as_the_truth() -> None:
+    case = CONTACTS["corner_rod"]
+
+    def load() -> World:
+        (world,) = case.build(SimulationConfig(contacts="soft"))
+        return world
+
+    found, world = estimate(load, case.seconds), load()
+    world.run(seconds=case.seconds)
+    (rigid,) = [twin.spread for twin in found.twins if twin.name == "rigid"]
+    assert rigid is not None and found.reference is not None
+    assert max(rigid.position, rigid.angle) == pytest.approx(case.error((world,), 0), rel=0.1)
+
+
+def test_rigid_contacts_have_no_stiffer_twin_and_no_rigid_one() -> None:
+    (world,) = CONTACTS["slide_stop"].build(SimulationConfig(contacts="rigid"))
+    found = estimate(lambda: CONTACTS["slide_stop"].build(SimulationConfig(contacts="rigid"))[0], 0.5)
+    names = {twin.name for twin in found.twins}
+    assert names >= {"half step", "mirrored", "permuted", "nudged"} and names.isdisjoint({"stiffer", "rigid"})
+    assert found.reference is None
+    document = with_ids(write_scene(world))
+    world.synchronise()
+    assert all(twin.make(document, world) is None for twin in TWINS if twin.name in ("stiffer", "rigid"))
+
+
+def test_a_twin_that_takes_too_long_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    patient = [replace(twin, budget_s=-1.0) if twin.name == "rigid" else twin for twin in TWINS]
+    monkeypatch.setattr("physicslab.lab.accuracy.estimate.TWINS", patient)
+    found = estimate(lambda: read_scene(CASES["one box"][0]), 0.1)
+    (rigid,) = [twin for twin in found.twins if twin.name == "rigid"]
+    assert rigid.spread is None and rigid.failure.startswith("given up after -1 s, at t = 0.0167")
+    assert found.error is not None and found.reference is None
+
+
+def test_methods_are_compared_with_rigid_contacts_where_these_can_be_had() -> None:
+    """Leapfrog with a quarter of the step sinks as deep: it is no reference."""
+    *_, study = study_scene("ten", lambda: read_scene(CASES["ten boxes"][0]), 1.0)
+    assert isinstance(study, SceneStudy) and study.tightest == "rigid contacts"
+    auto = study.rows[0]
+    world = read_scene(CASES["ten boxes"][0])
+    world.simulation = replace(world.simulation, sleeping=False)
+    world.run(seconds=1.0)
+    true = max(abs(world.component(i + 2, Transform).position.y - i - 0.5) for i in range(10))
+    assert auto.tightest == pytest.approx(true, rel=0.01)
 
 
 def gas(seed: int) -> Document:

@@ -13,6 +13,10 @@ from physicslab.commands.numbers import positive_duration
 from physicslab.ecs.text import printable
 from physicslab.files.scene import load_scene
 from physicslab.lab.accuracy.catalogue import PROBLEMS
+from physicslab.lab.accuracy.contacts.case import ContactCase
+from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
+from physicslab.lab.accuracy.contacts.study import ContactStudy, study_case
+from physicslab.lab.accuracy.contacts.tables import contact_summary, contact_text
 from physicslab.lab.accuracy.document import document
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import DEFAULT_S, SceneStudy, study_scene
@@ -24,57 +28,87 @@ from physicslab.scenes import SCENES
 __all__ = ["add_arguments", "execute"]
 
 
+_CONTACTS = "contacts"
+"""The name of the whole second page."""
+
+
 def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
-    what = "a problem, a family of them, a built-in scene or a scene file; every problem, sparsely, if none"
+    what = (
+        "a problem, a contact case, a family of them, a built-in scene or a scene file; every problem and "
+        "case, sparsely, if none"
+    )
     add_lab_arguments(parser, "problem", what, "draw a work-precision plot of each problem, as PNG")
     seconds = f"how long scenes are run, in their time ({DEFAULT_S:g})"
     parser.add_argument("--seconds", metavar="T", type=positive_duration, default=DEFAULT_S, help=seconds)
-    parser.epilog = f"families: {', '.join(PROBLEMS.families)}; --list names the {len(PROBLEMS)} problems"
+    parser.epilog = (
+        f"families: {', '.join(PROBLEMS.families)}; of contact cases, by other engines as well where "
+        f"installed: {', '.join(CONTACTS.families)}, or {_CONTACTS} for all; --list names "
+        f"the {len(PROBLEMS)} problems and {len(CONTACTS)} cases"
+    )
 
 
 def execute(arguments: Namespace) -> int:
     """Study what was named, print a table of each, and write the outputs that were chosen."""
     if arguments.list:
-        return list_cases(PROBLEMS)
+        return max(list_cases(PROBLEMS), list_cases(CONTACTS))
     scenes: dict[str, None] = {}
-    problems = chosen_cases(arguments.names, PROBLEMS, partial(_scene, scenes))
-    if not arguments.names:
-        problems = list(PROBLEMS.values())
+    contacts: dict[str, ContactCase] = {}
+    problems = chosen_cases(arguments.names, PROBLEMS, partial(_other, scenes, contacts))
+    sparse = not arguments.names
+    if sparse:
+        problems, contacts = list(PROBLEMS.values()), CONTACTS
     run = LabRun("accuracy", arguments, "accuracy")
-    jobs: list[tuple[float, Job[Study | SceneStudy]]] = [
-        (1.0, study(problem, sparse=not arguments.names)) for problem in problems
-    ]
-    jobs += [
-        (1.0, study_scene(printable(name), partial(load_scene, name), arguments.seconds)) for name in scenes
+    jobs: list[tuple[float, Job[Study | ContactStudy | SceneStudy]]] = [
+        *((1.0, study(problem, sparse=sparse)) for problem in problems),
+        *((1.0, study_case(case, sparse=sparse)) for case in contacts.values()),
+        *(
+            (1.0, study_scene(printable(name), partial(load_scene, name), arguments.seconds))
+            for name in scenes
+        ),
     ]
     studies: list[Study] = []
+    contact_studies: list[ContactStudy] = []
     scene_studies: list[SceneStudy] = []
-    results: Iterator[Study | SceneStudy] = run.results(jobs)
+    results: Iterator[Study | ContactStudy | SceneStudy] = run.results(jobs)
     for result in results:
-        if isinstance(result, Study):
-            studies.append(result)
-            run.show(study_text(result, whole=len(problems) == 1))
-            run.draw(result.problem.name, partial(_plot, result))
-        else:
-            scene_studies.append(result)
-            run.show(scene_text(result))
+        match result:
+            case Study():
+                studies.append(result)
+                run.show(study_text(result, whole=len(problems) == 1))
+                run.draw(result.problem.name, partial(_plot, result))
+            case ContactStudy():
+                contact_studies.append(result)
+                run.show(contact_text(result))
+                run.draw(result.case.name, partial(_contact_plot, result))
+            case SceneStudy():
+                scene_studies.append(result)
+                run.show(scene_text(result))
     if studies:
         run.show(summary_text(studies))
-    if not arguments.names:
+    if contact_studies:
+        run.show(contact_summary(contact_studies))
+        _draw_overviews(run, contact_studies)
+    if sparse:
         run.show(left_out_text())
-    run.write(document(studies, scene_studies))
+    run.write(document(studies, scene_studies, contact_studies))
     for found in scene_studies:
         if found.rows[0].failure:
             raise CommandError(f"{found.name}: {found.rows[0].failure}", FAILED)
     return 0
 
 
-def _scene(scenes: dict[str, None], name: str) -> Problem | None:
-    """Add a name that is no problem to the scenes, if it is one that can be read."""
+def _other(scenes: dict[str, None], contacts: dict[str, ContactCase], name: str) -> Problem | None:
+    """Add a name that is no problem to the contact cases or to the scenes, if it is one that can be read."""
+    found = list(CONTACTS.values()) if name == _CONTACTS else CONTACTS.select(name)
+    if found:
+        contacts |= {case.name: case for case in found}
+        return None
     if name not in SCENES and not os.path.exists(name):
-        known = f"the problems are {', '.join(PROBLEMS.families)}; scenes are taken as well"
-        raise unknown_name(name, "problem, scene or file", [*PROBLEMS.names, *SCENES], known)
+        families = ", ".join([*PROBLEMS.families, *CONTACTS.families])
+        known = f"the problems are {families}; scenes are taken as well"
+        names = [*PROBLEMS.names, *CONTACTS.names, _CONTACTS, *SCENES]
+        raise unknown_name(name, "problem, scene or file", names, known)
     load_scene(name)  # a bad scene is refused before work is begun
     scenes[name] = None
     return None
@@ -84,3 +118,23 @@ def _plot(found: Study) -> bytes:
     from physicslab.lab.accuracy.plot import work_precision  # matplotlib takes a while, and may not be there
 
     return work_precision(found)
+
+
+def _contact_plot(found: ContactStudy) -> bytes:
+    from physicslab.lab.accuracy.contacts.plot import case_plot
+
+    return case_plot(found)
+
+
+def _draw_overviews(run: LabRun, found: list[ContactStudy]) -> None:
+    """Draw the cases whose order is looked at in one picture, where all of them were studied."""
+    shown = [study for study in found if study.case.name in CONVERGENCE]
+    if len(shown) == len(CONVERGENCE):
+        for by in ("step", "cost"):
+            run.draw(f"contacts_{by}", partial(_overview, shown, by))
+
+
+def _overview(found: list[ContactStudy], by: str) -> bytes:
+    from physicslab.lab.accuracy.contacts.plot import overview
+
+    return overview(found, by)

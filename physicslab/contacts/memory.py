@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from physicslab.contacts.report import ordered_records
+from physicslab.kernels.events.events import DEEP
 from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.kernels.wide.layout import WIDE
 from physicslab.kernels.wide.slots import COLOURS
@@ -34,9 +35,9 @@ def kept_rows(contacts: Contacts) -> Iterator[list[float] | None]:
     """Yield what the next step takes from the last one, as rows of numbers that JSON can hold.
 
     A row starts with the two entities (0 for the world's bounds) and the wall. Points that will be found
-    again leave their features and impulses; those that will be kept, everything; ``None`` is for a pair
-    of which nothing is kept. A wide contact adds its slot, and the colour of its block; one that will have
-    an impact in the next substep, which of its points do: 1, 2, or 3 for both.
+    again leave their features and impulses; those that will be kept, or that overlap deeply, everything;
+    ``None`` is for a pair of which nothing is kept. A wide contact adds its slot, and the colour of its
+    block; one that will have an impact in the next substep, which of its points do: 1, 2, or 3 for both.
     """
     for p in ordered_records(contacts):
         manifold = contacts.manifolds[p]
@@ -46,7 +47,7 @@ def kept_rows(contacts: Contacts) -> Iterator[list[float] | None]:
         slot = [number, int(colours[number // 2 // WIDE])] if number >= 0 else []
         if manifold["count"] <= 0:
             yield None
-        elif manifold["found"] == 2:
+        elif manifold["found"] == 2 or _overlaps_deeply(contacts, p):
             kept = [manifold[name].item() for name in _KEPT[1:]]
             both = [value for j in (2 * p, 2 * p + 1) for value in contacts.points[j].item()]
             yield [*pair, *kept, *both, *slot]
@@ -55,6 +56,13 @@ def kept_rows(contacts: Contacts) -> Iterator[list[float] | None]:
             ahead = int(contacts.points[2 * p]["ahead"] + 2 * contacts.points[2 * p + 1]["ahead"])
             rest = slot or ([ahead] if ahead else [])
             yield [*pair, *warm, *rest] if rest or any(warm[1:3] + warm[4:]) else None
+
+
+def _overlaps_deeply(contacts: Contacts, p: int) -> bool:
+    """Whether a pair overlaps so deeply that exact collisions leave its bodies to the contact step."""
+    manifold = contacts.manifolds[p]
+    separation = contacts.points["separation"][2 * p : 2 * p + int(manifold["count"])]
+    return bool((separation < -DEEP * manifold["size"]).any())
 
 
 def export_contacts(contacts: Contacts) -> list[list[float]]:

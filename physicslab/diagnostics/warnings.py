@@ -12,29 +12,20 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from physicslab.components import Shape, Spring, Transform, Velocity
+from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
-from physicslab.diagnostics.forces import fastest_force
+from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, step_warnings
 from physicslab.diagnostics.warning_records import ModelWarning, WorstWarnings
-from physicslab.state.packed import spring_ends
+from physicslab.stepping.contact_model import why_not_rigid
 from physicslab.stepping.rigid import Rigid
 from physicslab.world import World
 
 __all__ = [
-    "DISTANCE_LIMIT", "EXPLICIT_RATE_LIMIT", "IMPLICIT_RATE_LIMIT", "MASS_RATIO_LIMIT", "OVERLAP_LIMIT",
+    "DISTANCE_LIMIT", "MASS_RATIO_LIMIT", "OVERLAP_LIMIT", "RIGID_LIMIT",
     "SPEED_LIMIT", "SPIN_LIMIT", "ModelWarning", "WorstWarnings", "find_warnings",
 ]  # fmt: skip
 
-EXPLICIT_RATE_LIMIT = 0.3
-"""omega h of a fixed step, as a share of the method's limit: with leapfrog the energy of such an oscillation
-swings by a tenth."""
-IMPLICIT_RATE_LIMIT = 1.0
-"""omega h of the implicit rule, which is stable beyond: the phase is 8 % off there."""
-_AUTO_RATE_LIMIT = 500.0
-"""omega dt up to which ``auto`` divides a step until it follows an oscillation."""
-_SUBSTEPS_LIMIT = 10_000
-"""Of a scene's configuration."""
 OVERLAP_LIMIT = 0.2
 """Overlap as a share of the smaller body. A stack of ten equal boxes stays below 0.005, 300 kg on 1 kg below
 0.08, a pile of 900 bodies that lands has 0.16 for a moment; one that goes through another passes 0.3."""
@@ -51,6 +42,10 @@ times as heavy sinks by 2 cm in 10 s, three thousand times by 4 cm, ten thousand
 which are made shorter for such loads, are then as short as they may be."""
 _PEAK_MARGIN = 1.5
 """Between two looks at a run speeds are higher than those seen: so many more substeps are advised."""
+RIGID_LIMIT = 64
+"""Number of contacts up to which rigid ones are advised for what is pressed deep or carries too much."""
+_RIGID_MASS_RATIO = 3e4
+"""Mass ratio up to which rigid contacts were seen to hold to 1e-15 m without shorter steps."""
 DISTANCE_LIMIT = 1e9
 """Coordinate in sizes of a body: float64 keeps places there to 1e-7 of the body, and a tower to 1e-3."""
 
@@ -60,7 +55,7 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
 
     Nothing is changed; the figures are those of the last step.
     """
-    found = [*_refusals(world), *_division(world), *_rates(world), *_order(world), *_distance(world)]
+    found = [*_refusals(world), *_division(world), *step_warnings(world), *_distance(world)]
     rigid = next((stepper for stepper in world.steppers.usable if isinstance(stepper, Rigid)), None)
     if rigid is not None and rigid.left_to_soft:
         what = f"steps were left to soft contacts, at last because {rigid.why_soft}"
@@ -99,75 +94,6 @@ def _division(world: World) -> Iterator[ModelWarning]:
         yield ModelWarning(None, what, float(world.step_divisions), "", 1.0, "a shorter step")
 
 
-def _rates(world: World) -> Iterator[ModelWarning]:
-    """Yield the fastest force, if it is too fast for the steps that are made."""
-    method, dt = world.plan, world.simulation.dt
-    integrator = method.integrator if method.smooth else method.split_forces or method.stages
-    if method.collisions == "exact" or integrator.chooses_steps or math.isinf(integrator.order):
-        return
-    rate, system = fastest_force(world)
-    if system is None or not math.isfinite(rate):
-        return
-    parts = method.substeps * (2 * method.split_steps if method.split_forces else 1)
-    value, bounded = rate * dt / parts, math.isinf(integrator.stability_limit)
-    limit = IMPLICIT_RATE_LIMIT if bounded else EXPLICIT_RATE_LIMIT * integrator.stability_limit
-    if value <= limit:
-        return
-    entity = _stiffest(world) if Spring in system.needs else None
-    source = "" if entity else f"{system.name.removesuffix('System')}: "
-    if bounded:
-        what = "is too fast to be followed (omega h): its motion between steps is not shown"
-    elif value > integrator.stability_limit:
-        what = "is too stiff for the step (omega h): it flies apart"
-    else:
-        what = "is resolved coarsely (omega h): its energy swings"
-    yield ModelWarning(
-        entity, source + what, value, "", limit, _shorter(world, rate, limit, followed=bounded)
-    )
-
-
-def _order(world: World) -> Iterator[ModelWarning]:
-    """Yield a force that depends on velocities, where the method that was asked for is made for positions."""
-    plan = world.plan
-    method = plan.integrator if plan.smooth else plan.stages
-    if world.simulation.integrator == "auto" or plan.collisions == "exact" or not method.positions_only:
-        return
-    seeing = next((force for force in world.schedule.forces if force.sees_velocity(world)), None)
-    if seeing is not None:
-        name = seeing.name.removesuffix("System")
-        what = f"{name}: {method.name} has order 1 where a force depends on velocities"
-        better = '"dop853"' if plan.smooth else '"auto"'
-        yield ModelWarning(None, what, None, "", None, f"simulation.integrator = {better}")
-
-
-def _shorter(world: World, rate: float, limit: float, *, followed: bool) -> str:
-    """Return the setting with which a rate [rad/s] is followed by the present method, or by ``auto``."""
-    simulation = world.simulation
-    if followed and simulation.integrator == "auto":
-        return f"simulation.dt = {_below(_AUTO_RATE_LIMIT / rate):.2g}"
-    needed = math.ceil(rate * simulation.dt / limit)
-    if needed <= _SUBSTEPS_LIMIT:
-        return f"simulation.substeps = {needed}"
-    return f"simulation.dt = {_below(limit * simulation.substeps / rate):.2g}"
-
-
-def _below(value: float) -> float:
-    """Round down to two digits, so that what is shown still helps."""
-    digits = 10.0 ** (math.floor(math.log10(value)) - 1)
-    return math.floor(value / digits) * digits
-
-
-def _stiffest(world: World) -> str | None:
-    """Return the name of the spring with the fastest oscillation or decay."""
-    rows, a, b = spring_ends(world)
-    if not len(rows):
-        return None
-    spring, inverse = world.table(Spring), world.bodies.inverse_mass
-    give = inverse[a] + inverse[b]
-    rates = np.maximum(np.sqrt(spring["stiffness"][rows] * give), spring["damping"][rows] * give)
-    return world.label(int(world.entity_index.entities[rows[np.argmax(rates)]]))
-
-
 def _distance(world: World) -> Iterator[ModelWarning]:
     """Yield the body that is furthest from the origin in its own sizes, if that is too far."""
     batch = world.batch(Transform, Shape)
@@ -195,7 +121,8 @@ def _overlap(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
         name = graph.lighter(world, int(graph.touching[worst]))
         size = float(graph.size[graph.touching[worst]])
         what = "is pressed into another body deeper than contacts can hold"
-        yield ModelWarning(name, what, float(graph.depth[worst]), "m", OVERLAP_LIMIT * size, "")
+        depth, limit = float(graph.depth[worst]), OVERLAP_LIMIT * size
+        yield ModelWarning(name, what, depth, "m", limit, _rigid(world, graph))
 
 
 def _mass_ratios(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
@@ -204,7 +131,8 @@ def _mass_ratios(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     if len(ratio) and ratio.max() > MASS_RATIO_LIMIT:
         name = graph.lighter(world, int(graph.touching[np.argmax(ratio)]))
         what = "carries a body so much heavier that contacts cannot hold it (mass ratio)"
-        yield ModelWarning(name, what, float(ratio.max()), "", MASS_RATIO_LIMIT, "")
+        setting = _rigid(world, graph) if ratio.max() <= _RIGID_MASS_RATIO else ""
+        yield ModelWarning(name, what, float(ratio.max()), "", MASS_RATIO_LIMIT, setting)
 
 
 def _speeds(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
@@ -236,6 +164,12 @@ def _spins(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
         yield ModelWarning(name, what, float(angles.max()), "rad", SPIN_LIMIT, setting)
 
 
+def _rigid(world: World, graph: ContactGraph) -> str:
+    """Return the setting that holds any load, where few bodies touch and contacts may be rigid."""
+    few = len(graph.touching) <= RIGID_LIMIT
+    return 'simulation.contacts = "rigid"' if few and why_not_rigid(world, world.schedule) is None else ""
+
+
 def _more_substeps(world: World, factor: float) -> str:
     needed = math.ceil(world.simulation.substeps * factor * _PEAK_MARGIN)
-    return f"simulation.substeps = {needed}" if needed <= _SUBSTEPS_LIMIT else "a smaller simulation.dt"
+    return f"simulation.substeps = {needed}" if needed <= SUBSTEPS_LIMIT else "a smaller simulation.dt"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue
 from physicslab.ecs.vector import Vector2
@@ -126,13 +126,13 @@ class SimulationConfig:
         Sweeps of the contact solver a substep; ``None`` for the default of the solver (one).
     integrator : str
         A method by name, or ``"auto"``.
-    sleeping : bool
-        Whether bodies at rest may stop being simulated.
+    sleeping : bool or str
+        Whether bodies at rest may stop being simulated; ``"auto"`` for worlds of many bodies only.
     collisions : str
         ``"step"`` (found and resolved within steps), ``"exact"`` (contact times located) or ``"auto"``.
     contacts : str
         ``"rigid"`` (laws solved to rounding, events located; few bodies), ``"soft"`` (stiff springs, any
-        number) or ``"auto"``, which is soft as yet.
+        number) or ``"auto"``: rigid where few bodies can touch, and beside exact collisions where they rest.
     tolerance : float
         Error a step that an adaptive method accepts, as a share of the largest coordinate and speed. Where
         stiff springs are damped, ``auto`` takes 1e-13 in place of the default.
@@ -142,9 +142,9 @@ class SimulationConfig:
     substeps: int = 4
     iterations: int | None = None
     integrator: str = "auto"
-    sleeping: bool = True
+    sleeping: bool | Literal["auto"] = "auto"
     collisions: str = "auto"
-    contacts: str = "auto"
+    contacts: str = "soft"
     tolerance: float = 1e-17
 
     section: ClassVar[str] = "simulation"
@@ -153,7 +153,7 @@ class SimulationConfig:
         Field("substeps", "whole", minimum=1, maximum=10_000, meaning="parts that a step is divided into"),
         Field("iterations", "whole", minimum=1, maximum=1_000, derived="from the solver", meaning="sweeps"),
         Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),
-        Field("sleeping", "flag", meaning="whether bodies at rest may stop being simulated"),
+        Field("sleeping", "flag", choices=("auto",), meaning="whether bodies at rest are not simulated"),
         Field("collisions", "choice", choices=COLLISIONS, meaning="how contacts are found"),
         Field("contacts", "choice", choices=CONTACTS, meaning="how bodies that touch are held apart"),
         Field("tolerance", "number", minimum=1e-20, maximum=1e-2, meaning="error a step of adaptive methods"),

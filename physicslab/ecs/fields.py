@@ -72,7 +72,7 @@ class Field:
     limit : float
         How large a number, or each part of a vector, the engine can hold.
     choices : tuple of str
-        The words that a choice field takes.
+        The words that a choice field takes, and those that a flag takes beside true and false.
     derived : str
         Where the value comes from when it is ``None`` ("from the Shape").
     fixed : bool
@@ -103,7 +103,7 @@ class Field:
             case "choice":
                 return "one of " + ", ".join(f'"{choice}"' for choice in self.choices)
             case "flag":
-                return "true or false"
+                return "".join(f'"{choice}", ' for choice in self.choices) + "true or false"
             case "entity":
                 return "an entity or null"
             case "vector":
@@ -209,7 +209,9 @@ def _vector(field: Field, value: object) -> tuple[float, float] | None:
     return None
 
 
-def _flag(field: Field, value: object) -> bool | None:
+def _flag(field: Field, value: object) -> bool | str | None:
+    if isinstance(value, str):
+        return value if value in field.choices else None
     return bool(value) if isinstance(value, bool | np.bool_) else None
 
 

@@ -30,4 +30,6 @@ BLANES_MOAN = Integrator(
     ),
     kernels=(split,),
     positions_only=True,
+    phase_share=8.08e-8,
+    phase_order=6,
 )

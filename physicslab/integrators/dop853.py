@@ -33,6 +33,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         tolerance,
         state.simulation.dt,
         most,
+        eq.free_bodies,
     )
     if made == NOT_FINITE:
         raise StepTooSmall(f"forces are no longer finite at t = {state.time:.9g} s")

@@ -96,4 +96,5 @@ IMPLICIT_MIDPOINT = Integrator(
     "Hairer & Wanner, Solving Ordinary Differential Equations II, 1996, IV.3",
     flow=_flow,
     kernels=(implicit_midpoint,),
+    phase_share=1.0 / 12.0,
 )

@@ -55,6 +55,9 @@ class Integrator:
         Whether the order holds only for forces that do not depend on velocities.
     chooses_steps : bool
         Whether it chooses its own steps within the given time.
+    phase_share, phase_order : float, int
+        The share of omega t by which the phase of an oscillation is wrong is ``phase_share`` times omega h to
+        the power ``phase_order``, for small omega h; 0 where it is not known.
     """
 
     name: str
@@ -70,3 +73,5 @@ class Integrator:
     window: tuple[float, float] = (0.0, 1.0)
     positions_only: bool = False
     chooses_steps: bool = False
+    phase_share: float = 0.0
+    phase_order: int = 2

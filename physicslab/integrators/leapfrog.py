@@ -36,6 +36,7 @@ LEAPFROG = Integrator(
         (Stage.RELAX, 0.5),
     ),
     window=(-0.5, 0.5),
+    phase_share=1.0 / 24.0,
 )
 
 _PREDICTED = ((Stage.PREDICT, 0.5), (Stage.SOLVE, 1.0), (Stage.PREDICT, -0.5))

@@ -26,4 +26,6 @@ RK4 = Integrator(
     source="Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 1993, II.1",
     flow=_flow,
     kernels=(rk4,),
+    phase_share=1.0 / 120.0,
+    phase_order=4,
 )

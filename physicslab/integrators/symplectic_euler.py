@@ -28,4 +28,5 @@ SYMPLECTIC_EULER = Integrator(
         (Stage.RELAX, 1.0),
     ),
     window=(0.0, 1.0),
+    phase_share=1.0 / 24.0,
 )

@@ -12,7 +12,7 @@ from typing import Any
 __all__ = ["finite", "lab_document", "machine", "machine_text"]
 
 _PACKAGES = ("physicslab", "numpy", "numba", "esper")
-_PEERS = ("pymunk", "box2d")
+_PEERS = ("pymunk", "box2d", "pyb2d3")
 
 
 def lab_document(lab: str, *, peers: bool = False, **parts: object) -> dict[str, Any]:

@@ -11,12 +11,13 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box
+from physicslab.stepping.rigid import Rigid
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
 __all__ = [
     "GRAVITY", "PLANETS", "empty_world", "energy_change", "energy_growth", "floor", "largest",
-    "open_space", "place", "spawn_point", "velocity",
+    "open_space", "place", "spawn_point", "steps_not_rigid", "velocity",
 ]  # fmt: skip
 
 GRAVITY = 9.81
@@ -99,6 +100,13 @@ def place(world: World, body: int | str) -> Vector2:
 def velocity(world: World, body: int | str) -> Vector2:
     """Return how a body moves [m/s], by its entity or its name."""
     return world.component(world.entity(body) if isinstance(body, str) else body, Velocity).linear
+
+
+def steps_not_rigid(*worlds: World) -> tuple[int, int]:
+    """Return how many steps of worlds with rigid contacts were left to soft ones, and made by impulses."""
+    usable = (stepper for world in worlds for stepper in world.steppers.usable)
+    rigid = [stepper for stepper in usable if isinstance(stepper, Rigid)]
+    return sum(stepper.left_to_soft for stepper in rigid), sum(stepper.by_impulses for stepper in rigid)
 
 
 def largest(world: World, steps: int, look: Callable[[], float], every: int = 1) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
+from physicslab.kernels.forces.gravity import PLAIN_LIMIT
 from physicslab.state.packed import StateLayout
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
@@ -48,6 +49,8 @@ class OdeSystem:
     near : int64 array and int, optional
         An order of the coordinates in which those that forces couple are near, and how near; found
         once by the method that needs it, as it depends on the layout alone.
+    free_bodies : int
+        How many bodies move, where no force depends on the origin and they are few; else 0.
     tolerance : float
         Relative error a step for methods that choose their steps.
     forces : tuple of ForceSystem
@@ -91,6 +94,7 @@ class OdeSystem:
         self._clock = np.zeros(1)
         self._still = np.zeros(2 * len(self.layout.fixed) + 1)
         self._settings = self._look(state)
+        self._packed_of: tuple[Any, ...] | None = None
 
     def _look(self, state: State) -> bytes:
         return state.bodies.inverse_mass.tobytes() + b"".join(f.settings(state) for f in self.forces)
@@ -102,6 +106,24 @@ class OdeSystem:
     def gather(self, state: State) -> None:
         """Take the state, the masses and the forces from the world's tables."""
         self.gather_state(state)
+        inputs = self._inputs(state)
+        if inputs is None or inputs != self._packed_of:
+            self._gather_laws(state)
+            self._packed_of = inputs
+
+    def _inputs(self, state: State) -> tuple[Any, ...] | None:
+        """Return what masses and packed forces are made of, or ``None`` where a force does not give that."""
+        found: list[Any] = [state.physics]
+        for force in self.forces:
+            numbers = force.inputs(state, self.layout)
+            if numbers is None:
+                return None
+            found.append(numbers)
+        bodies = state.bodies
+        return *found, bodies.inverse_mass.tobytes(), bodies.inverse_inertia.tobytes()
+
+    def _gather_laws(self, state: State) -> None:
+        """Take the masses, the damping and the forces."""
         bodies, physics = state.bodies, state.physics
         moving, turning = self.layout.moving, self.layout.turning
         self.inverse_mass = np.concatenate(
@@ -114,6 +136,9 @@ class OdeSystem:
             rates_of = np.repeat(rates, (2 * len(moving), len(turning)))
             self.damping = rates_of * (bodies.inverse_mass[pulled] > 0.0)
         self._calls(state)
+        few = len(moving) <= PLAIN_LIMIT and self._carries
+        free = few and not any(force.needs_origin(state) for force in self.forces)
+        self.free_bodies = len(moving) if free else 0
 
     def gather_state(self, state: State) -> None:
         """Take the state alone, where masses and forces are those of the last :meth:`gather`."""
@@ -155,15 +180,18 @@ class OdeSystem:
         steady = layout.steady
         if len(steady):
             spin, c = velocity["angular"][steady], state.physics.angular_damping
+            if not c:
+                transform["angle"][steady] += spin * span
+                return
             free = state.bodies.inverse_mass[steady] > 0.0
-            lasting = np.where(free & (c > 0.0), -np.expm1(-c * span) / (c or 1.0), span)
-            transform["angle"][steady] += spin * lasting
+            transform["angle"][steady] += spin * np.where(free, -np.expm1(-c * span) / c, span)
             velocity["angular"][steady] = np.where(free, spin * np.exp(-c * span), spin)
 
     def _note_rates(self, state: State) -> None:
         """Note the fastest rates that forces met, wherever within the steps that was."""
         for system, force in self._measured:
             rate = math.sqrt(force.parameters[force.steepest])
+            force.parameters[force.steepest] = 0.0
             state.fastest_rates[system.name] = max(rate, state.fastest_rates.get(system.name, 0.0))
 
     def undo(self, state: State) -> bool:

@@ -46,7 +46,7 @@ class Checkpoint:
         """Keep columns and counts as they are now."""
         self.make_room(columns, counts)
         for kept, column in zip(self.columns, columns, strict=True):
-            np.copyto(kept, column)
+            kept[...] = column  # np.copyto takes twice as long for a few bodies
 
     def restore(self, columns: _Columns) -> None:
         """Write back the columns that were kept; no body may have come or gone since."""

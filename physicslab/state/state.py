@@ -49,8 +49,8 @@ class State:
         How often forces were evaluated, and how many impacts there were.
     has_forces : bool
         Whether a force system runs.
-    event_driven : bool
-        Whether collisions are located in time, instead of found within steps.
+    event_driven, rigid_contacts : bool
+        Whether collisions are located in time, instead of found within steps; whether contacts are rigid.
     window : tuple of two floats
         When a substep begins and ends, relative to the moment at which impacts are resolved, in substeps.
     generation : int
@@ -95,7 +95,7 @@ class State:
         self.force_evaluations = self.collisions = 0
         self._waited_before = seconds_waited()
         self.generation = 0
-        self.has_forces = self.event_driven = False
+        self.has_forces = self.event_driven = self.rigid_contacts = False
         self.window, self.kick_before_contacts, self.moment = (-0.5, 0.5), 0.5, 0.0
         self.entity_index = EntityIndex()
         self.bodies, self.contacts, self.sleep = Bodies(), Contacts(), Sleep()

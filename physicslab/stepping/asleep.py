@@ -18,7 +18,7 @@ class Asleep:
 
     name: ClassVar[str] = "asleep"
     title: ClassVar[str] = "Everything sleeps: only time passes"
-    leaps: ClassVar[bool] = False
+    leaps: bool = False
     leaves_forces: ClassVar[bool] = True
     kernels: tuple[Any, ...] = ()
 

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from physicslab.components import Transform, Velocity
+import numpy as np
+
+from physicslab.components import Shape, Transform, Velocity
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
+from physicslab.stepping.forces import fastest_rate
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
 
-__all__ = ["choose_contacts"]
+__all__ = ["choose_contacts", "why_not_rigid"]
 
 _MAX_PAIRS = 10_000
 """Number of pairs above which contacts are soft: each is looked at in every piece of motion."""
+_MAX_BODIES = 12
+"""Number of bodies above which ``auto`` takes soft contacts: a step of rigid ones could last for 20 ms."""
+_MAX_RATE = 8.0
+"""Largest rate of springs and dampers times the step with which ``auto`` takes rigid contacts."""
 _OBSERVING = OF_FRAMES | AROUND | {Stage.IMPACT}
 """The stages at which a system may observe without changing the motion."""
 
@@ -19,13 +26,28 @@ _OBSERVING = OF_FRAMES | AROUND | {Stage.IMPACT}
 def choose_contacts(state: State, schedule: Schedule) -> tuple[str, str]:
     """Return whether contacts are ``"rigid"`` or ``"soft"``, and the reason."""
     wish = state.simulation.contacts
-    if wish != "rigid":
-        return "soft", "asked for" if wish == "soft" else "rigid contacts are not asked for"
-    obstacle = _why_not_rigid(state, schedule)
-    return ("rigid", "asked for") if obstacle is None else ("soft", f"rigid was asked for, and {obstacle}")
+    if wish == "soft":
+        return "soft", "asked for"
+    obstacle = why_not_rigid(state, schedule)
+    if wish == "rigid":
+        why = "asked for" if obstacle is None else f"rigid was asked for, and {obstacle}"
+        return "rigid" if obstacle is None else "soft", why
+    obstacle = obstacle or _why_not_worthwhile(state, schedule)
+    return ("rigid", "few bodies touch") if obstacle is None else ("soft", obstacle)
 
 
-def _why_not_rigid(state: State, schedule: Schedule) -> str | None:
+def _why_not_worthwhile(state: State, schedule: Schedule) -> str | None:
+    """Return why a world that can have rigid contacts is better off with soft ones, or ``None``."""
+    bodies = np.count_nonzero(state.bodies.inverse_mass[state.batch(Shape, Transform, Velocity).rows] > 0.0)
+    if bodies > _MAX_BODIES:
+        return f"more than {_MAX_BODIES} bodies can touch"
+    rate = fastest_rate(state, schedule.forces)
+    if rate * state.simulation.dt > _MAX_RATE:
+        return f"forces act at {rate:.3g} rad/s, which rigid contacts would follow in many steps"
+    return None
+
+
+def why_not_rigid(state: State, schedule: Schedule) -> str | None:
     """Return why contacts cannot be rigid, or ``None``."""
     if state.simulation.integrator not in ("auto", "dop853"):
         return f"{state.simulation.integrator} was asked for, and rigid contacts go by dop853"

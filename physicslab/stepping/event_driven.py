@@ -47,22 +47,25 @@ _MAX_PARTS = 1000
 class EventDriven:
     """Advances bodies in closed form from impact to impact.
 
-    One that comes to rest on another is handed over to the contact step, together with all others that rest,
-    and comes back when nothing presses on it or when a ballistic body hits it: the step is then divided at
-    the time of the impact.
+    Where contacts are rigid, a step in which one comes to rest on another, or rests, is left to them. Else
+    that body is handed over to the contact step, together with all others that rest, and comes back when
+    nothing presses on it or when a ballistic body hits it: the step is then divided at the time of the
+    impact.
 
     Which bodies rest follows from the contacts of the last step, so that nothing here needs to be saved.
     """
 
     name: ClassVar[str] = "event_driven"
     title: ClassVar[str] = "Impacts at their exact times"
-    leaps: ClassVar[bool] = True
     leaves_forces: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._resting = schedule, RestingBodies(schedule, plan)
         self.reason = plan.collision_reason
+        self._leaves_rest = plan.contacts == "rigid"
+        self._left = -1
+        self.leaps = not self._leaves_rest
         rows = len(state.entity_index)
         self._pairs = pairs_that_may_meet(state)
         self._listed = False
@@ -93,18 +96,38 @@ class EventDriven:
         return not len(turning_boxes(state))
 
     def ready(self, state: State, h: float) -> bool:
-        """Be ready for any step."""
-        return True
+        """Whether the coming step is not one that it has just left to others."""
+        return self._left != state.steps
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
-        """Make all of the steps, in one compiled loop while nothing rests."""
+        """Make all of the steps, in one compiled loop while nothing rests; or those before anything rests."""
         parts = divisions(state, h)
-        if parts * steps > 1:
+        if self._leaves_rest:
+            steps = self._run_until_rest(state, h, parts, steps)
+        elif parts * steps > 1:
             self._run(state, h / parts, parts * steps)
         else:
             self._step(state, h)
         check_finite(state, state.time + h * steps)
         return Advance(steps, parts)
+
+    def _run_until_rest(self, state: State, h: float, parts: int, steps: int) -> int:
+        """Make the steps in which nothing rests, of ``parts`` parts each; return how many they are."""
+        start, collisions, logged = copy_motion(state), state.collisions, state.contacts.logged
+        while steps:
+            self._begin(state)
+            gone, why = 0.0, events.CAME_TO_REST
+            if not (self._mode == events.IN_CONTACT).any():
+                gone, why = self._run_events(state, h * steps, h / parts, 0.0)
+            if why == events.DONE:
+                self._point_to_impacts(state)
+                self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
+                return steps
+            set_motion(state, start)
+            state.collisions, state.contacts.logged = collisions, logged
+            self._urgent, steps = -1, min(int(gone / h), steps - 1)
+        self._left = state.steps
+        return 0
 
     def _step(self, state: State, dt: float) -> None:
         """Make one step, and call the systems that observe its impacts."""

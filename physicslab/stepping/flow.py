@@ -28,7 +28,7 @@ class Flow:
 
     name: ClassVar[str] = "flow"
     title: ClassVar[str] = "Steps as one compiled flow"
-    leaps: ClassVar[bool] = True
+    leaps: bool = True
     leaves_forces: ClassVar[bool] = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:

@@ -60,7 +60,7 @@ class FusedContact:
 
     name: ClassVar[str] = "fused_contact"
     title: ClassVar[str] = "Compiled steps, contacts within them"
-    leaps: ClassVar[bool] = False
+    leaps: bool = False
     leaves_forces: ClassVar[bool] = True
     kernels: tuple[Any, ...] = (
         fused.advance, fat_boxes, grid.find_pairs, near_pairs.partition, near_pairs.carry_over,
@@ -207,10 +207,11 @@ class FusedContact:
     def _note(self, state: State, steps: int, nanoseconds: int) -> None:
         """Note as many calls as the stages would make; the time is divided by the loop's own clock."""
         costs: list[int] = self._cost.tolist()
-        total = max(1, sum(costs))
+        total, timings, substeps = max(1, sum(costs)), self._schedule.timings, state.substeps
         for place, name, calls, once in self._calls:
-            share = nanoseconds * costs[place] // total
-            self._schedule.note(name, steps * (calls * state.substeps + once), share)
+            timing = timings[name]
+            timing.calls += steps * (calls * substeps + once)
+            timing.nanoseconds += nanoseconds * costs[place] // total
 
     def _timed(self, system: System, call: Callable[[State, float], None], state: State, h: float) -> None:
         """Call a system's method, whose call is counted with the step, and note what it cost."""

@@ -19,9 +19,9 @@ from physicslab.state.masses import check_finite
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import pairs_that_may_meet
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.rigid_motion import RigidMotion
+from physicslab.stepping.rigid_motion import MadeStep, RigidMotion
 from physicslab.stepping.rigid_records import RigidRecords
-from physicslab.stepping.stepper import Advance
+from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
@@ -52,7 +52,7 @@ class Rigid:
 
     name: ClassVar[str] = "rigid"
     title: ClassVar[str] = "Rigid contacts, events at their exact times"
-    leaps: ClassVar[bool] = False
+    leaps: bool = False
     leaves_forces: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (
         motion.touch, motion.advance_piece, motion.begin_motion, motion.collide,
@@ -69,6 +69,8 @@ class Rigid:
         self._refused, self.left_to_soft, self.why_soft = -1, 0, ""
         self.restitutions_lowered = self.by_impulses = 0
         self.why_impulses = ""
+        within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
+        self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
         self._motion = RigidMotion(
             self._ode, len(state.entity_index), len(self._pairs), not schedule.interpreted
         )
@@ -88,36 +90,46 @@ class Rigid:
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make the steps, or those before the first that it cannot make and is not ready for."""
-        began = time.perf_counter_ns()
-        ode = self._ode
-        ode.gather(state)
+        began, parts = time.perf_counter_ns(), divisions(state, h)
+        self._ode.gather(state)
         scene = self._scene(state)
         last, made = None, 0
         while made < steps:
-            before = ode.q.copy(), ode.v.copy()
-            logged = state.contacts.logged
-            ode.q[-1], ode.v[-1] = state.time + made * h, 1.0  # the clock goes by one second a second
-            step = self._motion.step(scene, state, state.time + made * h, h)
-            state.force_evaluations += step.evaluations
-            self.restitutions_lowered += step.lowered
+            step = self._step(scene, state, state.time + made * h, h, parts)
             if step.refused:
-                ode.q[:], ode.v[:] = before
-                state.contacts.logged = logged
                 self._refused, self.why_soft = state.steps + made, step.refused
                 self.left_to_soft += 1
                 break
-            if step.by_impulses:
-                self.by_impulses, self.why_impulses = self.by_impulses + 1, step.by_impulses
-            state.collisions += step.impacts
             last, made = step, made + 1
         if last is not None:
-            ode.scatter(state, 0.0)
-            self._records.write(state, last, h)
+            self._ode.scatter(state, 0.0)
+            self._records.write(state, last, h / parts)
             self._note(began, made)
             check_finite(state, state.time + h * made)
             state.substeps = state.simulation.substeps
             self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
-        return Advance(made)
+        return Advance(made, parts)
+
+    def _step(self, scene: tuple[Any, ...], state: State, at: float, h: float, parts: int) -> MadeStep:
+        """Make a step from time ``at`` in parts; where one cannot be made, all is as before the step."""
+        q, v, impacts = self._ode.q, self._ode.v, 0
+        before, logged = (q.copy(), v.copy()), state.contacts.logged
+        for part in range(parts):
+            moment = at + part * h / parts
+            q[-1], v[-1] = moment, 1.0  # the clock goes by one second a second
+            step = self._motion.step(scene, state, moment, h / parts)
+            state.force_evaluations += step.evaluations
+            self.restitutions_lowered += step.lowered
+            if step.refused:
+                q[:], v[:] = before
+                state.contacts.logged = logged
+                return step
+            if step.by_impulses:
+                self.by_impulses, self.why_impulses = self.by_impulses + 1, step.by_impulses
+            impacts += step.impacts
+        state.collisions += impacts
+        step.impacts = impacts
+        return step
 
     def _scene(self, state: State) -> tuple[Any, ...]:
         """Return what the kernels take of the state, beside the state of motion."""
@@ -148,6 +160,5 @@ class Rigid:
 
     def _note(self, began: int, steps: int) -> None:
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - began)
-        for system in self._schedule.running:
-            if system.is_engine and system.acts_within_step() and not isinstance(system, IntegrateSystem):
-                self._schedule.note(system.name, steps, 0)  # their time is part of the loop's
+        for name in self._within:
+            self._schedule.note(name, steps, 0)  # their time is part of the loop's

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
-from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS
+from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS, REACH
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 
@@ -21,9 +21,9 @@ MAX_POINTS = 64
 """Largest number of points that touch at one time: their equations are dense."""
 _TOLERANCE = 1e-13
 """Error of a smooth piece, as a share of the largest coordinate and speed."""
-_MAX_EVENTS = 400
+_MAX_EVENTS = 2000
 """Largest number of events in a step."""
-_MAX_WORK = 12_000
+_MAX_WORK = 60_000
 """Largest work of a step by events (:attr:`MadeStep.work`)."""
 _WORK_OF_A_ROUND = 3
 """Force evaluations that take as long as a round of impulses."""
@@ -35,6 +35,8 @@ _NO_TIME = 1e-13
 """Share of a step that is no time."""
 _SHORT_STEPS = 32
 """Number of steps by impulses in a whole step."""
+_MAX_SHORT_STEPS = 320
+"""Largest number of them: fast bodies must not pass through each other."""
 _NONE = 2.0
 """Multiple of what forces add to a speed in a short step up to which an approach is none."""
 _OVERLAP = 1e-3
@@ -45,6 +47,8 @@ _SEPARATE = 1e-11
 _NEAR = 4.0
 """Multiple of an overlap within which other gaps are looked at, as bodies that move apart may press into
 them."""
+_ROUNDING = 4e-15
+"""Share of the largest coordinate that is rounding."""
 _SEPARATIONS = 12
 """How often bodies are moved apart, as that can press them into others."""
 _WHY = {
@@ -168,13 +172,15 @@ class RigidMotion:
         """Make the rest of a step by short ones; return why that is not possible, nothing if it is."""
         q, v = self._ode.q, self._ode.v
         self._changed[0, PAIR] = -1
-        count = math.ceil(left / longest)
+        count = math.ceil(left / min(longest, self._time_to_pass(scene)))
+        if count > _MAX_SHORT_STEPS:
+            return "bodies are too fast for short steps"
         h = left / max(count, 1)
         for k in range(count):
             time_stepping.drift(q, v, 0.5 * h)
             none = _NONE * time_stepping.kick(scene, self._stages[-1], q, v, h)
             made.evaluations, made.closed = made.evaluations + 1, 0
-            why = self._resist(scene, state, at + (k + 0.5) * h, 0.5 * h, none, made)
+            why = self._resist(scene, state, at + (k + 0.5) * h, h, none, made)
             if why != motion.DONE:
                 return _WHY[why]
             time_stepping.drift(q, v, 0.5 * h)
@@ -184,6 +190,13 @@ class RigidMotion:
             return refused
         self._find_forces(scene, state, at + left, made)
         return ""
+
+    def _time_to_pass(self, scene: tuple[Any, ...]) -> float:
+        """Return for how long nothing can pass through half of the smallest size [s]."""
+        v, rows, outlines, sizes = self._ode.v, scene[0], scene[4], scene[7][:, 2]
+        spins = np.abs(v[2 * rows : 3 * rows]) * outlines[:, REACH]
+        fastest = float((np.hypot(v[0 : 2 * rows : 2], v[1 : 2 * rows : 2]) + spins).max())
+        return 0.25 * float(sizes.min(initial=math.inf)) / fastest if fastest > 0.0 else math.inf
 
     def _find_forces(self, scene: tuple[Any, ...], state: State, at: float, made: MadeStep) -> None:
         """Find the forces at the end of a step; where there are none, the mean ones of the last impulses."""
@@ -204,35 +217,38 @@ class RigidMotion:
         An overlap beyond the share ``allowed`` of a size is left, and refused.
         """
         q, v, deepest = self._ode.q, self._ode.v, 0.0
+        rounding = (
+            _ROUNDING * float(np.abs(q[:-1]).max(initial=0.0)) / float(scene[7][:, 2].min(initial=math.inf))
+        )
         for _ in range(_SEPARATIONS):
             why, count, _, _, deepest = motion.touch(
                 scene, self._equations, self._room, self._stages[-1], q, v, _NEAR * deepest
             )
             if why != motion.DONE:
                 return _WHY[why]
-            if deepest <= _SEPARATE:
+            if deepest <= max(_SEPARATE, rounding):
                 return ""
             if deepest > allowed or not time_stepping.separate(scene, self._equations, count, q, v):
                 break
         return f"bodies overlap by {deepest:.2g} of their size"
 
     def _resist(
-        self, scene: tuple[Any, ...], state: State, time: float, ahead: float, none: float, made: MadeStep
+        self, scene: tuple[Any, ...], state: State, time: float, h: float, none: float, made: MadeStep
     ) -> int:
-        """Find the impulses of all points that will touch in ``ahead`` seconds; return why that failed.
+        """Find the impulses in the middle of a short step of ``h`` seconds; return why that failed.
 
-        Speeds up to ``none`` are none [m/s].
+        They act at all points that would touch by its end, or bounce. Speeds up to ``none`` are none [m/s].
         """
         q, v, soon, acceleration = self._ode.q, self._ode.v, self._stages[2], self._stages[-1]
         for _ in range(_REPEATS):
             soon[:] = q
-            time_stepping.drift(soon, v, ahead)
+            time_stepping.drift(soon, v, h)
             why, count, rest, approaching, _ = motion.touch(
                 scene, self._equations, self._room, acceleration, soon, v, 0.0
             )
             if why != motion.DONE or not approaching:
                 return int(why)
-            points = self._resolve(scene, state, time, count, max(rest, none), 1.0 / ahead, made)
+            points = self._resolve(scene, state, time, count, max(rest, none), 2.0 / h, made)
             if points <= 0:
                 return motion.UNRESOLVED if points < 0 else motion.DONE
             made.closed = points

@@ -30,7 +30,10 @@ class Steppers:
 
     def ready(self, state: State, h: float) -> Stepper:
         """Return the best of them that can make the coming step."""
-        return next(stepper for stepper in self.usable if stepper.ready(state, h))
+        for stepper in self.usable[:-1]:
+            if stepper.ready(state, h):
+                return stepper
+        return self.usable[-1]
 
     def main(self, state: State) -> Stepper:
         """Return the best of them for awake bodies and steps of the scene's own length, for reports."""
@@ -60,7 +63,8 @@ def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Stepper
             usable.append(kind(state, schedule, plan))
         else:
             left_out.append(LeftOut(kind.name, reason))
-        if kind in (Flow, EventDriven) and reason is None:
+        alone = kind is Flow or (kind is EventDriven and plan.contacts != "rigid")
+        if alone and reason is None:
             break
     return Steppers(tuple(usable), tuple(left_out))
 
@@ -69,8 +73,9 @@ def choose(state: State, schedule: Schedule, plan: StepPlan | None = None) -> tu
     """Choose the steppers for the systems that run, and the method, unless there is a ``plan`` already."""
     before = state.event_driven
     plan = plan or choose_plan(state, schedule)
-    state.event_driven = plan.collisions == "exact"
-    state.contacts.stale |= before or state.event_driven
+    state.rigid_contacts = plan.contacts == "rigid"
+    state.event_driven = plan.collisions == "exact" and not state.rigid_contacts
+    state.contacts.stale |= before or plan.collisions == "exact"
     return plan, select_steppers(state, schedule, plan)
 
 
@@ -85,9 +90,9 @@ def remake(state: State, schedule: Schedule, plan: StepPlan | None) -> tuple[Ste
     Whether bodies may sleep depends on how collisions are found.
     """
     while True:
-        before = state.event_driven
+        before = state.event_driven, state.rigid_contacts
         schedule.remake(state)
         state.has_forces = bool(schedule.forces)
         chosen = choose(state, schedule, plan)
-        if state.event_driven == before:
+        if (state.event_driven, state.rigid_contacts) == before:
             return chosen

@@ -48,11 +48,14 @@ class Stepper(Protocol):
 
     name: ClassVar[str]
     title: ClassVar[str]
-    leaps: ClassVar[bool]
     leaves_forces: ClassVar[bool]
     reason: str
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...
+
+    @property
+    def leaps(self) -> bool:
+        """Whether several steps are one advance."""
 
     @property
     def kernels(self) -> tuple[Any, ...]:
@@ -81,6 +84,8 @@ class Stepper(Protocol):
 def divisions(state: State, h: float) -> int:
     """Return into how many parts a step of ``h`` seconds is divided, so that none exceeds the scene's own."""
     own = state.simulation.dt
+    if h <= own:
+        return 1
     if h / own > _MAX_DIVISIONS:
         raise ValueError(f"dt = {h!r}: must be at most {_MAX_DIVISIONS} times simulation.dt = {own!r} s")
     return max(1, math.ceil(h / own - _TOLERATED))

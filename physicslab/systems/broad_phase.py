@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.contacts.arguments import motion_of, sizes_of
+from physicslab.contacts.arguments import motion_of, sizes_of, speculative_margin
 from physicslab.contacts.near_pairs import partition
 from physicslab.kernels.broad import grid, near_pairs
 from physicslab.kernels.broad.fat_boxes import fat_boxes, still_holds
@@ -92,17 +92,16 @@ class BroadPhaseSystem(System):
     def search(self, state: State, h: float) -> None:
         """Update the list of near pairs, where it is not valid any more."""
         self.follow_rows(state)
-        position, angle, linear, _ = motion_of(state)
-        if not still_holds(position, angle, linear, *sizes_of(state), self.fat, h):
+        if not still_holds(*motion_of(state), *sizes_of(state), self.fat, h, speculative_margin(state, h)):
             self.list_pairs(state, h)
 
     def list_pairs(self, state: State, h: float) -> None:
         """List the near pairs again, with margins for the time to come."""
-        (position, angle, linear, _), sizes = motion_of(state), sizes_of(state)
         shape = state.table(Shape)
         awake = state.bodies.awake_inverse_mass
         ahead = h * _lookahead(state.sleep.count, int(np.count_nonzero(awake)))
-        fat_boxes(position, angle, linear, *sizes, awake, self.fat, self._boxes, ahead)
+        margin = speculative_margin(state, h)
+        fat_boxes(*motion_of(state), *sizes_of(state), awake, self.fat, self._boxes, ahead, margin)
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
         found, walls = self._count_pairs(shape["kind"], inverse_mass, bounded)

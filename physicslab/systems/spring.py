@@ -74,6 +74,16 @@ class SpringSystem(ForceSystem):
         resistance = damper_resistance if self.sees_velocity(state) else None
         return PackedForce(packed_forces.springs, parameters.ravel(), indices, resistance)
 
+    def inputs(self, state: State, layout: StateLayout) -> bytes:
+        """Return every number of every spring, and the angles of anchors that no force turns."""
+        spring, angle, found = state.table(Spring), state.table(Transform)["angle"], [self.settings(state)]
+        for end, anchors in ((self._a, "anchor_a"), (self._b, "anchor_b")):
+            steady = end[layout.turn[end] < 0]
+            if len(steady):
+                off = spring[anchors][self._rows[layout.turn[end] < 0]].any(axis=1)
+                found.append(angle[steady[off]].tobytes())
+        return b"".join(found)
+
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row a bound on its fastest oscillation or decay [rad/s].
 

@@ -229,6 +229,17 @@ class ForceSystem(System):
         """
         return None
 
+    def needs_origin(self, state: State) -> bool:
+        """Whether the force is another where everything that moves is moved by the same distance."""
+        return True
+
+    def inputs(self, state: State, layout: StateLayout) -> bytes | None:
+        """Return, bit by bit, all that :meth:`packed` depends on besides the layout, the laws and masses.
+
+        While that stays the same the force is not packed again; ``None`` for one to be packed at every step.
+        """
+        return None
+
     @classmethod
     def marked(cls) -> dict[Stage, str]:
         """Return the stages of the system; a force that is packed is added by its kernel."""

@@ -164,7 +164,7 @@ def _make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
     manifold.count, manifold.found, manifold.impact_count, manifold.slot, manifold.size = 0, 0, 0, -1, 0.0
     for j in range(2 * p, 2 * p + 2):
         point = points[j]
-        point.feature = 0
+        point.feature = point.ahead = 0
         point.normal_impulse = point.tangent_impulse = 0.0
         point.approach_speed = point.impact_normal = point.impact_tangent = 0.0
 

@@ -216,6 +216,6 @@ def find_contacts(
                 held -= 1
                 touching[held] = p
         elif had_points:
-            one.feature = two.feature = 0
+            one.feature = two.feature = one.ahead = two.ahead = 0
             one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
     return _put_last(touching, found, held, count)

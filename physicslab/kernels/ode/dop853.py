@@ -6,8 +6,16 @@ import numpy as np
 
 from physicslab.kernels import Numbers, Vectors, allocating_kernel, inlined
 from physicslab.kernels.forces.force_calls import Calls, accelerate
-from physicslab.kernels.ode.compensated import add
-from physicslab.kernels.ode.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, LAST_LOW, NODES, WEIGHTS
+from physicslab.kernels.ode.compensated import add, add_pair
+from physicslab.kernels.ode.dop853_tableau import (
+    ESTIMATE_3,
+    ESTIMATE_5,
+    LAST,
+    NODES,
+    NODES_LOW,
+    WEIGHTS,
+    WEIGHTS_LOW,
+)
 
 __all__ = [
     "EXHAUSTED", "NOT_FINITE", "TOO_SHORT", "dop853", "first_step", "largest", "make_stages",
@@ -26,6 +34,8 @@ _LEADS = 1e-4
 """Share of the largest coordinate that must be covered in a step for speeds to be measured by themselves."""
 _MIN_STEP = 1e-13
 """The shortest step, as a share of the time to go; shorter ones would never finish."""
+_NEAR = 0.1
+"""Distance of two bodies, as a share of their distance from the origin, below which it is moved to them."""
 _NOISE = 1e6
 """Multiple of the tolerance above which an estimate is not taken for rounding."""
 
@@ -46,22 +56,24 @@ def make_stages(
 ) -> None:  # fmt: skip
     """Compute stages ``first`` to ``end - 1`` of a step from (q, v).
 
-    ``rates`` and ``pushes`` (n, 16) take q' and v' of each stage; those of the stages before ``first`` are
-    there. ``stage_q`` and ``stage_v`` are left at the last stage.
+    ``rates`` and ``pushes`` (n, 16) take how much q' has changed since the start of the step, and v', of each
+    stage; those of the stages before ``first`` are there. ``stage_q`` and ``stage_v`` are left at the last
+    stage. Neither the speed at the start nor the weights are rounded where it would act alike in every step.
     """
     n, clock = len(inverse_mass), len(q) - 1
     for stage in range(first, end):
         stage_q[clock] = q[clock] + NODES[stage] * h
         for i in range(n):
-            moved, pushed = 0.0, 0.0
+            moved, pushed, pushed_low = NODES_LOW[stage] * v[i], 0.0, 0.0
             for other in range(stage):
                 moved += WEIGHTS[stage, other] * rates[i, other]
                 pushed += WEIGHTS[stage, other] * pushes[i, other]
-            stage_q[i] = q[i] + h * moved
-            stage_v[i] = v[i] + h * pushed
+                pushed_low += WEIGHTS_LOW[stage, other] * pushes[i, other]
+            rates[i, stage] = h * (pushed + pushed_low)
+            stage_q[i] = q[i] + h * (NODES[stage] * v[i] + moved)
+            stage_v[i] = v[i] + rates[i, stage]
         accelerate(stage_q, stage_v, acceleration, inverse_mass, damping, calls)
         for i in range(n):
-            rates[i, stage] = stage_v[i]
             pushes[i, stage] = acceleration[i]
 
 
@@ -71,7 +83,7 @@ def total(values: Numbers) -> tuple[float, float]:
     indices, low = 0.0, 0.0
     for stage in range(LAST):
         indices, low = add(
-            indices, low + LAST_LOW[stage] * values[stage], WEIGHTS[LAST, stage] * values[stage]
+            indices, low + WEIGHTS_LOW[LAST, stage] * values[stage], WEIGHTS[LAST, stage] * values[stage]
         )
     return indices, low
 
@@ -127,10 +139,43 @@ def _all_finite(q: Numbers, v: Numbers, n: int) -> bool:
     return finite
 
 
+@inlined
+def _body_of_nearest(q: Numbers, bodies: int) -> int:
+    """Return a body of the pair that is nearest for its distance from the origin, or -1 if none is near."""
+    found, share = -1, _NEAR * _NEAR
+    for i in range(bodies):
+        x, y = q[2 * i], q[2 * i + 1]
+        far = x * x + y * y
+        for j in range(i + 1, bodies):
+            dx, dy = q[2 * j] - x, q[2 * j + 1] - y
+            apart = dx * dx + dy * dy
+            if apart < share * far:
+                found, share = i, apart / far
+    return found
+
+
+@inlined
+def _move_origin(q: Numbers, q_low: Numbers, bodies: int, origin: Numbers, x: float, y: float) -> None:
+    """Move the origin by (x, y), and keep in ``origin`` (4,) where it is: x and y, then their remainders."""
+    for i in range(bodies):
+        q[2 * i], q_low[2 * i] = add_pair(q[2 * i], q_low[2 * i], -x, 0.0)
+        q[2 * i + 1], q_low[2 * i + 1] = add_pair(q[2 * i + 1], q_low[2 * i + 1], -y, 0.0)
+    origin[0], origin[2] = add_pair(origin[0], origin[2], x, 0.0)
+    origin[1], origin[3] = add_pair(origin[1], origin[3], y, 0.0)
+
+
+@inlined
+def _restore_origin(q: Numbers, q_low: Numbers, bodies: int, origin: Numbers) -> None:
+    """Move the origin back to where it was at first."""
+    for i in range(bodies):
+        q[2 * i], q_low[2 * i] = add_pair(q[2 * i], q_low[2 * i], origin[0], origin[2])
+        q[2 * i + 1], q_low[2 * i + 1] = add_pair(q[2 * i + 1], q_low[2 * i + 1], origin[1], origin[3])
+
+
 @allocating_kernel
 def dop853(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
-    calls: Calls, span: float, tolerance: float, period: float, max_evaluations: int,
+    calls: Calls, span: float, tolerance: float, period: float, max_evaluations: int, bodies: int,
 ) -> int:  # fmt: skip
     """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
@@ -140,6 +185,9 @@ def dop853(
     A step is made again, shorter, where its error is estimated to be more than ``tolerance`` of the largest
     coordinate or speed. Sums are compensated: ``q_low`` and ``v_low`` (n,) are the remainders of what moves,
     and are carried on.
+
+    Where no force depends on the origin, ``bodies`` is how many pairs of coordinates the first ones are, and
+    else 0: in a close passage the origin is moved there, so that the distance has all its digits.
     """
     n, clock, start = len(inverse_mass), len(q) - 1, q[len(q) - 1]
     stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
@@ -152,18 +200,25 @@ def dop853(
     h = first_step(pushes, q_scale, v_scale, span, tolerance)
     grow, last_error, last_taken = _MAX_GROWTH, math.inf, 1.0
     spent, mark = 0, 0.0
+    origin, moved_origin = np.zeros(4), False
     while True:
         left = (span - done) - done_low
         if left <= 0.0:
-            return evaluations
+            break
+        near = _body_of_nearest(q, bodies)
+        if near >= 0:
+            _move_origin(q, q_low, bodies, origin, q[2 * near], q[2 * near + 1])
+            moved_origin, q_scale = True, largest(q, n)
         last = h >= left
         taken = left if last else min(h, 0.5 * left) if h > 0.9 * left else h
         if taken < _MIN_STEP * span and not last:
-            return TOO_SHORT
+            evaluations = TOO_SHORT
+            break
         if done - mark >= period:
             spent, mark = 0, done
         if spent > max_evaluations - LAST:
-            return EXHAUSTED
+            evaluations = EXHAUSTED
+            break
         make_stages(
             q, v, stage_q, stage_v, acceleration, rates, pushes,
             inverse_mass, damping, calls, taken, 1, LAST + 1,
@@ -190,13 +245,17 @@ def dop853(
         for i in range(n):
             moved, moved_low = total(rates[i])
             pushed, pushed_low = total(pushes[i])
+            moved, moved_low = add(v[i], v_low[i] + moved_low, moved)
             q_low[i] += taken * moved_low
             v_low[i] += taken * pushed_low
             q[i], q_low[i] = add(q[i], q_low[i], taken * moved)
             v[i], v_low[i] = add(v[i], v_low[i], taken * pushed)
-            rates[i, 0], pushes[i, 0] = rates[i, LAST], pushes[i, LAST]
+            pushes[i, 0] = pushes[i, LAST]
         done, done_low = add(done, done_low, taken)
         q[clock] = start + done
         if last:
-            return evaluations
+            break
         q_scale, v_scale = q_reach, v_reach
+    if moved_origin:
+        _restore_origin(q, q_low, bodies, origin)
+    return evaluations

@@ -78,17 +78,14 @@ def _gather(
     """
     n, approaching = 0, False
     for i in range(count):
-        speed = equations.measures[i, VN]
-        e = (
-            0.0
-            if last or -equations.measures[i, RESTITUTION] * speed <= rest
-            else equations.measures[i, RESTITUTION]
-        )
-        closing = _closing_speed(equations, i, rate)
+        e, speed = equations.measures[i, RESTITUTION], equations.measures[i, VN]
+        bounces = -e * speed > rest and not last
+        # One that bounces in a short step does so before half of the next would take it below the surface.
+        closing = _closing_speed(equations, i, rate / (2.0 - e) if bounces else rate)
         if approaches(closing, rest):
             approaching = True
-            n = _take(equations, i, blow, n, e)
-        elif closing <= rest and (equations.measures[i, RESTITUTION] == 0.0 or last):
+            n = _take(equations, i, blow, n, e if bounces else 0.0)
+        elif closing <= rest and (e == 0.0 or last):
             n = _take(equations, i, blow, n, 0.0)
     return n, approaching
 
@@ -132,11 +129,11 @@ def _find_impulses(blow: Equations, n: int, rest: float, rate: float) -> tuple[b
     for trial in range(_TRIALS):
         solved = _solve(blow, n, share, rest, rate)
         work, scale = _energy_gained(blow, n)
-        if trial == 0 and solved and work <= 1e-12 * scale:
+        if trial == 0 and solved and work <= 1e-13 * scale:
             return True, False
         if trial == 1 or (solved and work <= 0.0):
             low, work_low = share, work
-            if not solved or work >= -1e-12 * scale or high - low <= 1e-12 or trial == _TRIALS - 1:
+            if not solved or work >= -1e-13 * scale or high - low <= 1e-13 or trial == _TRIALS - 1:
                 return solved, True
             work_high *= 0.5 if side == -1 else 1.0
             side = -1
@@ -150,7 +147,7 @@ def _find_impulses(blow: Equations, n: int, rest: float, rate: float) -> tuple[b
             share = (low * work_high - high * work_low) / (work_high - work_low)
         if trial == 0:
             share = 0.0
-        elif high - low <= 1e-12 or trial == _TRIALS - 2:
+        elif high - low <= 1e-13 or trial == _TRIALS - 2:
             share = low
     return False, True
 

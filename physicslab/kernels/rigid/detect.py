@@ -22,7 +22,7 @@ from physicslab.kernels.rigid.features import (
     vertex_of,
 )
 
-__all__ = ["find_points"]
+__all__ = ["find_points", "seen_from"]
 
 _TIE = 1e-9
 """Share of the size within which two faces are equally far, so that speeds decide."""
@@ -36,7 +36,7 @@ def _write(points: Points, n: int, pair: int, one: int, feature: int, other: int
 
 
 @inlined
-def _seen_from(q: Numbers, rows: int, row: int, x: float, y: float) -> tuple[float, float]:
+def seen_from(q: Numbers, rows: int, row: int, x: float, y: float) -> tuple[float, float]:
     """Return a place of the world in a body's own directions, from its centre [m]."""
     c, s = math.cos(q[2 * rows + row]), math.sin(q[2 * rows + row])
     dx, dy = x - q[2 * row], y - q[2 * row + 1]
@@ -56,7 +56,7 @@ def _disc_to_box(
     points: Points, n: int, pair: int, q: Numbers, rows: int, outlines: Vectors, box: int, disc: int
 ) -> int:
     """Find the face or the corner of a box that is nearest to a disc."""
-    x, y = _seen_from(q, rows, box, q[2 * disc], q[2 * disc + 1])
+    x, y = seen_from(q, rows, box, q[2 * disc], q[2 * disc + 1])
     over_x, over_y = abs(x) - 0.5 * outlines[box, WIDTH], abs(y) - 0.5 * outlines[box, HEIGHT]
     if over_x > 0.0 and over_y > 0.0:
         corner = (0 if x > 0.0 else 1) if y > 0.0 else (3 if x > 0.0 else 2)
@@ -100,7 +100,7 @@ def _farthest_face(
         gap, rate = math.inf, 0.0
         for vertex in range(4):
             cx, cy = _corner(q, rows, outlines, other, vertex)
-            x, y = _seen_from(q, rows, one, cx, cy)
+            x, y = seen_from(q, rows, one, cx, cy)
             found = fx * x + fy * y - distance
             if found < gap:
                 gap = found
@@ -162,7 +162,7 @@ def _within(q: Numbers, rows: int, outlines: Vectors, one: int, face: int, other
     """Return how far a corner of OTHER is from the nearer end of a face of ONE, along it [m]."""
     fx, fy, _, half = face_of(outlines, one, face)
     cx, cy = _corner(q, rows, outlines, other, vertex)
-    x, y = _seen_from(q, rows, one, cx, cy)
+    x, y = seen_from(q, rows, one, cx, cy)
     return half - abs(fx * y - fy * x)
 
 

@@ -6,11 +6,14 @@ from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.rigid.complementarity import solve_complementarity, solve_equations
 from physicslab.kernels.rigid.constraints import apply, assemble, find_free_rates, measure_all
-from physicslab.kernels.rigid.detect import find_points
+from physicslab.kernels.rigid.detect import find_points, seen_from
 from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
+    BOX,
     GAP,
     GIVEN,
+    HEIGHT,
+    KIND,
     MEASURES,
     MU,
     PAIR,
@@ -20,6 +23,7 @@ from physicslab.kernels.rigid.features import (
     STATUS,
     VN,
     VT,
+    WIDTH,
     Points,
     Scene,
     measure,
@@ -40,6 +44,15 @@ def length_of(x: float, y: float) -> float:
 
 
 @inlined
+def _from_box(scene: Scene, box: int, other: int, q: Numbers) -> float:
+    """Return how far the centre of a body is from a box [m], 0 inside."""
+    x, y = seen_from(q, scene.rows, box, q[2 * other], q[2 * other + 1])
+    over_x = max(abs(x) - 0.5 * scene.outlines[box, WIDTH], 0.0)
+    over_y = max(abs(y) - 0.5 * scene.outlines[box, HEIGHT], 0.0)
+    return length_of(over_x, over_y)
+
+
+@inlined
 def far_apart(scene: Scene, p: int, q: Numbers) -> float:
     """Return a distance that the shapes of a pair have at least [m]; negative where they may touch."""
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
@@ -50,6 +63,10 @@ def far_apart(scene: Scene, p: int, q: Numbers) -> float:
         return to_wall
     dx, dy = q[2 * b] - q[2 * a], q[2 * b + 1] - q[2 * a + 1]
     apart: float = math.sqrt(dx * dx + dy * dy) - reach - scene.outlines[a, REACH]
+    for side in range(2):
+        box, other = (a, b) if side == 0 else (b, a)
+        if scene.outlines[box, KIND] == BOX:
+            apart = max(apart, _from_box(scene, box, other, q) - scene.outlines[other, REACH])
     return apart
 
 

@@ -132,8 +132,9 @@ def _advance(
                 _kick(motion, inverse, acting, sub_integrated, damping, 0.5 * h)
             now = charge(cost, ACCELERATE, now)
             holds = still_holds(
-                position, angle, linear, sizes.kind, sizes.radius, sizes.width, sizes.height, fat, h
-            )
+                position, angle, linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height, fat, h,
+                gravity.margin,
+            )  # fmt: skip
             now = charge(cost, BROAD_PHASE, now)
             if not holds:
                 return PAIRS_STALE, done, substep, finished_impacts, impact_count, impulse_dt

@@ -7,6 +7,8 @@ from dataclasses import asdict
 from typing import Any
 
 from physicslab.lab.accuracy.catalogue import LEFT_OUT
+from physicslab.lab.accuracy.contacts.document import contact_document
+from physicslab.lab.accuracy.contacts.study import ContactStudy
 from physicslab.lab.accuracy.figures import record
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
@@ -16,11 +18,15 @@ from physicslab.lab.document import finite, lab_document
 __all__ = ["document"]
 
 
-def document(studies: Sequence[Study], scenes: Sequence[SceneStudy] = ()) -> dict[str, Any]:
+def document(
+    studies: Sequence[Study], scenes: Sequence[SceneStudy] = (), contacts: Sequence[ContactStudy] = ()
+) -> dict[str, Any]:
     """Return everything that was measured."""
     return lab_document(
         "accuracy",
+        peers=any(curve.rows and not curve.engine.own for study in contacts for curve in study.curves),
         problems=[_study(study) for study in studies],
+        contacts=[contact_document(study) for study in contacts],
         scenes=[_scene(study) for study in scenes],
         left_out=[asdict(left) for left in LEFT_OUT],
     )
@@ -44,6 +50,7 @@ def _study(study: Study) -> dict[str, Any]:
         "note": problem.note,
         "best": finite(study.best),
         "auto": _row(problem, study.auto),
+        "rigid": None if study.rigid is None else _row(problem, study.rigid),
         "integrators": [_curve(problem, curve) for curve in study.curves],
     }
 
@@ -93,9 +100,11 @@ def _row(problem: Problem, row: Row) -> dict[str, Any]:
 
 
 def _scene(study: SceneStudy) -> dict[str, Any]:
+    estimate = asdict(study.estimate)
+    del estimate["reference"]
     return {
         "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.tightest,
-        "estimate": asdict(study.estimate), "rows": [_scene_row(row) for row in study.rows],
+        "estimate": estimate, "rows": [_scene_row(row) for row in study.rows],
     }  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
@@ -14,6 +15,7 @@ from physicslab.components import Transform, Velocity
 from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.twins import TWINS, Twin, finer, with_ids
 from physicslab.lab.case import attempt
+from physicslab.lab.worlds import steps_not_rigid
 from physicslab.world import World
 
 __all__ = ["Estimate", "Spread", "TwinResult", "estimate_error"]
@@ -26,6 +28,8 @@ _LIMITED_BY_STEP = 0.25
 _MIRROR = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
 _ORDER_MARGIN = 2.0
 """An observed order that is further from none than the method's own and this is chance."""
+_WHOLE = 10**9
+"""A stride that no run is longer than: the steps of a run are made at once."""
 _ROUNDINGS = 1e3
 """A spread of fewer roundings than this has no order."""
 
@@ -84,6 +88,8 @@ class Estimate:
         All that the scene has.
     failure : str
         Why the scene itself could not be run.
+    reference : array of floats, optional
+        Where bodies end [m] with rigid contacts (n, 2), if contacts are soft and no step was left to these.
     """
 
     error: Spread | None = None
@@ -92,6 +98,11 @@ class Estimate:
     order_reason: str = ""
     twins: list[TwinResult] = field(default_factory=list)
     failure: str = ""
+    reference: NDArray[np.float64] | None = None
+
+
+class OutOfTime(ArithmeticError):
+    """A twin took longer than it may."""
 
 
 def estimate_error(load: Callable[[], World], seconds: float) -> Iterator[float | Estimate]:
@@ -112,11 +123,14 @@ def estimate_error(load: Callable[[], World], seconds: float) -> Iterator[float 
     if own is None:
         yield found
         return
+    soft = not scene.event_driven or _something_rests(load(), seconds)
     ends: dict[str, _End] = {}
     for i, twin in enumerate(TWINS):
-        result = _compared(twin, twin.make(document, scene), run, own, ends)
-        if result is not None:
-            found.twins.append(result)
+        world = twin.make(document, scene) if soft or twin.name != "rigid" else None
+        if world is not None:
+            found.twins.append(_compared(twin, world, run, own, ends))
+            if twin.name == "rigid" and twin.name in ends and not any(steps_not_rigid(world)):
+                found.reference = ends[twin.name][:, :2]
         yield (i + 1) / (len(TWINS) + 1)
     _summarise(found)
     if found.error is not None:
@@ -126,15 +140,30 @@ def estimate_error(load: Callable[[], World], seconds: float) -> Iterator[float 
     yield found
 
 
+def _something_rests(world: World, seconds: float) -> bool:
+    """Whether a body ever rests on another: where impacts are located, only such ones move softly."""
+    return any(world.contacts.active for _ in world.stepping(seconds=seconds))
+
+
 class _Runs:
     """Runs worlds for one time, and reads the state of the same bodies at the end."""
 
     def __init__(self, bodies: list[str], seconds: float) -> None:
         self._bodies, self._seconds = bodies, seconds
 
-    def end(self, world: World) -> _End:
+    def end(self, world: World, budget_s: float = math.inf) -> _End:
+        """Return the state at the end.
+
+        Raises
+        ------
+        OutOfTime
+            If that takes longer than the budget [s].
+        """
         rows = {world.label(int(entity)): row for entity, row in self._rows(world)}
-        world.run(seconds=self._seconds)
+        start = time.perf_counter() - world.compile_s  # kernels may have to be compiled first
+        for _ in world.stepping(seconds=self._seconds, stride=1 if math.isfinite(budget_s) else _WHOLE):
+            if time.perf_counter() - start - world.compile_s > budget_s:
+                raise OutOfTime(f"given up after {budget_s:g} s, at t = {world.time:.3g} s")
         kept = [rows[name] for name in self._bodies if name in rows]
         transform, velocity = world.table(Transform), world.table(Velocity)
         columns = (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
@@ -147,17 +176,17 @@ class _Runs:
         return zip(batch.entities.tolist(), batch.rows.tolist(), strict=True)
 
 
-def _compared(
-    twin: Twin, world: World | None, run: _Runs, own: _End, ends: dict[str, _End]
-) -> TwinResult | None:
-    """Run a twin, if there is one, and keep where it ends."""
-    if world is None:
-        return None
-    end, failure = attempt(partial(run.end, world))
+def _compared(twin: Twin, world: World, run: _Runs, own: _End, ends: dict[str, _End]) -> TwinResult:
+    """Run a twin, and keep where it ends."""
+    end, failure = attempt(partial(run.end, world, twin.budget_s))
     if end is None:
         return TwinResult(twin.name, twin.what, None, failure)
     ends[twin.name] = end * _MIRROR if twin.mirrored else end
-    return TwinResult(twin.name, twin.what, _spread(own, ends[twin.name]))
+    soft, by_impulses = steps_not_rigid(world)
+    what = twin.what
+    what += f"; {soft} steps were left to soft ones" if soft else ""
+    what += f"; {by_impulses} steps were made by impulses, with an error of order one" if by_impulses else ""
+    return TwinResult(twin.name, what, _spread(own, ends[twin.name]))
 
 
 def _spread(own: _End, other: _End) -> Spread:

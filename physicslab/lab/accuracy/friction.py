@@ -99,12 +99,11 @@ def _stack(simulation: SimulationConfig) -> World:
 
 def _forces_error(world: World, i: int) -> float:
     """Return the largest relative error of the forces between the floor and the boxes of the stack."""
-    h = world.simulation.dt / world.simulation.substeps
     boxes = [world.entity(f"box {n}") for n in range(10)]
     felt = dict.fromkeys(range(10), 0.0)
     for contact in list_contacts(world):
         above = max(boxes.index(end) for end in (contact.a, contact.b) if end in boxes)
-        felt[above] += sum(point.normal_impulse for point in contact.points) / h
+        felt[above] += sum(point.normal_force for point in contact.points)
     true = [number("stack10", "force_k", str(n)) for n in range(10)]
     return max(abs(felt[n] - true[n]) / true[n] for n in range(10))
 

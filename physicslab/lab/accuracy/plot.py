@@ -28,6 +28,11 @@ _STYLES: dict[str, _Style] = {
 }
 _FURTHER = [(COLOURS["sky"], marker, line) for line in ("-", "--") for marker in "Ph<>dp8"]
 """The styles of methods that have none of their own above."""
+_CHOSEN: dict[str, dict[str, Any]] = {
+    "auto": {"marker": "o", "markersize": 15, "markerfacecolor": "none", "markeredgecolor": "#222222"},
+    "rigid contacts": {"marker": "D", "markersize": 6, "color": "#222222"},
+}
+"""The marks of what the engine chooses, in the order of :attr:`Study.chosen`: the first goes round others."""
 _ERROR_FLOOR = 1e-17
 """Where an error of zero is drawn."""
 _ROUNDING_COLOUR = "#f3ead9"
@@ -50,7 +55,8 @@ def work_precision(*studies: Study) -> bytes:
         by_time.set_ylabel(f"{study.problem.measure}", fontsize=9)
         by_time.set_title(study.problem.name, loc="left", fontweight="bold")
         by_work.set_title(f"after {study.problem.seconds:.4g} s", loc="right", fontsize=10)
-    _legend(figure, styles, floor=any(study.floor for study in studies))
+    rigid = any(study.rigid is not None for study in studies)
+    _legend(figure, styles, floor=any(study.floor for study in studies), rigid=rigid)
     return png(figure)
 
 
@@ -70,12 +76,10 @@ def _panel(
     for curve in study.curves:
         if curve.rows:
             _line(axes, curve, styles[curve.integrator.name], work)
-    auto = study.auto.measurement
-    if auto.error is not None and work(auto) > 0.0:
-        axes.plot(
-            [work(auto)], [max(auto.error, _ERROR_FLOOR)], marker="o", markersize=15, markerfacecolor="none",
-            markeredgecolor="#222222", linestyle="",
-        )  # fmt: skip
+    for row, mark in zip(study.chosen, _CHOSEN.values(), strict=False):
+        found = row.measurement
+        if found.error is not None and work(found) > 0.0:
+            axes.plot([work(found)], [max(found.error, _ERROR_FLOOR)], linestyle="", **mark)
     for level, name in ((study.problem.excellent, "excellent"), (study.problem.good, "good")):
         axes.axhline(level, color="#444444", linewidth=0.8, linestyle=(0, (1, 2)))
         axes.annotate(
@@ -89,7 +93,8 @@ def _panel(
 
 def _range(study: Study) -> tuple[float, float]:
     """Return what the axis of errors spans: every error below 100, and both limits."""
-    rows = [row.measurement for curve in study.curves for row in curve.rows] + [study.auto.measurement]
+    chosen = [row.measurement for row in study.chosen]
+    rows = [row.measurement for curve in study.curves for row in curve.rows] + chosen
     errors = [max(found.error, _ERROR_FLOOR) for found in rows if found.error is not None]
     low = min([*errors, study.problem.excellent])
     high = max([error for error in errors if error < 1e2] + [study.problem.good])
@@ -110,7 +115,7 @@ def _line(axes: Axes, curve: Curve, style: _Style, work: Callable[[Measurement],
         )  # fmt: skip
 
 
-def _legend(figure: Figure, styles: dict[str, _Style], *, floor: bool) -> None:
+def _legend(figure: Figure, styles: dict[str, _Style], *, floor: bool, rigid: bool) -> None:
     """Put the legend below the plots, where no line is."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -119,10 +124,8 @@ def _legend(figure: Figure, styles: dict[str, _Style], *, floor: bool) -> None:
         Line2D([], [], color=colour, marker=marker, linestyle=line, label=name, linewidth=1.4)
         for name, (colour, marker, line) in styles.items()
     ]
-    handles.append(
-        Line2D([], [], marker="o", markersize=12, markerfacecolor="none", markeredgecolor="#222222",
-               linestyle="", label="auto")
-    )  # fmt: skip
+    for label, mark in list(_CHOSEN.items())[: 2 if rigid else 1]:
+        handles.append(Line2D([], [], linestyle="", label=label, **mark))
     if floor:
         handles.append(Patch(color=_ROUNDING_COLOUR, label="one rounding at the start"))
     figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=9)

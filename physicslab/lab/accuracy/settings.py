@@ -35,23 +35,29 @@ class Setting:
         Of an adaptive method.
     collisions : str
         How contacts are found.
+    contacts : str
+        How bodies that touch are held apart, with ``"auto"``.
     """
 
     integrator: str
     steps: int | None = None
     tolerance: float | None = None
     collisions: str = "auto"
+    contacts: str = "auto"
 
     def simulation(self, problem: Problem) -> SimulationConfig:
-        """Return the configuration of the problem's world, in which nothing sleeps."""
+        """Return the configuration of the problem's world, in which nothing sleeps.
+
+        A method of fixed steps has soft contacts: rigid ones choose their steps.
+        """
         if self.integrator == "auto":
-            return SimulationConfig(dt=problem.dt, sleeping=False)
+            return SimulationConfig(dt=problem.dt, sleeping=False, contacts=self.contacts)
         tolerance = self.tolerance or SimulationConfig().tolerance
         parts = _SUBSTEPS if problem.touches else 1
         dt = problem.seconds * parts / (self.steps or 1)
         return SimulationConfig(
             dt=dt, substeps=parts, integrator=self.integrator, tolerance=tolerance,
-            sleeping=False, collisions=self.collisions,
+            sleeping=False, collisions=self.collisions, contacts="soft",
         )  # fmt: skip
 
 

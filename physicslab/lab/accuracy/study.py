@@ -76,17 +76,25 @@ class Study:
         One for each method.
     floor : float, optional
         How much the error changes when the start moves by one rounding.
+    rigid : Row, optional
+        What rigid contacts do with it, in steps of that length; ``None`` where nothing touches.
     """
 
     problem: Problem
     auto: Row
     curves: list[Curve]
     floor: float | None
+    rigid: Row | None = None
+
+    @property
+    def chosen(self) -> list[Row]:
+        """The rows in which the engine chooses the method: of ``auto``, and of rigid contacts."""
+        return [self.auto] if self.rigid is None else [self.auto, self.rigid]
 
     @property
     def best(self) -> float | None:
         """The smallest error of any method."""
-        errors = [self.auto.measurement.error, *(curve.best for curve in self.curves)]
+        errors = [row.measurement.error for row in self.chosen] + [curve.best for curve in self.curves]
         return min((error for error in errors if error is not None), default=None)
 
 
@@ -105,6 +113,7 @@ def study(problem: Problem, *, sparse: bool = False) -> Job[Study]:
     whole = 1 + sum(len(settings) for _, settings in plan)
     floor = rounding_floor(problem)
     auto = _row(problem, Setting("auto"), floor)
+    rigid = _row(problem, Setting("auto", contacts="rigid"), floor) if problem.touches else None
     yield 1 / whole
     done = 1
     for curve, settings in plan:
@@ -120,7 +129,7 @@ def study(problem: Problem, *, sparse: bool = False) -> Job[Study]:
         if curve.rows and curve.integrator.evaluations and problem.search is None:
             even = not curve.integrator.chooses_steps
             curve.order = measured_order(efforts, [m.error for m in measured], even=even)
-    yield Study(problem, auto, [curve for curve, _ in plan], floor)
+    yield Study(problem, auto, [curve for curve, _ in plan], floor, rigid)
 
 
 def _row(problem: Problem, setting: Setting, floor: float | None) -> Row:

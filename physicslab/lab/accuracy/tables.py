@@ -33,6 +33,8 @@ def study_text(study: Study, *, whole: bool) -> str:
     if problem.note:
         lines.append(f"  note: {problem.note}")
     rows = [_HEAD, _cells(problem, study.auto, "auto", "", "")]
+    if study.rigid is not None:
+        rows.append(_cells(problem, study.rigid, "rigid contacts", "", ""))
     for curve in study.curves:
         rows += _curve_cells(problem, curve, whole)
     return "\n".join([*lines, _reported(rows), f"  auto: {study.auto.measurement.integrator}, "
@@ -158,8 +160,8 @@ def summary_text(studies: Sequence[Study]) -> str:
 
 
 def _best_verdict(study: Study) -> Verdict:
-    verdicts = [study.auto.verdict, *(row.verdict for curve in study.curves for row in curve.rows)]
-    return Verdict.EXCELLENT if Verdict.EXCELLENT in verdicts else Verdict.SHORT
+    rows = [*study.chosen, *(row for curve in study.curves for row in curve.rows)]
+    return Verdict.EXCELLENT if any(row.verdict is Verdict.EXCELLENT for row in rows) else Verdict.SHORT
 
 
 def left_out_text() -> str:

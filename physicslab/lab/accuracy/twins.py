@@ -36,6 +36,8 @@ _MIRRORED: dict[str, tuple[str, ...]] = {
     "Trail": (),
 }
 """Fields that a mirror changes; a scene with another component is not mirrored."""
+_RIGID_BUDGET_S = 10.0
+"""Rigid contacts of many bodies, and of bodies that chatter, can take seconds a step."""
 _ULP_SCALE = 1e-2
 """Coordinates [m], [m/s], [rad] smaller than this are moved by a rounding of this."""
 
@@ -53,12 +55,15 @@ class Twin:
         returns the twin's world, or ``None`` where a scene has no such twin.
     mirrored : bool
         Whether its x coordinates and angles have the opposite sign.
+    budget_s : float
+        After how much time [s] it is given up.
     """
 
     name: str
     what: str
     make: Callable[[Document, World], World | None]
     mirrored: bool = False
+    budget_s: float = math.inf
 
 
 def with_ids(document: Document) -> Document:
@@ -92,9 +97,18 @@ def _with_settings(document: Document, **changes: Any) -> World:
     return read_scene(document | {"simulation": document["simulation"] | changes})
 
 
+def _rigid(document: Document, world: World) -> World | None:
+    """Return the scene with contacts that do not give way, where these can be had."""
+    if world.plan.collisions == "none" or world.plan.contacts == "rigid":
+        return None
+    twin = _with_settings(document, contacts="rigid", collisions="auto", integrator="auto", sleeping=False)
+    twin.synchronise()
+    return twin if twin.plan.contacts == "rigid" else None
+
+
 def _stiffer(document: Document, world: World) -> World | None:
     """Return the scene with harder contacts, at half the step: their stiffness goes by step and sweeps."""
-    if world.plan.collisions == "none":
+    if world.plan.collisions == "none" or world.plan.contacts == "rigid":
         return None
     simulation = world.simulation
     sweeps = None if simulation.iterations is None else min(1000, 2 * simulation.iterations)
@@ -169,6 +183,8 @@ TWINS: tuple[Twin, ...] = (
          lambda document, world: finer(document, 2)),
     Twin("stiffer", "contacts four times as stiff, at half the step",
          _stiffer),
+    Twin("rigid", "contacts that do not give way: their laws solved to rounding, events at their own times",
+         _rigid, budget_s=_RIGID_BUDGET_S),
     Twin("mirrored", "left and right exchanged", _mirror, mirrored=True),
     Twin("permuted", "entities in the opposite order", _permute),
     Twin("nudged", "the start moved by one rounding", _nudge),

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from functools import partial
 
+import numpy as np
+
 from physicslab.components import Mass, Spring, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.stability.case import StabilityCase
-from physicslab.lab.worlds import GRAVITY, energy_growth, largest, open_space, spawn_point
+from physicslab.lab.worlds import GRAVITY, energy_growth, largest, open_space, place, spawn_point
 from physicslab.prefabs import chain
 from physicslab.world import World
 
@@ -21,7 +23,7 @@ _STEPS = 600
 
 def _chain(touches: bool) -> tuple[World, list[int]]:
     """Return a chain of 50 springs let go level: masses of 0.1 kg, and one of 100 kg at the end."""
-    world = open_space()
+    world = open_space(contacts="soft")
     if touches:
         balls = chain(world, _LINKS, (0.0, 0.0), (10.0, 0.0), radius=0.05, stiffness=_STIFF, damping=0.0)
     else:
@@ -65,6 +67,34 @@ def _net_growth(steps: int) -> float:
     return energy_growth(world, steps, scale=weight * _SIDE * pitch)
 
 
+def _off_modes(ratio: float) -> float:
+    """Return how far a mass of a level chain is at most from where its modes have it after 2 s [m].
+
+    A hundred springs of 100 N/m between two walls; of 99 masses every second is ``ratio`` times 1 kg. All lie
+    on a line, so that the springs are linear, and the first is let go 1 cm off.
+    """
+    count, stiffness, pulled, seconds = 99, 100.0, 0.01, 2.0
+    masses = np.where(np.arange(count) % 2, ratio, 1.0)
+    world = open_space(gravity=None)
+    made: list[int | None] = [
+        spawn_point(world, (i + 1.0 + (pulled if i == 0 else 0.0), 0.0), mass=float(mass))
+        for i, mass in enumerate(masses)
+    ]
+    nothing = (0.0, 0.0)
+    for i, (a, b) in enumerate(zip([*made, made[-1]], [None, *made[:-1], None], strict=True)):
+        hook = (0.0 if i == 0 else count + 1.0, 0.0) if b is None else nothing
+        world.spawn(Spring(a, b, nothing, hook, 1.0, stiffness, 0.0))
+    world.run(seconds=seconds)
+    root = np.sqrt(masses)
+    springs = 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
+    matrix = stiffness * springs / np.outer(root, root)
+    rates, modes = np.linalg.eigh(matrix)
+    swing = modes * np.cos(np.sqrt(np.abs(rates)) * seconds) @ modes.T
+    expected = np.arange(1.0, count + 1.0) + pulled * root[0] * swing[:, 0] / root
+    found = np.array([place(world, body).x for body in made if body is not None])
+    return float(np.abs(found - expected).max())
+
+
 def _cases(touches: bool) -> list[StabilityCase]:
     scene = "of discs that touch others" if touches else "of points"
     prefix = "chain_touching" if touches else "chain"
@@ -85,6 +115,15 @@ def _cases(touches: bool) -> list[StabilityCase]:
 CHAINS = [
     *_cases(touches=False),
     *_cases(touches=True),
+    *(
+        StabilityCase(
+            name=f"chain_modes_{ratio:g}", group="chains",
+            title=f"chain of 100 springs between walls, every second mass {ratio:g} times the others, 2 s",
+            right="it goes as its modes do", figure="farthest from there", unit="m", limit=1e-6,
+            measure=partial(_off_modes, ratio),
+        )
+        for ratio in (1.0, 1e3, 1e6)
+    ),
     StabilityCase(
         name="net_energy", title="net of 20 x 20 masses on springs of 1e6 N/m, 2 s", group="chains",
         right="bounded: energy never grows", figure="growth, of what the fall can give", limit=1e-6,

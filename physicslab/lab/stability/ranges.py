@@ -94,7 +94,7 @@ class _Endured:
 
 def _mixed() -> World:
     """Return a scene with a little of everything that lasts."""
-    world = open_space()
+    world = open_space(contacts="soft")
     floor(world, restitution=1.0)
     # Discs roll for ever: what they lie in keeps them from the box that should rest.
     container(world, (-6.0, 2.0), width=1.0, height=2.0)

@@ -19,7 +19,7 @@ _ANGLE = math.radians(20.0)
 def _block(share: float) -> tuple[World, int]:
     """Return a block on a slope of 20 degrees, with a share of the friction at which it would just hold."""
     along = Vector2.from_angle(_ANGLE)
-    world = open_space()
+    world = open_space(contacts="soft")
     friction = share * math.tan(_ANGLE)
     box(world, (0.0, 0.0), width=200.0, height=1.0, angle=_ANGLE, static=True, friction=friction)
     block = box(world, along.perpendicular * 0.75, width=1.0, height=0.5, angle=_ANGLE, friction=friction)

@@ -28,7 +28,7 @@ _STIFFNESS = {
 
 def _hung(stiffness: float, below: float, *, gravity: float | None, touches: bool) -> tuple[World, int]:
     """Return a world with a body of 1 kg on a spring of 1 m, so far below its rest length [m]."""
-    world = open_space(gravity=gravity, dt=_DT)
+    world = open_space(gravity=gravity, dt=_DT, contacts="soft")
     # What oscillates swings sideways as well: along one line, the motion would be solved in closed form.
     swing = (0.0, 0.0) if gravity else (_ASIDE, 0.0)
     where = Vector2(0.0, -1.0 - below)
@@ -64,7 +64,7 @@ def _past_limit(damping: float, kind: str, touches: bool) -> float:
 
     As a share of the 1 m/s that it starts with; or how far it is from there at the end, if that is more.
     """
-    world = open_space(dt=_DT)
+    world = open_space(dt=_DT, contacts="soft")
     brake = {
         "damper": Spring(rest_length=0.0, stiffness=0.0, damping=damping),
         "drag": Drag(linear=damping),
@@ -86,7 +86,7 @@ def _past_limit(damping: float, kind: str, touches: bool) -> float:
 
 def _swing(touches: bool, stiffness: float) -> tuple[World, int]:
     """Return a world with a bob of 1 kg let go aside, on a spring of 1 m with a strong damper."""
-    world, where = open_space(dt=_DT), (0.8, -0.6)
+    world, where = open_space(dt=_DT, contacts="soft"), (0.8, -0.6)
     if touches:
         floor(world, Vector2(0.0, -10.0))
         bob = circle(world, where, radius=0.1, mass=1.0)

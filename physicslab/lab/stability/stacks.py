@@ -19,7 +19,7 @@ _SECONDS = 10.0
 
 def _settled(fill: Callable[[World], list[int]], seconds: float) -> list[Vector2]:
     """Return how far each body is from where it was put, after so many seconds."""
-    world = open_space(physics=PhysicsConfig(gravity=Vector2(0.0, -10.0)))
+    world = open_space(physics=PhysicsConfig(gravity=Vector2(0.0, -10.0)), contacts="soft")
     floor(world)
     bodies = fill(world)
     starts = [place(world, body) for body in bodies]

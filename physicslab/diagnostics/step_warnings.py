@@ -1,0 +1,145 @@
+"""Warnings about steps: forces that are too fast for them, and phases that they have lost."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from physicslab.components import Spring
+from physicslab.diagnostics.forces import fastest_force
+from physicslab.diagnostics.warning_records import ModelWarning
+from physicslab.integrators import Integrator
+from physicslab.state.packed import spring_ends
+from physicslab.world import World
+
+__all__ = [
+    "EXPLICIT_RATE_LIMIT", "IMPLICIT_RATE_LIMIT", "PHASE_LIMIT", "SUBSTEPS_LIMIT", "step_warnings",
+]  # fmt: skip
+
+EXPLICIT_RATE_LIMIT = 0.3
+"""omega h of a fixed step, as a share of the method's limit: with leapfrog the energy of such an oscillation
+swings by a tenth."""
+IMPLICIT_RATE_LIMIT = 1.0
+"""omega h of the implicit rule, which is stable beyond: the phase is 8 % off there."""
+PHASE_LIMIT = 0.05
+"""Phase that oscillations may have lost by now [rad]: places are then wrong by 5 % of the amplitude."""
+_AUTO_RATE_LIMIT = 500.0
+"""omega dt up to which ``auto`` divides a step until it follows an oscillation."""
+SUBSTEPS_LIMIT = 10_000
+"""Of a scene's configuration."""
+
+
+def step_warnings(world: World) -> Iterator[ModelWarning]:
+    """Yield what is wrong with the length of steps, or with the method that makes them.
+
+    Parameters
+    ----------
+    world : World
+        In its present state; nothing is changed.
+    """
+    method = world.plan
+    integrator = method.integrator if method.smooth else method.split_forces or method.stages
+    if not (method.collisions == "exact" or integrator.chooses_steps or math.isinf(integrator.order)):
+        parts = method.substeps * (2 * method.split_steps if method.split_forces else 1)
+        h = world.simulation.dt / parts
+        yield from _rates(world, integrator, h)
+        yield from _phase(world, integrator, h)
+    yield from _order(world)
+
+
+def _rates(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarning]:
+    """Yield the fastest force, if it is too fast for the steps that are made."""
+    rate, system = fastest_force(world)
+    if system is None or not math.isfinite(rate):
+        return
+    value, bounded = rate * h, math.isinf(integrator.stability_limit)
+    limit = IMPLICIT_RATE_LIMIT if bounded else EXPLICIT_RATE_LIMIT * integrator.stability_limit
+    if value <= limit:
+        return
+    entity = _stiffest(world) if Spring in system.needs else None
+    source = "" if entity else f"{system.name.removesuffix('System')}: "
+    if bounded:
+        what = "is too fast to be followed (omega h): its motion between steps is not shown"
+    elif value > integrator.stability_limit:
+        what = "is too stiff for the step (omega h): it flies apart"
+    else:
+        what = "is resolved coarsely (omega h): its energy swings"
+    setting = _shorter(world, rate, limit, followed=bounded)
+    if system.attractors > 1 and world.simulation.integrator != "auto":
+        setting = 'simulation.integrator = "auto"'  # with the steps of a passage, others are still long
+    yield ModelWarning(entity, source + what, value, "", limit, setting)
+
+
+def _phase(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarning]:
+    """Yield the spring whose oscillation has lost most phase, if that is too much.
+
+    A method loses a share of omega t that depends on omega h alone; what is damped counts while it lasts.
+    """
+    rows, a, b = spring_ends(world)
+    if not (integrator.phase_share and len(rows) and math.isfinite(world.time)):
+        return
+    spring, inverse = world.table(Spring), world.bodies.inverse_mass
+    give = inverse[a] + inverse[b]
+    rate = np.sqrt(spring["stiffness"][rows] * give)
+    decay = 0.5 * (spring["damping"][rows] * give + world.physics.linear_damping)
+    lasting = np.where(
+        decay > 0.0, -np.expm1(-decay * world.time) / np.where(decay > 0.0, decay, 1.0), world.time
+    )
+    power = integrator.phase_order
+    lost = integrator.phase_share * (rate * h) ** power * rate * lasting
+    worst = int(np.argmax(lost))
+    if not PHASE_LIMIT < lost[worst] < math.inf:
+        return
+    needed = math.ceil(world.simulation.substeps * (lost[worst] / PHASE_LIMIT) ** (1.0 / power))
+    setting = (
+        f"simulation.substeps = {needed}" if needed <= SUBSTEPS_LIMIT else 'simulation.integrator = "auto"'
+    )
+    if world.simulation.integrator == "auto":
+        setting = ""  # it takes other steps of its own
+    what = "oscillates out of phase by now, by the error of the method"
+    name = world.label(int(world.entity_index.entities[rows[worst]]))
+    yield ModelWarning(name, what, float(lost[worst]), "rad", PHASE_LIMIT, setting)
+
+
+def _order(world: World) -> Iterator[ModelWarning]:
+    """Yield a force that depends on velocities, where the method that was asked for is made for positions."""
+    plan = world.plan
+    method = plan.integrator if plan.smooth else plan.stages
+    if world.simulation.integrator == "auto" or plan.collisions == "exact" or not method.positions_only:
+        return
+    seeing = next((force for force in world.schedule.forces if force.sees_velocity(world)), None)
+    if seeing is not None:
+        name = seeing.name.removesuffix("System")
+        what = f"{name}: {method.name} has order 1 where a force depends on velocities"
+        better = '"dop853"' if plan.smooth else '"auto"'
+        yield ModelWarning(None, what, None, "", None, f"simulation.integrator = {better}")
+
+
+def _shorter(world: World, rate: float, limit: float, *, followed: bool) -> str:
+    """Return the setting with which a rate [rad/s] is followed by the present method, or by ``auto``."""
+    simulation = world.simulation
+    if followed and simulation.integrator == "auto":
+        return f"simulation.dt = {_below(_AUTO_RATE_LIMIT / rate):.2g}"
+    needed = math.ceil(rate * simulation.dt / limit)
+    if needed <= SUBSTEPS_LIMIT:
+        return f"simulation.substeps = {needed}"
+    return f"simulation.dt = {_below(limit * simulation.substeps / rate):.2g}"
+
+
+def _below(value: float) -> float:
+    """Round down to two digits, so that what is shown still helps."""
+    digits = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return math.floor(value / digits) * digits
+
+
+def _stiffest(world: World) -> str | None:
+    """Return the name of the spring with the fastest oscillation or decay."""
+    rows, a, b = spring_ends(world)
+    if not len(rows):
+        return None
+    spring, inverse = world.table(Spring), world.bodies.inverse_mass
+    give = inverse[a] + inverse[b]
+    rates = np.maximum(np.sqrt(spring["stiffness"][rows] * give), spring["damping"][rows] * give)
+    return world.label(int(world.entity_index.entities[rows[np.argmax(rates)]]))

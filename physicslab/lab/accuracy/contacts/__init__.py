@@ -1,0 +1,1 @@
+"""The second page of the accuracy lab: what rests, slides, rolls, topples and strikes."""

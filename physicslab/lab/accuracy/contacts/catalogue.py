@@ -1,0 +1,21 @@
+"""Every contact case, in one explicit list."""
+
+from __future__ import annotations
+
+from physicslab.lab.accuracy.contacts.alike import ALIKE
+from physicslab.lab.accuracy.contacts.resting import RESTING
+from physicslab.lab.accuracy.contacts.rolling import PIVOTING, ROLLING
+from physicslab.lab.accuracy.contacts.sliding import SLIDING
+from physicslab.lab.accuracy.contacts.striking import STRIKING
+from physicslab.lab.case import Catalogue
+
+__all__ = ["CONTACTS", "CONVERGENCE"]
+
+CONTACTS = Catalogue((*RESTING, *SLIDING, *ROLLING, *PIVOTING, *STRIKING, *ALIKE))
+"""Every case by name; families are groups."""
+
+CONVERGENCE = (
+    "rest_1", "rest_10", "slide_incline", "slide_stop", "slide_spring", "roll_slip", "roll_groove",
+    "pivot_cube", "corner_cube", "corner_rod",
+)  # fmt: skip
+"""The cases whose order in the step is looked at: their answers are known, and do not depend on chance."""

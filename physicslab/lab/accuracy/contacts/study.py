@@ -1,0 +1,200 @@
+"""One contact case by every engine, the step halved again and again: errors, cost and order."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from physicslab.lab.accuracy.contacts.case import ContactCase
+from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN, Engine
+from physicslab.lab.accuracy.verdict import Verdict
+from physicslab.lab.case import Job, attempt, cpu_time
+from physicslab.lab.peers.peer import CannotBuild
+from physicslab.lab.worlds import steps_not_rigid
+from physicslab.world import World
+
+__all__ = [
+    "HALVINGS", "ROUNDING", "ContactCurve", "ContactRow", "ContactStudy", "fitted_order", "measure_row",
+    "study_case",
+]  # fmt: skip
+
+HALVINGS = 6
+"""How often the step of 1/60 s is halved."""
+_SPARSE = (0, 2, 4)
+"""How often it is halved for the rungs of a sparse study."""
+ROUNDING = 1e-11
+"""An error below this is put down to rounding, and has no order."""
+_SOFT_ORDER = 0.9
+"""With soft contacts errors should fall at least with this power of the step."""
+_REPEATED_BELOW_S = 0.05
+"""A run that takes less is made twice more, and the median of its times counts."""
+_ENDS_S = 10.0
+"""The first rung that takes longer is the last."""
+
+
+@dataclass(slots=True)
+class ContactRow:
+    """One engine with one step.
+
+    Attributes
+    ----------
+    dt : float
+        The step [s].
+    error : float, optional
+        As the case measures it; ``None`` where the run diverged.
+    cpu_s_per_s : float
+        Process time of one world for each second that it is advanced, compiling and building left out.
+    left_to_soft, by_impulses : int
+        How many steps rigid contacts left to soft ones, and made by impulses in short steps.
+    failure : str
+        Why there is no error; empty where there is one.
+    """
+
+    dt: float
+    error: float | None
+    cpu_s_per_s: float
+    left_to_soft: int = 0
+    by_impulses: int = 0
+    failure: str = ""
+
+
+@dataclass(slots=True)
+class ContactCurve:
+    """One engine on one case.
+
+    Attributes
+    ----------
+    engine : Engine
+        Which.
+    rows : list of ContactRow
+        From the longest step to the shortest.
+    order : float, optional
+        The power of the step with which errors fall; ``None`` where they are rounding, or too few.
+    verdict : Verdict, optional
+        Of our own engines only.
+    refused : str
+        Why there are no rows.
+    """
+
+    engine: Engine
+    rows: list[ContactRow] = field(default_factory=list)
+    order: float | None = None
+    verdict: Verdict | None = None
+    refused: str = ""
+
+    @property
+    def largest(self) -> float | None:
+        """The largest error at any step; ``None`` where a run failed or there is none."""
+        errors = [row.error for row in self.rows]
+        return None if None in errors else max((e for e in errors if e is not None), default=None)
+
+
+@dataclass(slots=True)
+class ContactStudy:
+    """A case and what engines do with it."""
+
+    case: ContactCase
+    curves: list[ContactCurve]
+
+
+def fitted_order(steps: Sequence[float], errors: Sequence[float | None]) -> float | None:
+    """Return the power of the step with which errors fall: the median of what each next step shows.
+
+    A jump, where another thing happens from some step on, so counts as one of them. Errors of rounding are
+    left out; ``None`` where fewer than three others are left.
+
+    >>> fitted_order([0.1, 0.05, 0.025, 0.0125], [1e-4, 5e-5, 2.5e-5, 1e-9])
+    1.0
+    """
+    clear = [(h, e) for h, e in zip(steps, errors, strict=True) if e is not None and e > ROUNDING]
+    if len(clear) < 3:
+        return None
+    slopes = [math.log(e / finer) / math.log(h / shorter) for (h, e), (shorter, finer) in pairwise(clear)]
+    return round(statistics.median(slopes), 12)
+
+
+def study_case(case: ContactCase, *, sparse: bool = False) -> Job[ContactStudy]:
+    """Compute a case with every engine; yield the share of the work that is done, then the result.
+
+    Where ``sparse``, with our own engines alone, and three steps in place of seven.
+    """
+    engines = OWN if sparse else ENGINES
+    steps = [2.0**-k / 60.0 for k in (_SPARSE if sparse else range(HALVINGS + 1))]
+    curves, whole = [], len(engines) * len(steps)
+    for n, engine in enumerate(engines):
+        curve = ContactCurve(engine)
+        curves.append(curve)
+        for k, dt in enumerate(steps):
+            try:
+                curve.rows.append(measure_row(case, engine, dt))
+            except (CannotBuild, ImportError) as error:
+                curve.refused = "not installed" if isinstance(error, ImportError) else str(error)
+                break
+            yield (n * len(steps) + k + 1) / whole
+            if curve.rows[-1].cpu_s_per_s * case.seconds > _ENDS_S:
+                break
+        curve.order = fitted_order([row.dt for row in curve.rows], [row.error for row in curve.rows])
+        curve.verdict = _verdict(case, curve)
+    yield ContactStudy(case, curves)
+
+
+def _verdict(case: ContactCase, curve: ContactCurve) -> Verdict | None:
+    """Return whether rigid contacts are within what is wanted at every step, and soft ones converge."""
+    if not curve.engine.own:
+        return None
+    if curve.largest is None:
+        return Verdict.FAILED
+    if curve.largest <= case.wanted:
+        return Verdict.EXCELLENT
+    converges = curve.order is not None and curve.order >= _SOFT_ORDER
+    return Verdict.GOOD if curve.engine.name == "soft" and converges else Verdict.SHORT
+
+
+def measure_row(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
+    """Compute a case with an engine and a step [s], repeatedly if that is short.
+
+    Raises
+    ------
+    CannotBuild
+        If the engine has nothing of the kind that the case needs.
+    ImportError
+        If the engine is not installed.
+    """
+    for world in case.build(engine.simulation(dt)):
+        attempt(partial(engine.start(world, dt), 1.0 / 60.0))  # loads kernels, which is no part of a run
+    row = _run(case, engine, dt)
+    if row.cpu_s_per_s * case.seconds < _REPEATED_BELOW_S:
+        more = [_run(case, engine, dt).cpu_s_per_s for _ in range(2)]
+        row.cpu_s_per_s = statistics.median([row.cpu_s_per_s, *more])
+    return row
+
+
+def _run(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
+    worlds = case.build(engine.simulation(dt))
+    advances = [engine.start(world, dt) for world in worlds]
+    compiled = sum(world.compile_s for world in worlds)
+    spent, largest, reached = 0.0, 0.0, 0.0
+    for i, t in enumerate(case.times):
+        for advance in advances:
+            cpu_s, (_, failure) = cpu_time(partial(attempt, partial(advance, t - reached)))
+            spent += cpu_s
+            if failure:
+                return ContactRow(dt, None, _share(spent, t, worlds, compiled), failure=failure)
+        reached = t
+        error, failure = attempt(partial(case.error, worlds, i))
+        if error is None:
+            return ContactRow(dt, None, _share(spent, t, worlds, compiled), failure=failure)
+        largest = float(np.maximum(largest, error))
+    return ContactRow(dt, largest, _share(spent, reached, worlds, compiled), *steps_not_rigid(*worlds))
+
+
+def _share(spent: float, seconds: float, worlds: Sequence[World], compiled: float) -> float:
+    """Return the process time of a world a second, without the time in which kernels were compiled."""
+    compiled = sum(world.compile_s for world in worlds) - compiled
+    return max(0.0, spent - compiled) / seconds / len(worlds)
