@@ -98,7 +98,7 @@ def test_a_run_gives_the_bits_of_single_steps(name: str) -> None:
     for world in (stepped, ran):
         world.simulation = replace(world.simulation, contacts="soft")
     watched(stepped)
-    steps = 80 if name == "stack" else STEPS  # then it falls asleep, but where a system looks at substeps
+    steps = 25 if name == "stack" else STEPS  # then it falls asleep, but where a system looks at substeps
     for _ in range(steps):
         stepped.step()
     ran.run(steps=steps)

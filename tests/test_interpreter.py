@@ -83,7 +83,7 @@ def settled(shape: str, struck: bool = True) -> World:
 def heaps() -> None:
     for shape in ("disc", "box"):
         world = settled(shape)
-        world.run(steps=30)
+        world.run(steps=25)
         assert world.contacts.wide.filled > 0
         for _ in range(40):  # through every stage by itself, while a ball strikes the heap
             world.step(0.015)

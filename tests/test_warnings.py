@@ -362,11 +362,12 @@ def test_a_box_that_spins_fast_is_said_near_others_alone() -> None:
     box(world, (0, 50.0), angular_velocity=500.0)
     world.step()
     assert find_warnings(world) == ()
-    box(world, (0, 0.3), angular_velocity=500.0, friction=0.0, name="top")
+    top = box(world, (0, 0.3), angular_velocity=500.0, friction=0.0, name="top")
     world.step()
     found = only(world, "corners")
     assert (found.entity, found.unit) == ("top", "rad")
-    assert found.value == pytest.approx(500.0 / 240, rel=0.3)
+    spin = world.component(top, Velocity).angular  # impacts of its corners, 15 % of what it had at the least
+    assert found.value == pytest.approx(abs(spin) / 240, rel=1e-9) and abs(spin) > 75.0
 
 
 @pytest.mark.parametrize(("where", "said"), [(1e6, False), (1e8, False), (2e9, True)])

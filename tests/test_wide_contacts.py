@@ -101,7 +101,7 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         inverse, acting = (bodies.inverse_mass, bodies.inverse_inertia), (bodies.force, bodies.torque, True)
         entries.solve_stage(
             near, cast(MotionTuple, tuple(motion)), inverse, acting,
-            (45.0, 2.0, 0.0005, 1.5), h, h, 1,
+            (0.17, 7.0, 1.5), h, h, 1,
         )  # fmt: skip
         ends.append((linear, angular))
     assert ends[0][0] == pytest.approx(ends[1][0], rel=1e-9, abs=1e-12)

@@ -63,9 +63,10 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
     if rigid is not None and rigid.by_impulses:
         what = f"steps were made by impulses in 32 parts, an error of order one: {rigid.why_impulses}"
         found.append(ModelWarning(None, what, float(rigid.by_impulses), "", 0.0, ""))
-    if rigid is not None and rigid.restitutions_lowered:
+    lowered = world.contacts.restitutions_lowered + (0 if rigid is None else rigid.restitutions_lowered)
+    if lowered:
         what = "impacts have a lower restitution, as Newton's law with friction would have made energy"
-        found.append(ModelWarning(None, what, float(rigid.restitutions_lowered), "", 0.0, ""))
+        found.append(ModelWarning(None, what, float(lowered), "", 0.0, ""))
     if world.plan.collisions == "step" and (rigid is None or rigid.left_to_soft):
         graph = contact_graph(world)
         found += [

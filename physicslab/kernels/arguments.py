@@ -105,16 +105,21 @@ class Log(NamedTuple):
 
 
 class Softness(NamedTuple):
-    """The contact spring: frequency [Hz], damping ratio, overlap left alone, fastest push [m/s]."""
+    """The contact spring: the share of overlap corrected in a substep, stiffness, fastest push [m/s].
 
-    hertz: float
-    damping_ratio: float
-    slop: float
+    Stiffness is that of a spring over a substep h with one sweep: effective masses over h^2.
+    """
+
+    push: float
+    stiffness: float
     max_push: float
 
 
 class Plan(NamedTuple):
-    """Substeps a step, iterations of the solver, the substep and the step [s], the time at the start [s]."""
+    """Substeps a step, iterations of the solver, the substep and the step [s], the time at the start [s].
+
+    Of 0 iterations, the number goes by that of the contacts.
+    """
 
     substeps: int
     iterations: int
@@ -156,7 +161,7 @@ InverseTuple = tuple[Numbers, Numbers]
 ActingTuple = tuple[Vectors, Numbers, bool]
 BoundsTuple = tuple[Numbers, float, float]
 NearTuple = tuple[Rows, Manifolds, Points, Rows, Rows, SlotsTuple, SlotsTuple, Couples, Numbers, Rows]
-SoftnessTuple = tuple[float, float, float, float]
+SoftnessTuple = tuple[float, float, float]
 PlanTuple = tuple[int, int, float, float, float]
 GravityTuple = tuple[Numbers, Numbers, float, float, float]
 SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows]

@@ -86,6 +86,9 @@ class Contacts:
     active = _count(near_counts.ACTIVE, "How many scalar pairs have points.")
     left = _count(near_counts.LEFT, "How many pairs the impacts of this substep have left to the solver.")
     logged = _count(near_counts.LOGGED, "How many impacts were ever logged.")
+    restitutions_lowered = _count(
+        near_counts.LOWERED, "How many impacts had their restitution lowered, so that no energy was made."
+    )
     unordered = _count(
         near_counts.UNORDERED, "Whether scalar pairs were added since those were last put in order."
     )

@@ -161,7 +161,7 @@ class FusedContact:
         began = time.perf_counter_ns()
         contacts, substeps = state.contacts, state.substeps
         self._cost[:] = 0
-        plan = (substeps, state.simulation.iterations or 1, h / substeps, h, state.time + made * h)
+        plan = (substeps, state.simulation.iterations or 0, h / substeps, h, state.time + made * h)
         why, done, substep, finished_impacts, impacts, contacts.impulse_dt = fused.advance(
             steps, substep, stage, plan, *self._arguments(state, h / substeps)
         )
@@ -187,7 +187,7 @@ class FusedContact:
         damping, bounds = laws
         return (
             *motion, sleepers, damping, self._broad_phase.fat, bounds, near_in(state), contacts.opened,
-            self._resolve.softness(1.0), contacts.impulse_dt, contacts.step_log, self._cost,
+            self._resolve.softness, contacts.impulse_dt, contacts.step_log, self._cost,
         )  # fmt: skip
 
     def _fixed_arguments(self, state: State, h: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from physicslab.contacts.arguments import acting_in, inverse_in, motion_of, near_in
+from physicslab.contacts.arguments import acting_in, inverse_in, motion_of, near_in, sizes_of
 from physicslab.kernels.arguments import SoftnessTuple
 from physicslab.kernels.solver import entries, impulse
 from physicslab.state.state import State
@@ -20,22 +20,20 @@ class ResolveSystem(System):
 
     Parameters
     ----------
-    hertz, damping_ratio : float
-        The contact spring that corrects overlap: frequency [Hz] (at most a quarter of the substep rate) and
-        damping ratio.
+    push : float
+        Share of the overlap that is corrected in a substep.
+    stiffness : float
+        Stiffness of the contact spring, in effective masses over the substep squared. With n sweeps over the
+        contacts it is n^1.25 times as much: what rests sinks by its load h^2 / (m push stiffness n^1.25).
     max_push : float
-        Largest speed [m/s] at which overlap is corrected.
-    slop : float
-        Overlap that is left alone, as a share of the smaller body's size.
+        Largest speed [m/s] at which deep overlap is corrected.
     """
 
     engine = True
     kernels = (entries.impact_stage, entries.solve_stage, entries.relax_stage)
 
-    def __init__(
-        self, hertz: float = 45.0, damping_ratio: float = 2.0, max_push: float = 1.5, slop: float = 0.0005
-    ) -> None:
-        self.hertz, self.damping_ratio, self.max_push, self.slop = hertz, damping_ratio, max_push, slop
+    def __init__(self, push: float = 0.17, stiffness: float = 7.0, max_push: float = 1.5) -> None:
+        self.push, self.stiffness, self.max_push = push, stiffness, max_push
 
     def why_left_out(self, state: State) -> str | None:
         """Needed where two things could ever meet."""
@@ -45,7 +43,7 @@ class ResolveSystem(System):
         """Where bodies carry far heavier ones, the contact spring must be stiffer, and substeps shorter.
 
         Its stiffness is that for the lighter body: one that carries a hundred times its weight sinks in a
-        hundred times as deep. A frequency that is higher by the square root corrects that.
+        hundred times as deep. Stiffness grows with the square of how much shorter substeps are.
         """
         contacts, bodies = state.contacts, state.bodies
         if not (contacts.count and state.has_forces and bodies.unequal):
@@ -60,16 +58,17 @@ class ResolveSystem(System):
             parts *= 2
         return parts
 
-    def softness(self, substep_factor: float) -> SoftnessTuple:
-        """Return the contact spring for substeps that are shorter by this factor than configured."""
-        return self.hertz * substep_factor, self.damping_ratio, self.slop, self.max_push
+    @property
+    def softness(self) -> SoftnessTuple:
+        """The contact spring."""
+        return self.push, self.stiffness, self.max_push
 
     @at(Stage.IMPACT)
     def resolve_impacts(self, state: State, h: float) -> None:
         """Bounce the pairs that meet within the substep."""
         start, end = state.window
         state.collisions += entries.impact_stage(
-            near_in(state), motion_of(state), inverse_in(state), acting_in(state),
+            near_in(state), motion_of(state), sizes_of(state), inverse_in(state), acting_in(state),
             state.contacts.step_log, state.moment, h, start * h, end * h,
         )  # fmt: skip
 
@@ -77,17 +76,14 @@ class ResolveSystem(System):
     def solve(self, state: State, h: float) -> None:
         """Find the impulses that keep bodies apart and correct some of the overlap."""
         state.contacts.impulse_dt = entries.solve_stage(
-            near_in(state), motion_of(state), inverse_in(state), acting_in(state), self._softness_now(state),
-            h, state.contacts.impulse_dt, state.simulation.iterations or 1,
+            near_in(state), motion_of(state), inverse_in(state), acting_in(state), self.softness,
+            h, state.contacts.impulse_dt, state.simulation.iterations or 0,
         )  # fmt: skip
 
     @at(Stage.RELAX)
     def relax(self, state: State, h: float) -> None:
         """Remove the velocity that came from correcting overlap."""
         entries.relax_stage(
-            near_in(state), motion_of(state), inverse_in(state), self._softness_now(state),
-            h, state.simulation.iterations or 1,
+            near_in(state), motion_of(state), inverse_in(state), self.softness,
+            h, state.simulation.iterations or 0,
         )  # fmt: skip
-
-    def _softness_now(self, state: State) -> SoftnessTuple:
-        return self.softness(state.substeps / state.simulation.substeps)

@@ -5,7 +5,6 @@ from physicslab.kernels.arguments import Inverse
 from physicslab.kernels.events.path import push
 from physicslab.kernels.ode.compensated import add_pair, multiply
 from physicslab.kernels.records import Manifold, Point
-from physicslab.kernels.solver.impact import bounce, friction_impulse
 
 __all__ = ["resolve_ballistic_impacts"]
 
@@ -34,6 +33,54 @@ def _short_of(v: float, v_low: float, before: float, before_low: float, restitut
 
 
 @inlined
+def _bounce_two(
+    manifold: Manifold, one: Point, two: Point, v1: float, v2: float, inverse: Inverse
+) -> tuple[float, float]:
+    """Return the normal impulses that turn both approach speeds of a contact into e times themselves.
+
+    The two are solved together, so that a box that lands flat does not start to turn. Where one impulse would
+    pull, the other acts alone.
+    """
+    a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+    turn_a1, turn_b1 = one.arm_ax * ny - one.arm_ay * nx, one.arm_bx * ny - one.arm_by * nx
+    turn_a2, turn_b2 = two.arm_ax * ny - two.arm_ay * nx, two.arm_bx * ny - two.arm_by * nx
+    k11, k22 = 1.0 / one.normal_mass, 1.0 / two.normal_mass
+    k12 = inverse.mass[a] + inverse.mass[b] + inverse.inertia[a] * turn_a1 * turn_a2
+    k12 += inverse.inertia[b] * turn_b1 * turn_b2
+    r1, r2 = -(1.0 + manifold.restitution) * v1, -(1.0 + manifold.restitution) * v2
+    determinant = k11 * k22 - k12 * k12
+    if determinant > 1e-9 * k11 * k22:
+        j1 = (k22 * r1 - k12 * r2) / determinant
+        j2 = (k11 * r2 - k12 * r1) / determinant
+        if j1 >= 0.0 and j2 >= 0.0:
+            return j1, j2
+    if r1 >= r2:
+        return r1 / k11, 0.0
+    return 0.0, r2 / k22
+
+
+@inlined
+def _bounce(
+    manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, v1: float, v2: float,
+    inverse: Inverse,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the normal impulses on B of an impact at the approach speeds v1 and v2 of its points [N s]."""
+    if meets_1 and meets_2:
+        return _bounce_two(manifold, one, two, v1, v2, inverse)
+    if meets_1:
+        return -(1.0 + manifold.restitution) * v1 * one.normal_mass, 0.0
+    return 0.0, -(1.0 + manifold.restitution) * v2 * two.normal_mass
+
+
+@inlined
+def _friction_impulse(manifold: Manifold, point: Point, j: float, sliding: float) -> float:
+    """Return the impulse that stops the sliding, at most mu times the normal impulse j [N s]."""
+    limit = manifold.friction * j
+    along: float = min(max(-point.tangent_mass * sliding, -limit), limit)
+    return along
+
+
+@inlined
 def _hit(
     manifold: Manifold, point: Point, j: float, v: float, paths: Vectors, angular: Numbers, inverse: Inverse
 ) -> None:
@@ -43,7 +90,7 @@ def _hit(
     if manifold.friction > 0.0:
         # A normal impulse at the arm of a disc, or on what does not turn, leaves the sliding as it is.
         sliding, low = _speed_against(paths, angular, a, b, point, -ny, nx)
-        along = friction_impulse(manifold, point, j, sliding + low)
+        along = _friction_impulse(manifold, point, j, sliding + low)
     px, py = j * nx - along * ny, j * ny + along * nx
     push(paths, a, -inverse.mass[a], px, py)
     push(paths, b, inverse.mass[b], px, py)
@@ -63,11 +110,11 @@ def resolve_ballistic_impacts(
     v1, low1 = _speed_against(paths, angular, a, b, one, nx, ny)
     if manifold.count == 2:
         v2, _ = _speed_against(paths, angular, a, b, two, nx, ny)
-        j1, j2 = bounce(manifold, one, two, True, True, v1, v2, inverse)
+        j1, j2 = _bounce(manifold, one, two, True, True, v1, v2, inverse)
         if j2 > 0.0:
             _hit(manifold, two, j2, v2, paths, angular, inverse)
     else:
-        j1, _ = bounce(manifold, one, two, True, False, v1, 0.0, inverse)
+        j1, _ = _bounce(manifold, one, two, True, False, v1, 0.0, inverse)
     if j1 > 0.0:
         _hit(manifold, one, j1, v1, paths, angular, inverse)
     if manifold.count == 1 and j1 > 0.0:

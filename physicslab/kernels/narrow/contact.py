@@ -17,6 +17,10 @@ CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found again."""
 CACHE_TURN_TOLERANCE = 0.002
 """How far [rad] either may turn."""
+_ROWS_FOUND_AGAIN = 64
+"""Number of bodies up to which points of boxes are found again after any motion."""
+_ROUNDING = 1e-9
+"""Share of these tolerances that is no motion."""
 _APART, _KEPT, _OUTDATED = range(3)
 """What is known of a pair of boxes: that they have no points; where their points are; nothing any more."""
 
@@ -83,12 +87,13 @@ def _too_far(
 @fused
 def _look_up(
     manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, sizes: Sizes,
-    speculative_margin: float,
+    speculative_margin: float, tolerance: float,
 ) -> int:  # fmt: skip
     """Use what was found of two boxes, or of one and a wall, if they have hardly moved against each other.
 
-    Returns what is known of them now. Where that is nothing, their present pose is recorded, for which
-    their points are to be found.
+    ``tolerance`` is a share of :data:`CACHE_TOLERANCE` and :data:`CACHE_TURN_TOLERANCE`. Returns what is
+    known of them now. Where that is nothing, their present pose is recorded, for which their points are to be
+    found.
     """
     a, b, width, height, angle = manifold.a, manifold.b, sizes.width, sizes.height, motion.angle
     size, sizes_of_both = min(width[b], height[b]), width[b] + 2.0 * height[b]
@@ -107,9 +112,9 @@ def _look_up(
             if nearest > CONTACT_MARGIN * size + travel + speculative_margin:
                 return _APART
         elif (
-            abs(moved_x) + abs(moved_y) <= CACHE_TOLERANCE * size
-            and abs(turn_a) <= CACHE_TURN_TOLERANCE
-            and abs(turn_b) <= CACHE_TURN_TOLERANCE
+            abs(moved_x) + abs(moved_y) <= tolerance * CACHE_TOLERANCE * size
+            and abs(turn_a) <= tolerance * CACHE_TURN_TOLERANCE
+            and abs(turn_b) <= tolerance * CACHE_TURN_TOLERANCE
             and slow
         ):
             follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
@@ -169,6 +174,8 @@ def find_contacts(
     """
     position, linear, touching = motion.position, motion.linear, near.touching
     found, held = 0, count
+    # The arms of kept points are those of the pose in which they were found.
+    tolerance = _ROUNDING if len(motion.angle) <= _ROWS_FOUND_AGAIN else 1.0
     for number in range(count):
         p = near.scalar[number]
         manifold, one, two = near.manifolds[p], near.points[2 * p], near.points[2 * p + 1]
@@ -192,7 +199,7 @@ def find_contacts(
         manifold.offset_x, manifold.offset_y = way.dx, way.dy
         known = _OUTDATED
         if sizes.kind[b] == 2 and (walled or boxes == 2):
-            known = _look_up(manifold, near.points, p, way, motion, sizes, speculative_margin)
+            known = _look_up(manifold, near.points, p, way, motion, sizes, speculative_margin, tolerance)
             if known == _APART:
                 continue
         if known == _OUTDATED:

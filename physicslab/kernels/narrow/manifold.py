@@ -6,7 +6,12 @@ from typing import NamedTuple
 from physicslab.kernels import inlined
 from physicslab.kernels.narrow.outline import Outline
 
-__all__ = ["Corner", "box_box", "circle_box", "circle_circle", "wall_corner"]
+__all__ = ["LEVEL", "Corner", "box_box", "circle_box", "circle_circle", "wall_corner"]
+
+_PARALLEL = 0.9998
+"""Cosine of the angle between axes of boxes from which on these count as parallel: 0.02 rad."""
+LEVEL = 0.01
+"""Share of the smaller half extent by which the surfaces of parallel boxes may differ and still be level."""
 
 
 @inlined
@@ -72,8 +77,20 @@ class Corner(NamedTuple):
 
 
 @inlined
-def _best_axis(dx: float, dy: float, a: Outline, b: Outline) -> tuple[float, int]:
-    """Return the largest separation [m] along an axis of two boxes, and which: x or y of A, x or y of B."""
+def _grazes(across: float, slack: float, toward: float, aside: float) -> bool:
+    """Whether what comes on along an axis hardly overlaps across it: it slides over what it meets."""
+    return across > -slack and toward < 0.0 and -toward > abs(aside)
+
+
+@inlined
+def _best_axis(
+    dx: float, dy: float, ux: float, uy: float, a: Outline, b: Outline, margin: float
+) -> tuple[float, int]:
+    """Return the largest separation [m] along an axis of two boxes, and which: x or y of A, x or y of B.
+
+    (ux, uy) is how B moves against A. Where parallel boxes are level but for a little, and B slides on to A,
+    the axis across the way is returned: the side of the next tile of a floor is no wall.
+    """
     # d in the frames of A and of B; the axes of B seen from A
     dax, day = a.c * dx + a.s * dy, a.c * dy - a.s * dx
     dbx, dby = b.c * dx + b.s * dy, b.c * dy - b.s * dx
@@ -83,7 +100,8 @@ def _best_axis(dx: float, dy: float, a: Outline, b: Outline) -> tuple[float, int
     gap_bx = abs(dbx) - b.half_x - (c * a.half_x + s * a.half_y)
     gap_by = abs(dby) - b.half_y - (s * a.half_x + c * a.half_y)
     # A new axis must be better by a little, so that the reference face does not change to and fro.
-    favour = 0.005 * min(min(a.half_x, a.half_y), min(b.half_x, b.half_y))
+    smallest = min(min(a.half_x, a.half_y), min(b.half_x, b.half_y))
+    favour = 0.005 * smallest
     gap, face = gap_ax, 0
     if gap_ay > gap + favour:
         gap, face = gap_ay, 1
@@ -91,6 +109,19 @@ def _best_axis(dx: float, dy: float, a: Outline, b: Outline) -> tuple[float, int
         gap, face = gap_bx, 2
     if gap_by > gap + favour:
         gap, face = gap_by, 3
+    if (c < _PARALLEL and s < _PARALLEL) or gap > margin or (ux == 0.0 and uy == 0.0):
+        return gap, face
+    # Of parallel boxes, A has the axes of B, which may be turned by a right angle.
+    alike = s < c
+    gap_x, gap_y = max(gap_ax, gap_bx if alike else gap_by), max(gap_ay, gap_by if alike else gap_bx)
+    uax, uay = a.c * ux + a.s * uy, a.c * uy - a.s * ux
+    toward_x, toward_y = (uax if dax > 0.0 else -uax), (uay if day > 0.0 else -uay)
+    slack = LEVEL * smallest
+    upright = face == 0 or face == (2 if alike else 3)
+    if upright and _grazes(gap_y, slack, toward_x, toward_y):
+        return gap_y, 1
+    if not upright and _grazes(gap_x, slack, toward_y, toward_x):
+        return gap_x, 0
     return gap, face
 
 
@@ -132,11 +163,11 @@ def _clipped(along1: float, along2: float, side: float) -> tuple[float, float]:
 
 @inlined
 def box_box(
-    dx: float, dy: float, a: Outline, b: Outline, margin: float
+    dx: float, dy: float, ux: float, uy: float, a: Outline, b: Outline, margin: float
 ) -> tuple[float, float, float, int, Corner, Corner]:
     """Return the contact of two boxes: separating axes, then the incident edge clipped to the reference face.
 
-    (dx, dy) leads from A's centre to B's.
+    (dx, dy) leads from A's centre to B's, (ux, uy) is how B moves against A.
 
     Returns
     -------
@@ -144,7 +175,7 @@ def box_box(
         ``gap`` is the separation along the best axis, the normal leads from A to B. No points where the gap
         exceeds ``margin``. (After Catto, box2d-lite.)
     """
-    gap, face = _best_axis(dx, dy, a, b)
+    gap, face = _best_axis(dx, dy, ux, uy, a, b, margin)
     none = Corner(0.0, 0.0, 0.0, 0)
     if gap > margin:
         return gap, 0.0, 0.0, 0, none, none

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, inlined
-from physicslab.kernels.narrow.manifold import box_box, circle_box, circle_circle, wall_corner
+from physicslab.kernels.narrow.manifold import LEVEL, box_box, circle_box, circle_circle, wall_corner
 from physicslab.kernels.narrow.outline import Outline, Way
 from physicslab.kernels.narrow.sweep import MISS, sweep_box_box, sweep_circle_box, sweep_circle_circle
 from physicslab.kernels.records import Manifold, Point
@@ -80,6 +80,34 @@ def _sweep_circle(x: float, y: float, way: Way, a: Outline, b: Outline) -> float
 
 
 @inlined
+def _slides_over(nx: float, ny: float, dx: float, dy: float, way: Way, a: Outline, b: Outline) -> bool:
+    """Whether a circle comes on to a corner of a box that is hardly higher than where it slides or rolls.
+
+    The next tile of a floor is no step. ``n`` is the normal from A to B, (dx, dy) leads from A to B.
+    """
+    if a.box:
+        box, radius, x, y, ux, uy = a, b.radius, dx, dy, way.ux, way.uy
+    elif b.box:
+        box, radius, x, y, ux, uy = b, a.radius, -dx, -dy, -way.ux, -way.uy
+        nx, ny = -nx, -ny
+    else:
+        return False
+    # In the frame of the box: the normal lies between those of two faces, and hardly off one of them.
+    across, along = box.c * nx + box.s * ny, box.c * ny - box.s * nx
+    if min(abs(across), abs(along)) == 0.0:
+        return False
+    px, py = abs(box.c * x + box.s * y) - box.half_x, abs(box.c * y - box.s * x) - box.half_y
+    if px <= 0.0 or py <= 0.0:
+        return False
+    vx, vy = box.c * ux + box.s * uy, box.c * uy - box.s * ux
+    toward_x = vx if across > 0.0 else -vx
+    toward_y = vy if along > 0.0 else -vy
+    if px < py:
+        return py > (1.0 - LEVEL) * radius and toward_x < 0.0 and -toward_x > abs(toward_y)
+    return px > (1.0 - LEVEL) * radius and toward_y < 0.0 and -toward_y > abs(toward_x)
+
+
+@inlined
 def touch_with_circle(
     manifold: Manifold, point: Point, way: Way, start: float, speculative_margin: float,
     a: Outline, b: Outline,
@@ -97,7 +125,11 @@ def touch_with_circle(
     near = CONTACT_MARGIN * size + speculative_margin
     if separation > max(reach, near):
         return
-    if reach > SWEEP_THRESHOLD * size:
+    fast = reach > SWEEP_THRESHOLD * size
+    approach = -(ux * nx + uy * ny)
+    # What rests on each other touches as it does now: the normal of another moment would do work on it.
+    loaded = point.normal_impulse > 0.0 and separation < near
+    if not loaded and (fast or approach > max(4.0 * speculative_margin, _ROUNDING * size)):
         # The normal is that of the moment of contact, if there is one in this substep.
         x, y = dx + start * ux, dy + start * uy
         t = _sweep_circle(x, y, way, a, b)
@@ -105,15 +137,19 @@ def touch_with_circle(
         if t <= 1.0:
             mx, my, met_ax, met_ay, met_bx, met_by, gap = _circle_pose(x + t * ux, y + t * uy, a, b, tie)
             met = gap > -_ROUNDING * size  # else they overlapped before the substep began
+        if met and _slides_over(mx, my, x + t * ux, y + t * uy, way, a, b):
+            return
         if met:
             nx, ny, arm_ax, arm_ay, arm_bx, arm_by = mx, my, met_ax, met_ay, met_bx, met_by
             separation = gap - (start + t) * (ux * nx + uy * ny)
             manifold.swept = 1
         elif separation > near:
             return
-        elif t == MISS:
+        elif t == MISS and fast:
             manifold.swept = 2
     elif separation > near:
+        return
+    if not loaded and manifold.swept != 1 and _slides_over(nx, ny, dx, dy, way, a, b):
         return
     manifold.normal_x, manifold.normal_y, manifold.count = nx, ny, 1
     before = _impulses_of(point)
@@ -134,11 +170,12 @@ def touch_boxes(
     travel = math.sqrt(ux * ux + uy * uy)
     x, y, lead_x, lead_y, margin = dx, dy, 0.0, 0.0, CONTACT_MARGIN * size + travel + speculative_margin
     manifold.swept, manifold.size, manifold.gap = 0, size, -math.inf
-    if travel > _FAST * size:
+    loaded = manifold.count > 0 and one.normal_impulse + two.normal_impulse > 0.0
+    if travel > _FAST * size and not loaded:
         margin = CONTACT_MARGIN * size + speculative_margin
         x, y = dx + start * ux, dy + start * uy
         t = 0.0
-        if box_box(x, y, a, b, -math.inf)[0] > 0.0:
+        if box_box(x, y, 0.0, 0.0, a, b, -math.inf)[0] > 0.0:
             t = sweep_box_box(Way(x, y, ux, uy), a, b)
         if t == MISS:
             manifold.count = 0
@@ -147,7 +184,7 @@ def touch_boxes(
         x, y = dx + lead_x, dy + lead_y
         manifold.swept = 1
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
-    gap, nx, ny, count, first, second = box_box(x, y, a, b, margin)
+    gap, nx, ny, count, first, second = box_box(x, y, ux, uy, a, b, margin)
     if not manifold.swept:
         manifold.gap = gap
     manifold.count = count

@@ -41,12 +41,12 @@ def find_stage(
 
 @kernel
 def impact_stage(
-    near: NearTuple, motion: MotionTuple, inverse: InverseTuple, acting: ActingTuple, log: Impacts,
-    moment: float, h: float, start: float, end: float,
+    near: NearTuple, motion: MotionTuple, sizes: SizesTuple, inverse: InverseTuple, acting: ActingTuple,
+    log: Impacts, moment: float, h: float, start: float, end: float,
 ) -> int:  # fmt: skip
     """Bounce what meets (:func:`~physicslab.kernels.solver.stages.resolve_all_impacts`)."""
     return resolve_all_impacts(
-        named_near(near), Motion(*motion), Inverse(*inverse), Acting(*acting),
+        named_near(near), Motion(*motion), Sizes(*sizes), Inverse(*inverse), Acting(*acting),
         Log(log, moment), h, start, end,
     )  # fmt: skip
 

@@ -4,12 +4,14 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import fused, inlined
-from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion
+from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion, Sizes
 from physicslab.kernels.records import Manifold, Point
+from physicslab.kernels.solver.blow import Lever, Weights, one_blow, two_blows
 from physicslab.kernels.solver.impact_log import write_impact
-from physicslab.kernels.solver.impulse import apply_impulse, follow_drift, relative_velocity
+from physicslab.kernels.solver.impact_pose import Meeting, is_known, meeting_at
+from physicslab.kernels.solver.impulse import follow_drift, relative_velocity
 
-__all__ = ["bounce", "friction_impulse", "resolve_impacts"]
+__all__ = ["resolve_impacts"]
 
 _MAX_SWEEPS = 32
 """Largest number of sweeps over the impacts of a substep; those left are treated as inelastic."""
@@ -75,65 +77,76 @@ def _meeting_time(separation: float, v: float, pull: float, window: Window, load
 
 
 @inlined
-def _bounce_two(
-    manifold: Manifold, one: Point, two: Point, v1: float, v2: float, inverse: Inverse
-) -> tuple[float, float]:
-    """Return the normal impulses that turn both approach speeds of a contact into e times themselves.
+def _lever(meeting: Meeting, a: int, b: int, motion: Motion, gained: float) -> Lever:
+    """Return lever arms and velocities at a point; the forces add ``gained`` to the approach [m/s]."""
+    nx, ny, ax, ay, bx, by = meeting
+    linear, angular = motion.linear, motion.angular
+    vx = linear[b, 0] - angular[b] * by - linear[a, 0] + angular[a] * ay
+    vy = linear[b, 1] + angular[b] * bx - linear[a, 1] - angular[a] * ax
+    return Lever(
+        ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny,
+        vx * nx + vy * ny + gained, vy * nx - vx * ny,
+    )  # fmt: skip
 
-    The two are solved together, so that a box that lands flat does not start to turn. Where one impulse would
-    pull, the other acts alone.
+
+@inlined
+def _strike(
+    manifold: Manifold, point: Point, meeting: Meeting, lever: Lever, normal: float, tangent: float,
+    motion: Motion, inverse: Inverse,
+) -> None:  # fmt: skip
+    """Apply the impulses of an impact at a point, and note them."""
+    a, b, (nx, ny, ax, ay, bx, by) = manifold.a, manifold.b, meeting
+    px, py = normal * nx - tangent * ny, normal * ny + tangent * nx
+    linear, angular = motion.linear, motion.angular
+    linear[a, 0] -= inverse.mass[a] * px
+    linear[a, 1] -= inverse.mass[a] * py
+    angular[a] -= inverse.inertia[a] * (ax * py - ay * px)
+    linear[b, 0] += inverse.mass[b] * px
+    linear[b, 1] += inverse.mass[b] * py
+    angular[b] += inverse.inertia[b] * (bx * py - by * px)
+    point.approach_speed = max(point.approach_speed, -lever.v)
+    point.impact_normal += normal
+    point.impact_tangent += tangent
+
+
+@inlined
+def _exchange(
+    manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, motion: Motion, sizes: Sizes,
+    inverse: Inverse, pull: float, t: float,
+) -> tuple[float, float, float, float, bool]:  # fmt: skip
+    """Bounce a pair at the time t, with the normal, the arms and the speeds of that time.
+
+    Returns the normal impulses [N s] and the approach speeds [m/s] of its points, and whether the restitution
+    had to be lowered.
     """
-    a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-    turn_a1, turn_b1 = one.arm_ax * ny - one.arm_ay * nx, one.arm_bx * ny - one.arm_by * nx
-    turn_a2, turn_b2 = two.arm_ax * ny - two.arm_ay * nx, two.arm_bx * ny - two.arm_by * nx
-    k11, k22 = 1.0 / one.normal_mass, 1.0 / two.normal_mass
-    k12 = inverse.mass[a] + inverse.mass[b] + inverse.inertia[a] * turn_a1 * turn_a2
-    k12 += inverse.inertia[b] * turn_b1 * turn_b2
-    r1, r2 = -(1.0 + manifold.restitution) * v1, -(1.0 + manifold.restitution) * v2
-    determinant = k11 * k22 - k12 * k12
-    if determinant > 1e-9 * k11 * k22:
-        j1 = (k22 * r1 - k12 * r2) / determinant
-        j2 = (k11 * r2 - k12 * r1) / determinant
-        if j1 >= 0.0 and j2 >= 0.0:
-            return j1, j2
-    if r1 >= r2:
-        return r1 / k11, 0.0
-    return 0.0, r2 / k22
-
-
-@inlined
-def bounce(
-    manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, v1: float, v2: float,
-    inverse: Inverse,
-) -> tuple[float, float]:  # fmt: skip
-    """Return the normal impulses on B of an impact at the approach speeds v1 and v2 of its points [N s]."""
+    a, b = manifold.a, manifold.b
+    weights = Weights(inverse.mass[a] + inverse.mass[b], inverse.inertia[a], inverse.inertia[b])
+    e, mu = manifold.restitution, manifold.friction
     if meets_1 and meets_2:
-        return _bounce_two(manifold, one, two, v1, v2, inverse)
+        where1, where2 = (
+            meeting_at(manifold, one, motion, sizes, t),
+            meeting_at(manifold, two, motion, sizes, t),
+        )
+        lever1, lever2 = _lever(where1, a, b, motion, pull * t), _lever(where2, a, b, motion, pull * t)
+        blow, lowered = two_blows(lever1, lever2, weights, e, mu)
+        _strike(manifold, one, where1, lever1, blow.normal1, blow.tangent1, motion, inverse)
+        _strike(manifold, two, where2, lever2, blow.normal2, blow.tangent2, motion, inverse)
+        return blow.normal1, blow.normal2, lever1.v, lever2.v, lowered
+    point = one if meets_1 else two
+    if is_known(manifold, motion, sizes):
+        where = Meeting(
+            manifold.normal_x, manifold.normal_y, point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by
+        )
+    else:
+        where = meeting_at(manifold, point, motion, sizes, t)
+    lever = _lever(where, a, b, motion, pull * t)
+    if lever.v >= 0.0:  # it turns away until then
+        return 0.0, 0.0, 0.0, 0.0, False
+    normal, tangent, lowered = one_blow(lever, weights, e, mu)
+    _strike(manifold, point, where, lever, normal, tangent, motion, inverse)
     if meets_1:
-        return -(1.0 + manifold.restitution) * v1 * one.normal_mass, 0.0
-    return 0.0, -(1.0 + manifold.restitution) * v2 * two.normal_mass
-
-
-@inlined
-def friction_impulse(manifold: Manifold, point: Point, j: float, sliding: float) -> float:
-    """Return the impulse that stops the sliding, at most mu times the normal impulse j [N s]."""
-    limit = manifold.friction * j
-    along: float = min(max(-point.tangent_mass * sliding, -limit), limit)
-    return along
-
-
-@inlined
-def _hit(manifold: Manifold, point: Point, j: float, v: float, motion: Motion, inverse: Inverse) -> None:
-    """Apply a normal impulse and its friction: what stops the sliding, at most mu times j."""
-    a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-    apply_impulse(point, j * nx, j * ny, a, b, motion, inverse)
-    point.approach_speed = max(point.approach_speed, -v)
-    point.impact_normal += j
-    if manifold.friction > 0.0:
-        vx, vy = relative_velocity(point, a, b, motion)
-        along = friction_impulse(manifold, point, j, vy * nx - vx * ny)
-        apply_impulse(point, -along * ny, along * nx, a, b, motion, inverse)
-        point.impact_tangent += along
+        return normal, 0.0, lever.v, 0.0, lowered
+    return 0.0, normal, 0.0, lever.v, lowered
 
 
 @inlined
@@ -163,28 +176,19 @@ def _meeting_times(
 
 @inlined
 def _resolve_pair(
-    manifold: Manifold, one: Point, two: Point, motion: Motion, inverse: Inverse,
-    approach: Approach, window: Window, log: Log, number: int,
-) -> bool:  # fmt: skip
-    """Bounce one pair if it meets within the window; return whether it did."""
-    if manifold.swept == 2:
-        one.ahead = 1
-        return False
-    t1, t2 = _meeting_times(manifold, one, two, motion, approach, window)
+    manifold: Manifold, one: Point, two: Point, motion: Motion, sizes: Sizes, inverse: Inverse,
+    pull: float, t1: float, t2: float, log: Log, number: int,
+) -> tuple[bool, bool]:  # fmt: skip
+    """Bounce a pair of which one point meets, or both do, at ``t1`` and ``t2`` from now.
+
+    Returns whether it did, and whether its restitution had to be lowered.
+    """
     meets_1, meets_2 = abs(t1) < math.inf, abs(t2) < math.inf
-    if not (meets_1 or meets_2):
-        return False
     t = min(t1, t2) if meets_1 and meets_2 else (t1 if meets_1 else t2)
-    # The speeds at the time of contact, not those of now.
-    v1, v2 = approach.v1 + approach.pull * t, approach.v2 + approach.pull * t
     a, b, position, linear, angular = manifold.a, manifold.b, motion.position, motion.linear, motion.angular
     before = (linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
     earlier = one.impact_normal + two.impact_normal, one.impact_tangent + two.impact_tangent
-    j1, j2 = bounce(manifold, one, two, meets_1, meets_2, v1, v2, inverse)
-    if j1 > 0.0:
-        _hit(manifold, one, j1, v1, motion, inverse)
-    if j2 > 0.0:
-        _hit(manifold, two, j2, v2, motion, inverse)
+    j1, j2, v1, v2, lowered = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, inverse, pull, t)
     if (j1 > 0.0 or j2 > 0.0) and len(log.impacts) > 0:
         where, v = (one, v1) if j1 >= j2 else (two, v2)
         x, y = position[b, 0] + t * before[3], position[b, 1] + t * before[4]
@@ -195,14 +199,19 @@ def _resolve_pair(
     if manifold.swept == 1 and manifold.restitution > 0.0:
         # Its normal is not that of now: the solver must not push along it.
         one.ahead = two.ahead = 1
-    return j1 > 0.0 or j2 > 0.0
+    return j1 > 0.0 or j2 > 0.0, lowered
 
 
 @fused
 def _forced(
-    manifold: Manifold, motion: Motion, inverse: Inverse, acting: Acting, h: float
+    manifold: Manifold, load: float, motion: Motion, inverse: Inverse, acting: Acting, h: float
 ) -> tuple[float, float]:
-    """Return how B accelerates against A along the normal, and the speed up to which an approach is rest."""
+    """Return how B accelerates against A along the normal, and the speed up to which an approach is rest.
+
+    ``load`` is the change of speed [m/s] that the pair's contact made in the last substep: in a pile it is
+    not the pair's own weight that presses it together. The solver makes slow approaches of inelastic pairs
+    inelastic as well, and all of them at once.
+    """
     a, b, linear, force = manifold.a, manifold.b, motion.linear, acting.force
     # An approach must at least exceed rounding.
     speed = abs(linear[a, 0]) + abs(linear[a, 1]) + abs(linear[b, 0]) + abs(linear[b, 1])
@@ -210,21 +219,23 @@ def _forced(
         return 0.0, 1e-9 * speed
     ax, ay = force[a, 0] * inverse.mass[a], force[a, 1] * inverse.mass[a]
     bx, by = force[b, 0] * inverse.mass[b], force[b, 1] * inverse.mass[b]
-    strongest = math.sqrt(max(ax * ax + ay * ay, bx * bx + by * by))
     pull = (bx - ax) * manifold.normal_x + (by - ay) * manifold.normal_y
-    return pull, 1e-9 * speed + 2.0 * h * strongest
+    pressed = max(-h * pull, load)
+    if manifold.restitution == 0.0:
+        pressed = h * math.sqrt(max(ax * ax + ay * ay, bx * bx + by * by))
+    return pull, 1e-9 * speed + 2.0 * pressed
 
 
 @fused
 def _resolve_once(
-    contacts: Contacts, motion: Motion, inverse: Inverse, acting: Acting, log: Log, logged: int, h: float,
-    window: Window, again: bool,
-) -> tuple[int, int]:  # fmt: skip
-    """Resolve the pairs one after the other; return how many bounced, and how many are left to the solver.
+    contacts: Contacts, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log, logged: int,
+    h: float, window: Window, again: bool,
+) -> tuple[int, int, int]:  # fmt: skip
+    """Resolve the pairs one after the other; inelastic ones are resolved once, and not ``again``.
 
-    Inelastic ones are resolved once, and not ``again``.
+    Returns how many bounced, how many are left to the solver, and how many restitutions were lowered.
     """
-    bounced, left = 0, 0
+    bounced, left, lowered = 0, 0, 0
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
@@ -245,54 +256,65 @@ def _resolve_once(
         if v1 >= 0.0 and v2 >= 0.0:
             left += 1 if acting.any or overlap or loaded else 0
             continue
-        pull, resting_speed = _forced(manifold, motion, inverse, acting, h)
+        load = one.normal_impulse / one.normal_mass
+        if manifold.count == 2:
+            load = max(load, two.normal_impulse / two.normal_mass)
+        pull, resting_speed = _forced(manifold, load, motion, inverse, acting, h)
         if v1 >= -resting_speed and v2 >= -resting_speed:
             left += 1
             continue
         if window.start >= 0.0:  # in symplectic Euler the forces have acted already
             pull = 0.0
-        approach = Approach(v1, v2, pull, resting_speed)
-        if _resolve_pair(manifold, one, two, motion, inverse, approach, window, log, logged + bounced):
-            bounced += 1
-            manifold.impact_count += 1
+        if manifold.swept == 2:
+            one.ahead = 1
+            continue
+        t1, t2 = _meeting_times(manifold, one, two, motion, Approach(v1, v2, pull, resting_speed), window)
+        if abs(t1) < math.inf or abs(t2) < math.inf:
+            met, less = _resolve_pair(
+                manifold, one, two, motion, sizes, inverse, pull, t1, t2, log, logged + bounced
+            )
+            bounced += 1 if met else 0
+            manifold.impact_count += 1 if met else 0
+            lowered += 1 if less else 0
         left += 1 - one.ahead
-    return bounced, left
+    return bounced, left, lowered
 
 
 @inlined
 def resolve_impacts(
-    contacts: Contacts, motion: Motion, inverse: Inverse, acting: Acting, log: Log, logged: int,
+    contacts: Contacts, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log, logged: int,
     h: float, start: float, end: float,
-) -> tuple[int, int]:  # fmt: skip
+) -> tuple[int, int, int]:  # fmt: skip
     """Bounce the pairs that meet in this substep, each at its own time.
 
-    The substep spans the times ``start`` to ``end`` from now. An impact at the time t takes the speeds of
-    that time, j = -(1 + e) v_n / effective mass with friction up to mu j, and leaves the bodies where they
+    The substep spans the times ``start`` to ``end`` from now. An impact at the time t takes normal, arms and
+    speeds of that time, by the law of :mod:`physicslab.kernels.solver.blow`, and leaves the bodies where they
     would be had they bounced then: that is exact for constant forces, and keeps energy (e = 1), momentum and
     angular momentum.
 
-    A pair approaches if it is faster than what the forces can cause in two substeps: slower pairs are in
-    resting contact, which the solver handles. Pairs are resolved one after the other, in order, until none
-    meets any more; inelastic ones only once, for the solver removes what is left of their approach.
+    A pair approaches if it is faster than what presses it together can cause in two substeps: slower pairs
+    are in resting contact, which the solver handles. Pairs are resolved one after the other, in order, until
+    none meets any more; inelastic ones only once, for the solver removes what is left of their approach.
 
     Impacts go into ``log``, unless it has no length, from number ``logged`` on. Returns how many there were,
-    and how many pairs are left to the solver.
+    how many pairs are left to the solver, and how many restitutions were lowered, so that no energy was made.
     """
-    impacts, left = 0, contacts.number
+    impacts, left, lowered = 0, contacts.number, 0
     # Without forces there are no piles.
     window = Window(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     for sweep in range(_MAX_SWEEPS):
-        bounced, left = _resolve_once(
-            contacts, motion, inverse, acting, log, logged + impacts, h, window, sweep > 0
+        bounced, left, less = _resolve_once(
+            contacts, motion, sizes, inverse, acting, log, logged + impacts, h, window, sweep > 0
         )
         impacts += bounced
+        lowered += less
         if bounced == 0:
             break
     if impacts:
         _measure_again(contacts, motion)
     if left == 0:
         follow_drift(contacts, motion, end)
-    return impacts, left
+    return impacts, left, lowered
 
 
 @inlined

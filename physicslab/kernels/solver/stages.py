@@ -22,6 +22,7 @@ from physicslab.kernels.near_counts import (
     ACTIVE,
     LEFT,
     LOGGED,
+    LOWERED,
     PROXIMITY,
     RECORDED,
     SCALAR,
@@ -76,8 +77,9 @@ def find_touching(
 
 @inlined
 def resolve_all_impacts(
-    near: Near, motion: Motion, inverse: Inverse, acting: Acting, log: Log, h: float, start: float, end: float
-) -> int:
+    near: Near, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log,
+    h: float, start: float, end: float,
+) -> int:  # fmt: skip
     """Bounce what meets between ``start`` and ``end`` [s] from now; return how many impacts there were.
 
     Wide contacts that this wakes take part.
@@ -85,10 +87,11 @@ def resolve_all_impacts(
     counts, impacts = near.counts, 0
     counts[LEFT] = 0
     while counts[ACTIVE] > 0:
-        came, counts[LEFT] = resolve_impacts(
-            _contacts(near), motion, inverse, acting, log, counts[LOGGED], h, start, end
+        came, counts[LEFT], lowered = resolve_impacts(
+            _contacts(near), motion, sizes, inverse, acting, log, counts[LOGGED], h, start, end
         )
         impacts += came
+        counts[LOWERED] += lowered
         counts[LOGGED] += came if len(log.impacts) > 0 else 0
         before = counts[ACTIVE]
         if came > 0 and counts[WIDE_COUNT] > 0:
@@ -122,7 +125,8 @@ def press(
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return impulse_dt
     scale = _warm_start_scale(h, impulse_dt)
-    impulse.solve(_contacts(near), near, motion, inverse, acting, softness, h, scale, iterations)
+    sweeps = impulse.sweeps_of(near, iterations)
+    impulse.solve(_contacts(near), near, motion, inverse, acting, softness, h, scale, sweeps)
     return h
 
 
@@ -134,5 +138,5 @@ def relax(
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return
     contacts = _contacts(near)
-    impulse.relax(contacts, near, motion, inverse, h, iterations)
+    impulse.relax(contacts, near, motion, inverse, h, impulse.sweeps_of(near, iterations))
     impulse.separate(contacts, motion.position, inverse.mass, softness.max_push * h)

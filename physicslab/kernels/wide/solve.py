@@ -45,12 +45,15 @@ from physicslab.kernels.wide.layout import (
     Slots,
 )  # fmt: skip
 
-__all__ = ["DEEPER", "SOFT", "SoftConstraint", "soft_normal_impulse", "sweep_wide", "warm_start_wide"]
+__all__ = [
+    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "one_normal", "sweep_wide",
+    "two_frictions", "two_normals", "warm_start_wide",
+]  # fmt: skip
 
-SOFT = 0.01
+SOFT = 0.02
 """Share of the smaller body's size that the contact spring corrects at its full rate, in addition to what the
 load causes."""
-_ROUNDING = 1e-12
+_ROUNDING = 1e-9
 """Share that does not count as overlap: rounding may put a corner of a box on a floor below its surface."""
 DEEPER = 0.15
 """Share beyond which overlap is not corrected by impulses."""
@@ -60,58 +63,106 @@ class SoftConstraint(NamedTuple):
     """How contacts are corrected in an iteration.
 
     One over the substep [1/s], the share of the overlap that is corrected a second, the shares of the
-    effective mass and of the impulse so far that take part, the share of the size that may overlap, and the
-    impulse of all forces [N s].
+    effective mass and of the impulse so far that take part, and the impulse of all forces [N s].
     """
 
     inverse_h: float
     push_rate: float
     mass_scale: float
     impulse_scale: float
-    slop: float
     force_cap: float
 
 
 @fused
-def soft_normal_impulse[N: (float, Wide)](
+def free_change[N: (float, Wide)](
     impulse: N, mass: N, v: N, separation: N, size: N, soft: SoftConstraint
-) -> N:
-    """Return the normal impulse [N s] after one more iteration at a point that approaches at -v [m/s].
+) -> tuple[N, N]:
+    """Return what an iteration adds to the normal impulse of a point [N s] that approaches at -v [m/s].
 
-    Below the slop the contact is a stiff, overdamped spring that corrects ``push_rate`` of the overlap a
-    second, no faster than balances twice the load: else a pile of overlapping bodies would burst. Bodies
-    that are apart may close the separation within the substep, and not more.
+    Then the effective mass that goes with it [kg]. The impulse may come to pull. What overlaps is held by a
+    stiff, overdamped spring that corrects ``push_rate`` of the overlap a second, no faster than balances
+    twice the load: else a pile of overlapping bodies would burst. Bodies that are apart may close the
+    separation within the substep, and not more.
     """
     load = lesser(impulse, soft.force_cap) * (2.0 * soft.impulse_scale / soft.mass_scale)
     limit = mass * size * (soft.push_rate * SOFT) + load
-    push = greater(mass * soft.push_rate * lesser(separation + soft.slop * size, 0.0), -limit)
+    push = greater(mass * soft.push_rate * lesser(separation, 0.0), -limit)
     push = choose(separation < -DEEPER * size, 0.0, push)
-    corrected = impulse - soft.mass_scale * (mass * v + push) - soft.impulse_scale * impulse
-    hard = impulse - mass * (v + separation * soft.inverse_h)
-    total: N = greater(choose(separation > -_ROUNDING * size, hard, corrected), 0.0)
+    corrected = -soft.mass_scale * (mass * v + push) - soft.impulse_scale * impulse
+    hard = -mass * (v + separation * soft.inverse_h)
+    apart = separation > -_ROUNDING * size
+    change: N = choose(apart, hard, corrected)
+    effective: N = choose(apart, mass, soft.mass_scale * mass)
+    return change, effective
+
+
+@fused
+def one_normal[N: (float, Wide)](impulse: N, change: N) -> N:
+    """Return the change of the normal impulse of a single point, which does not pull [N s]."""
+    total: N = greater(impulse + change, 0.0) - impulse
     return total
 
 
 @fused
-def _update_normal(
+def two_normals[N: (float, Wide)](
+    impulse1: N, impulse2: N, change1: N, change2: N, mass1: N, mass2: N, between: N
+) -> tuple[N, N]:
+    """Return the changes of the normal impulses of two points that act on each other [N s].
+
+    ``change1``, ``mass1`` and so on are those of :func:`free_change` for each by itself, ``between`` is how
+    an impulse at one changes the velocity of the other [1/kg]. Each is solved before the other, and the mean
+    of both is taken: what is symmetric stays so. Solved exactly, points that are nearly one would be given
+    large opposite impulses, and heaps of mixed bodies would never rest.
+    """
+    before1, before2 = greater(impulse1 + change1, 0.0), greater(impulse2 + change2, 0.0)
+    after1 = greater(impulse1 + change1 - between * mass1 * (before2 - impulse2), 0.0)
+    after2 = greater(impulse2 + change2 - between * mass2 * (before1 - impulse1), 0.0)
+    total1: N = 0.5 * (before1 + after1)
+    total2: N = 0.5 * (before2 + after2)
+    return total1 - impulse1, total2 - impulse2
+
+
+@fused
+def held_by_friction[N: (float, Wide)](impulse: N, mass: N, v: N, limit: N) -> N:
+    """Return the tangential impulse [N s] that stops a point that slides at v [m/s], at most ``limit``."""
+    total: N = lesser(greater(impulse - mass * v, -limit), limit)
+    return total
+
+
+@fused
+def two_frictions[N: (float, Wide)](
+    impulse1: N, impulse2: N, v1: N, v2: N, mass1: N, mass2: N, limit1: N, limit2: N, between: N
+) -> tuple[N, N]:
+    """Return the changes of the tangential impulses of two points [N s], which are treated alike.
+
+    See :func:`two_normals`.
+    """
+    before1 = held_by_friction(impulse1, mass1, v1, limit1)
+    before2 = held_by_friction(impulse2, mass2, v2, limit2)
+    after1 = held_by_friction(impulse1, mass1, v1 + between * (before2 - impulse2), limit1)
+    after2 = held_by_friction(impulse2, mass2, v2 + between * (before1 - impulse1), limit2)
+    total1: N = 0.5 * (before1 + after1)
+    total2: N = 0.5 * (before2 + after2)
+    return total1 - impulse1, total2 - impulse2
+
+
+@fused
+def _free_change(
     data: Numbers, point: int, size: Wide, v: Wide, drift: float, soft: SoftConstraint
-) -> Wide:
-    """Update separations by the velocity, then the normal impulses; return the change of these [N s]."""
+) -> tuple[Wide, Wide]:
+    """Update the separations of points by the velocity; return what :func:`free_change` does."""
     separation = take(data, point + SEPARATION)
     if drift != 0.0:
         separation = separation + drift * v
         put(data, point + SEPARATION, separation)
-    impulse, mass = take(data, point + IMPULSE), take(data, point + MASS)
-    total = soft_normal_impulse(impulse, mass, v, separation, size, soft)
-    put(data, point + IMPULSE, total)
-    return total - impulse
+    return free_change(take(data, point + IMPULSE), take(data, point + MASS), v, separation, size, soft)
 
 
 @fused
 def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide:
     """Update the tangential impulses, at most mu times the normal ones; return their change [N s]."""
     limit, friction_impulse = friction * take(data, point + IMPULSE), take(data, point + TANGENT_IMPULSE)
-    total: Wide = lesser(greater(friction_impulse - take(data, point + TANGENT_MASS) * v, -limit), limit)
+    total = held_by_friction(friction_impulse, take(data, point + TANGENT_MASS), v, limit)
     put(data, point + TANGENT_IMPULSE, total)
     return total - friction_impulse
 
@@ -133,7 +184,10 @@ def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     ra, rb = take(data, at + RADIUS_A), take(data, at + RADIUS_B)
     vx, vy = vbx - vax, vby - vay
-    push = _update_normal(data, at + ONE, take(data, at + SIZE), nx * vx + ny * vy, drift, soft)
+    impulse = take(data, at + ONE + IMPULSE)
+    change, _ = _free_change(data, at + ONE, take(data, at + SIZE), nx * vx + ny * vy, drift, soft)
+    push = one_normal(impulse, change)
+    put(data, at + ONE + IMPULSE, impulse + push)
     across = nx * vy - ny * vx - rb * wb - ra * wa
     friction_impulse = _update_friction(data, at + ONE, take(data, at + FRICTION), across)
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
@@ -169,13 +223,23 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     n2a, n2b, t2a, t2b = _levers(data, at + TWO, nx, ny)
     vx, vy = vbx - vax, vby - vay
     along, across = nx * vx + ny * vy, nx * vy - ny * vx
-    push1 = _update_normal(data, at + ONE, size, along + wb * n1b - wa * n1a, drift, soft)
-    coupled = push1 * (ma + mb + ia * n1a * n2a + ib * n1b * n2b)
-    push2 = _update_normal(data, at + TWO, size, along + wb * n2b - wa * n2a + coupled, drift, soft)
+    change1, mass1 = _free_change(data, at + ONE, size, along + wb * n1b - wa * n1a, drift, soft)
+    change2, mass2 = _free_change(data, at + TWO, size, along + wb * n2b - wa * n2a, drift, soft)
+    impulse1, impulse2 = take(data, at + ONE + IMPULSE), take(data, at + TWO + IMPULSE)
+    between = ma + mb + ia * n1a * n2a + ib * n1b * n2b
+    push1, push2 = two_normals(impulse1, impulse2, change1, change2, mass1, mass2, between)
+    put(data, at + ONE + IMPULSE, impulse1 + push1)
+    put(data, at + TWO + IMPULSE, impulse2 + push2)
     wa, wb = wa - ia * (n1a * push1 + n2a * push2), wb + ib * (n1b * push1 + n2b * push2)
-    friction1 = _update_friction(data, at + ONE, friction, across + wb * t1b - wa * t1a)
-    coupled = friction1 * (ma + mb + ia * t1a * t2a + ib * t1b * t2b)
-    friction2 = _update_friction(data, at + TWO, friction, across + wb * t2b - wa * t2a + coupled)
+    tangent1, tangent2 = take(data, at + ONE + TANGENT_IMPULSE), take(data, at + TWO + TANGENT_IMPULSE)
+    friction1, friction2 = two_frictions(
+        tangent1, tangent2, across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a,
+        take(data, at + ONE + TANGENT_MASS), take(data, at + TWO + TANGENT_MASS),
+        friction * (impulse1 + push1), friction * (impulse2 + push2),
+        ma + mb + ia * t1a * t2a + ib * t1b * t2b,
+    )  # fmt: skip
+    put(data, at + ONE + TANGENT_IMPULSE, tangent1 + friction1)
+    put(data, at + TWO + TANGENT_IMPULSE, tangent2 + friction2)
     push, friction_impulse = push1 + push2, friction1 + friction2
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
     put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)

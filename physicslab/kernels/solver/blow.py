@@ -1,0 +1,232 @@
+"""The law of an impact: normal and tangential impulses together, so that e asked is e reached with friction.
+
+A point leaves with e times its approach (Newton); its tangential impulse stops the sliding, at most mu times
+the normal one (Coulomb). Where that would make energy, as it can where a body sticks with one end and pivots,
+the restitution is lowered until it makes none.
+"""
+
+from typing import NamedTuple
+
+from physicslab.kernels import inlined
+
+__all__ = ["Blow", "Lever", "Weights", "one_blow", "two_blows"]
+
+_MAX_SWEEPS = 200
+"""Largest number of sweeps over the two points of a pair."""
+_HALVINGS = 48
+"""Bisections for the restitution that makes no energy."""
+_SEPARATE = 1.0 + 1e-9
+"""One, and so much more that two points of a pair are never quite one."""
+_ROUNDING = 1e-12
+"""Share of the work of the impulses up to which a gain of energy is rounding."""
+
+
+class Weights(NamedTuple):
+    """Inverse masses of both bodies together [1/kg], inverse moments of inertia of A and B [1/(kg m^2)]."""
+
+    both: float
+    turn_a: float
+    turn_b: float
+
+
+class Lever(NamedTuple):
+    """Lever arms of normal and tangent about A and about B [m]; the approach and sliding of B there [m/s]."""
+
+    normal_a: float
+    normal_b: float
+    across_a: float
+    across_b: float
+    v: float
+    sliding: float
+
+
+class Blow(NamedTuple):
+    """Normal and tangential impulses of the first and of the second point [N s]."""
+
+    normal1: float
+    tangent1: float
+    normal2: float
+    tangent2: float
+
+
+@inlined
+def _normal_element(weights: Weights, one: Lever, two: Lever) -> float:
+    """Return how a normal impulse at a point changes the normal velocity at another [1/kg]."""
+    turned = weights.turn_a * one.normal_a * two.normal_a + weights.turn_b * one.normal_b * two.normal_b
+    return weights.both + turned
+
+
+@inlined
+def _across_element(weights: Weights, lever: Lever) -> float:
+    """Return how a tangential impulse changes the sliding of its point [1/kg]."""
+    turned = weights.turn_a * lever.across_a * lever.across_a
+    return weights.both + turned + weights.turn_b * lever.across_b * lever.across_b
+
+
+@inlined
+def _coupled(lever: Lever, weights: Weights, gained: float, friction: float) -> tuple[float, float]:
+    """Return the impulses that change the approach of a point by ``gained`` [m/s] under friction."""
+    kn, kt = _normal_element(weights, lever, lever), _across_element(weights, lever)
+    between = (
+        weights.turn_a * lever.normal_a * lever.across_a + weights.turn_b * lever.normal_b * lever.across_b
+    )
+    frictionless = gained / kn
+    if friction == 0.0:
+        return frictionless, 0.0
+    if between == 0.0:
+        limit = friction * frictionless
+        return frictionless, min(max(-lever.sliding / kt, -limit), limit)
+    determinant = kn * kt - between * between
+    if determinant > 1e-12 * kn * kt:
+        normal = (kt * gained + between * lever.sliding) / determinant
+        tangent = -(kn * lever.sliding + between * gained) / determinant
+        if normal >= 0.0 and abs(tangent) <= friction * normal:
+            return normal, tangent
+    # It slides when it leaves, against its friction.
+    for sign in (1.0, -1.0):
+        resisted = kn + sign * friction * between
+        if resisted > 1e-9 * kn:
+            normal = gained / resisted
+            left = lever.sliding + (between + kt * sign * friction) * normal
+            if sign * left <= 0.0:
+                return normal, sign * friction * normal
+    return frictionless, 0.0
+
+
+@inlined
+def _work(lever: Lever, weights: Weights, normal: float, tangent: float) -> tuple[float, float]:
+    """Return the work of the impulses at a single point [J], and the sum of the magnitudes of its parts."""
+    kn, kt = _normal_element(weights, lever, lever), _across_element(weights, lever)
+    between = (
+        weights.turn_a * lever.normal_a * lever.across_a + weights.turn_b * lever.normal_b * lever.across_b
+    )
+    v, sliding = lever.v + 0.5 * (kn * normal + between * tangent), lever.sliding
+    sliding += 0.5 * (between * normal + kt * tangent)
+    return normal * v + tangent * sliding, abs(normal * lever.v) + abs(tangent * lever.sliding)
+
+
+@inlined
+def one_blow(
+    lever: Lever, weights: Weights, restitution: float, friction: float
+) -> tuple[float, float, bool]:
+    """Return the normal and tangential impulse of a point that approaches [N s].
+
+    Then whether its restitution had to be lowered.
+    """
+    normal, tangent = _coupled(lever, weights, -(1.0 + restitution) * lever.v, friction)
+    work, scale = _work(lever, weights, normal, tangent)
+    if work <= _ROUNDING * scale:
+        return normal, tangent, False
+    low, high = 0.0, restitution
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        normal, tangent = _coupled(lever, weights, -(1.0 + middle) * lever.v, friction)
+        if _work(lever, weights, normal, tangent)[0] <= 0.0:
+            low = middle
+        else:
+            high = middle
+    normal, tangent = _coupled(lever, weights, -(1.0 + low) * lever.v, friction)
+    if _work(lever, weights, normal, tangent)[0] > _ROUNDING * scale:  # sliding that turns round takes none
+        return -(1.0 + low) * lever.v / _normal_element(weights, lever, lever), 0.0, True
+    return normal, tangent, True
+
+
+@inlined
+def _after(one: Lever, two: Lever, weights: Weights, blow: Blow) -> tuple[float, float, float, float]:
+    """Return the velocities of two points along the normal and across after a blow [m/s]."""
+    normal, tangent = blow.normal1 + blow.normal2, blow.tangent1 + blow.tangent2
+    spin_a = weights.turn_a * (
+        one.normal_a * blow.normal1 + one.across_a * blow.tangent1
+        + two.normal_a * blow.normal2 + two.across_a * blow.tangent2
+    )  # fmt: skip
+    spin_b = weights.turn_b * (
+        one.normal_b * blow.normal1 + one.across_b * blow.tangent1
+        + two.normal_b * blow.normal2 + two.across_b * blow.tangent2
+    )  # fmt: skip
+    return (
+        one.v + weights.both * normal + one.normal_a * spin_a + one.normal_b * spin_b,
+        one.sliding + weights.both * tangent + one.across_a * spin_a + one.across_b * spin_b,
+        two.v + weights.both * normal + two.normal_a * spin_a + two.normal_b * spin_b,
+        two.sliding + weights.both * tangent + two.across_a * spin_a + two.across_b * spin_b,
+    )
+
+
+@inlined
+def _two_normals(
+    x1: float, x2: float, change1: float, change2: float, m1: float, m2: float, between: float
+) -> tuple[float, float]:
+    """Return the normal impulses of two points that act on each other, neither of which pulls [N s].
+
+    They are ``x1`` and ``x2`` so far; each by itself would change by ``change1`` or ``change2``, and has the
+    effective mass m. Where one would pull, the other acts alone.
+    """
+    to1, to2 = between * m1, between * m2
+    scale = 1.0 / (_SEPARATE - to1 * to2)
+    both1, both2 = x1 + (change1 - to1 * change2) * scale, x2 + (change2 - to2 * change1) * scale
+    if both1 > 0.0 and both2 > 0.0:
+        return both1, both2
+    alone = max(x1 + change1 + to1 * x2, 0.0)
+    if to2 * (alone - x1) > x2 + change2:  # the second point separates
+        return alone, 0.0
+    return 0.0, max(x2 + change2 + to2 * x1, 0.0)
+
+
+@inlined
+def _both(one: Lever, two: Lever, weights: Weights, restitution: float, friction: float) -> Blow:
+    """Return the impulses of two points: normals together, then friction, shared alike, until they stay."""
+    m1, m2 = 1.0 / _normal_element(weights, one, one), 1.0 / _normal_element(weights, two, two)
+    between = _normal_element(weights, one, two)
+    kt1, kt2 = _across_element(weights, one), _across_element(weights, two)
+    blow = Blow(0.0, 0.0, 0.0, 0.0)
+    for _ in range(_MAX_SWEEPS):
+        v1, _s1, v2, _s2 = _after(one, two, weights, blow)
+        n1, n2 = _two_normals(
+            blow.normal1, blow.normal2, -m1 * (v1 + restitution * one.v), -m2 * (v2 + restitution * two.v),
+            m1, m2, between,
+        )  # fmt: skip
+        t1, t2 = blow.tangent1, blow.tangent2
+        changed = abs(n1 - blow.normal1) + abs(n2 - blow.normal2)
+        if friction > 0.0:
+            _v1, s1, _v2, s2 = _after(one, two, weights, Blow(n1, t1, n2, t2))
+            t1 = min(max(t1 - 0.5 * s1 / kt1, -friction * n1), friction * n1)
+            t2 = min(max(t2 - 0.5 * s2 / kt2, -friction * n2), friction * n2)
+            changed += abs(t1 - blow.tangent1) + abs(t2 - blow.tangent2)
+        blow = Blow(n1, t1, n2, t2)
+        if changed <= 1e-15 * (n1 + n2):
+            break
+    return blow
+
+
+@inlined
+def _work_of_both(one: Lever, two: Lever, weights: Weights, blow: Blow) -> float:
+    """Return the work of the impulses at two points, as a share of the sum of the magnitudes of its parts."""
+    v1, s1, v2, s2 = _after(one, two, weights, blow)
+    work = blow.normal1 * (one.v + v1) + blow.tangent1 * (one.sliding + s1)
+    work += blow.normal2 * (two.v + v2) + blow.tangent2 * (two.sliding + s2)
+    scale = abs(blow.normal1 * one.v) + abs(blow.tangent1 * one.sliding)
+    scale += abs(blow.normal2 * two.v) + abs(blow.tangent2 * two.sliding)
+    return work / scale if scale > 0.0 else 0.0
+
+
+@inlined
+def two_blows(
+    one: Lever, two: Lever, weights: Weights, restitution: float, friction: float
+) -> tuple[Blow, bool]:
+    """Return the impulses of two points of a pair that approach at once, as a box that lands flat.
+
+    Then whether their restitution had to be lowered.
+    """
+    blow = _both(one, two, weights, restitution, friction)
+    if _work_of_both(one, two, weights, blow) <= _ROUNDING:
+        return blow, False
+    low, high = 0.0, restitution
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if _work_of_both(one, two, weights, _both(one, two, weights, middle, friction)) <= 0.0:
+            low = middle
+        else:
+            high = middle
+    blow = _both(one, two, weights, low, friction)
+    if _work_of_both(one, two, weights, blow) > _ROUNDING:
+        blow = _both(one, two, weights, low, 0.0)
+    return blow, True

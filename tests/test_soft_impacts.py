@@ -1,0 +1,192 @@
+"""Impacts of soft contacts: the restitution asked for, friction's cone, momenta and energy, at any step."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from physicslab import World
+from physicslab.components import Mass, Transform, Velocity
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.warnings import find_warnings
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.prefabs import box, circle
+from physicslab.systems.standard import standard_systems
+
+G = 9.81
+
+
+def laboratory(*, dt: float = 1 / 60, substeps: int = 4, **physics: Any) -> World:
+    """Return an empty world with soft contacts within steps, whose impacts are logged."""
+    config = SimulationConfig(contacts="soft", collisions="step", dt=dt, substeps=substeps, sleeping=False)
+    world = World(*standard_systems(), physics=PhysicsConfig(**physics), simulation=config)
+    world.contacts.read = True
+    return world
+
+
+def motion(world: World, entity: int) -> NDArray[np.float64]:
+    """Return both speeds and the angular velocity."""
+    found = world.component(entity, Velocity)
+    return np.array((found.linear.x, found.linear.y, found.angular))
+
+
+def reached(world: World, body: int) -> tuple[float, float, float]:
+    """Step to the first impact of a body with the floor, whose surface is y = 0.
+
+    Returns e reached, energy after over before, and J_t / J_n.
+    """
+    start, place = motion(world, body), world.component(body, Transform)
+    x, y = place.position.x, place.position.y
+    g = world.physics.gravity.magnitude if world.physics.gravity_mode == "linear" else 0.0
+    while not world.contacts.logged:
+        world.step()
+        assert world.time < 3.0
+    assert world.contacts.logged == 1
+    impact, mass = world.contacts.impacts[0], world.component(body, Mass)
+    t = float(impact["time"])
+    before = np.array((start[0], start[1] - g * t, start[2]))
+    after = motion(world, body)
+    after[1] += g * (world.time - t)
+    centre = np.array((x + start[0] * t, y + start[1] * t - 0.5 * g * t * t))
+    masses = np.array((mass.mass, mass.mass, mass.inertia))
+    impulse = masses * (after - before)
+    # The arm goes by the impulse: its moment about the centre is what has turned the body.
+    arm_y = -centre[1]
+    arm_x = (impulse[2] + arm_y * impulse[0]) / impulse[1]
+    speeds = [v[1] + v[2] * arm_x for v in (before, after)]
+    energies = [0.5 * float(masses @ v**2) for v in (before, after)]
+    return -speeds[1] / speeds[0], energies[1] / energies[0], impulse[0] / impulse[1]
+
+
+@pytest.mark.parametrize("e", [0.5, 0.8, 1.0])
+@pytest.mark.parametrize("mu", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("degrees", [10, 20, 30])
+def test_a_cube_leaves_its_corner_with_the_restitution_asked_for(degrees: float, e: float, mu: float) -> None:
+    world, angle = laboratory(), math.radians(degrees)
+    box(world, (0, -0.5), width=20, height=1, static=True, restitution=e, friction=mu)
+    y = 1.0 + 0.5 * (math.sin(angle) + math.cos(angle))
+    cube = box(world, (0, y), width=1, height=1, angle=angle, restitution=e, friction=mu)
+    found, energy, edge = reached(world, cube)
+    assert found == pytest.approx(e, abs=1e-9)
+    assert energy <= 1.0 + 1e-12 and abs(edge) <= mu * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("degrees", [45, 60])
+@pytest.mark.parametrize("mu", [0.3, 1.0])
+def test_an_elastic_rod_leaves_its_end_as_fast(degrees: float, mu: float) -> None:
+    world, angle = laboratory(gravity_mode="none"), math.radians(degrees)
+    box(world, (0, -0.5), width=20, height=1, static=True, restitution=1, friction=mu)
+    y = 0.1 + 0.5 * (2 * math.sin(angle) + 0.02 * math.cos(angle))
+    rod = box(world, (0, y), width=2, height=0.02, angle=angle, velocity=(0, -1), restitution=1, friction=mu)
+    found, energy, _ = reached(world, rod)
+    assert found == pytest.approx(1.0, abs=1e-9)
+    assert energy <= 1.0 + 1e-12
+
+
+@pytest.mark.parametrize(("mu", "lowered"), [(0.3, True), (0.0, False)])
+def test_a_restitution_that_was_lowered_is_told(mu: float, lowered: bool) -> None:
+    """A rod that slides on its end would gain energy by Newton's law."""
+    world, angle = laboratory(gravity_mode="none"), math.radians(45)
+    box(world, (0, -0.5), width=20, height=1, static=True, restitution=1, friction=mu)
+    y = 0.1 + 0.5 * (2 * math.sin(angle) + 0.02 * math.cos(angle))
+    box(world, (0, y), width=2, height=0.02, angle=angle, velocity=(0.8, -1), restitution=1, friction=mu)
+    energy = measure_energy(world).kinetic
+    world.run(seconds=0.3)
+    told = any("lower restitution" in warning.what for warning in find_warnings(world))
+    assert world.collisions and told is lowered
+    assert measure_energy(world).kinetic == pytest.approx(energy, rel=1e-12)
+
+
+def test_a_box_that_falls_flat_with_speed_turns_alike_in_its_mirror_image() -> None:
+    found = []
+    for sign in (1.0, -1.0):
+        world = laboratory()
+        box(world, (0, -0.5), width=20, height=1, static=True, restitution=0.5, friction=0.4)
+        crate = box(world, (0, 1.5), width=1, height=1, velocity=(sign * 2, 0), restitution=0.5, friction=0.4)
+        world.run(seconds=0.5)
+        assert world.collisions == 1
+        found.append(motion(world, crate) * (sign, 1.0, sign))
+    assert np.allclose(found[0], found[1], rtol=0.0, atol=1e-12)
+    assert found[0] == pytest.approx(
+        [0.0, 0.5 * G * math.sqrt(2.0 / G) - G * (0.5 - math.sqrt(2.0 / G)), 0.0], abs=1e-9
+    )
+
+
+def aimed(random: np.random.Generator, number: int) -> tuple[World, list[int], float]:
+    """Return two bodies that fly at each other: of all pairs of shapes, with spin; and mu."""
+    e = float(random.choice((0.3, 0.8, 1.0, random.random())))
+    mu = float(random.choice((0.0, 0.1, 0.5, 1.0, 1.5 * random.random())))
+    dt = float(random.choice((1 / 240, 1 / 960)))
+    world, bodies = laboratory(dt=dt, substeps=1, gravity_mode="none"), []
+    heading = random.uniform(0, math.tau)
+    towards = np.array((math.cos(heading), math.sin(heading)))
+    for k, sign in enumerate((-1.0, 1.0)):
+        start = sign * 0.9 * towards + 0.5 * random.uniform(-1, 1) * np.array((-towards[1], towards[0]))
+        velocity = -sign * random.uniform(0.5, 3.0) * towards + random.normal(0, 0.2, 2)
+        options: Any = {
+            "mass": float(10 ** random.uniform(-1, 1)), "velocity": (velocity[0], velocity[1]),
+            "angular_velocity": float(random.normal(0, 1)), "angle": float(random.uniform(-3, 3)),
+            "restitution": e, "friction": mu,
+        }  # fmt: skip
+        if (number >> k) & 1:
+            bodies.append(circle(world, (start[0], start[1]), radius=random.uniform(0.2, 0.5), **options))
+        else:
+            width, height = random.uniform(0.3, 0.9, 2)
+            bodies.append(box(world, (start[0], start[1]), width=width, height=height, **options))
+    return world, bodies, mu
+
+
+def test_random_impacts_keep_momenta_and_gain_no_energy() -> None:
+    random, met = np.random.default_rng(20261122), 0
+    for number in range(400):
+        world, bodies, mu = aimed(random, number)
+        world.synchronise()
+        momentum, energy = measure_momentum(world), measure_energy(world).kinetic
+        scale = sum(
+            float(np.abs(motion(world, body)) @ (m.mass, m.mass, m.inertia))
+            for body in bodies
+            for m in (world.component(body, Mass),)
+        )
+        for _ in range(1500):
+            world.step()
+            if world.contacts.logged:
+                break
+        met += world.contacts.logged > 0
+        after = measure_momentum(world)
+        assert (after.linear - momentum.linear).magnitude <= 1e-12 * scale, number
+        assert after.angular == pytest.approx(momentum.angular, abs=1e-12 * scale), number
+        assert measure_energy(world).kinetic <= energy * (1.0 + 1e-12), number
+        impacts = world.contacts.impacts
+        pushed, rubbed = impacts["normal_impulse"], np.abs(impacts["tangent_impulse"])
+        assert (pushed > 0.0).all() and (rubbed <= mu * pushed * (1.0 + 1e-12)).all(), number
+    assert met > 300
+
+
+@pytest.mark.parametrize("speed", [0.01, 0.02, 0.04, 0.08])
+@pytest.mark.parametrize("falling", [False, True])
+def test_slow_discs_exchange_their_speeds(speed: float, falling: bool) -> None:
+    world = laboratory()
+    if not falling:
+        box(world, (0, -0.5), width=60, height=1, static=True, restitution=1, friction=0)
+    one, other = (
+        circle(world, (x, 0.5), radius=0.5, velocity=(v, 0), restitution=1, friction=0)
+        for x, v in ((-1.01, speed), (0, 0))
+    )
+    world.run(seconds=2.0)
+    assert [motion(world, one)[0], motion(world, other)[0]] == pytest.approx([0.0, speed], abs=1e-12)
+
+
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 960, 1 / 3840])
+def test_an_oblique_impact_is_as_exact_with_finer_steps(dt: float) -> None:
+    world = laboratory(dt=dt, gravity_mode="none")
+    one = circle(world, (-1.2, 0.7), radius=0.5, velocity=(2, 0), restitution=1, friction=0)
+    other = circle(world, (0, 0), radius=0.5, restitution=1, friction=0)
+    world.run(seconds=0.6)
+    normal = np.array((math.sqrt(1.0 - 0.49), -0.7))
+    given = 2.0 * normal[0] * normal
+    assert motion(world, other)[:2] == pytest.approx(given, abs=1e-12)
+    assert motion(world, one)[:2] == pytest.approx((2.0, 0.0) - given, abs=1e-12)
