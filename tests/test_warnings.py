@@ -295,9 +295,9 @@ def test_overlap_is_said_until_it_is_gone() -> None:
 
 
 def heavy_boxes(**change: object) -> World:
-    """Return three boxes of 1 m on each other, a thousand times as heavy as on Earth."""
+    """Return three boxes of 1 m on each other, ten thousand times as heavy as on Earth."""
     world = World(
-        *standard_systems(), physics=PhysicsConfig(gravity=(0.0, -1e4)),  # type: ignore[arg-type]
+        *standard_systems(), physics=PhysicsConfig(gravity=(0.0, -1e5)),  # type: ignore[arg-type]
         simulation=SimulationConfig(contacts="soft", **change),  # type: ignore[arg-type]
     )  # fmt: skip
     floor(world)
@@ -306,11 +306,11 @@ def heavy_boxes(**change: object) -> World:
 
 
 def thin_rods() -> World:
-    """Return ten rods of 2 m by 2 mm on each other."""
+    """Return ten rods of 2 m by 0.1 mm on each other."""
     world = open_world(contacts="soft")
     floor(world)
     for place in range(10):
-        box(world, (0.0, 0.001 + 0.002 * place), width=2.0, height=0.002, mass=0.1)
+        box(world, (0.0, 0.00005 + 0.0001 * place), width=2.0, height=0.0001, mass=0.1)
     return world
 
 
