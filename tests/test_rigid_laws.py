@@ -100,8 +100,11 @@ def sizes(world: World) -> NDArray[np.float64]:
 # ---- random scenes -----------------------------------------------------------------------------------------
 
 
-def scattered(seed: int) -> World:
-    """Return two to six boxes and discs, stacked, leaning or falling, over a floor, some between walls."""
+def scattered(seed: int, largest: int = 6) -> World:
+    """Return two or more boxes and discs, stacked, leaning or falling, over a floor, some between walls.
+
+    Where there may be more than six, some fall into a groove.
+    """
     random = np.random.default_rng(seed)
     e, mu = float(random.choice((0.0, 0.0, 0.3, 0.6))), float(random.choice((0.0, 0.2, 0.5, 0.9)))
     world = laboratory()
@@ -111,7 +114,11 @@ def scattered(seed: int) -> World:
         for x in (-2.0, 2.0):
             box(world, (x, 1), width=0.5, height=4, static=True, **surface)
     kind, top = random.choice(("stacked", "dropped", "mixed")), 0.0
-    for _ in range(random.integers(2, 7)):
+    if largest > 6 and seed % 4 == 0:
+        kind, top = "dropped", 1.5
+        for side in (-1, 1):
+            box(world, (2 * side, 1.2), width=4, height=0.3, angle=0.6 * side, static=True, **surface)
+    for _ in range(random.integers(2, largest + 1)):
         mass = float(10 ** random.uniform(-0.5, 0.5))
         resting = kind == "stacked" or (kind == "mixed" and random.random() < 0.5)
         x = float(random.uniform(-0.2, 0.2))
@@ -168,17 +175,31 @@ def check_rest(world: World) -> None:
 
 @pytest.mark.parametrize("part", range(6))
 def test_random_small_scenes_keep_the_laws(part: int) -> None:
+    assert check_scenes([scattered(seed) for seed in range(10 * part, 10 * part + 10)], every=1) > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(20))
+def test_a_thousand_scenes_keep_the_laws(part: int) -> None:
+    """Two to twelve bodies: gaps, forces in their cones, energy; no step is left to soft contacts."""
+    worlds = [scattered(seed, largest=12) for seed in range(50 * part, 50 * part + 50)]
+    check_scenes(worlds, every=6)
+    for world in worlds:
+        assert rigid_of(world).left_to_soft == 0, rigid_of(world).why_soft
+
+
+def check_scenes(worlds: list[World], every: int) -> int:
+    """Advance by 1.5 s; check the energy at each step, contacts at some; return how many come to rest."""
     rigid_steps = steps = rested = 0
-    for seed in range(10 * part, 10 * part + 10):
-        world = scattered(seed)
+    for seed, world in enumerate(worlds):
         world.synchronise()
         extent, moving = sizes(world), world.bodies.inverse_mass > 0.0
         shaped = np.flatnonzero(world.table(Shape).present).tolist()
         pairs = [(a, b) for a in shaped for b in shaped if b < a and (moving[a] or moving[b])]
         mass = np.divide(1.0, world.bodies.inverse_mass, out=np.zeros(len(extent)), where=moving)
         weight, energy = G * float(mass.sum()), measure_energy(world).total
-        highest, left = energy, 0
-        for _ in range(90):
+        highest, left, by_impulses = energy, 0, 0
+        for number in range(90):
             world.step()
             steps += 1
             after = measure_energy(world).total
@@ -191,7 +212,13 @@ def test_random_small_scenes_keep_the_laws(part: int) -> None:
                 assert rigid_of(world).left_to_soft == left
             else:
                 rigid_steps += 1
-                assert after <= energy + 1e-9 * abs(highest), (seed, world.time)
+                short, by_impulses = rigid_of(world).by_impulses > by_impulses, rigid_of(world).by_impulses
+                # Short steps move apart what their straight motion makes overlap, which takes work.
+                limit = 1e-6 if short else 1e-9
+                assert after <= energy + limit * abs(highest), (seed, world.time)
+                if number % every:
+                    energy = after
+                    continue
                 check_contacts(world, weight)
                 for a, b in pairs:
                     assert apart(world, a, b) >= -1e-9 * min(extent[a], extent[b]), (seed, a, b, world.time)
@@ -201,8 +228,8 @@ def test_random_small_scenes_keep_the_laws(part: int) -> None:
         if still and world.stepper is not None and world.stepper.name == "rigid":
             rested += 1
             check_rest(world)
-    assert rested > 0
     assert rigid_steps > 0.9 * steps
+    return rested
 
 
 # ---- the equations alone -----------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ import math
 
 from physicslab.kernels import Numbers, Rows, fused, inlined
 from physicslab.kernels.records import Impacts
-from physicslab.kernels.rigid.complementarity import solve_complementarity
+from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
@@ -99,7 +99,7 @@ def _solve(blow: Equations, n: int, share: float, rest: float, rate: float) -> b
             blow.measures[i, VN] + back if back < 0.0 else _closing_speed(blow, i, rate)
         )
         blow.vectors[FREE, 2 * i + 1] = blow.measures[i, VT]
-    return solve_complementarity(blow, n, _SPEEDS * rest, rate == 0.0)
+    return solve_complementarity(blow, n, _SPEEDS * rest, rate == 0.0) != NOT_FOUND
 
 
 @fused

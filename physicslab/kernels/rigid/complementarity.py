@@ -29,7 +29,7 @@ from physicslab.kernels.rigid.equations import (
 from physicslab.kernels.rigid.features import GIVEN, MU, STATUS
 from physicslab.kernels.rigid.lemke import find_by_pivots
 
-__all__ = ["solve_complementarity", "solve_equations"]
+__all__ = ["FITTING", "NOT_FOUND", "SETTLED", "solve_complementarity", "solve_equations"]
 
 _ROUNDING = 1e-4
 """Share of the motion of points that slide in any case, whose rounding is in all that they touch."""
@@ -37,6 +37,8 @@ _TOLERANCE = 1e-11
 """Share of the largest free acceleration, or of the largest force, up to which a law counts as kept."""
 _DAMPED = 1e-13
 """Share of the diagonal that is added to a matrix that may be singular; refinement removes its effect."""
+NOT_FOUND, FITTING, SETTLED = 0, 1, 2
+"""Whether forces were found."""
 _FEW_CHANGES = 4
 """Number of changes that are tried before the pivots where they are good enough."""
 _SLACKS = (1e-10, 1e-12, 1e-8)
@@ -252,12 +254,14 @@ def _largest_violation(equations: Equations, count: int, w_scale: float, z_scale
 
 
 @inlined
-def solve_complementarity(equations: Equations, count: int, scale: float, exactly: bool) -> bool:
-    """Find forces that keep all laws, and what each point does; return whether there are any.
+def solve_complementarity(equations: Equations, count: int, scale: float, exactly: bool) -> int:
+    """Find forces that keep all laws, and what each point does.
 
-    A point's GIVEN is STICKS if it may stick or slide either way, else the edge of its cone. Accelerations or
-    speeds below ``scale`` are measured by that. What pivots find is solved for again where it is wanted
-    ``exactly``; else, with 1e-9 of them, it is good enough.
+    A point's GIVEN is STICKS if it may stick or slide either way, else the edge of its cone. Accelerations
+    or speeds below ``scale`` are measured by that. Returns NOT_FOUND; SETTLED where forces solve the
+    equations of what the points do; or FITTING where they are those of the pivots, right to 1e-9, and of
+    what the points do the forces of least norm would violate a law. That is tried for first where SETTLED is
+    wanted ``exactly``.
     """
     points, vectors = equations.points, equations.vectors
     w_scale, z_scale, largest = 0.0, 0.0, 0.0
@@ -274,9 +278,9 @@ def solve_complementarity(equations: Equations, count: int, scale: float, exactl
         free_n, free_t = vectors[FREE, 2 * i], vectors[FREE, 2 * i + 1]
         points[i, STATUS] = _closed_status(equations, i, free_n, free_t) if free_n < 0.0 else points[i, GIVEN]
     if largest == 0.0:
-        return True
+        return SETTLED
     if _settle_by_changes(equations, count, 4 + 2 * count if exactly else _FEW_CHANGES, w_scale, z_scale):
-        return True
+        return SETTLED
     # Of what the pivots leave open or sliding, some may rest with the others: forces are of least norm then.
     for attempt in range(3):
         if not find_by_pivots(equations, count, _SLACKS[attempt]):
@@ -287,7 +291,7 @@ def solve_complementarity(equations: Equations, count: int, scale: float, exactl
         _take_pivots(equations, count, limit, limit)
         fits = _largest_violation(equations, count, w_scale, z_scale) <= _AT_REST
         if fits and (attempt == 2 or not exactly):
-            return True
+            return FITTING
         if _settle_by_changes(equations, count, 2 + count, w_scale, z_scale):
-            return True
-    return False
+            return SETTLED
+    return NOT_FOUND

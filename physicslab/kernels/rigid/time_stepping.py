@@ -9,7 +9,7 @@ of order one.
 
 from physicslab.kernels import Numbers, inlined, kernel
 from physicslab.kernels.forces.force_calls import accelerate
-from physicslab.kernels.rigid.complementarity import solve_complementarity
+from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, EquationsTuple, named_equations
 from physicslab.kernels.rigid.features import GAP, GIVEN, MU, SceneTuple, named_scene
@@ -58,7 +58,7 @@ def separate(scene: SceneTuple, equations: EquationsTuple, count: int, q: Number
             points.measures[i, MU], points.points[i, GIVEN] = 0.0, SLIDES_ON
             points.vectors[FREE, 2 * i], points.vectors[FREE, 2 * i + 1] = points.measures[i, GAP], 0.0
         assemble(of, points, count)
-        if not solve_complementarity(points, count, 0.0, True):
+        if solve_complementarity(points, count, 0.0, True) == NOT_FOUND:
             return False
         apply(of, points, count, q)
     return True

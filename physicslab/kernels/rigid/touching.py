@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
-from physicslab.kernels.rigid.complementarity import solve_complementarity, solve_equations
+from physicslab.kernels.rigid.complementarity import SETTLED, solve_complementarity, solve_equations
 from physicslab.kernels.rigid.constraints import apply, assemble, find_free_rates, measure_all
 from physicslab.kernels.rigid.detect import find_points, seen_from
 from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
@@ -206,7 +206,7 @@ def hold_closed(
         elif changed_to > STICKS:
             given = changed_to
         equations.points[i, GIVEN] = given
-    solved = solve_complementarity(equations, count, least, True)
+    solved = solve_complementarity(equations, count, least, True) == SETTLED
     for i in range(count):
         pressing = equations.vectors[UNKNOWN, 2 * i] * equations.a[2 * i, 2 * i]
         if equations.points[i, STATUS] != OPEN and pressing > least:
