@@ -1,6 +1,7 @@
 """The educational overlay: its numbers are the resolver's."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import DARK, Colour
+from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.view.overlay.impacts import SHOWN
 from physicslab.view.overlay.impulses import LABELLED
 from physicslab.view.overlay.labels import Label, Labels
@@ -113,6 +115,18 @@ def test_slip_stick_and_the_cone(friction: float, word: str) -> None:
     assert (
         friction_impulse["end"][:, 0] < friction_impulse["start"][:, 0]
     ).all()  # against the pull to the right
+
+
+def test_a_block_that_rests_does_not_slip_though_one_of_its_points_carries_all_that_friction_can() -> None:
+    world = empty_world(gravity=(3.0, -9.0))
+    world.simulation = replace(world.simulation, contacts="rigid")
+    box(world, (0, -0.5), width=10, height=1, static=True, friction=0.5)
+    block = box(world, (0, 0.25), width=0.8, height=0.5, friction=0.5)
+    _, canvas = shown(world, "e", frames=20, paused=False)
+    resting = resting_of(world)
+    at_limit = np.abs(resting["tangent"]) >= 0.5 * resting["normal"] * (1.0 - 1e-9)
+    assert at_limit.any() and world.component(block, Velocity).linear == Vector2()
+    assert "sticks, μ = 0.5" in canvas.words and "slips, μ = 0.5" not in canvas.words
 
 
 def test_impacts_fade_within_a_second_and_not_while_paused() -> None:

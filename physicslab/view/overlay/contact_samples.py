@@ -7,10 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Material, Transform
+from physicslab.components import Material, Transform, Velocity
 from physicslab.world import World
 
 __all__ = ["SAMPLE", "ContactSamples", "resting_of", "samples_of", "sliding"]
+
+_STILL = 1e-6
+"""Speed along a surface [m/s] that is none."""
 
 type ContactSamples = NDArray[Any]
 """An array of SAMPLE (n,)."""
@@ -26,6 +29,7 @@ SAMPLE = np.dtype(
         ("normal", np.float64),  # impulses [N s]; the tangent is the direction turned counter-clockwise
         ("tangent", np.float64),
         ("speed", np.float64),  # of approach before the impulse [m/s]; 0 at rest
+        ("slip", np.float64),  # speed along the surface [m/s]; infinite for an impact, which does not tell
         ("time", np.float64),  # of the impact, or now [s]
     ]
 )
@@ -57,8 +61,24 @@ def resting_of(world: World) -> ContactSamples:
         points["tangent_impulse"][chosen],
     )
     samples["time"] = world.time
+    samples["slip"] = _slip_of(world, samples, row_a, row_b, points[chosen])
     _show_on_what_moves(world, samples, row_a, row_b)
     return samples
+
+
+def _slip_of(
+    world: World, samples: ContactSamples, row_a: NDArray[np.int64], row_b: NDArray[np.int64],
+    points: NDArray[Any],
+) -> NDArray[np.float64]:  # fmt: skip
+    """Return how fast bodies move along each other at their points [m/s]."""
+    velocity, fixed = world.table(Velocity), samples["a"] == 0
+    linear, angular = velocity["linear"], velocity["angular"]
+    ours = linear[row_a] + angular[row_a, None] * np.stack((-points["arm_ay"], points["arm_ax"]), axis=1)
+    ours[fixed] = 0.0  # the bounds
+    theirs = linear[row_b] + angular[row_b, None] * np.stack((-points["arm_by"], points["arm_bx"]), axis=1)
+    normal, relative = samples["direction"], theirs - ours
+    slip: NDArray[np.float64] = np.abs(normal[:, 0] * relative[:, 1] - normal[:, 1] * relative[:, 0])
+    return slip
 
 
 def samples_of(world: World, impacts: NDArray[Any]) -> ContactSamples:
@@ -76,6 +96,7 @@ def samples_of(world: World, impacts: NDArray[Any]) -> ContactSamples:
     samples["friction"] = np.sqrt(of_a * friction[row_b])
     samples["normal"], samples["tangent"] = impacts["normal_impulse"], impacts["tangent_impulse"]
     samples["speed"], samples["time"] = impacts["approach_speed"], impacts["time"]
+    samples["slip"] = np.inf
     _show_on_what_moves(world, samples, row_a, row_b)
     return samples
 
@@ -93,7 +114,11 @@ def _show_on_what_moves(
 
 
 def sliding(samples: ContactSamples) -> NDArray[np.bool_]:
-    """Whether friction is at its limit mu times the normal impulse (Coulomb), so that the contact slips."""
+    """Whether friction is at its limit mu times the normal impulse (Coulomb), and the bodies move along it.
+
+    At the limit a body can still rest: of the two points under a block one may carry all that friction can.
+    """
     limit = samples["friction"] * samples["normal"]
-    slips: NDArray[np.bool_] = (limit > 0.0) & (np.abs(samples["tangent"]) >= limit * (1.0 - 1e-9))
+    at_limit = (limit > 0.0) & (np.abs(samples["tangent"]) >= limit * (1.0 - 1e-9))
+    slips: NDArray[np.bool_] = at_limit & (samples["slip"] > _STILL)
     return slips
