@@ -14,6 +14,7 @@ import pytest
 
 from physicslab import cli
 from physicslab.commands import kernels as command
+from physicslab.kernels import __main__ as kernels_main
 from physicslab.kernels import archive, budget, cache, keys
 from physicslab.kernels.archive import ArchiveError, pack, unpack
 
@@ -281,3 +282,12 @@ def test_what_the_budget_compiled_is_kept(root: Path, tmp_path: Path) -> None:
         (place / FOLDER / "f.nbi").write_text(text)
     budget._keep(fresh, root)
     assert kept(root) == {f"{FOLDER}/f.nbi": "new"}
+
+
+@pytest.mark.parametrize(("slowness", "fails"), [(1.0, True), (1.2, False)])
+def test_a_busy_machine_is_allowed_as_much_more_as_a_loop_takes_longer(
+    slowness: float, fails: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(budget, "measure", lambda: ([(7.0, "physicslab.kernels.a.slow")], slowness))
+    assert kernels_main._budget() == int(fails)
+    assert "over budget: physicslab.kernels.a.slow: 7.0 s, more than 5 s" in capsys.readouterr().err

@@ -40,11 +40,12 @@ def _work() -> int:
 def _budget() -> int:
     from physicslab.kernels import budget
 
-    costs = budget.measure()
+    costs, slowness = budget.measure()
     print(budget.table(costs))
     for line in budget.check(costs):
         print(f"over budget: {line}", file=sys.stderr)
-    noise = budget.NOISE
+    print(f"a loop of Python took {slowness:.2f} times as long as on an idle processor")
+    noise = budget.NOISE * slowness
     beyond = budget.check(costs, noise * budget.LIMIT_EACH_S, noise * budget.LIMIT_TOTAL_S)
     return 1 if beyond else 0
 
