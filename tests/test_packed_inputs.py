@@ -21,7 +21,7 @@ from physicslab.world import World
 
 
 def linked() -> World:
-    """Return a body with drag that hangs on an anchor of a fixed one, which is turned; nothing can touch."""
+    """Return a body with drag attached to an anchor of a fixed one, which is turned; nothing can touch."""
     world = World(*standard_systems(), physics=PhysicsConfig(linear_damping=0.1))
     world.spawn(Transform((0.0, 3.0), 0.3), name="fixed")
     bob = world.spawn(Transform((1.0, 0.0)), Velocity((0.2, 0.0)), Mass(2.0), Drag(0.1, 0.05), name="bob")

@@ -366,7 +366,7 @@ def test_a_box_that_spins_fast_is_said_near_others_alone() -> None:
     world.step()
     found = only(world, "corners")
     assert (found.entity, found.unit) == ("top", "rad")
-    spin = world.component(top, Velocity).angular  # impacts of its corners, 15 % of what it had at the least
+    spin = world.component(top, Velocity).angular  # impacts of its corners, at least 15 % of what it had
     assert found.value == pytest.approx(abs(spin) / 240, rel=1e-9) and abs(spin) > 75.0
 
 
