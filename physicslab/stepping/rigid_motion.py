@@ -129,7 +129,7 @@ class RigidMotion:
     def _by_events(self, scene: tuple[Any, ...], state: State, at: float, h: float, made: MadeStep) -> float:
         """Go from event to event; return how far that leads [s]. What stops it is noted in ``made``."""
         q, v, changed = self._ode.q, self._ode.v, self._changed
-        done, stalled = 0.0, 0
+        done, stalled, foreseen = 0.0, 0, True
         changed[0, PAIR] = -1
         made.refused = self._move_apart(scene, _OVERLAP)
         if made.refused:
@@ -150,9 +150,9 @@ class RigidMotion:
             made.closed = count
             if done >= h or still:
                 return h
-            piece, evaluations = motion.advance_piece(
+            piece, evaluations, foreseen = motion.advance_piece(
                 scene, self._equations, count, self._room, self._stages, self._start, changed, q, v,
-                h - done, _TOLERANCE, rest,
+                h - done, _TOLERANCE, rest, foreseen,
             )  # fmt: skip
             made.evaluations += evaluations
             made.work += evaluations * (8 + count * count) // 8

@@ -26,6 +26,9 @@ __all__ = ["find_points", "seen_from"]
 
 _TIE = 1e-9
 """Share of the size within which two faces are equally far, so that speeds decide."""
+Lie = tuple[float, float, float, float]
+"""Centre of a box in another one's directions, from its centre [m]; cosine and sine of the angle between
+them."""
 
 
 @inlined
@@ -85,8 +88,29 @@ def _box_to_wall(
 
 
 @inlined
+def _lie(q: Numbers, rows: int, one: int, other: int) -> Lie:
+    """Return how OTHER lies, seen from ONE."""
+    x, y = seen_from(q, rows, one, q[2 * other], q[2 * other + 1])
+    turn = q[2 * rows + other] - q[2 * rows + one]
+    return x, y, math.cos(turn), math.sin(turn)
+
+
+@inlined
+def _nearest_corner(lie: Lie, outlines: Vectors, one: int, face: int, other: int) -> tuple[float, int]:
+    """Return how far all of OTHER is from a face of ONE [m], and its corner that is nearest."""
+    x, y, c, s = lie
+    fx, fy, distance, _ = face_of(outlines, one, face)
+    along, across = fx * c + fy * s, fy * c - fx * s  # the normal, seen from OTHER
+    nearest = 0 if across <= 0.0 else 3
+    if along > 0.0:
+        nearest = 1 if across <= 0.0 else 2
+    reach = 0.5 * (abs(along) * outlines[other, WIDTH] + abs(across) * outlines[other, HEIGHT])
+    return fx * x + fy * y - reach - distance, nearest
+
+
+@inlined
 def _farthest_face(
-    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, other: int, tie: float
+    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, other: int, lie: Lie, tie: float
 ) -> tuple[int, float, float]:
     """Return the face of ONE from which all of OTHER is farthest, how far [m], and how fast that grows [m/s].
 
@@ -94,27 +118,26 @@ def _farthest_face(
     they pass each other, and a box that slides over the joint of two tiles is not stopped by the side of
     the next.
     """
-    best, best_gap, best_rate = 0, -math.inf, 0.0
+    farthest, best, best_gap, best_rate = -math.inf, 0, 0.0, -math.inf
     for face in range(4):
-        fx, fy, distance, _ = face_of(outlines, one, face)
-        gap, rate = math.inf, 0.0
-        for vertex in range(4):
-            cx, cy = _corner(q, rows, outlines, other, vertex)
-            x, y = seen_from(q, rows, one, cx, cy)
-            found = fx * x + fy * y - distance
-            if found < gap:
-                gap = found
-                rate = _face_rate(q, v, rows, one, other, fx, fy, cx, cy)
-        if gap > best_gap + tie or (gap > best_gap - tie and rate > best_rate):
-            best, best_gap, best_rate = face, gap, rate
+        gap, _ = _nearest_corner(lie, outlines, one, face, other)
+        farthest = max(farthest, gap)
+    for face in range(4):
+        gap, vertex = _nearest_corner(lie, outlines, one, face, other)
+        if gap > farthest - tie:
+            rate = _face_rate(q, v, rows, outlines, one, face, other, vertex)
+            if rate > best_rate or best_rate == -math.inf:
+                best, best_gap, best_rate = face, gap, rate
     return best, best_gap, best_rate
 
 
 @inlined
 def _face_rate(
-    q: Numbers, v: Numbers, rows: int, one: int, other: int, fx: float, fy: float, x: float, y: float
+    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, face: int, other: int, vertex: int
 ) -> float:
-    """Return how fast OTHER recedes from ONE at a place, along a normal of ONE [m/s]."""
+    """Return how fast a corner of OTHER recedes from a face of ONE [m/s]."""
+    fx, fy, _, _ = face_of(outlines, one, face)
+    x, y = _corner(q, rows, outlines, other, vertex)
     c, s = math.cos(q[2 * rows + one]), math.sin(q[2 * rows + one])
     nx, ny = c * fx - s * fy, s * fx + c * fy
     vx = v[2 * other] - v[2 * rows + other] * (y - q[2 * other + 1])
@@ -140,29 +163,31 @@ def _box_to_box(
     a: int, b: int, tie: float,
 ) -> int:  # fmt: skip
     """Find the ends of the stretch along which two boxes face each other."""
-    face_a, gap_a, rate_a = _farthest_face(q, v, rows, outlines, a, b, tie)
-    face_b, gap_b, rate_b = _farthest_face(q, v, rows, outlines, b, a, tie)
-    one, other, face = a, b, face_a
+    b_from_a, a_from_b = _lie(q, rows, a, b), _lie(q, rows, b, a)
+    face_a, gap_a, rate_a = _farthest_face(q, v, rows, outlines, a, b, b_from_a, tie)
+    face_b, gap_b, rate_b = _farthest_face(q, v, rows, outlines, b, a, a_from_b, tie)
+    one, other, face, lie, lie_back = a, b, face_a, b_from_a, a_from_b
     if gap_b > gap_a + tie or (gap_b > gap_a - tie and rate_b > rate_a + tie):
-        one, other, face = b, a, face_b
+        one, other, face, lie, lie_back = b, a, face_b, a_from_b, b_from_a
     against = _facing(q, rows, one, face, other)
     for k in range(2):
         vertex = (against + 3) % 4 if k == 0 else against
-        if _within(q, rows, outlines, one, face, other, vertex) >= -tie:
+        if _within(lie, outlines, one, face, other, vertex) >= -tie:
             n = _write(points, n, pair, one, face, other, vertex)
     for k in range(2):
         vertex = (face + 3) % 4 if k == 0 else face
-        if _within(q, rows, outlines, other, against, one, vertex) > tie:
+        if _within(lie_back, outlines, other, against, one, vertex) > tie:
             n = _write(points, n, pair, other, against, one, vertex)
     return n
 
 
 @inlined
-def _within(q: Numbers, rows: int, outlines: Vectors, one: int, face: int, other: int, vertex: int) -> float:
+def _within(lie: Lie, outlines: Vectors, one: int, face: int, other: int, vertex: int) -> float:
     """Return how far a corner of OTHER is from the nearer end of a face of ONE, along it [m]."""
     fx, fy, _, half = face_of(outlines, one, face)
-    cx, cy = _corner(q, rows, outlines, other, vertex)
-    x, y = seen_from(q, rows, one, cx, cy)
+    ux, uy, _ = vertex_of(outlines, other, vertex)
+    x, y, c, s = lie
+    x, y = x + c * ux - s * uy, y + s * ux + c * uy
     return half - abs(fx * y - fy * x)
 
 

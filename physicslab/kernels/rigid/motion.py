@@ -66,6 +66,8 @@ _SHORTEST = 1e-9
 """Share of the time that is left below which a piece is not shortened."""
 _MAX_TURN = 0.25
 """Largest angle of a piece [rad]."""
+_BEYOND = 1.1
+"""Multiple of the time to the first event, by how all begins, that a piece is to last."""
 _STRIDE = 0.2
 """Share of the smaller size that a pair may approach in a piece, beyond its gap."""
 
@@ -81,7 +83,7 @@ def _longest_piece(scene: Scene, q: Numbers, v: Numbers, left: float) -> float:
             abs(v[2 * rows + b]) * scene.outlines[b, REACH] + abs(v[2 * rows + a]) * scene.outlines[a, REACH]
         )
         if speed > 0.0:
-            free = max(far_apart(scene, p, q), 0.0) + _STRIDE * scene.coefficients[p, 2]
+            free = max(far_apart(scene, p, q, math.inf), 0.0) + _STRIDE * scene.coefficients[p, 2]
             longest = min(longest, free / speed)
     for row in range(rows):
         spin = abs(v[2 * rows + row])
@@ -158,15 +160,20 @@ def touch(
 def advance_piece(
     scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, stages: StagesTuple,
     start: Vectors, changed: Points, q: Numbers, v: Numbers, left: float, tolerance: float, rest: float,
-) -> tuple[float, int]:  # fmt: skip
+    foreseen: bool,
+) -> tuple[float, int, bool]:  # fmt: skip
     """Advance from where :func:`begin_motion` left it to the next event, for ``left`` seconds at most.
 
-    Returns the time that passed [s], and how many force evaluations the piece took, its beginning included.
+    Where that is to be ``foreseen``, for little more than the time at which the next gap should close: the
+    curve of a short piece is exact. Returns the time that passed [s], how many force evaluations the piece
+    took, its beginning included, and whether there was an event.
     """
     of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
     scratch = named_equations(room)
-    note_start(of, points, count, scratch, q, v, start)
+    soonest = note_start(of, points, count, scratch, q, v, at.acceleration, start)
     h, pieces = _longest_piece(of, q, v, left), 0
+    if foreseen:
+        h = min(h, _BEYOND * soonest)
     for _ in range(_SHORTENINGS):
         error = make_piece(of, points, count, q, v, h, tolerance, at)
         pieces += 1
@@ -177,7 +184,7 @@ def advance_piece(
     _note_changes(kind, index, points, count if kind >= 0 else 0, changed, rest)
     for i in range(len(q)):
         q[i], v[i] = at.q[i], at.v[i]
-    return h, 4 + LAST * (pieces + more)
+    return h, 4 + LAST * (pieces + more), kind >= 0
 
 
 @kernel
