@@ -19,7 +19,7 @@ from physicslab.kernels.rigid.pieces import Stages
 __all__ = ["curve_is_exact", "fit_curve", "place_bodies", "place_on_curve"]
 
 _THIRD, _FOURTH, _FIFTH = LAST + 1, LAST + 2, LAST + 3
-"""Columns of the rates that hold the coefficients of the curve, in shares of the piece [m]."""
+"""Rows of the rates that hold the coefficients of the curve, in shares of the piece [m]."""
 _CHECKED = 0.35
 """Share of a piece at which the accelerations of the curve are checked: errors of places and of speeds at its
 end show there, and those of its form."""
@@ -37,20 +37,20 @@ def fit_curve(stages: Stages, v: Numbers, h: float) -> None:
     for i in range(len(v)):
         place, speed = 0.0, 0.0
         for stage in range(LAST):
-            place += WEIGHTS[LAST, stage] * (stages.rates[i, stage] - v[i])
-            speed += WEIGHTS[LAST, stage] * (stages.pushes[i, stage] - stages.pushes[i, 0])
-        place = h * (place - 0.5 * h * stages.pushes[i, 0])
+            place += WEIGHTS[LAST, stage] * (stages.rates[stage, i] - v[i])
+            speed += WEIGHTS[LAST, stage] * (stages.pushes[stage, i] - stages.pushes[0, i])
+        place = h * (place - 0.5 * h * stages.pushes[0, i])
         speed *= h * h
-        change = 0.5 * h * h * (stages.pushes[i, LAST] - stages.pushes[i, 0])
-        stages.rates[i, _THIRD] = 10.0 * place - 4.0 * speed + change
-        stages.rates[i, _FOURTH] = -15.0 * place + 7.0 * speed - 2.0 * change
-        stages.rates[i, _FIFTH] = 6.0 * place - 3.0 * speed + change
+        change = 0.5 * h * h * (stages.pushes[LAST, i] - stages.pushes[0, i])
+        stages.rates[_THIRD, i] = 10.0 * place - 4.0 * speed + change
+        stages.rates[_FOURTH, i] = -15.0 * place + 7.0 * speed - 2.0 * change
+        stages.rates[_FIFTH, i] = 6.0 * place - 3.0 * speed + change
 
 
 @inlined
 def _place(stages: Stages, q: Numbers, v: Numbers, h: float, s: float, i: int) -> None:
-    bend = 0.5 * h * h * stages.pushes[i, 0]
-    third, fourth, fifth = stages.rates[i, _THIRD], stages.rates[i, _FOURTH], stages.rates[i, _FIFTH]
+    bend = 0.5 * h * h * stages.pushes[0, i]
+    third, fourth, fifth = stages.rates[_THIRD, i], stages.rates[_FOURTH, i], stages.rates[_FIFTH, i]
     stages.q[i] = q[i] + s * (h * v[i] + s * (bend + s * (third + s * (fourth + s * fifth))))
     stages.v[i] = v[i] + s * (2.0 * bend + s * (3.0 * third + s * (4.0 * fourth + s * 5.0 * fifth))) / h
 
@@ -85,8 +85,8 @@ def curve_is_exact(
     q_limit = tolerance * max(largest(q, n), largest(stages.q, n))
     v_limit = tolerance * max(largest(v, n), largest(stages.v, n))
     for i in range(n):
-        third, fourth, fifth = stages.rates[i, _THIRD], stages.rates[i, _FOURTH], stages.rates[i, _FIFTH]
-        bent = stages.pushes[i, 0] + s * (6.0 * third + s * (12.0 * fourth + s * 20.0 * fifth)) / (h * h)
+        third, fourth, fifth = stages.rates[_THIRD, i], stages.rates[_FOURTH, i], stages.rates[_FIFTH, i]
+        bent = stages.pushes[0, i] + s * (6.0 * third + s * (12.0 * fourth + s * 20.0 * fifth)) / (h * h)
         off = abs(stages.acceleration[i] - bent)
         exact = exact and _TO_SPEED * h * off <= v_limit and _TO_PLACE * h * h * off <= q_limit
     return exact and math.isfinite(q_limit + v_limit)

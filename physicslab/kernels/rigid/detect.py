@@ -88,11 +88,14 @@ def _box_to_wall(
 
 
 @inlined
-def _lie(q: Numbers, rows: int, one: int, other: int) -> Lie:
-    """Return how OTHER lies, seen from ONE."""
-    x, y = seen_from(q, rows, one, q[2 * other], q[2 * other + 1])
-    turn = q[2 * rows + other] - q[2 * rows + one]
-    return x, y, math.cos(turn), math.sin(turn)
+def _lie(q: Numbers, rows: int, one: int, other: int) -> tuple[Lie, Lie]:
+    """Return how OTHER lies, seen from ONE, and how ONE does, seen from OTHER."""
+    angle, angle_other = q[2 * rows + one], q[2 * rows + other]
+    c, s, co, so = math.cos(angle), math.sin(angle), math.cos(angle_other), math.sin(angle_other)
+    dx, dy = q[2 * other] - q[2 * one], q[2 * other + 1] - q[2 * one + 1]
+    turn_c, turn_s = c * co + s * so, c * so - s * co
+    there = (c * dx + s * dy, c * dy - s * dx, turn_c, turn_s)
+    return there, (-co * dx - so * dy, so * dx - co * dy, turn_c, -turn_s)
 
 
 @inlined
@@ -111,32 +114,40 @@ def _nearest_corner(lie: Lie, outlines: Vectors, one: int, face: int, other: int
 @inlined
 def _farthest_face(
     q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, other: int, lie: Lie, tie: float
-) -> tuple[int, float, float]:
-    """Return the face of ONE from which all of OTHER is farthest, how far [m], and how fast that grows [m/s].
+) -> tuple[int, float]:
+    """Return the face of ONE from which all of OTHER is farthest, and how far [m].
 
     Of faces that are equally far, as where two corners meet, the one that recedes faster: only there could
     they pass each other, and a box that slides over the joint of two tiles is not stopped by the side of
     the next.
     """
-    farthest, best, best_gap, best_rate = -math.inf, 0, 0.0, -math.inf
+    best, farthest, count = 0, -math.inf, 0
     for face in range(4):
         gap, _ = _nearest_corner(lie, outlines, one, face, other)
-        farthest = max(farthest, gap)
+        if gap > farthest:
+            best, farthest = face, gap
     for face in range(4):
-        gap, vertex = _nearest_corner(lie, outlines, one, face, other)
+        gap, _ = _nearest_corner(lie, outlines, one, face, other)
+        count += gap > farthest - tie
+    if count == 1:
+        return best, farthest
+    fastest = -math.inf
+    for face in range(4):
+        gap, _ = _nearest_corner(lie, outlines, one, face, other)
         if gap > farthest - tie:
-            rate = _face_rate(q, v, rows, outlines, one, face, other, vertex)
-            if rate > best_rate or best_rate == -math.inf:
-                best, best_gap, best_rate = face, gap, rate
-    return best, best_gap, best_rate
+            rate = _face_rate(q, v, rows, outlines, one, face, other, lie)
+            if rate > fastest:
+                best, fastest = face, rate
+    return best, farthest
 
 
 @inlined
 def _face_rate(
-    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, face: int, other: int, vertex: int
+    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, face: int, other: int, lie: Lie
 ) -> float:
-    """Return how fast a corner of OTHER recedes from a face of ONE [m/s]."""
+    """Return how fast the nearest corner of OTHER recedes from a face of ONE [m/s]."""
     fx, fy, _, _ = face_of(outlines, one, face)
+    _, vertex = _nearest_corner(lie, outlines, one, face, other)
     x, y = _corner(q, rows, outlines, other, vertex)
     c, s = math.cos(q[2 * rows + one]), math.sin(q[2 * rows + one])
     nx, ny = c * fx - s * fy, s * fx + c * fy
@@ -163,11 +174,15 @@ def _box_to_box(
     a: int, b: int, tie: float,
 ) -> int:  # fmt: skip
     """Find the ends of the stretch along which two boxes face each other."""
-    b_from_a, a_from_b = _lie(q, rows, a, b), _lie(q, rows, b, a)
-    face_a, gap_a, rate_a = _farthest_face(q, v, rows, outlines, a, b, b_from_a, tie)
-    face_b, gap_b, rate_b = _farthest_face(q, v, rows, outlines, b, a, a_from_b, tie)
+    b_from_a, a_from_b = _lie(q, rows, a, b)
+    face_a, gap_a = _farthest_face(q, v, rows, outlines, a, b, b_from_a, tie)
+    face_b, gap_b = _farthest_face(q, v, rows, outlines, b, a, a_from_b, tie)
     one, other, face, lie, lie_back = a, b, face_a, b_from_a, a_from_b
-    if gap_b > gap_a + tie or (gap_b > gap_a - tie and rate_b > rate_a + tie):
+    instead = gap_b > gap_a + tie
+    if abs(gap_b - gap_a) <= tie:
+        rate = _face_rate(q, v, rows, outlines, a, face_a, b, b_from_a)
+        instead = _face_rate(q, v, rows, outlines, b, face_b, a, a_from_b) > rate + tie
+    if instead:
         one, other, face, lie, lie_back = b, a, face_b, a_from_b, b_from_a
     against = _facing(q, rows, one, face, other)
     for k in range(2):
