@@ -115,7 +115,7 @@ class RigidMotion:
             for _ in range(2)
         )  # fmt: skip
         self._stages = np.zeros((16, n)), np.zeros((16, n)), np.zeros(n), np.zeros(n), np.zeros(n)
-        self._start = np.zeros((5, max(MAX_POINTS, pairs)))
+        self._start = np.zeros((6, max(MAX_POINTS, pairs)))
         self._changed = np.full((MAX_POINTS, POINT_FIELDS), -1)
 
     def step(self, scene: tuple[Any, ...], state: State, at: float, h: float) -> MadeStep:

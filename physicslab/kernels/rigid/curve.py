@@ -10,17 +10,17 @@ import math
 
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.ode.dop853 import largest
-from physicslab.kernels.ode.dop853_tableau import LAST, WEIGHTS
+from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
 from physicslab.kernels.rigid.features import Scene
-from physicslab.kernels.rigid.pieces import Stages
+from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages
 
 __all__ = ["curve_is_exact", "fit_curve", "place_bodies", "place_on_curve"]
 
 _THIRD, _FOURTH, _FIFTH = LAST + 1, LAST + 2, LAST + 3
 """Rows of the rates that hold the coefficients of the curve, in shares of the piece [m]."""
-_CHECKED = 0.35
+_CHECKED = 0.2
 """Share of a piece at which the accelerations of the curve are checked: errors of places and of speeds at its
 end show there, and those of its form."""
 _TO_SPEED, _TO_PLACE = 0.8, 0.5
@@ -28,20 +28,21 @@ _TO_SPEED, _TO_PLACE = 0.8, 0.5
 
 
 @inlined
-def fit_curve(stages: Stages, v: Numbers, h: float) -> None:
+def fit_curve(stages: Stages, v: Numbers, h: float, short: bool) -> None:
     """Keep the curve of the piece of ``h`` seconds that was just made; pieces of other lengths leave it.
 
     What is missing at the end after the first three terms is summed of differences of the stages: for a
     short piece it would be lost in the rounding of places.
     """
+    method, last = 1 if short else 0, SHORT_LAST if short else LAST
     for i in range(len(v)):
         place, speed = 0.0, 0.0
-        for stage in range(LAST):
-            place += WEIGHTS[LAST, stage] * (stages.rates[stage, i] - v[i])
-            speed += WEIGHTS[LAST, stage] * (stages.pushes[stage, i] - stages.pushes[0, i])
+        for stage in range(last):
+            place += METHODS[method, last, stage] * (stages.rates[stage, i] - v[i])
+            speed += METHODS[method, last, stage] * (stages.pushes[stage, i] - stages.pushes[0, i])
         place = h * (place - 0.5 * h * stages.pushes[0, i])
         speed *= h * h
-        change = 0.5 * h * h * (stages.pushes[LAST, i] - stages.pushes[0, i])
+        change = 0.5 * h * h * (stages.pushes[last, i] - stages.pushes[0, i])
         stages.rates[_THIRD, i] = 10.0 * place - 4.0 * speed + change
         stages.rates[_FOURTH, i] = -15.0 * place + 7.0 * speed - 2.0 * change
         stages.rates[_FIFTH, i] = 6.0 * place - 3.0 * speed + change

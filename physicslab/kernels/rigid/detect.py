@@ -172,8 +172,8 @@ def _facing(q: Numbers, rows: int, one: int, face: int, other: int) -> int:
 def _box_to_box(
     points: Points, n: int, pair: int, q: Numbers, v: Numbers, rows: int, outlines: Vectors,
     a: int, b: int, tie: float,
-) -> int:  # fmt: skip
-    """Find the ends of the stretch along which two boxes face each other."""
+) -> tuple[int, float]:  # fmt: skip
+    """Find the ends of the stretch along which two boxes face each other, and how far they are apart [m]."""
     b_from_a, a_from_b = _lie(q, rows, a, b)
     face_a, gap_a = _farthest_face(q, v, rows, outlines, a, b, b_from_a, tie)
     face_b, gap_b = _farthest_face(q, v, rows, outlines, b, a, a_from_b, tie)
@@ -193,7 +193,7 @@ def _box_to_box(
         vertex = (face + 3) % 4 if k == 0 else face
         if _within(lie_back, outlines, other, against, one, vertex) > tie:
             n = _write(points, n, pair, other, against, one, vertex)
-    return n
+    return n, max(gap_a, gap_b)
 
 
 @inlined
@@ -207,18 +207,22 @@ def _within(lie: Lie, outlines: Vectors, one: int, face: int, other: int, vertex
 
 
 @inlined
-def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points, n: int) -> int:
-    """Write the points where pair ``p`` touches, or would, from number ``n`` on; return the next."""
+def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points) -> tuple[int, float]:
+    """Write the points where pair ``p`` touches, or would; return how many they are.
+
+    And, of two boxes, a distance that they have at least where it is positive [m]; infinity of other pairs,
+    which have the smallest gap of their points.
+    """
     rows, outlines = scene.rows, scene.outlines
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
     if wall >= 0:
         if outlines[b, KIND] == BOX:
-            return _box_to_wall(points, n, p, q, rows, outlines, b, wall)
-        return _write(points, n, p, 0, WALL + wall, b, CENTRE)
+            return _box_to_wall(points, 0, p, q, rows, outlines, b, wall), math.inf
+        return _write(points, 0, p, 0, WALL + wall, b, CENTRE), math.inf
     if outlines[a, KIND] == BOX and outlines[b, KIND] == BOX:
-        return _box_to_box(points, n, p, q, v, rows, outlines, a, b, _TIE * scene.coefficients[p, 2])
+        return _box_to_box(points, 0, p, q, v, rows, outlines, a, b, _TIE * scene.coefficients[p, 2])
     if outlines[a, KIND] == BOX:
-        return _disc_to_box(points, n, p, q, rows, outlines, a, b)
+        return _disc_to_box(points, 0, p, q, rows, outlines, a, b), math.inf
     if outlines[b, KIND] == BOX:
-        return _disc_to_box(points, n, p, q, rows, outlines, b, a)
-    return _write(points, n, p, a, CENTRE, b, CENTRE)
+        return _disc_to_box(points, 0, p, q, rows, outlines, b, a), math.inf
+    return _write(points, 0, p, a, CENTRE, b, CENTRE), math.inf

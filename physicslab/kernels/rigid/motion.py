@@ -41,7 +41,15 @@ from physicslab.kernels.rigid.features import (
     named_scene,
 )
 from physicslab.kernels.rigid.piece_end import HOLDS, PRESSES, cut_at_first_event, note_start
-from physicslab.kernels.rigid.pieces import StagesTuple, begin_piece, make_piece, named_stages
+from physicslab.kernels.rigid.pieces import (
+    SHORT_LAST,
+    Stages,
+    StagesTuple,
+    begin_piece,
+    make_piece,
+    make_stages,
+    named_stages,
+)
 from physicslab.kernels.rigid.touching import far_apart, find_touching, hold_closed, length_of, rest_limits
 
 __all__ = [
@@ -68,14 +76,16 @@ _MAX_TURN = 0.25
 """Largest angle of a piece [rad]."""
 _BEYOND = 1.1
 """Multiple of the time to the first event, by how all begins, that a piece is to last."""
+_SHORT = 0.1
+"""Share of the longest piece below which a method of order 5 is tried; the curve shows whether it is exact."""
 _STRIDE = 0.2
 """Share of the smaller size that a pair may approach in a piece, beyond its gap."""
 
 
 @inlined
-def _longest_piece(scene: Scene, q: Numbers, v: Numbers, left: float) -> float:
+def _longest_piece(scene: Scene, q: Numbers, v: Numbers) -> float:
     """Return for how long no pair can pass through each other unseen, and no box turn far [s]."""
-    rows, longest = scene.rows, left
+    rows, longest = scene.rows, math.inf
     for p in range(len(scene.pairs)):
         a, b = scene.pairs[p, 0], scene.pairs[p, 1]
         speed = length_of(v[2 * b] - v[2 * a], v[2 * b + 1] - v[2 * a + 1])
@@ -156,6 +166,20 @@ def touch(
     return DONE, count, rest, approaching, deepest
 
 
+@inlined
+def _make_smooth(
+    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
+    tolerance: float, stages: Stages,
+) -> tuple[float, int]:  # fmt: skip
+    """Make a piece of ``h`` seconds, or as much less as its error demands; return how long, and the trials."""
+    for trial in range(_SHORTENINGS):
+        error = make_piece(scene, equations, count, q, v, h, tolerance, stages)
+        if error <= 1.0 or h <= _SHORTEST * left:
+            return h, trial + 1
+        h *= max(0.1, 0.9 * math.pow(error, -0.125))
+    return h, _SHORTENINGS
+
+
 @kernel
 def advance_piece(
     scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, stages: StagesTuple,
@@ -171,20 +195,27 @@ def advance_piece(
     of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
     scratch = named_equations(room)
     soonest = note_start(of, points, count, scratch, q, v, at.acceleration, start)
-    h, pieces = _longest_piece(of, q, v, left), 0
-    if foreseen:
-        h = min(h, _BEYOND * soonest)
-    for _ in range(_SHORTENINGS):
-        error = make_piece(of, points, count, q, v, h, tolerance, at)
-        pieces += 1
-        if error <= 1.0 or h <= _SHORTEST * left:
+    limit, evaluations, kind, index = _longest_piece(of, q, v), 4, -1, -1
+    h = min(limit, left, _BEYOND * soonest if foreseen else left)
+    short = h < _SHORT * limit
+    for _ in range(2):
+        if short:
+            make_stages(of, points, count, q, v, h, True, at)
+            evaluations += SHORT_LAST
+        else:
+            h, pieces = _make_smooth(of, points, count, q, v, h, left, tolerance, at)
+            evaluations += pieces * LAST
+        passed, kind, index, more = cut_at_first_event(
+            of, points, count, scratch, start, at, q, v, h, tolerance, rest, short
+        )
+        evaluations += more * LAST
+        if passed >= 0.0:
             break
-        h *= max(0.1, 0.9 * math.pow(error, -0.125))
-    h, kind, index, more = cut_at_first_event(of, points, count, scratch, start, at, q, v, h, tolerance, rest)
+        short = False
     _note_changes(kind, index, points, count if kind >= 0 else 0, changed, rest)
     for i in range(len(q)):
         q[i], v[i] = at.q[i], at.v[i]
-    return h, 4 + LAST * (pieces + more), kind >= 0
+    return passed, evaluations, kind >= 0
 
 
 @kernel

@@ -8,13 +8,15 @@ from physicslab.kernels.rigid.curve import curve_is_exact, fit_curve, place_bodi
 from physicslab.kernels.rigid.equations import SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import GAP, MARGIN, MU, ONE, OTHER, PAIR, STATUS, VN, VT, Scene, measure
 from physicslab.kernels.rigid.pieces import Stages, make_piece
-from physicslab.kernels.rigid.touching import find_open
+from physicslab.kernels.rigid.touching import find_open, moved_closer
 
 __all__ = ["APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "cut_at_first_event", "note_start"]
 
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
 """What must stay positive: a normal force, what is
 left of the friction cone, a sliding speed, the distance to the end of a feature, a gap."""
+_CLEAR = 5
+"""The row of what is noted at a start that holds how far pairs are apart at least."""
 _CLOSED = 1e-13
 """Share of a size by which a gap may change by rounding."""
 _NO_FORCE = 1e-9
@@ -44,7 +46,7 @@ def _value(
 ) -> float:  # fmt: skip
     """Return what must stay positive, of a point that is measured in the state or of a pair."""
     if kind == APART:
-        _, gap = find_open(scene, equations, count, scratch, index, q, v)
+        _, gap, _ = find_open(scene, equations, count, scratch, index, q, v)
         return gap
     value: float = equations.measures[index, MARGIN]
     if kind <= HOLDS:
@@ -76,7 +78,7 @@ def note_start(
     scene: Scene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
     acceleration: Numbers, start: Vectors,
 ) -> float:  # fmt: skip
-    """Note all functions at the start of a piece: ``start`` (5, points or pairs).
+    """Note all functions at the start of a piece, and distances of pairs: ``start`` (6, points or pairs).
 
     Returns when the first gap would close if all went on as it begins [s].
     """
@@ -85,7 +87,7 @@ def note_start(
         for i in range(count):
             start[kind, i] = _value(kind, i, scene, equations, count, scratch, q, v)
     for p in range(len(scene.pairs)):
-        n, start[APART, p] = find_open(scene, equations, count, scratch, p, q, v)
+        n, start[APART, p], start[_CLEAR, p] = find_open(scene, equations, count, scratch, p, q, v)
         for k in range(n):
             height = max(scratch.measures[k, GAP], _CLOSED * scene.coefficients[p, 2])
             opening, _ = rates_without_forces(scene, scratch, k, acceleration)
@@ -129,7 +131,7 @@ def _noise(kind: int, index: int, scene: Scene, equations: Equations, rest: floa
 @inlined
 def _first_event(
     scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
-    rest: float, last_kind: int, last: int,
+    q: Numbers, rest: float, last_kind: int, last: int,
 ) -> tuple[int, int]:  # fmt: skip
     """Return which function fell below zero first within the piece: kind and index, -1 if none did.
 
@@ -141,6 +143,8 @@ def _first_event(
     for kind in range(5):
         for i in range(len(scene.pairs) if kind == APART else count):
             before = start[kind, i]
+            if kind == APART and start[_CLEAR, i] > moved_closer(scene, i, q, stages.q):
+                continue
             if (kind == last_kind and i == last) or not _can_end(kind, i, equations, before):
                 continue
             allowance = _allowance(kind, i, scene, before, rest)
@@ -218,29 +222,32 @@ def _cross(
 @fused
 def cut_at_first_event(
     scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
-    q: Numbers, v: Numbers, h: float, tolerance: float, rest: float,
+    q: Numbers, v: Numbers, h: float, tolerance: float, rest: float, short: bool,
 ) -> tuple[float, int, int, int]:  # fmt: skip
     """Cut a piece that was made of ``h`` seconds where its first event is, if there is one in it.
 
     Returns its length, kind and index of the event, -1 if there is none, and how many pieces were made. The
     event is found on the curve of the piece. Where the curve is not exact, pieces of other lengths then
-    locate it to rounding.
+    locate it to rounding; but a ``short`` one, whose length is then returned as -1, has to be made again.
     """
-    kind, index, slope, at, end, f_low, allowance = -1, -1, 0.0, h, h, 0.0, 0.0
-    exact = False
+    kind, index, slope, at, end, f_low, allowance, exact = -1, -1, 0.0, h, h, 0.0, 0.0, False
     for cut in range(_CUTS + 1):
         next_kind, next_index = _first_event(
-            scene, equations, count, scratch, start, stages, rest, kind, index
+            scene, equations, count, scratch, start, stages, q, rest, kind, index
         )
+        if cut == 0 and (short or next_kind >= 0):
+            fit_curve(stages, v, h, short)
+            exact = curve_is_exact(scene, equations, count, q, v, h, tolerance, stages)
+            if short and not exact:
+                return -1.0, kind, index, 0
         on_curve = next_kind >= 0 and cut < _CUTS
         if on_curve:
-            if cut == 0:
-                fit_curve(stages, v, h)
-                exact = curve_is_exact(scene, equations, count, q, v, h, tolerance, stages)
             kind, index, end, slope = next_kind, next_index, at, 0.0
             allowance = _allowance(kind, index, scene, start[kind, index], rest)
             f_low = max(start[kind, index] + allowance, 0.0)
         elif kind < 0 or (exact and next_kind < 0):
+            if kind < 0 and short:
+                place_on_curve(stages, q, v, h, h)
             return at, kind, index, 0
         noise = _noise(kind, index, scene, equations, rest)
         at, slope, found, trials = _cross(

@@ -3,6 +3,8 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from physicslab.kernels import Numbers, Vectors, fused, inlined
 from physicslab.kernels.ode.dop853 import largest
 from physicslab.kernels.ode.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, WEIGHTS
@@ -10,8 +12,28 @@ from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
 from physicslab.kernels.rigid.features import Scene
 
-__all__ = ["Stages", "StagesTuple", "begin_piece", "make_piece", "named_stages"]
+__all__ = [
+    "METHODS", "SHORT_LAST", "Stages", "StagesTuple", "begin_piece", "make_piece", "make_stages",
+    "named_stages",
+]  # fmt: skip
 
+SHORT_LAST = 6
+"""The stage that is the end of a short step."""
+METHODS = np.zeros((2, LAST + 1, LAST + 1))
+"""The weights of the stages of both methods; those of order 5 are of Dormand & Prince, J. Comp. Appl. Math. 6
+(1980) 19."""
+METHODS[0] = WEIGHTS[: LAST + 1, : LAST + 1]
+for _stage, _weights in enumerate(
+    (
+        (1 / 5,),
+        (3 / 40, 9 / 40),
+        (44 / 45, -56 / 15, 32 / 9),
+        (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729),
+        (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656),
+        (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84),
+    )
+):
+    METHODS[1, _stage + 1, : len(_weights)] = _weights
 _LEADS = 1e-4
 """Share of the largest coordinate that must be covered in a step for speeds to be measured by themselves."""
 
@@ -72,21 +94,21 @@ def _error(stages: Stages, n: int, h: float, q_scale: float, v_scale: float, tol
 
 
 @inlined
-def make_piece(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
+def make_stages(
+    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, short: bool,
     stages: Stages,
-) -> float:  # fmt: skip
+) -> None:  # fmt: skip
     """Make a step of ``h`` seconds from (q, v), which stay; the end is left in ``stages``.
 
-    Returns the estimated error, 1 where it is just tolerated. Points are measured at the end, with the forces
-    there.
+    By Dormand and Prince's method of order 8, or by theirs of order 5 where it is ``short``. Points are
+    measured at the end, with the forces there.
     """
-    n = len(v)
-    for stage in range(1, LAST + 1):
+    n, method = len(v), 1 if short else 0
+    for stage in range(1, (SHORT_LAST if short else LAST) + 1):
         for i in range(n):
             stages.q[i] = stages.v[i] = 0.0
         for other in range(stage):
-            weight = WEIGHTS[stage, other]
+            weight = METHODS[method, stage, other]
             if weight != 0.0:
                 for i in range(n):
                     stages.q[i] += weight * stages.rates[other, i]
@@ -97,6 +119,15 @@ def make_piece(
         constrained_acceleration(scene, equations, count, stages.q, stages.v, stages.acceleration)
         for i in range(n):
             stages.rates[stage, i], stages.pushes[stage, i] = stages.v[i], stages.acceleration[i]
+
+
+@inlined
+def make_piece(
+    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
+    stages: Stages,
+) -> float:  # fmt: skip
+    """Make a step of order 8 (:func:`make_stages`); return the estimated error, 1 where it is just tolerated."""
+    make_stages(scene, equations, count, q, v, h, False, stages)
     n = 3 * scene.rows  # without the clock
     q_scale = max(largest(q, n), largest(stages.q, n))
     v_scale = max(largest(v, n), largest(stages.v, n))

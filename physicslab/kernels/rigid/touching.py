@@ -29,7 +29,7 @@ from physicslab.kernels.rigid.features import (
     measure,
 )
 
-__all__ = ["far_apart", "find_open", "find_touching", "hold_closed", "length_of", "rest_limits"]
+__all__ = ["far_apart", "find_open", "find_touching", "hold_closed", "length_of", "moved_closer", "rest_limits"]
 
 _TOUCH = 1e-10
 """Share of the smaller size within which a gap is closed."""
@@ -85,26 +85,43 @@ def _is_same(points: Points, i: int, others: Points, k: int) -> bool:
 @inlined
 def find_open(
     scene: Scene, equations: Equations, count: int, scratch: Equations, p: int, q: Numbers, v: Numbers
-) -> tuple[int, float]:
+) -> tuple[int, float, float]:
     """Find and measure the points of a pair that are not closed, unless it is more than a size apart.
 
-    Returns how many there are, and their smallest gap [m], at most the size.
+    Returns how many there are, their smallest gap [m], at most the size, and a distance that the pair has at
+    least [m], minus infinity where a point is closed.
     """
     gap: float = scene.coefficients[p, 2]
-    if far_apart(scene, p, q, gap) > gap:
-        return 0, gap
-    n, found = 0, find_points(scene, p, q, v, scratch.points, 0)
+    apart = far_apart(scene, p, q, gap)
+    if apart > gap:
+        return 0, gap, apart
+    n = 0
+    found, apart = find_points(scene, p, q, v, scratch.points)
     for k in range(found):
         closed = False
         for i in range(count):
             closed = closed or _is_same(equations.points, i, scratch.points, k)
-        if not closed:
+        if closed:
+            apart = -math.inf
+        else:
             for column in range(GIVEN):
                 scratch.points[n, column] = scratch.points[k, column]
             measure(scene, scratch.points, n, q, v, scratch.measures)
             gap = min(gap, scratch.measures[n, GAP])
             n += 1
-    return n, gap
+    return n, gap, min(apart, gap)
+
+
+@inlined
+def moved_closer(scene: Scene, p: int, q: Numbers, later: Numbers) -> float:
+    """Return by how much the distance of a pair can have changed from one state to a later one [m]."""
+    rows, a, b = scene.rows, scene.pairs[p, 0], scene.pairs[p, 1]
+    x, y = later[2 * b] - q[2 * b], later[2 * b + 1] - q[2 * b + 1]
+    turned = abs(later[2 * rows + b] - q[2 * rows + b]) * scene.outlines[b, REACH]
+    if scene.pairs[p, 2] < 0:
+        x, y = x - (later[2 * a] - q[2 * a]), y - (later[2 * a + 1] - q[2 * a + 1])
+        turned += abs(later[2 * rows + a] - q[2 * rows + a]) * scene.outlines[a, REACH]
+    return length_of(x, y) + turned
 
 
 @inlined
@@ -122,7 +139,7 @@ def find_touching(
         limit = (_TOUCH + within) * size
         if far_apart(scene, p, q, limit) > limit:
             continue
-        n = find_points(scene, p, q, v, scratch.points, 0)
+        n, _ = find_points(scene, p, q, v, scratch.points)
         for k in range(n):
             measure(scene, scratch.points, k, q, v, scratch.measures)
             gap = scratch.measures[k, GAP]
