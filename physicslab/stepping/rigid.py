@@ -55,7 +55,7 @@ class Rigid:
     leaps: bool = False
     leaves_forces: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (
-        motion.touch, motion.advance_piece, motion.begin_motion, motion.collide,
+        motion.meet, motion.advance_piece, motion.begin_motion,
         time_stepping.drift, time_stepping.kick, time_stepping.separate,
         near_pairs.carry_over, slots.list_scalar,
     )  # fmt: skip

@@ -131,7 +131,7 @@ class RigidMotion:
         q, v, changed = self._ode.q, self._ode.v, self._changed
         done, stalled, foreseen = 0.0, 0, True
         changed[0, PAIR] = -1
-        made.refused = self._move_apart(scene, _OVERLAP)
+        made.refused = self._move_apart(scene, state, _OVERLAP)
         if made.refused:
             return 0.0
         for _ in range(_MAX_EVENTS):
@@ -185,7 +185,7 @@ class RigidMotion:
                 return _WHY[why]
             time_stepping.drift(q, v, 0.5 * h)
         made.forces /= h
-        refused = self._move_apart(scene, math.inf)
+        refused = self._move_apart(scene, state, math.inf)
         if refused:
             return refused
         self._find_forces(scene, state, at + left, made)
@@ -211,7 +211,7 @@ class RigidMotion:
             made.forces = self._equations[3][UNKNOWN]
         made.closed = closed
 
-    def _move_apart(self, scene: tuple[Any, ...], allowed: float) -> str:
+    def _move_apart(self, scene: tuple[Any, ...], state: State, allowed: float) -> str:
         """Move bodies apart that overlap; return why that is not possible, nothing if it is.
 
         An overlap beyond the share ``allowed`` of a size is left, and refused.
@@ -221,9 +221,7 @@ class RigidMotion:
             _ROUNDING * float(np.abs(q[:-1]).max(initial=0.0)) / float(scene[7][:, 2].min(initial=math.inf))
         )
         for _ in range(_SEPARATIONS):
-            why, count, _, _, deepest = motion.touch(
-                scene, self._equations, self._room, self._stages[-1], q, v, _NEAR * deepest
-            )
+            why, count, _, deepest, *_ = self._meet(scene, state, q, _NEAR * deepest, 0.0, 0.0, 0, 0.0)
             if why != motion.DONE:
                 return _WHY[why]
             if deepest <= max(_SEPARATE, rounding):
@@ -239,51 +237,42 @@ class RigidMotion:
 
         They act at all points that would touch by its end, or bounce. Speeds up to ``none`` are none [m/s].
         """
-        q, v, soon, acceleration = self._ode.q, self._ode.v, self._stages[2], self._stages[-1]
+        q, v, soon = self._ode.q, self._ode.v, self._stages[2]
         for _ in range(_REPEATS):
             soon[:] = q
             time_stepping.drift(soon, v, h)
-            why, count, rest, approaching, _ = motion.touch(
-                scene, self._equations, self._room, acceleration, soon, v, 0.0
-            )
-            if why != motion.DONE or not approaching:
-                return int(why)
-            points = self._resolve(scene, state, time, count, max(rest, none), 2.0 / h, made)
-            if points <= 0:
-                return motion.UNRESOLVED if points < 0 else motion.DONE
+            found = self._meet(scene, state, soon, 0.0, none, 2.0 / h, 1, time)
+            self._note(found, state, made)
+            why, points = found[0], found[6]
+            if why != motion.DONE or points == 0:
+                return why
             made.closed = points
             made.points, made.measures = self._room[0].copy(), self._room[1].copy()
             made.forces = self._room[3][UNKNOWN].copy()
         return motion.DONE
 
-    def _resolve(
-        self, scene: tuple[Any, ...], state: State, time: float, count: int, rest: float, rate: float,
-        made: MadeStep,
-    ) -> int:  # fmt: skip
-        """Resolve impacts; return how many points the last impulses act at, -1 where there are none."""
-        contacts = state.contacts
-        why, new, lowered, points, rounds = motion.collide(
-            scene, self._equations, count, self._room, rest, rate, self._ode.q, self._ode.v,
-            state.entity_index.entities, contacts.log, contacts.logged, time,
-        )  # fmt: skip
-        contacts.logged += new
-        made.impacts += new
-        made.lowered += lowered
-        made.work += _WORK_OF_A_ROUND * rounds * (8 + count * count) // 8
-        return points if why == motion.DONE else -1
-
     def _collide(self, scene: tuple[Any, ...], state: State, time: float, made: MadeStep) -> tuple[int, int]:
-        """Find what touches, and resolve impacts; return why that failed, and how many points touch.
+        """Find what touches, and resolve impacts; return why that failed, and how many points touch."""
+        found = self._meet(scene, state, self._ode.q, 0.0, 0.0, 0.0, _REPEATS, time)
+        self._note(found, state, made)
+        return found[0], found[1]
 
-        An impact can change which faces two boxes turn to each other, so contacts are then found again.
-        """
-        for _ in range(_REPEATS):
-            why, count, rest, approaching, _ = motion.touch(
-                scene, self._equations, self._room, self._stages[-1], self._ode.q, self._ode.v, 0.0
-            )
-            if why != motion.DONE or not approaching:
-                break
-            if self._resolve(scene, state, time, count, rest, 0.0, made) < 0:
-                why = motion.UNRESOLVED
-                break
-        return why, count
+    def _meet(
+        self, scene: tuple[Any, ...], state: State, place: NDArray[np.float64], within: float, none: float,
+        rate: float, repeats: int, time: float,
+    ) -> tuple[int, int, float, float, int, bool, int, int]:  # fmt: skip
+        """Call :func:`motion.meet` for the state of motion."""
+        contacts = state.contacts
+        return motion.meet(
+            scene, self._equations, self._room, self._stages[-1], place, self._ode.q, self._ode.v, within,
+            none, rate, repeats, state.entity_index.entities, contacts.log, contacts.logged, time,
+        )  # fmt: skip
+
+    def _note(
+        self, found: tuple[int, int, float, float, int, bool, int, int], state: State, made: MadeStep
+    ) -> None:
+        """Note the impacts that were found."""
+        state.contacts.logged += found[4]
+        made.impacts += found[4]
+        made.lowered += found[5]
+        made.work += _WORK_OF_A_ROUND * found[7]

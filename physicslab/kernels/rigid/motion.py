@@ -59,8 +59,7 @@ __all__ = [
     "UNRESOLVED",
     "advance_piece",
     "begin_motion",
-    "collide",
-    "touch",
+    "meet",
 ]
 
 DONE, NO_FORCES, UNRESOLVED, TOO_MANY = 0, 1, 2, 3
@@ -144,26 +143,51 @@ def _at_rest(scene: Scene, acceleration: Numbers, v: Numbers, rest: float, least
 
 
 @kernel
-def touch(
+def meet(
     scene: SceneTuple, equations: EquationsTuple, room: EquationsTuple, acceleration: Numbers,
-    q: Numbers, v: Numbers, within: float,
-) -> tuple[int, int, float, bool, float]:  # fmt: skip
-    """Find which points touch, or are ``within`` a share of a size of that.
+    place: Numbers, q: Numbers, v: Numbers, within: float, none: float, rate: float, repeats: int,
+    entities: Rows, log: Impacts, logged: int, time: float,
+) -> tuple[int, int, float, float, int, bool, int, int]:  # fmt: skip
+    """Find which points touch at ``place``, and let those that approach in (q, v) bounce; repeat both.
+
+    An impact can change which faces two boxes turn to each other. With 0 repeats, points that are ``within`` a
+    share of a size are found, and nothing bounces. Speeds up to ``none`` are none [m/s]; points that would
+    touch in 1 / ``rate`` seconds do.
 
     Returns why the motion cannot go on (DONE if it can), how many points touch, the speed that counts as none
-    [m/s], whether any point approaches faster than rounding, and the deepest overlap as a share of a size.
+    [m/s], the deepest overlap as a share of a size; how many impacts there were, whether restitutions were
+    lowered to keep the energy, how many points the last impulses act at, which are left in ``room`` where
+    there is one repeat, and the work of all rounds (a round for each, and n^2 / 8 for n points).
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
-    accelerate(q, v, acceleration, of.inverse_mass, of.damping, of.calls)
-    rest, _ = rest_limits(of, acceleration, v)
-    count, deepest = find_touching(of, points, scratch, q, v, within)
-    if count > len(points.points):
-        return TOO_MANY, 0, rest, False, deepest
+    count, rest, deepest, impacts, lowered, last, work = 0, 0.0, 0.0, 0, False, 0, 0
+    for turn in range(max(repeats, 1)):
+        accelerate(place, v, acceleration, of.inverse_mass, of.damping, of.calls)
+        rest, _ = rest_limits(of, acceleration, v)
+        count, deepest = find_touching(of, points, scratch, place, v, within)
+        if count > len(points.points):
+            return TOO_MANY, 0, rest, deepest, impacts, lowered, last, work
+        if repeats == 0 or not _any_approaches(of, points, count, place, v, rest):
+            break
+        new, solved, kept, last, rounds = resolve_blows(
+            of, points, count, scratch, q, v, max(rest, none), rate, entities, log, logged + impacts, time
+        )
+        impacts, lowered, work = impacts + new, lowered or kept, work + rounds * (8 + count * count) // 8
+        if not solved:
+            return UNRESOLVED, count, rest, deepest, impacts, lowered, last, work
+    return DONE, count, rest, deepest, impacts, lowered, last, work
+
+
+@inlined
+def _any_approaches(
+    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, rest: float
+) -> bool:
+    """Whether any point approaches faster than rounding."""
+    measure_all(scene, equations, count, q, v)
     approaching = False
-    measure_all(of, points, count, q, v)
     for i in range(count):
-        approaching = approaching or approaches(points.measures[i, VN], rest)
-    return DONE, count, rest, approaching, deepest
+        approaching = approaching or approaches(equations.measures[i, VN], rest)
+    return approaching
 
 
 @inlined
@@ -243,21 +267,3 @@ def begin_motion(
         for i in range(3 * of.rows):
             v[i] = 0.0
     return DONE, closed, rest, still
-
-
-@kernel
-def collide(
-    scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, rest: float,
-    rate: float, q: Numbers, v: Numbers, entities: Rows, log: Impacts, logged: int, time: float,
-) -> tuple[int, int, bool, int, int]:  # fmt: skip
-    """Resolve the impacts of the points that touch, or will in 1 / ``rate`` seconds.
-
-    Returns why the motion cannot go on (DONE if it can), how many impacts there were, whether restitutions
-    were lowered to keep the energy, how many points the last impulses act at, which are left in ``room``, and
-    how many rounds of impulses there were.
-    """
-    of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
-    impacts, solved, lowered, last, rounds = resolve_blows(
-        of, points, count, scratch, q, v, rest, rate, entities, log, logged, time
-    )
-    return DONE if solved else UNRESOLVED, impacts, lowered, last, rounds
