@@ -70,6 +70,8 @@ class MadeStep:
         How many points are closed at the end; how many impacts and force evaluations there were.
     lowered : int
         How often restitutions were lowered, as Newton's law would have made energy.
+    energy_added : float
+        By moving bodies apart that overlapped [J].
     work : int
         Force evaluations, each counted with 1 + n^2 / 8 for n points, and as much for impacts.
     by_impulses : str
@@ -85,6 +87,7 @@ class MadeStep:
     impacts: int = 0
     evaluations: int = 0
     lowered: int = 0
+    energy_added: float = 0.0
     work: int = 0
     by_impulses: str = ""
     refused: str = ""
@@ -131,7 +134,7 @@ class RigidMotion:
         q, v, changed = self._ode.q, self._ode.v, self._changed
         done, stalled, foreseen = 0.0, 0, True
         changed[0, PAIR] = -1
-        made.refused = self._move_apart(scene, state, _OVERLAP)
+        made.refused = self._move_apart(scene, state, _OVERLAP, made, pay=False)
         if made.refused:
             return 0.0
         for _ in range(_MAX_EVENTS):
@@ -185,7 +188,7 @@ class RigidMotion:
                 return _WHY[why]
             time_stepping.drift(q, v, 0.5 * h)
         made.forces /= h
-        refused = self._move_apart(scene, state, math.inf)
+        refused = self._move_apart(scene, state, math.inf, made, pay=True)
         if refused:
             return refused
         self._find_forces(scene, state, at + left, made)
@@ -211,21 +214,30 @@ class RigidMotion:
             made.forces = self._equations[3][UNKNOWN]
         made.closed = closed
 
-    def _move_apart(self, scene: tuple[Any, ...], state: State, allowed: float) -> str:
+    def _move_apart(
+        self, scene: tuple[Any, ...], state: State, allowed: float, made: MadeStep, *, pay: bool
+    ) -> str:
         """Move bodies apart that overlap; return why that is not possible, nothing if it is.
 
-        An overlap beyond the share ``allowed`` of a size is left, and refused.
+        An overlap beyond the share ``allowed`` of a size is left, and refused. The energy that this adds is
+        noted, less what the bodies ``pay`` for it with their speeds.
         """
         q, v, deepest = self._ode.q, self._ode.v, 0.0
         rounding = (
             _ROUNDING * float(np.abs(q[:-1]).max(initial=0.0)) / float(scene[7][:, 2].min(initial=math.inf))
         )
+        before = None
         for _ in range(_SEPARATIONS):
             why, count, _, deepest, *_ = self._meet(scene, state, q, _NEAR * deepest, 0.0, 0.0, 0, 0.0)
             if why != motion.DONE:
                 return _WHY[why]
             if deepest <= max(_SEPARATE, rounding):
+                if before is not None:
+                    made.energy_added += time_stepping.take_work(
+                        scene, self._equations, count, self._stages, before, q, v, pay
+                    )
                 return ""
+            before = q.copy() if before is None else before
             if deepest > allowed or not time_stepping.separate(scene, self._equations, count, q, v):
                 break
         return f"bodies overlap by {deepest:.2g} of their size"
