@@ -25,8 +25,8 @@ _MAX_EVENTS = 2000
 """Largest number of events in a step."""
 _MAX_WORK = 10_000
 """Largest work of a step by events (:attr:`MadeStep.work`): two thirds of a frame; short steps need the rest."""
-_WORK_OF_A_PIECE, _WORK_OF_A_ROUND = 40, 12
-"""Of a piece of motion beside its force evaluations, and the share of a round of impulses."""
+_WORK_OF_A_PIECE = 40
+"""Of a piece of motion, beside its force evaluations."""
 _REPEATS, _SHORT_REPEATS = 8, 3
 """How often contacts are found again after impacts at one time, and within a short step."""
 _MAX_STALLED = 60
@@ -288,4 +288,4 @@ class RigidMotion:
         state.contacts.logged += found[4]
         made.impacts += found[4]
         made.lowered += found[5]
-        made.work += found[7] // _WORK_OF_A_ROUND
+        made.work += found[7] // 4

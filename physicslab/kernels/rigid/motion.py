@@ -157,7 +157,7 @@ def meet(
     Returns why the motion cannot go on (DONE if it can), how many points touch, the speed that counts as none
     [m/s], the deepest overlap as a share of a size; how many impacts there were, whether restitutions were
     lowered to keep the energy, how many points the last impulses act at, which are left in ``room`` where
-    there is one repeat, and the work of all rounds (a round for each, and n^2 / 8 for n points).
+    there is one repeat, and the work of all rounds (1 + n^4 / 500 for n points).
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
     count, rest, deepest, impacts, lowered, last, work = 0, 0.0, 0.0, 0, False, 0, 0
@@ -172,7 +172,7 @@ def meet(
         new, solved, kept, last, rounds = resolve_blows(
             of, points, count, scratch, q, v, max(rest, none), rate, entities, log, logged + impacts, time
         )
-        impacts, lowered, work = impacts + new, lowered or kept, work + rounds * (8 + count * count) // 8
+        impacts, lowered, work = impacts + new, lowered or kept, work + rounds * (500 + count**4) // 500
         if not solved:
             return UNRESOLVED, count, rest, deepest, impacts, lowered, last, work
     return DONE, count, rest, deepest, impacts, lowered, last, work
