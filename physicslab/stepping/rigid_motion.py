@@ -24,7 +24,7 @@ _TOLERANCE = 1e-13
 _MAX_EVENTS = 2000
 """Largest number of events in a step."""
 _MAX_WORK = 10_000
-"""Largest work of a step by events (:attr:`MadeStep.work`): two thirds of a frame; short steps need the rest."""
+"""Largest work of a step by events (:attr:`MadeStep.work`): short steps need the rest of a frame."""
 _WORK_OF_A_PIECE = 40
 """Of a piece of motion, beside its force evaluations."""
 _REPEATS, _SHORT_REPEATS = 8, 3

@@ -76,7 +76,7 @@ _MAX_TURN = 0.25
 _BEYOND = 1.1
 """Multiple of the time to the first event, by how all begins, that a piece is to last."""
 _SHORT = 0.1
-"""Share of the longest piece below which a method of order 5 is tried; the curve shows whether it is exact."""
+"""Share of the longest piece below which a method of order 5 is tried; its curve shows if it is exact."""
 _STRIDE = 0.2
 """Share of the smaller size that a pair may approach in a piece, beyond its gap."""
 
@@ -150,9 +150,9 @@ def meet(
 ) -> tuple[int, int, float, float, int, bool, int, int]:  # fmt: skip
     """Find which points touch at ``place``, and let those that approach in (q, v) bounce; repeat both.
 
-    An impact can change which faces two boxes turn to each other. With 0 repeats, points that are ``within`` a
-    share of a size are found, and nothing bounces. Speeds up to ``none`` are none [m/s]; points that would
-    touch in 1 / ``rate`` seconds do.
+    An impact can change which faces two boxes turn to each other. With 0 repeats, points that are
+    ``within`` a share of a size are found, and nothing bounces. Speeds up to ``none`` are none [m/s];
+    points that would touch in 1 / ``rate`` seconds do.
 
     Returns why the motion cannot go on (DONE if it can), how many points touch, the speed that counts as none
     [m/s], the deepest overlap as a share of a size; how many impacts there were, whether restitutions were
@@ -161,7 +161,7 @@ def meet(
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
     count, rest, deepest, impacts, lowered, last, work = 0, 0.0, 0.0, 0, False, 0, 0
-    for turn in range(max(repeats, 1)):
+    for _ in range(max(repeats, 1)):
         accelerate(place, v, acceleration, of.inverse_mass, of.damping, of.calls)
         rest, _ = rest_limits(of, acceleration, v)
         count, deepest = find_touching(of, points, scratch, place, v, within)
@@ -172,7 +172,8 @@ def meet(
         new, solved, kept, last, rounds = resolve_blows(
             of, points, count, scratch, q, v, max(rest, none), rate, entities, log, logged + impacts, time
         )
-        impacts, lowered, work = impacts + new, lowered or kept, work + rounds * (500 + count**4) // 500
+        impacts, lowered = impacts + new, lowered or kept
+        work += rounds * (500 + count * count * count * count) // 500
         if not solved:
             return UNRESOLVED, count, rest, deepest, impacts, lowered, last, work
     return DONE, count, rest, deepest, impacts, lowered, last, work
@@ -195,7 +196,7 @@ def _make_smooth(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
     tolerance: float, stages: Stages,
 ) -> tuple[float, int]:  # fmt: skip
-    """Make a piece of ``h`` seconds, or as much less as its error demands; return how long, and the trials."""
+    """Make a piece of ``h`` seconds, or less where its error demands it; return how long, and the trials."""
     for trial in range(_SHORTENINGS):
         error = make_piece(scene, equations, count, q, v, h, tolerance, stages)
         if error <= 1.0 or h <= _SHORTEST * left:

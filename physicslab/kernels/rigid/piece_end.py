@@ -6,7 +6,19 @@ from physicslab.kernels import Numbers, Vectors, fused, inlined
 from physicslab.kernels.rigid.constraints import constrained_acceleration, rates_without_forces
 from physicslab.kernels.rigid.curve import curve_is_exact, fit_curve, place_bodies, place_on_curve
 from physicslab.kernels.rigid.equations import SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import GAP, MARGIN, MU, ONE, OTHER, PAIR, STATUS, VN, VT, Scene, measure
+from physicslab.kernels.rigid.features import (
+    GAP,
+    MARGIN,
+    MU,
+    ONE,
+    OTHER,
+    PAIR,
+    STATUS,
+    VN,
+    VT,
+    Scene,
+    measure,
+)
 from physicslab.kernels.rigid.pieces import Stages, make_piece
 from physicslab.kernels.rigid.touching import find_open, moved_closer
 

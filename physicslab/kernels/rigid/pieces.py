@@ -83,11 +83,13 @@ def _error(stages: Stages, n: int, h: float, q_scale: float, v_scale: float, tol
             moved_low += ESTIMATE_3[stage] * rate
             pushed_low += ESTIMATE_3[stage] * push
         if q_scale > 0.0:
-            fifth += (moved / q_scale) ** 2
-            third += (moved_low / q_scale) ** 2
+            moved, moved_low = moved / q_scale, moved_low / q_scale
+            fifth += moved * moved
+            third += moved_low * moved_low
         if v_scale > 0.0:
-            fifth += (pushed / v_scale) ** 2
-            third += (pushed_low / v_scale) ** 2
+            pushed, pushed_low = pushed / v_scale, pushed_low / v_scale
+            fifth += pushed * pushed
+            third += pushed_low * pushed_low
     if fifth == 0.0:
         return 0.0
     return h * fifth / math.sqrt((fifth + 0.01 * third) * 2 * n) / tolerance
@@ -126,7 +128,7 @@ def make_piece(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
     stages: Stages,
 ) -> float:  # fmt: skip
-    """Make a step of order 8 (:func:`make_stages`); return the estimated error, 1 where it is just tolerated."""
+    """Make a step of order 8; return the estimated error, 1 where it is just tolerated."""
     make_stages(scene, equations, count, q, v, h, False, stages)
     n = 3 * scene.rows  # without the clock
     q_scale = max(largest(q, n), largest(stages.q, n))

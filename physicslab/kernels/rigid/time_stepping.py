@@ -99,7 +99,7 @@ def take_work(
     scene: SceneTuple, equations: EquationsTuple, count: int, stages: StagesTuple, before: Numbers,
     q: Numbers, v: Numbers, pay: bool,
 ) -> float:  # fmt: skip
-    """Return the work against forces of a short move from ``before`` to ``q`` [J], that is the energy it adds.
+    """Return the energy that a short move from ``before`` to ``q`` adds, by its work against forces [J].
 
     Where it is to ``pay`` for it, what was added is taken from the kinetic energy of the bodies that hang
     together by the ``count`` points: all their speeds are lowered by one factor, so that what slides and what

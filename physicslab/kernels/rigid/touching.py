@@ -29,7 +29,15 @@ from physicslab.kernels.rigid.features import (
     measure,
 )
 
-__all__ = ["far_apart", "find_open", "find_touching", "hold_closed", "length_of", "moved_closer", "rest_limits"]
+__all__ = [
+    "far_apart",
+    "find_open",
+    "find_touching",
+    "hold_closed",
+    "length_of",
+    "moved_closer",
+    "rest_limits",
+]
 
 _TOUCH = 1e-10
 """Share of the smaller size within which a gap is closed."""
@@ -121,7 +129,8 @@ def moved_closer(scene: Scene, p: int, q: Numbers, later: Numbers) -> float:
     if scene.pairs[p, 2] < 0:
         x, y = x - (later[2 * a] - q[2 * a]), y - (later[2 * a + 1] - q[2 * a + 1])
         turned += abs(later[2 * rows + a] - q[2 * rows + a]) * scene.outlines[a, REACH]
-    return length_of(x, y) + turned
+    moved: float = length_of(x, y) + turned
+    return moved
 
 
 @inlined
