@@ -105,7 +105,7 @@ class BroadPhaseSystem(System):
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
         found, walls = self._count_pairs(shape["kind"], inverse_mass, bounded)
-        partition(state, self._couples, found, self._pairs, walls)
+        partition(state, self._couples, found, self._pairs, walls, self.fat)
 
     def _count_pairs(
         self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool

@@ -10,13 +10,13 @@ from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN
 
-__all__ = ["fat_boxes", "still_holds"]
+__all__ = ["CORNERWISE", "fat_boxes", "still_holds"]
 
-_DIAGONAL = math.sqrt(2.0)
+CORNERWISE = math.sqrt(2.0)
 """Largest ratio of the distance of two boxes to their distance along the normal of a side."""
-_BOX_SHARE = 0.5 * _DIAGONAL * (1.5 * CONTACT_MARGIN + CACHE_TOLERANCE)
+_BOX_SHARE = 0.5 * CORNERWISE * (1.5 * CONTACT_MARGIN + CACHE_TOLERANCE)
 """Share of its smaller side up to which a slow box is one half of a pair that has points, or keeps them."""
-_TURN_SHARE = _DIAGONAL * CACHE_TURN_TOLERANCE
+_TURN_SHARE = CORNERWISE * CACHE_TURN_TOLERANCE
 """The same for points that are kept while it turns, as a share of its bounding radius."""
 
 
@@ -67,7 +67,7 @@ def still_holds(
         made_for = reach if kind[i] != 0 else 0.0
         moved_x, moved_y = abs(places[2 * i] - fat[0, i]), abs(places[2 * i + 1] - fat[1, i])
         ux, uy = velocities[2 * i] * h, velocities[2 * i + 1] * h
-        ahead = math.sqrt(ux * ux + uy * uy) * (_DIAGONAL if kind[i] == 2 else 1.0)
+        ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if kind[i] == 2 else 1.0)
         turned = (abs(angle[i] - fat[2, i]) + abs(angular[i]) * h) * (reach if kind[i] == 2 else 0.0)
         needed = _touching_distance(kind[i], reach, width[i], height[i], speculative_margin)
         inside = (max(moved_x, moved_y) + ahead + turned + needed <= fat[4, i]) | (kind[i] == 0)

@@ -4,15 +4,16 @@ import math
 
 from physicslab.kernels import Rows, fused, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
-from physicslab.kernels.broad.near_pairs import ACTIVATION_RATIO
 from physicslab.kernels.narrow.outline import Way, outline_of
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point, Points
 
 __all__ = [
-    "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "follow_pose", "mix",
+    "ACTIVATION_RATIO", "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "follow_pose", "mix",
 ]  # fmt: skip
 
+ACTIVATION_RATIO = 1.02
+"""Distance within which two bodies may have contact points, as a multiple of the sum of their bounding radii."""
 CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found again."""
 CACHE_TURN_TOLERANCE = 0.002
