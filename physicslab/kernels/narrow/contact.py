@@ -9,7 +9,8 @@ from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wa
 from physicslab.kernels.records import Manifold, Point, Points
 
 __all__ = [
-    "ACTIVATION_RATIO", "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "follow_pose", "mix",
+    "ACTIVATION_RATIO", "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "TOLERANCE_WITHIN_STEP",
+    "effective_masses", "find_contacts", "follow_pose", "forget_points", "mix", "note_pose", "touch",
 ]  # fmt: skip
 
 ACTIVATION_RATIO = 1.02
@@ -18,6 +19,8 @@ CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found again."""
 CACHE_TURN_TOLERANCE = 0.002
 """How far [rad] either may turn."""
+TOLERANCE_WITHIN_STEP = 12.0
+"""Multiple of these tolerances that counts after the first substep of a step."""
 _ROWS_FOUND_AGAIN = 64
 """Number of bodies up to which points of boxes are found again after any motion."""
 _ROUNDING = 1e-9
@@ -85,6 +88,20 @@ def _too_far(
     return bool(clear > margin + speculative_margin)
 
 
+@inlined
+def note_pose(manifold: Manifold, dx: float, dy: float, angle_a: float, angle_b: float) -> None:
+    """Record the pose in which the points of a pair are found."""
+    manifold.base_x, manifold.base_y = dx, dy
+    manifold.base_angle_a, manifold.base_angle_b = angle_a, angle_b
+
+
+@inlined
+def forget_points(one: Point, two: Point) -> None:
+    """Clear what the points of a pair that has none any more would be warm-started with."""
+    one.feature = two.feature = one.ahead = two.ahead = 0
+    one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
+
+
 @fused
 def _look_up(
     manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, sizes: Sizes,
@@ -120,15 +137,14 @@ def _look_up(
         ):
             follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
             return _KEPT
-    manifold.base_x, manifold.base_y = way.dx, way.dy
-    manifold.base_angle_a, manifold.base_angle_b = angle[a], angle[b]
+    note_pose(manifold, way.dx, way.dy, angle[a], angle[b])
     manifold.base_sizes = sizes_of_both
     manifold.found = 2 if slow else 1
     return _OUTDATED
 
 
 @fused
-def _touch(
+def touch(
     manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, sizes: Sizes, bounds: Bounds,
     h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
@@ -176,7 +192,9 @@ def find_contacts(
     position, linear, touching = motion.position, motion.linear, near.touching
     found, held = 0, count
     # The arms of kept points are those of the pose in which they were found.
-    tolerance = _ROUNDING if len(motion.angle) <= _ROWS_FOUND_AGAIN else 1.0
+    tolerance = 1.0 if first else TOLERANCE_WITHIN_STEP
+    if len(motion.angle) <= _ROWS_FOUND_AGAIN:
+        tolerance = _ROUNDING
     for number in range(count):
         p = near.scalar[number]
         manifold, one, two = near.manifolds[p], near.points[2 * p], near.points[2 * p + 1]
@@ -203,8 +221,10 @@ def find_contacts(
             known = _look_up(manifold, near.points, p, way, motion, sizes, speculative_margin, tolerance)
             if known == _APART:
                 continue
+        else:
+            manifold.found = 0
         if known == _OUTDATED:
-            _touch(manifold, one, two, way, motion, sizes, bounds, h, start, speculative_margin)
+            touch(manifold, one, two, way, motion, sizes, bounds, h, start, speculative_margin)
         if manifold.count > 0:
             if first or known == _OUTDATED:
                 effective_masses(manifold, near.points, p, inverse)
@@ -217,6 +237,5 @@ def find_contacts(
                 held -= 1
                 touching[held] = p
         elif had_points:
-            one.feature = two.feature = one.ahead = two.ahead = 0
-            one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
+            forget_points(one, two)
     return _put_last(touching, found, held, count)
