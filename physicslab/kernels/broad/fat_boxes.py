@@ -7,10 +7,11 @@ and velocities, and not on when pairs were last listed.
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.arguments import Motion, MotionTuple, Sizes, SizesTuple
 from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN
 
-__all__ = ["CORNERWISE", "fat_boxes", "still_holds"]
+__all__ = ["CORNERWISE", "fat_boxes", "fatten", "left", "still_holds"]
 
 CORNERWISE = math.sqrt(2.0)
 """Largest ratio of the distance of two boxes to their distance along the normal of a side."""
@@ -41,6 +42,21 @@ def _touching_distance(
     return share + speculative_margin
 
 
+@inlined
+def left(i: int, motion: Motion, sizes: Sizes, fat: Vectors, h: float, speculative_margin: float) -> bool:
+    """Whether body i may, in a time h, have points with what does not meet the fat box made for it."""
+    kind, position, linear = sizes.kind[i], motion.position, motion.linear
+    if kind == 0:
+        return bool(fat[3, i] != 0.0)
+    reach = _bounding_radius(kind, sizes.radius[i], sizes.width[i], sizes.height[i])
+    moved_x, moved_y = abs(position[i, 0] - fat[0, i]), abs(position[i, 1] - fat[1, i])
+    ux, uy = linear[i, 0] * h, linear[i, 1] * h
+    ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if kind == 2 else 1.0)
+    turned = (abs(motion.angle[i] - fat[2, i]) + abs(motion.angular[i]) * h) * (reach if kind == 2 else 0.0)
+    needed = _touching_distance(kind, reach, sizes.width[i], sizes.height[i], speculative_margin)
+    return not (max(moved_x, moved_y) + ahead + turned + needed <= fat[4, i] and reach == fat[3, i])
+
+
 @kernel
 def still_holds(
     position: Vectors,
@@ -57,8 +73,9 @@ def still_holds(
 ) -> bool:
     """Whether whatever each body may have points with in a time h meets the fat box made for it.
 
-    ``fat`` (5, rows) holds where each body was (x, y, angle), its bounding radius then, and the margin around
-    it. ``speculative_margin`` is how far the forces may bring two bodies together within ``h``.
+    ``fat`` (6, rows) holds where each body was (x, y, angle), its bounding radius then, the margin around it,
+    and what :mod:`physicslab.kernels.broad.leaving` keeps there. ``speculative_margin`` is how far the forces
+    may bring two bodies together within ``h``.
     """
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)
     holds = True
@@ -75,46 +92,36 @@ def still_holds(
     return holds
 
 
+@inlined
+def fatten(
+    i: int, motion: Motion, sizes: Sizes, fat: Vectors, h: float, speculative_margin: float
+) -> tuple[float, float, float, float]:
+    """Return the fat box (xmin, ymin, xmax, ymax) of body i, good for some three steps of four substeps h."""
+    kind, angle = sizes.kind[i], motion.angle[i]
+    x, y, width, height = motion.position[i, 0], motion.position[i, 1], sizes.width[i], sizes.height[i]
+    reach = _bounding_radius(kind, sizes.radius[i], width, height)
+    half_x = half_y = reach
+    if kind == 2:
+        c, s = abs(math.cos(angle)), abs(math.sin(angle))
+        half_x, half_y = 0.5 * (c * width + s * height), 0.5 * (s * width + c * height)
+    speed = max(abs(motion.linear[i, 0]), abs(motion.linear[i, 1]))
+    margin = 0.08 * min(half_x, half_y) + 13.0 * h * speed
+    margin += 2.0 * h * abs(motion.angular[i]) * (reach if kind == 2 else 0.0)
+    margin += _touching_distance(kind, reach, width, height, speculative_margin)
+    fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i] = x, y, angle, reach, margin
+    return x - half_x - margin, y - half_y - margin, x + half_x + margin, y + half_y + margin
+
+
 @kernel
 def fat_boxes(
-    position: Vectors,
-    angle: Numbers,
-    linear: Vectors,
-    angular: Numbers,
-    kind: Rows,
-    radius: Numbers,
-    width: Numbers,
-    height: Numbers,
-    inverse_mass: Numbers,
-    fat: Vectors,
-    boxes: Vectors,
-    h: float,
+    plain_motion: MotionTuple, plain_sizes: SizesTuple, fat: Vectors, boxes: Vectors, h: float,
     speculative_margin: float,
-) -> None:
+) -> None:  # fmt: skip
     """Make each body's fat box (xmin, ymin, xmax, ymax), good for some three steps of four substeps h."""
-    moving, speeds = 0, 0.0
-    for i in range(len(angle)):
-        speed = abs(linear[i, 0]) + abs(linear[i, 1])
-        if speed > 0.0 and kind[i] != 0:
-            moving += 1
-            speeds += min(speed, 1e9)
-    usual = speeds / moving if moving else 0.0
-    for i in range(len(angle)):
+    motion, sizes = Motion(*plain_motion), Sizes(*plain_sizes)
+    for i in range(len(motion.angle)):
         fat[3, i] = 0.0
-        if kind[i] == 0:
-            continue
-        reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
-        half_x = half_y = reach
-        if kind[i] == 2:
-            c, s = abs(math.cos(angle[i])), abs(math.sin(angle[i]))
-            half_x = 0.5 * (c * width[i] + s * height[i])
-            half_y = 0.5 * (s * width[i] + c * height[i])
-        # A slow body among fast ones is likely to be hit.
-        speed = max(abs(linear[i, 0]), abs(linear[i, 1]), usual if inverse_mass[i] > 0.0 else 0.0)
-        margin = 0.08 * min(half_x, half_y) + 13.0 * h * speed
-        margin += 2.0 * h * abs(angular[i]) * (reach if kind[i] == 2 else 0.0)
-        margin += _touching_distance(kind[i], reach, width[i], height[i], speculative_margin)
-        fat[0, i], fat[1, i], fat[2, i] = position[i, 0], position[i, 1], angle[i]
-        fat[3, i], fat[4, i] = reach, margin
-        boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
-        boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
+        if sizes.kind[i] != 0:
+            boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = fatten(
+                i, motion, sizes, fat, h, speculative_margin
+            )

@@ -10,12 +10,14 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
-from physicslab.kernels.arguments import Motion, MotionTuple, Sizes, SizesTuple
+from physicslab.kernels.arguments import Sizes, SizesTuple
 from physicslab.kernels.broad.fat_boxes import CORNERWISE
 from physicslab.kernels.narrow.contact import ACTIVATION_RATIO
 from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points
 
-__all__ = ["activate", "carry_over", "partition", "sort_scalar"]
+__all__ = [
+    "activate", "beside", "carry_over", "distance_to_activate", "make_blank", "partition", "sort_scalar",
+]  # fmt: skip
 
 _LONG = 4.0
 """Ratio of bounding radii from which the circle around the larger body shows little of where it is."""
@@ -72,25 +74,38 @@ def _note_known(manifolds: Manifolds, count: int, table: Rows) -> None:
 
 
 @inlined
-def _beside(motion: Motion, sizes: Sizes, fat: Vectors, long: int, small: int) -> bool:
-    """Whether a body stays beside a far longer box, though it is in the upright box around that.
+def beside(sizes: Sizes, fat: Vectors, one: int, other: int) -> bool:
+    """Whether the smaller of two bodies stays beside the other, though it is in the upright box around that.
 
     Both may leave the places for which the fat boxes were made by no more than their margins.
     """
+    long, small = (one, other) if fat[3, one] > fat[3, other] else (other, one)
     if sizes.kind[long] != 2:
         return False
-    c, s = math.cos(motion.angle[long]), math.sin(motion.angle[long])
-    x = motion.position[small, 0] - motion.position[long, 0]
-    y = motion.position[small, 1] - motion.position[long, 1]
+    c, s = math.cos(fat[2, long]), math.sin(fat[2, long])
+    x, y = fat[0, small] - fat[0, long], fat[1, small] - fat[1, long]
     clear = fat[3, small] + CORNERWISE * (fat[4, long] + fat[4, small])
     across, up = abs(c * x + s * y), abs(c * y - s * x)
     return bool((across > 0.5 * sizes.width[long] + clear) | (up > 0.5 * sizes.height[long] + clear))
 
 
+@inlined
+def distance_to_activate(fat: Vectors, a: int, b: int) -> float:
+    """Return the distance of two centres within which a pair gets its record [m].
+
+    Where one body is far longer than the other, the circle around it says little: infinity.
+    """
+    reach_a, reach_b = fat[3, a], fat[3, b]
+    if max(reach_a, reach_b) > _LONG * min(reach_a, reach_b):
+        return math.inf
+    distance: float = ACTIVATION_RATIO * (reach_a + reach_b)
+    return distance
+
+
 @allocating_kernel
 def partition(
     couples: Couples, found: int, pairs: Pairs, walls: int,
-    plain_motion: MotionTuple, plain_sizes: SizesTuple, fat: Vectors, inverse_mass: Numbers, entities: Rows,
+    plain_sizes: SizesTuple, fat: Vectors, inverse_mass: Numbers, entities: Rows,
     manifolds: Manifolds, known: int, stale: bool, table: Rows, proximity: Couples,
     activation_distance: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
@@ -102,11 +117,10 @@ def partition(
     ``known`` of ``manifolds`` are the records so far, whose rows have changed if they are ``stale``. ``fat``
     is that of :mod:`physicslab.kernels.broad.fat_boxes`. ``table`` is filled for :func:`carry_over`.
 
-    Where one body is far longer than the other, the circle around it says little: such a pair gets a record
-    at once, unless the two are beside each other.
+    Of a long body and a short one that are not ``beside`` each other, the record is made at once.
     """
     _note_known(manifolds, known, table)
-    motion, sizes = Motion(*plain_motion), Sizes(*plain_sizes)
+    sizes = Sizes(*plain_sizes)
     mask, n = _mask(known), len(sizes.kind)
     recorded = np.full(n, stale)
     if not stale:
@@ -117,17 +131,20 @@ def partition(
     kept, proximity_count = walls, 0
     for k in range(found):
         one, other = np.int64(couples[2 * k]), np.int64(couples[2 * k + 1])
-        a, b = min(one, other), max(one, other)
+        a, b = int(min(one, other)), int(max(one, other))
         if inverse_mass[a] + inverse_mass[b] == 0.0:
             continue
-        if not (recorded[a] & recorded[b]) or _known(table, mask, manifolds, entities[a], entities[b], -1) < 0:
-            reach_a, reach_b = fat[3, a], fat[3, b]
-            if max(reach_a, reach_b) <= _LONG * min(reach_a, reach_b):
+        if (
+            not (recorded[a] & recorded[b])
+            or _known(table, mask, manifolds, entities[a], entities[b], -1) < 0
+        ):
+            distance = distance_to_activate(fat, a, b)
+            if distance < math.inf:
                 proximity[2 * proximity_count], proximity[2 * proximity_count + 1] = a, b
-                activation_distance[proximity_count] = ACTIVATION_RATIO * (reach_a + reach_b)
+                activation_distance[proximity_count] = distance
                 proximity_count += 1
                 continue
-            if _beside(motion, sizes, fat, a if reach_a > reach_b else b, b if reach_a > reach_b else a):
+            if beside(sizes, fat, a, b):
                 continue
         pairs[kept, 0], pairs[kept, 1], pairs[kept, 2] = a, b, -1
         kept += 1
@@ -174,7 +191,7 @@ def carry_over(
             points[2 * p] = old_points[2 * q]
             points[2 * p + 1] = old_points[2 * q + 1]
         else:
-            _make_blank(manifolds, points, p)
+            make_blank(manifolds, points, p)
             manifold = manifolds[p]
             manifold.entity_a, manifold.entity_b, manifold.wall = entities[a], entities[b], wall
         manifold = manifolds[p]
@@ -182,7 +199,7 @@ def carry_over(
 
 
 @inlined
-def _make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
+def make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
     """Clear a record of all contents."""
     manifold = manifolds[p]
     manifold.count, manifold.found, manifold.impact_count, manifold.slot, manifold.size = 0, 0, 0, -1, 0.0
@@ -225,7 +242,7 @@ def activate(
         p = count + k
         manifold = manifolds[p]
         a, b = np.int64(proximity[2 * near[k]]), np.int64(proximity[2 * near[k] + 1])
-        _make_blank(manifolds, points, p)
+        make_blank(manifolds, points, p)
         manifold.a, manifold.b, manifold.wall = a, b, -1
         manifold.entity_a, manifold.entity_b = entities[a], entities[b]
         scalar[scalar_count + k] = p

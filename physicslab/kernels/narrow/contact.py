@@ -14,7 +14,7 @@ __all__ = [
 ]  # fmt: skip
 
 ACTIVATION_RATIO = 1.02
-"""Distance within which two bodies may have contact points, as a multiple of the sum of their bounding radii."""
+"""Distance within which two bodies may have contact points, as a multiple of their bounding radii's sum."""
 CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found again."""
 CACHE_TURN_TOLERANCE = 0.002

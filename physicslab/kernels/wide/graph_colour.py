@@ -42,8 +42,8 @@ ADDED, SPARSE, FULL = range(3)
 """Results of :func:`add_constraints`: all steady contacts have slots; blocks must be rebuilt; or enlarged."""
 _SPARSE = 0.5
 """Share of slots in use below which blocks are rebuilt."""
-_ENTRY = 0.25
-"""Share of the sweep threshold below which a contact gets a slot: half of the share at which it loses it."""
+_ENTRY = 0.5
+"""Share of the speed at which a contact loses its slot, up to which it gets one."""
 
 _OF_FIXED = 48
 """The first colour of contacts with fixed bodies: they are solved last, and so are the most exact."""
@@ -58,7 +58,7 @@ def _is_steady(manifold: Manifold, one: Point, two: Point, linear: Vectors, h: f
     if one.separation < deep or (manifold.count == 2 and (two.separation < deep or two.ahead != 0)):
         return False
     ux, uy = (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h
-    loaded = one.normal_impulse > 0.0 or manifold.found == 2
+    loaded = one.normal_impulse > 0.0 or manifold.found == 2 or manifold.restitution == 0.0
     slow = _ENTRY * (CONTACT_MARGIN if loaded else SWEEP_THRESHOLD)
     return bool(ux * ux + uy * uy <= slow * slow * manifold.size * manifold.size)
 

@@ -16,8 +16,9 @@ from physicslab.kernels import Numbers, Rows, fused
 __all__ = [
     "ANGLE_A", "ANGLE_B", "ARM_AX", "ARM_AY", "ARM_BX", "ARM_BY", "BASE_X", "BASE_Y", "BOX", "BOX_ROWS",
     "DISC", "DISC_ROWS", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS", "MASS_A",
-    "MASS_B", "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "SEPARATION", "SIZE",
-    "TANGENT_IMPULSE", "TANGENT_MASS", "TURNS_A", "TURNS_B", "TWO", "WIDE", "Masks", "Slots", "SlotsTuple", "rows_of",
+    "MASS_B", "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "RESTITUTION", "SEPARATION", "SIZE",
+    "TANGENT_IMPULSE", "TANGENT_MASS", "TURNS_A", "TURNS_B", "TWO", "WIDE", "Masks", "Slots",
+    "SlotsTuple", "rows_of",
 ]  # fmt: skip
 
 WIDE = 8
@@ -36,8 +37,8 @@ ONE = 8 * WIDE
 """Offset of the first point."""
 
 # The arms of discs are along the normal.
-RADIUS_A, RADIUS_B = ONE + 5 * WIDE, ONE + 6 * WIDE
-DISC_ROWS = ONE + 7 * WIDE
+RADIUS_A, RADIUS_B, RESTITUTION = ONE + 5 * WIDE, ONE + 6 * WIDE, ONE + 7 * WIDE
+DISC_ROWS = ONE + 8 * WIDE
 """Numbers in a block of discs."""
 
 TWO = ONE + 10 * WIDE

@@ -44,6 +44,7 @@ from physicslab.kernels.wide.layout import (
     ONE,
     RADIUS_A,
     RADIUS_B,
+    RESTITUTION,
     SEPARATION,
     SIZE,
     TURNS_A,
@@ -68,15 +69,19 @@ _ONE_SPOT = 1e-300
 def _restless(slots: Slots, k: int, motion: Motion, h: float) -> int:
     """Return the slots of a block whose bodies move too far for their size in a substep, as bits.
 
-    Discs that do not press on each other may meet within it, at a time and with a normal to be found.
+    Discs that do not press on each other may meet within it, and bounce at a time and with a normal that are
+    to be found.
     """
     vax, vay = take_vectors(motion.linear, slots.a, k * WIDE)
     vbx, vby = take_vectors(motion.linear, slots.b, k * WIDE)
     at = k * rows_of(slots.kind)
     size = take(slots.data, at + SIZE)
-    limit = 0.5 * CONTACT_MARGIN * size
+    limit = CONTACT_MARGIN * size
     if slots.kind == DISC:
-        limit = choose(take(slots.data, at + ONE + IMPULSE) > 0.0, limit, 0.5 * SWEEP_THRESHOLD * size)
+        meets = (take(slots.data, at + ONE + IMPULSE) < _ONE_SPOT) & (
+            take(slots.data, at + RESTITUTION) > 0.0
+        )
+        limit = choose(meets, SWEEP_THRESHOLD * size, limit)
     ux, uy = (vbx - vax) * h, (vby - vay) * h
     return mask_bits(ux * ux + uy * uy > limit * limit)
 

@@ -38,6 +38,7 @@ from physicslab.kernels.wide.layout import (
     ONE,
     RADIUS_A,
     RADIUS_B,
+    RESTITUTION,
     SEPARATION,
     SIZE,
     TANGENT_IMPULSE,
@@ -97,7 +98,7 @@ def fill_slot(
     _fill_point(data, at + ONE, one)
     if slots.kind == DISC:
         ra, rb, linear = radius[i], radius[j], inverse.mass[i] + inverse.mass[j]
-        data[at + RADIUS_A], data[at + RADIUS_B] = ra, rb
+        data[at + RADIUS_A], data[at + RADIUS_B], data[at + RESTITUTION] = ra, rb, manifold.restitution
         data[at + ONE + MASS] = 1.0 / linear
         data[at + ONE + TANGENT_MASS] = 1.0 / (
             linear + inverse.inertia[i] * ra * ra + inverse.inertia[j] * rb * rb
