@@ -149,7 +149,8 @@ class BroadPhaseSystem(System):
         left.number = leaving.add_pairs(
             near_in(state), motion_of(state), sizes_of(state), state.bodies.inverse_mass,
             self.fat, self._boxes, left.moved, left.number, state.physics.bounds is not None, self.bounds,
-            left.first, left.body, left.home_x, left.home_y, left.indexed, h, ahead, speculative_margin(state, h),
+            left.first, left.body, left.home_x, left.home_y, left.indexed,
+            h, ahead, speculative_margin(state, h),
         )  # fmt: skip
         return left.number >= 0
 

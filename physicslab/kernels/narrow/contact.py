@@ -2,9 +2,9 @@
 
 import math
 
-from physicslab.kernels import Rows, fused, inlined
+from physicslab.kernels import Rows, Vectors, fused, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
-from physicslab.kernels.narrow.outline import Way, outline_of
+from physicslab.kernels.narrow.outline import Way, kept_outline
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point, Points
 
@@ -105,19 +105,24 @@ def forget_points(one: Point, two: Point) -> None:
 @fused
 def _look_up(
     manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, sizes: Sizes,
-    speculative_margin: float, tolerance: float,
+    speculative_margin: float, tolerance: float, circular: bool,
 ) -> int:  # fmt: skip
-    """Use what was found of two boxes, or of one and a wall, if they have hardly moved against each other.
+    """Use what was found of a pair with a box, if they have hardly moved against each other.
 
+    Points are kept of two boxes, or of one and a wall; that there are none, of any pair with a box.
     ``tolerance`` is a share of :data:`CACHE_TOLERANCE` and :data:`CACHE_TURN_TOLERANCE`. Returns what is
     known of them now. Where that is nothing, their present pose is recorded, for which their points are to be
     found.
     """
     a, b, width, height, angle = manifold.a, manifold.b, sizes.width, sizes.height, motion.angle
+    radius = sizes.radius
     size, sizes_of_both = min(width[b], height[b]), width[b] + 2.0 * height[b]
     if manifold.wall < 0:
         size = min(size, min(width[a], height[a]))
         sizes_of_both += 3.0 * width[a] + 5.0 * height[a]
+    if circular:
+        size = min(max(0.5 * width[a], radius[a]), max(0.5 * width[b], radius[b]))
+        sizes_of_both += 7.0 * radius[a] + 11.0 * radius[b]
     moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
     turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
     travel = abs(way.ux) + abs(way.uy)
@@ -129,7 +134,7 @@ def _look_up(
             nearest = manifold.gap - abs(moved_x) - abs(moved_y) - 0.5 * turned - 0.0025 * size
             if nearest > CONTACT_MARGIN * size + travel + speculative_margin:
                 return _APART
-        elif (
+        elif not circular and (
             abs(moved_x) + abs(moved_y) <= tolerance * CACHE_TOLERANCE * size
             and abs(turn_a) <= tolerance * CACHE_TURN_TOLERANCE
             and abs(turn_b) <= tolerance * CACHE_TURN_TOLERANCE
@@ -146,18 +151,18 @@ def _look_up(
 @fused
 def touch(
     manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, sizes: Sizes, bounds: Bounds,
-    h: float, start: float, speculative_margin: float,
+    rotations: Vectors, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Find the points of a pair, of whatever shapes."""
     b = manifold.b
-    body = outline_of(b, motion.angle, sizes)
+    body = kept_outline(b, motion.angle, sizes, rotations)
     if manifold.wall >= 0:
         farthest = math.sqrt(body.half_x * body.half_x + body.half_y * body.half_y)
         spin = abs(motion.angular[b]) * h * farthest
         place = Way(motion.position[b, 0], motion.position[b, 1], way.ux, way.uy)
         touch_wall(manifold, one, two, place, spin, speculative_margin, body, bounds.walls)
         return
-    other = outline_of(manifold.a, motion.angle, sizes)
+    other = kept_outline(manifold.a, motion.angle, sizes, rotations)
     if other.box and body.box:
         touch_boxes(manifold, one, two, way, start, speculative_margin, other, body)
     else:
@@ -212,19 +217,24 @@ def find_contacts(
         )  # fmt: skip
         boxes = int(sizes.kind[a] == 2) + int(sizes.kind[b] == 2)
         walled = manifold.wall >= 0
+        circular = not walled and boxes == 1
         round_pair = not had_points and (sizes.kind[b] != 2 if walled else boxes == 0)
         if round_pair and _too_far(manifold, way, motion, sizes, bounds, speculative_margin):
             continue
         manifold.offset_x, manifold.offset_y = way.dx, way.dy
         known = _OUTDATED
-        if sizes.kind[b] == 2 and (walled or boxes == 2):
-            known = _look_up(manifold, near.points, p, way, motion, sizes, speculative_margin, tolerance)
+        if sizes.kind[b] == 2 if walled else boxes > 0:
+            known = _look_up(
+                manifold, near.points, p, way, motion, sizes, speculative_margin, tolerance, circular
+            )
             if known == _APART:
                 continue
-        else:
-            manifold.found = 0
         if known == _OUTDATED:
-            touch(manifold, one, two, way, motion, sizes, bounds, h, start, speculative_margin)
+            touch(
+                manifold, one, two, way, motion, sizes, bounds, near.rotations, h, start, speculative_margin
+            )
+            if circular:
+                manifold.found = 2 if manifold.count == 0 else 0
         if manifold.count > 0:
             if first or known == _OUTDATED:
                 effective_masses(manifold, near.points, p, inverse)

@@ -160,7 +160,7 @@ def _find_again(
         (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h,
     )  # fmt: skip
     manifold.offset_x, manifold.offset_y = way.dx, way.dy
-    touch(manifold, one, two, way, motion, sizes, bounds, h, start, speculative_margin)
+    touch(manifold, one, two, way, motion, sizes, bounds, near.rotations, h, start, speculative_margin)
     deep = -_DEEP * manifold.size
     fits = manifold.count > 0 and manifold.swept == 0 and one.separation >= deep
     if not fits or (manifold.count == 2 and two.separation < deep):
