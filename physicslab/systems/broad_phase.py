@@ -82,6 +82,10 @@ class BroadPhaseSystem(System):
     fat : float64 array (6, rows)
         Where each body was (x, y, angle), its bounding radius then, the margin around it, and how far its box
         has grown since all were made [m].
+    boxes : float64 array (rows, 4)
+        The fat boxes: xmin, ymin, xmax, ymax [m].
+    leavers : Leavers
+        Which bodies have left theirs since all were made.
     bounds : float64 array (4,)
         Of the world: xmin, ymin, xmax, ymax [m].
     """
@@ -94,8 +98,8 @@ class BroadPhaseSystem(System):
 
     def __init__(self) -> None:
         self.fat: NDArray[np.float64] = np.zeros((6, 0))
-        self._left = Leavers(0)
-        self._boxes: NDArray[np.float64] = np.zeros((0, 4))
+        self.leavers = Leavers(0)
+        self.boxes: NDArray[np.float64] = np.zeros((0, 4))
         self._couples: NDArray[np.uint32] = np.zeros(512, np.uint32)
         self._pairs: NDArray[np.int64] = np.zeros((512, 3), np.int64)
         self.bounds: NDArray[np.float64] = np.zeros(4)
@@ -117,8 +121,8 @@ class BroadPhaseSystem(System):
         """Make room for every row; where the list is stale, invalidate every fat box."""
         rows = len(state.entity_index)
         if self.fat.shape[1] != rows:
-            self.fat, self._boxes = np.zeros((6, rows)), np.zeros((rows, 4))
-            self._left = Leavers(rows)
+            self.fat, self.boxes = np.zeros((6, rows)), np.zeros((rows, 4))
+            self.leavers = Leavers(rows)
             state.contacts.stale = True
         if state.contacts.stale:
             self.fat[3] = np.nan
@@ -139,16 +143,16 @@ class BroadPhaseSystem(System):
 
     def _add_pairs(self, state: State, h: float, ahead: float) -> bool:
         """Add the new pairs of those bodies; return whether that was possible."""
-        left, kind = self._left, state.table(Shape)["kind"]
+        left, kind = self.leavers, state.table(Shape)["kind"]
         if len(kind) <= _FEW or left.crowded or state.contacts.stale:
             return False
         if left.indexed is None:
             left.indexed = leaving.index_bodies(
-                self._boxes, kind, left.first, left.body, left.home_x, left.home_y
+                self.boxes, kind, left.first, left.body, left.home_x, left.home_y
             )
         left.number = leaving.add_pairs(
             near_in(state), motion_of(state), sizes_of(state), state.bodies.inverse_mass,
-            self.fat, self._boxes, left.moved, left.number, state.physics.bounds is not None, self.bounds,
+            self.fat, self.boxes, left.moved, left.number, state.physics.bounds is not None, self.bounds,
             left.first, left.body, left.home_x, left.home_y, left.indexed,
             h, ahead, speculative_margin(state, h),
         )  # fmt: skip
@@ -156,11 +160,11 @@ class BroadPhaseSystem(System):
 
     def _list_all(self, state: State, ahead: float, margin: float) -> None:
         """List all near pairs again."""
-        fat_boxes(motion_of(state), sizes_of(state), self.fat, self._boxes, ahead, margin)
+        fat_boxes(motion_of(state), sizes_of(state), self.fat, self.boxes, ahead, margin)
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
         found, walls = self._count_pairs(state.table(Shape)["kind"], inverse_mass, bounded)
-        self._left.begin()
+        self.leavers.begin()
         partition(state, self._couples, found, self._pairs, walls, self.fat)
 
     def _count_pairs(
@@ -168,8 +172,8 @@ class BroadPhaseSystem(System):
     ) -> tuple[int, int]:
         """Find the pairs, with more room where it is too little; return how many of bodies, of walls."""
         while True:
-            found, walls, self._left.crowded = grid.find_pairs(
-                self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs, self._couples
+            found, walls, self.leavers.crowded = grid.find_pairs(
+                self.boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs, self._couples
             )
             if 2 * found <= len(self._couples) and found + walls <= len(self._pairs):
                 return found, walls

@@ -104,7 +104,7 @@ def _overlap(box: tuple[float, float, float, float], boxes: Vectors, j: int) -> 
 
 
 class Leaver(NamedTuple):
-    """A body that has left its fat box: its row, its new box, the one before, and whether it left none yet."""
+    """A body that has left its fat box: its row, its new box, the one before, whether it left none yet."""
 
     row: int
     box: tuple[float, float, float, float]
