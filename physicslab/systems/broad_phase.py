@@ -139,7 +139,7 @@ class BroadPhaseSystem(System):
         awake = state.bodies.awake_inverse_mass
         ahead = h * _lookahead(state.sleep.count, int(np.count_nonzero(awake)))
         if not self._add_pairs(state, h, ahead):
-            self._list_all(state, ahead, speculative_margin(state, h))
+            self._list_all(state, awake, ahead, speculative_margin(state, h))
 
     def _add_pairs(self, state: State, h: float, ahead: float) -> bool:
         """Add the new pairs of those bodies; return whether that was possible."""
@@ -158,9 +158,9 @@ class BroadPhaseSystem(System):
         )  # fmt: skip
         return left.number >= 0
 
-    def _list_all(self, state: State, ahead: float, margin: float) -> None:
+    def _list_all(self, state: State, awake: NDArray[np.float64], ahead: float, margin: float) -> None:
         """List all near pairs again."""
-        fat_boxes(motion_of(state), sizes_of(state), self.fat, self.boxes, ahead, margin)
+        fat_boxes(motion_of(state), sizes_of(state), awake, self.fat, self.boxes, ahead, margin)
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
         found, walls = self._count_pairs(state.table(Shape)["kind"], inverse_mass, bounded)

@@ -11,12 +11,14 @@ from physicslab.kernels.arguments import Motion, MotionTuple, Sizes, SizesTuple
 from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN
 
-__all__ = ["CORNERWISE", "fat_boxes", "fatten", "left", "still_holds"]
+__all__ = ["CORNERWISE", "fat_boxes", "fatten", "left", "still_holds", "usual_speed"]
 
 CORNERWISE = math.sqrt(2.0)
 """Largest ratio of the distance of two boxes to their distance along the normal of a side."""
 _BOX_SHARE = 0.5 * CORNERWISE * (1.5 * CONTACT_MARGIN + CACHE_TOLERANCE)
 """Share of its smaller side up to which a slow box is one half of a pair that has points, or keeps them."""
+_HIT_SHARE = 1.0
+"""Share of its bounding radius by which the margin of a slow body is increased at most."""
 _TURN_SHARE = CORNERWISE * CACHE_TURN_TOLERANCE
 """The same for points that are kept while it turns, as a share of its bounding radius."""
 
@@ -93,10 +95,26 @@ def still_holds(
 
 
 @inlined
+def usual_speed(motion: Motion, sizes: Sizes) -> float:
+    """Return the mean speed [m/s] of what moves."""
+    moving, speeds = 0, 0.0
+    for i in range(len(motion.angle)):
+        speed = abs(motion.linear[i, 0]) + abs(motion.linear[i, 1])
+        if speed > 0.0 and sizes.kind[i] != 0:
+            moving += 1
+            speeds += min(speed, 1e9)
+    return speeds / moving if moving else 0.0
+
+
+@inlined
 def fatten(
-    i: int, motion: Motion, sizes: Sizes, fat: Vectors, h: float, speculative_margin: float
+    i: int, motion: Motion, sizes: Sizes, fat: Vectors, h: float, usual: float, speculative_margin: float
 ) -> tuple[float, float, float, float]:
-    """Return the fat box (xmin, ymin, xmax, ymax) of body i, good for some three steps of four substeps h."""
+    """Return the fat box (xmin, ymin, xmax, ymax) of body i, good for some three steps of four substeps h.
+
+    A slow body among fast ones is likely to be hit: if the ``usual`` speed [m/s] is larger than its own, its
+    margin goes by that, but for no more than a share of its size.
+    """
     kind, angle = sizes.kind[i], motion.angle[i]
     x, y, width, height = motion.position[i, 0], motion.position[i, 1], sizes.width[i], sizes.height[i]
     reach = _bounding_radius(kind, sizes.radius[i], width, height)
@@ -105,7 +123,8 @@ def fatten(
         c, s = abs(math.cos(angle)), abs(math.sin(angle))
         half_x, half_y = 0.5 * (c * width + s * height), 0.5 * (s * width + c * height)
     speed = max(abs(motion.linear[i, 0]), abs(motion.linear[i, 1]))
-    margin = 0.08 * min(half_x, half_y) + 13.0 * h * speed
+    likely = min(13.0 * h * usual, _HIT_SHARE * reach)
+    margin = 0.08 * min(half_x, half_y) + max(13.0 * h * speed, likely)
     margin += 2.0 * h * abs(motion.angular[i]) * (reach if kind == 2 else 0.0)
     margin += _touching_distance(kind, reach, width, height, speculative_margin)
     fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i] = x, y, angle, reach, margin
@@ -114,14 +133,16 @@ def fatten(
 
 @kernel
 def fat_boxes(
-    plain_motion: MotionTuple, plain_sizes: SizesTuple, fat: Vectors, boxes: Vectors, h: float,
-    speculative_margin: float,
+    plain_motion: MotionTuple, plain_sizes: SizesTuple, inverse_mass: Numbers, fat: Vectors, boxes: Vectors,
+    h: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Make each body's fat box (xmin, ymin, xmax, ymax), good for some three steps of four substeps h."""
     motion, sizes = Motion(*plain_motion), Sizes(*plain_sizes)
+    usual = usual_speed(motion, sizes)
     for i in range(len(motion.angle)):
         fat[3, i] = 0.0
         if sizes.kind[i] != 0:
+            hit = usual if inverse_mass[i] > 0.0 else 0.0
             boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = fatten(
-                i, motion, sizes, fat, h, speculative_margin
+                i, motion, sizes, fat, h, hit, speculative_margin
             )

@@ -12,7 +12,7 @@ import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, fused, inlined, kernel
 from physicslab.kernels.arguments import Motion, MotionTuple, Near, NearTuple, Sizes, SizesTuple, named_near
-from physicslab.kernels.broad.fat_boxes import fatten, left
+from physicslab.kernels.broad.fat_boxes import fatten, left, usual_speed
 from physicslab.kernels.broad.near_pairs import beside, distance_to_activate, make_blank
 from physicslab.kernels.near_counts import PROXIMITY, RECORDED, SCALAR, UNORDERED
 
@@ -20,8 +20,9 @@ __all__ = ["add_pairs", "index_bodies"]
 
 _CELL_LIMIT = 1e15
 """Number of the farthest cell: beyond it, float64 does not resolve neighbouring cells."""
-_MAX_SHARE = 0.25
-"""Share of the bodies that may leave their fat boxes before all are made again."""
+_BODIES, _RECORDS = 20, 8
+"""All pairs are listed again when one in so many bodies has left, and one more for so many records: to find
+the new pairs of a body takes as long as to list so many again."""
 _MAX_LARGE = 64
 """Number of large bodies up to which a leaver looks at each, and a sixteenth of all bodies beyond."""
 _MAX_CELLS = 256
@@ -213,7 +214,7 @@ def _add_pairs(
 ) -> int:  # fmt: skip
     """Do what :func:`add_pairs` describes; where it is given up, counts are too large."""
     rows, counts, growth = len(motion.angle), near.counts, 0.0
-    limit = int(_MAX_SHARE * rows)
+    limit, usual = rows // _BODIES + counts[RECORDED] // _RECORDS, usual_speed(motion, sizes)
     for i in range(rows):
         if moved[i]:
             growth = max(growth, fat[5, i])
@@ -224,7 +225,8 @@ def _add_pairs(
             return -1
         before = boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3]
         old = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i]
-        x0, y0, x1, y1 = fatten(i, motion, sizes, fat, ahead, speculative_margin)
+        hit = usual if inverse_mass[i] > 0.0 else 0.0
+        x0, y0, x1, y1 = fatten(i, motion, sizes, fat, ahead, hit, speculative_margin)
         new = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i]
         if new[3] != old[3]:
             return -1
