@@ -103,10 +103,18 @@ class BroadPhaseSystem(System):
         self._couples: NDArray[np.uint32] = np.zeros(512, np.uint32)
         self._pairs: NDArray[np.int64] = np.zeros((512, 3), np.int64)
         self.bounds: NDArray[np.float64] = np.zeros(4)
+        self._listed_for: tuple[object, ...] = ()
 
     def attach(self, state: State) -> None:
-        """Mark the list as stale: bodies came, went or changed."""
-        state.contacts.stale = True
+        """Mark the list as stale where bodies came, went or changed, or contacts are found in another way.
+
+        The other laws do not change what is near what.
+        """
+        ways = state.event_driven, state.rigid_contacts
+        listed_for = (state.entity_index.revision, state.physics.bounds, state.simulation, *ways)
+        if listed_for != self._listed_for:
+            self._listed_for = listed_for
+            state.contacts.stale = True
         if state.physics.bounds is not None:
             self.bounds[:] = state.physics.bounds
 
