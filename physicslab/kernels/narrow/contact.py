@@ -144,7 +144,8 @@ def _touch(
     if other.box and body.box:
         touch_boxes(manifold, one, two, way, start, speculative_margin, other, body)
     else:
-        touch_with_circle(manifold, one, way, start, speculative_margin, other, body)
+        turn = motion.angular[manifold.a] if other.box else (motion.angular[b] if body.box else 0.0)
+        touch_with_circle(manifold, one, way, turn * h, start, speculative_margin, other, body)
 
 
 @inlined
