@@ -203,7 +203,7 @@ def touch_boxes(
         margin = CONTACT_MARGIN * size + speculative_margin
         x, y = dx + start * ux, dy + start * uy
         t = 0.0
-        if box_box(x, y, 0.0, 0.0, a, b, -math.inf)[0] > 0.0:
+        if box_box(x, y, 0.0, 0.0, a, b, -math.inf, 0)[0] > 0.0:
             t = sweep_box_box(Way(x, y, ux, uy), a, b)
         if t == MISS:
             manifold.count = 0
@@ -212,7 +212,8 @@ def touch_boxes(
         x, y = dx + lead_x, dy + lead_y
         manifold.swept = 1
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
-    gap, nx, ny, count, first, second = box_box(x, y, ux, uy, a, b, margin)
+    old = one.feature if manifold.count > 0 else 0
+    gap, nx, ny, count, first, second = box_box(x, y, ux, uy, a, b, margin, old)
     if not manifold.swept:
         manifold.gap = gap
     manifold.count = count

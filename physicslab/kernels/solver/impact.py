@@ -277,7 +277,7 @@ def _resolve_once(
             manifold.impact_count += 1 if met else 0
             energetic += 1 if law == ENERGETIC else 0
             lowered += 1 if law == LOWERED else 0
-        left += 1 - one.ahead
+        left += 1 - (min(one.ahead, two.ahead) if manifold.count == 2 else one.ahead)
     return bounced, left, energetic, lowered
 
 
