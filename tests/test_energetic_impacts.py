@@ -156,8 +156,7 @@ def test_an_impact_scales_and_is_mirrored(struck: Struck, factor: float) -> None
     assert faster == pytest.approx((factor * normal, factor * tangent), rel=1e-9, abs=1e-12 * factor * normal)
 
 
-@numba.njit
-def integrated(
+def by_parts(
     kn: float, kt: float, between: float, v: float, sliding: float, e: float, mu: float, parts: int
 ) -> tuple[float, float]:
     """Return the impulses by small parts of the normal one: dv/dp = kn + between f, ds/dp = between + kt f.
@@ -180,6 +179,9 @@ def integrated(
             return normal, tangent
         v, sliding = after, sliding + part * (between + kt * f)
         normal, tangent, balance = normal + part, tangent + f * part, balance + work
+
+
+integrated: Any = numba.njit(by_parts)
 
 
 @settings(max_examples=1000, deadline=None)
