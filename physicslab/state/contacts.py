@@ -87,7 +87,11 @@ class Contacts:
     left = _count(near_counts.LEFT, "How many pairs the impacts of this substep have left to the solver.")
     logged = _count(near_counts.LOGGED, "How many impacts were ever logged.")
     restitutions_lowered = _count(
-        near_counts.LOWERED, "How many impacts had their restitution lowered, so that no energy was made."
+        near_counts.LOWERED,
+        "How many impacts of two points had their restitution lowered, so that no energy was made.",
+    )
+    energetic_impacts = _count(
+        near_counts.ENERGETIC, "How many impacts obeyed Stronge's law, as Newton's would have made energy."
     )
     unordered = _count(
         near_counts.UNORDERED, "Whether scalar pairs were added since those were last put in order."

@@ -105,7 +105,7 @@ def forget_points(one: Point, two: Point) -> None:
 @fused
 def _look_up(
     manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, sizes: Sizes,
-    speculative_margin: float, tolerance: float, circular: bool,
+    h: float, speculative_margin: float, tolerance: float, circular: bool,
 ) -> int:  # fmt: skip
     """Use what was found of a pair with a box, if they have hardly moved against each other.
 
@@ -120,12 +120,16 @@ def _look_up(
     if manifold.wall < 0:
         size = min(size, min(width[a], height[a]))
         sizes_of_both += 3.0 * width[a] + 5.0 * height[a]
+    travel = abs(way.ux) + abs(way.uy)
     if circular:
+        spin = abs(motion.angular[a]) * (width[a] + height[a]) + abs(motion.angular[b]) * (
+            width[b] + height[b]
+        )
+        travel += 0.5 * h * spin  # how far a corner comes
         size = min(max(0.5 * width[a], radius[a]), max(0.5 * width[b], radius[b]))
         sizes_of_both += 7.0 * radius[a] + 11.0 * radius[b]
     moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
     turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
-    travel = abs(way.ux) + abs(way.uy)
     slow = travel <= 0.5 * CONTACT_MARGIN * size
     if manifold.found == 2 and manifold.base_sizes == sizes_of_both:
         if manifold.count == 0:
@@ -166,7 +170,8 @@ def touch(
     if other.box and body.box:
         touch_boxes(manifold, one, two, way, start, speculative_margin, other, body)
     else:
-        touch_with_circle(manifold, one, way, start, speculative_margin, other, body)
+        turn = motion.angular[manifold.a] if other.box else (motion.angular[b] if body.box else 0.0)
+        touch_with_circle(manifold, one, way, turn * h, start, speculative_margin, other, body)
 
 
 @inlined
@@ -225,7 +230,7 @@ def find_contacts(
         known = _OUTDATED
         if sizes.kind[b] == 2 if walled else boxes > 0:
             known = _look_up(
-                manifold, near.points, p, way, motion, sizes, speculative_margin, tolerance, circular
+                manifold, near.points, p, way, motion, sizes, h, speculative_margin, tolerance, circular
             )
             if known == _APART:
                 continue
