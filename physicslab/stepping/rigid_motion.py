@@ -68,8 +68,9 @@ class MadeStep:
         Of the points that are closed at the end: what they are, where they are, and their forces [N].
     closed, impacts, evaluations : int
         How many points are closed at the end; how many impacts and force evaluations there were.
-    lowered : int
-        How often restitutions were lowered, as Newton's law would have made energy.
+    energetic, lowered : int
+        How many impacts obeyed Stronge's law, and how often those of several points had their restitutions
+        lowered, as Newton's law would have made energy.
     energy_added : float
         By moving bodies apart that overlapped [J].
     work : int
@@ -87,6 +88,7 @@ class MadeStep:
     closed: int = 0
     impacts: int = 0
     evaluations: int = 0
+    energetic: int = 0
     lowered: int = 0
     energy_added: float = 0.0
     work: int = 0
@@ -256,7 +258,7 @@ class RigidMotion:
             time_stepping.drift(soon, v, h)
             found = self._meet(scene, state, soon, 0.0, none, 2.0 / h, 1, time)
             self._note(found, state, made)
-            why, points = found[0], found[6]
+            why, points = found[0], found[7]
             if why != motion.DONE or points == 0:
                 return why
             made.closed = points
@@ -273,7 +275,7 @@ class RigidMotion:
     def _meet(
         self, scene: tuple[Any, ...], state: State, place: NDArray[np.float64], within: float, none: float,
         rate: float, repeats: int, time: float,
-    ) -> tuple[int, int, float, float, int, bool, int, int]:  # fmt: skip
+    ) -> tuple[int, int, float, float, int, int, int, int, int]:  # fmt: skip
         """Call :func:`motion.meet` for the state of motion."""
         contacts = state.contacts
         return motion.meet(
@@ -282,10 +284,11 @@ class RigidMotion:
         )  # fmt: skip
 
     def _note(
-        self, found: tuple[int, int, float, float, int, bool, int, int], state: State, made: MadeStep
+        self, found: tuple[int, int, float, float, int, int, int, int, int], state: State, made: MadeStep
     ) -> None:
         """Note the impacts that were found."""
         state.contacts.logged += found[4]
         made.impacts += found[4]
-        made.lowered += found[5]
-        made.work += found[7] // 4
+        made.energetic += found[5]
+        made.lowered += found[6]
+        made.work += found[8] // 4

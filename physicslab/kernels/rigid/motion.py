@@ -147,7 +147,7 @@ def meet(
     scene: SceneTuple, equations: EquationsTuple, room: EquationsTuple, acceleration: Numbers,
     place: Numbers, q: Numbers, v: Numbers, within: float, none: float, rate: float, repeats: int,
     entities: Rows, log: Impacts, logged: int, time: float,
-) -> tuple[int, int, float, float, int, bool, int, int]:  # fmt: skip
+) -> tuple[int, int, float, float, int, int, int, int, int]:  # fmt: skip
     """Find which points touch at ``place``, and let those that approach in (q, v) bounce; repeat both.
 
     An impact can change which faces two boxes turn to each other. With 0 repeats, points that are
@@ -155,28 +155,29 @@ def meet(
     points that would touch in 1 / ``rate`` seconds do.
 
     Returns why the motion cannot go on (DONE if it can), how many points touch, the speed that counts as none
-    [m/s], the deepest overlap as a share of a size; how many impacts there were, whether restitutions were
-    lowered to keep the energy, how many points the last impulses act at, which are left in ``room`` where
-    there is one repeat, and the work of all rounds (1 + n^4 / 500 for n points).
+    [m/s], the deepest overlap as a share of a size; how many impacts there were, how many obeyed Stronge's
+    law, how often restitutions were lowered to keep the energy, how many points the last impulses act at,
+    which are left in ``room`` where there is one repeat, and the work of all rounds (1 + n^4 / 500 for n
+    points).
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
-    count, rest, deepest, impacts, lowered, last, work = 0, 0.0, 0.0, 0, False, 0, 0
+    count, rest, deepest, impacts, energetic, lowered, last, work = 0, 0.0, 0.0, 0, 0, 0, 0, 0
     for _ in range(max(repeats, 1)):
         accelerate(place, v, acceleration, of.inverse_mass, of.damping, of.calls)
         rest, _ = rest_limits(of, acceleration, v)
         count, deepest = find_touching(of, points, scratch, place, v, within)
         if count > len(points.points):
-            return TOO_MANY, 0, rest, deepest, impacts, lowered, last, work
+            return TOO_MANY, 0, rest, deepest, impacts, energetic, lowered, last, work
         if repeats == 0 or not _any_approaches(of, points, count, place, v, rest):
             break
-        new, solved, kept, last, rounds = resolve_blows(
+        new, solved, by_energy, kept, last, rounds = resolve_blows(
             of, points, count, scratch, q, v, max(rest, none), rate, entities, log, logged + impacts, time
         )
-        impacts, lowered = impacts + new, lowered or kept
+        impacts, energetic, lowered = impacts + new, energetic + by_energy, lowered + kept
         work += rounds * (500 + count * count * count * count) // 500
         if not solved:
-            return UNRESOLVED, count, rest, deepest, impacts, lowered, last, work
-    return DONE, count, rest, deepest, impacts, lowered, last, work
+            return UNRESOLVED, count, rest, deepest, impacts, energetic, lowered, last, work
+    return DONE, count, rest, deepest, impacts, energetic, lowered, last, work
 
 
 @inlined
