@@ -190,10 +190,10 @@ class RigidMotion:
             if why != motion.DONE:
                 return _WHY[why]
             time_stepping.drift(q, v, 0.5 * h)
+            refused = self._move_apart(scene, state, math.inf, made, pay=True)
+            if refused:
+                return refused
         made.forces /= h
-        refused = self._move_apart(scene, state, math.inf, made, pay=True)
-        if refused:
-            return refused
         self._find_forces(scene, state, at + left, made)
         return ""
 
