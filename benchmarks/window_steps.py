@@ -11,16 +11,11 @@ frame systems use what they have recorded, as in the program. SDL's dummy driver
 from __future__ import annotations
 
 import argparse
-import os
 import statistics
 from pathlib import Path
 from typing import Any
 
-os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
-
-import pygame
-
-from physicslab.desktop.sandbox import Sandbox
+from physicslab.desktop.timed_window import InWindow
 from physicslab.files.json_text import json_text
 from physicslab.lab.bench.catalogue import SCENES
 from physicslab.lab.bench.clock import take_turns
@@ -28,14 +23,8 @@ from physicslab.lab.bench.engine import OurEngine
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.document import lab_document, machine_text
 from physicslab.lab.table import table
-from physicslab.systems.system import Stage
-from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.window.window import Window
-from physicslab.world import World
 
 DEFAULT = ("circles_10", "pyramid_30", "pyramid_60", "pile_1000", "pile_4000", "gas_2000")
-SIZE = (1280, 720)
-FRAME = 1.0 / 60.0
 TURN_MS = 8.0
 """How long a turn takes about: long enough for the clock, short enough for noise to be the same for all."""
 FORMS = {
@@ -54,34 +43,18 @@ class SingleSteps(OurEngine):
             self.world.step()
 
 
-class WindowSteps(SingleSteps):
-    """A world that is stepped so with the systems of a window installed."""
-
-    def __init__(self, world: World) -> None:
-        super().__init__(world)
-        self._sandbox = Sandbox(world, Window(PygameCanvas(pygame.display.set_mode(SIZE))))
-
-    def draw(self) -> None:
-        """Draw a frame, without a step."""
-        self._sandbox.world.frame(Stage.INPUT, FRAME)
-        self._sandbox.world.frame(Stage.RENDER, FRAME)
-        self._sandbox.world.frame(Stage.HUD, FRAME)
-
-
 def measure(scene: BenchScene, rounds: int, *, falling: bool) -> dict[str, Any]:
     """Return medians of a step of each kind [ms], and of their ratios."""
-    window = WindowSteps(scene.build())
-    engines = (window, SingleSteps(scene.build()), OurEngine(scene.build()))
-    settling = 1 if falling else round(scene.seconds / window.dt)
+    engines = (InWindow(scene.build()), SingleSteps(scene.build()), OurEngine(scene.build()))
+    settling = 1 if falling else round(scene.seconds / engines[0].dt)
     for engine in engines:
         engine.run(settling)
-    window.draw()
+        engine.pause()
     block = 10
     if not falling:
         *_, warm = take_turns(engines, 3, block)
         block = min(500, max(10, round(TURN_MS / statistics.median(warm[1].step))))
     for spent in take_turns(engines, rounds, block):
-        window.draw()
         times = spent
     in_window, stepped, run = (spent.step for spent in times)
     return {

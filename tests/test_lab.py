@@ -3,18 +3,20 @@
 import dataclasses
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 import pytest
 
 from physicslab import cli
-from physicslab.components import Transform
+from physicslab.components import Mass, Name, Transform, Velocity
+from physicslab.desktop.timed_window import InWindow
 from physicslab.lab.accuracy.catalogue import PROBLEMS
-from physicslab.lab.bench.catalogue import SCENES, by_default
-from physicslab.lab.bench.engine import OurEngine, TurningGravity
+from physicslab.lab.bench.catalogue import SCENES, by_default, discs
+from physicslab.lab.bench.engine import OurEngine, prepared
 from physicslab.lab.bench.measure import measure_scene
-from physicslab.lab.bench.moving import MOVING
+from physicslab.lab.bench.moving import FUNNELS, MOVING, chains, funnel, heap, tumbler
 from physicslab.lab.bench.result import SceneResult
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.case import Case, Catalogue, attempt, run_jobs
@@ -23,6 +25,7 @@ from physicslab.lab.peers.peer import find_contacts
 from physicslab.lab.stability.catalogue import CASES
 from physicslab.lab.table import Columns, table
 from physicslab.state.masses import Diverged
+from physicslab.world import World
 
 
 def test_jobs_run_one_after_the_other_and_count_by_their_weight() -> None:
@@ -94,12 +97,12 @@ def test_names_are_listed_and_nothing_is_run(
 
 def test_scenes_that_move_are_run_only_where_they_are_named() -> None:
     moving = {scene.name for scene in MOVING}
-    assert moving == {"funnel", "funnel_floor", "heap", "chains", "tumbler"}
+    assert moving == {"funnel", "funnel_open", "heap", "chains", "tumbler"}
     assert not moving & {scene.name for scene in by_default()}
     assert moving == {scene.name for scene in SCENES.select("moving")}
 
 
-@pytest.mark.parametrize("scene", MOVING, ids=lambda scene: scene.name)
+@pytest.mark.parametrize("scene", [*MOVING, FUNNELS[0]], ids=lambda scene: scene.name)
 def test_scenes_that_move_are_the_same_each_time(scene: BenchScene) -> None:
     worlds = scene.build(), scene.build()
     one, two = (world.table(Transform)["position"] for world in worlds)
@@ -109,17 +112,72 @@ def test_scenes_that_move_are_the_same_each_time(scene: BenchScene) -> None:
     assert worlds[0].contacts.max_penetration <= 0.0, "nothing overlaps at the start"
 
 
+def test_every_scene_states_its_contacts() -> None:
+    for name, scene in SCENES.items():
+        if scene.size <= 4_000:
+            simulation = scene.build().simulation
+            stated = simulation.contacts, simulation.collisions
+            assert stated == (("auto", "auto") if name == "circles_10_auto" else ("soft", "step")), name
+
+
+def small_of_each_kind() -> list[BenchScene]:
+    """Return scenes of every kind that moves or is edited, of few bodies."""
+    builds: dict[str, Callable[[], World]] = {
+        "funnel": partial(funnel, 40), "funnel_open": partial(funnel, 40, floored=False),
+        "heap": partial(heap, 40), "chains": partial(chains, 2, 3), "tumbler": partial(tumbler, 40),
+    }  # fmt: skip
+    builds |= {scene.name: partial(discs, 40) for scene in SCENES.select("edits")}
+    small = partial(dataclasses.replace, seconds=0.1, steps=12)
+    return [small(SCENES[name], build=build) for name, build in builds.items()]
+
+
+@pytest.mark.parametrize("scene", small_of_each_kind(), ids=lambda scene: scene.name)
+def test_scenes_that_move_are_timed(scene: BenchScene) -> None:
+    *_, result = measure_scene(scene)
+    assert isinstance(result, SceneResult)
+    assert result.ours.step is not None and result.ours.begin is not None and result.right
+
+
+def test_edits_reach_their_body_before_every_step() -> None:
+    found = {}
+    for scene in SCENES.select("edits"):
+        assert scene.edit is not None
+        world = discs(10)
+        body = world.batch(Transform, Velocity).entities[-1]
+        mass, x = world.component(body, Mass).mass, world.component(body, Transform).position.x
+        scene.edit(world, 0)
+        after = world.component(body, Mass).mass, world.component(body, Transform).position.x
+        name = world.component(body, Name).id if world.has(body, Name) else ""
+        found[scene.name] = name, after[0] / mass, after[1] - x
+        scene.edit(world, 1)
+        assert world.component(body, Mass).mass == pytest.approx(mass, rel=1e-15)
+        assert world.component(body, Transform).position.x == pytest.approx(x, abs=1e-15)
+    assert found == {
+        "edit_name": ("disc 0", 1.0, 0.0),
+        "edit_mass": ("", pytest.approx(1.1), 0.0),
+        "edit_position": ("", 1.0, pytest.approx(1e-3)),
+    }
+
+
+def test_a_scene_is_stepped_in_a_window() -> None:
+    scene = dataclasses.replace(SCENES["circles_10_window"], seconds=0.1, steps=12)
+    assert scene.in_window
+    engines: list[InWindow] = []
+
+    def in_window(world: World) -> InWindow:
+        engines.append(InWindow(world))
+        return engines[-1]
+
+    *_, result = measure_scene(scene, make=in_window)
+    assert isinstance(result, SceneResult) and result.ours.step is not None
+    (engine,) = engines
+    assert engine.world.schedule.timings["RenderSystem"].calls > 0, "frames are drawn between turns"
+
+
 def test_gravity_turns_with_the_time_of_the_steps() -> None:
-    tumbler = SCENES["tumbler"]
-    assert tumbler.gravity_at is not None
-    engine = TurningGravity(OurEngine(SCENES["circles_10"].build()), tumbler.gravity_at)
+    engine = prepared(OurEngine(SCENES["circles_10"].build()), SCENES["tumbler"])
     for _ in range(31):
         engine.step()
     gravity = engine.look().physics.gravity
     angle = math.radians(-90.0 + 15.0)  # half a second after the first step
     assert tuple(gravity) == pytest.approx((9.81 * math.cos(angle), 9.81 * math.sin(angle)))
-    small = dataclasses.replace(
-        SCENES["circles_10_stepped"], gravity_at=tumbler.gravity_at, seconds=0.1, steps=3, quality=()
-    )
-    *_, result = measure_scene(small)
-    assert isinstance(result, SceneResult) and result.ours.step is not None and not result.ours.failure

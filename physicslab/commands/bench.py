@@ -14,7 +14,7 @@ from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, lis
 from physicslab.ecs.text import printable
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT, SCENES, by_default, opened
 from physicslab.lab.bench.document import document
-from physicslab.lab.bench.engine import PEERS, missing_peers
+from physicslab.lab.bench.engine import PEERS, OurEngine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
 from physicslab.lab.bench.memory import measure_memory
 from physicslab.lab.bench.report import BenchReport
@@ -24,6 +24,7 @@ from physicslab.lab.bench.tables import report_text, scene_text
 from physicslab.lab.bench.unused import UNUSED, Unused, measure_unused
 from physicslab.lab.case import Job
 from physicslab.scenes import SCENES as BUILT_IN
+from physicslab.world import World
 
 __all__ = ["add_arguments", "execute"]
 
@@ -112,10 +113,19 @@ def _jobs(
     jobs: list[tuple[float, Job[SceneResult | Unused]]] = []
     for scene in scenes:
         beside = arguments.peers and (scene.size <= PEER_SIZE_LIMIT or scene.name in arguments.names)
-        jobs.append((float(scene.size), measure_scene(scene, PEERS if beside else ())))
+        make = _in_window if scene.in_window else OurEngine
+        jobs.append((float(scene.size), measure_scene(scene, PEERS if beside else (), make)))
     if _UNUSED in extras:
         jobs += [(float(_UNUSED_SIZE), measure_unused(case)) for case in UNUSED]
     return jobs
+
+
+def _in_window(world: World) -> OurEngine:
+    """Return a world in a window that no screen shows."""
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
+    from physicslab.desktop.timed_window import InWindow
+
+    return InWindow(world)
 
 
 def _note(run: LabRun, text: str) -> None:

@@ -132,7 +132,7 @@ def touch_with_circle(
     tie = 7 * manifold.a + manifold.b
     nx, ny, arm_ax, arm_ay, arm_bx, arm_by, separation = _circle_pose(dx, dy, a, b, tie)
     reach = math.sqrt(ux * ux + uy * uy)
-    manifold.count, manifold.swept, manifold.size = 0, 0, 2.0 * size
+    manifold.count, manifold.swept, manifold.size, manifold.gap = 0, 0, 2.0 * size, -math.inf
     near = CONTACT_MARGIN * size + speculative_margin
     # How far a corner of the box comes.
     swing = 0.0
@@ -143,6 +143,7 @@ def touch_with_circle(
     if swing <= _ROUNDING * size:
         swing = turn = 0.0
     if separation > max(reach + swing, near):
+        manifold.gap = separation
         return
     fast = reach + swing > SWEEP_THRESHOLD * size
     approach = -(ux * nx + uy * ny)

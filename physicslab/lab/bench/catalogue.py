@@ -10,7 +10,8 @@ from pathlib import Path
 from physicslab.components import Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene
-from physicslab.lab.bench.moving import MOVING
+from physicslab.lab.bench.edits import edit_scenes
+from physicslab.lab.bench.moving import FUNNELS, MOVING
 from physicslab.lab.bench.quality import energy_change, overlap, sideways, sink
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.case import Catalogue
@@ -30,7 +31,7 @@ SIZES = (1_000, 2_000, 4_000, 8_000, 16_000)
 PEER_SIZE_LIMIT = 4_000
 """Bodies of the largest scene that other engines run unless it is named: piles of more take them minutes."""
 _STEPS_OF_LARGE = {8_000: 150, 16_000: 100}
-_AWAKE = SimulationConfig(sleeping=False)
+_SOFT = SimulationConfig(sleeping=False, collisions="step", contacts="soft")
 _OVERLAP = 0.02
 """Deepest overlap that counts as right [m]: a tenth of a disc."""
 _ENERGY = 1e-3
@@ -41,7 +42,7 @@ _PITCH = 0.25
 
 def _boxes(base: int) -> World:
     """Return a pyramid of boxes of 1 m on a floor."""
-    world = open_space(gravity=10.0)
+    world = open_space(gravity=10.0, collisions="step", contacts="soft")
     box(world, (0.0, -0.5), width=200.0, height=1.0, static=True, friction=0.6)
     pyramid(world, base)
     return world
@@ -53,7 +54,7 @@ def discs(count: int, systems: tuple[System, ...] | None = None) -> World:
     ``systems`` are every physics system there is, where none are given.
     """
     columns = max(3, round(1.82 * math.sqrt(count)))
-    world = World(*(systems or standard_systems()), simulation=_AWAKE)
+    world = World(*(systems or standard_systems()), simulation=_SOFT)
     height = _PITCH * math.ceil(count / columns)
     container(world, width=_PITCH * columns + 1.25, height=height + 11.0)
     pile(world, count, columns=columns)
@@ -65,14 +66,14 @@ def _gas(count: int) -> World:
     scale = math.sqrt(count / 2_000)
     bounds = (-12.0 * scale, -7.5 * scale, 12.0 * scale, 7.5 * scale)
     laws = PhysicsConfig(gravity_mode="none", bounds=bounds, bounds_restitution=1.0, bounds_friction=0.0)
-    world = open_space(physics=laws)
+    world = open_space(physics=laws, collisions="step", contacts="soft")
     gas(world, count, bounds)
     return world
 
 
-def ten_discs(systems: tuple[System, ...] | None = None) -> World:
+def ten_discs(systems: tuple[System, ...] | None = None, simulation: SimulationConfig = _SOFT) -> World:
     """Return ten discs in a small container, which come to rest on each other."""
-    world = World(*(systems or standard_systems()), simulation=_AWAKE)
+    world = World(*(systems or standard_systems()), simulation=simulation)
     container(world, width=1.3, height=2.0)
     pile(world, 10, columns=5)
     return world
@@ -103,13 +104,21 @@ def gas_scene(count: int) -> BenchScene:
 
 
 _TEN_DISCS = BenchScene(
-    name="circles_10", title="ten discs at rest, many steps in one call", group="small", size=10,
+    name="circles_10", title="ten discs at rest, many steps in one call", group="ten_discs", size=10,
     build=ten_discs, steps=6_000, quality=(overlap(_OVERLAP),), compiled_runs=True,
 )  # fmt: skip
-_TEN_DISCS_STEPPED = replace(
+_STEPPED = replace(
     _TEN_DISCS, name="circles_10_stepped", title="the same ten discs, step by step", steps=3_000,
     compiled_runs=False, by_default=False,
 )  # fmt: skip
+_IN_WINDOW = replace(
+    _STEPPED, name="circles_10_window", title="the same ten discs, step by step in a window", in_window=True
+)
+_AUTO = replace(
+    _TEN_DISCS, name="circles_10_auto", title="the ten discs with contacts and collisions of a scene file",
+    build=partial(ten_discs, simulation=SimulationConfig(contacts="auto")), by_default=False,
+)  # fmt: skip
+_PILE_EDITED = 1_000
 
 SCENES = Catalogue(
     (
@@ -118,8 +127,12 @@ SCENES = Catalogue(
         *map(pile_scene, SIZES),
         *map(gas_scene, SIZES),
         _TEN_DISCS,
-        _TEN_DISCS_STEPPED,
+        _STEPPED,
+        _IN_WINDOW,
+        _AUTO,
         *MOVING,
+        *FUNNELS,
+        *edit_scenes(partial(discs, _PILE_EDITED), _PILE_EDITED, _OVERLAP),
     )
 )
 """Every scene by name; families are groups."""

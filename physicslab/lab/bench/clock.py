@@ -98,6 +98,7 @@ def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterat
                 for i in order:
                     for _ in range(turn):
                         _advance(engines[i], times[i], block)
+                    engines[i].pause()
         yield times
 
 

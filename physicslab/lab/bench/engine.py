@@ -16,7 +16,7 @@ from physicslab.lab.peers.peer import Peer
 from physicslab.lab.peers.pymunk_mirror import PymunkMirror
 from physicslab.world import World
 
-__all__ = ["OURS", "PEERS", "Engine", "OtherEngine", "OurEngine", "TurningGravity", "missing_peers"]
+__all__ = ["OURS", "PEERS", "Engine", "OtherEngine", "OurEngine", "missing_peers", "prepared"]
 
 OURS = "PhysicsLab"
 PEERS: tuple[type[Peer], ...] = (PymunkMirror, Box2DMirror)
@@ -72,6 +72,9 @@ class Engine(ABC):
             If the state is not finite.
         """
         return self.world
+
+    def pause(self) -> None:  # noqa: B027 (most engines have nothing to do)
+        """Do what a program does between some steps and the next; it is not timed."""
 
 
 class OurEngine(Engine):
@@ -139,20 +142,20 @@ class OtherEngine(Engine):
         return self.world
 
 
-class TurningGravity(Engine):
-    """An engine whose gravity is set before every step, as part of what is timed.
+class Prepared(Engine):
+    """An engine with something done before every step, as part of what is timed.
 
     Parameters
     ----------
     engine : Engine
         What steps.
-    gravity_at : callable
-        Returns gravity [m/s^2] at a time [s] since the start.
+    prepare : callable
+        Takes the engine and the number of the coming step, from 0 on.
     """
 
-    def __init__(self, engine: Engine, gravity_at: Callable[[float], Vector2]) -> None:
+    def __init__(self, engine: Engine, prepare: Callable[[Engine, int], None]) -> None:
         super().__init__(engine.world)
-        self.title, self._engine, self._gravity_at, self._steps = engine.title, engine, gravity_at, 0
+        self.title, self._engine, self._prepare, self._steps = engine.title, engine, prepare, 0
 
     @override
     def set_gravity(self, gravity: Vector2) -> None:
@@ -160,7 +163,7 @@ class TurningGravity(Engine):
 
     @override
     def step(self) -> None:
-        self._engine.set_gravity(self._gravity_at(self._steps * self.dt))
+        self._prepare(self._engine, self._steps)
         self._engine.step()
         self._steps += 1
 
@@ -176,3 +179,17 @@ class TurningGravity(Engine):
     @override
     def look(self) -> World:
         return self._engine.look()
+
+    @override
+    def pause(self) -> None:
+        self._engine.pause()
+
+
+def prepared(engine: Engine, scene: BenchScene) -> Engine:
+    """Return the engine with what the scene has done before every step, if anything."""
+    gravity_at, edit = scene.gravity_at, scene.edit
+    if gravity_at is not None:
+        return Prepared(engine, lambda engine, step: engine.set_gravity(gravity_at(step * engine.dt)))
+    if edit is not None:
+        return Prepared(engine, lambda engine, step: edit(engine.world, step))
+    return engine

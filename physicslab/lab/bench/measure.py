@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from physicslab.lab.bench.clock import Spread, Times, take_turns
-from physicslab.lab.bench.engine import Engine, OtherEngine, OurEngine, TurningGravity
+from physicslab.lab.bench.engine import Engine, OtherEngine, OurEngine, prepared
 from physicslab.lab.bench.quality import Start
 from physicslab.lab.bench.result import EngineResult, SceneResult
 from physicslab.lab.bench.scene import BenchScene
@@ -25,14 +25,24 @@ _BLOCK = 200
 """Steps of one call where many are taken at once."""
 
 
-def measure_scene(scene: BenchScene, peers: Sequence[type[Peer]] = ()) -> Job[SceneResult]:
-    """Time a scene; yield the share that is done now and then, and at last the result."""
-    ours = OurEngine(scene.build())
+def measure_scene(
+    scene: BenchScene, peers: Sequence[type[Peer]] = (), make: Callable[[World], OurEngine] = OurEngine
+) -> Job[SceneResult]:
+    """Time a scene; yield the share that is done now and then, and at last the result.
+
+    Parameters
+    ----------
+    scene : BenchScene
+        What is timed.
+    peers : sequence of type of Peer
+        What it is timed beside; nothing where the scene has no counterpart in others.
+    make : callable
+        Takes its world, and returns the engine that steps it.
+    """
+    ours = make(scene.build())
     result = SceneResult(scene, scene.steps)
     result.engines[ours.title] = EngineResult(ours.title)
-    engines = [ours, *_others(scene, peers, result)]
-    if scene.gravity_at is not None:
-        engines = [TurningGravity(engine, scene.gravity_at) for engine in engines]
+    engines = [prepared(engine, scene) for engine in (ours, *_others(scene, peers, result))]
     starts = [Start.of(engine.world) for engine in engines]
     dt = ours.world.simulation.dt
     settling = round(scene.seconds / dt)
@@ -60,7 +70,7 @@ def measure_scene(scene: BenchScene, peers: Sequence[type[Peer]] = ()) -> Job[Sc
 def _others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult) -> list[Engine]:
     """Build the scene in the peers; write a failure into the results of those that cannot hold it."""
     others: list[Engine] = []
-    for peer in peers:
+    for peer in () if scene.edit is not None else peers:
         result.engines[peer.title] = EngineResult(peer.title)
         try:
             others.append(OtherEngine(scene, peer))

@@ -1,6 +1,6 @@
 """Scenes in which most bodies move: mixed shapes that pour and fall, chains, boxes under turning gravity.
 
-Each is made from a seed, so that it is the same in every run.
+Each is made from a seed, so that it is the same in every run, and states soft contacts.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from physicslab.lab.worlds import GRAVITY, floor, open_space
 from physicslab.prefabs import box, circle, container
 from physicslab.world import World
 
-__all__ = ["MOVING"]
+__all__ = ["FUNNELS", "MOVING", "chains", "funnel", "heap", "tumbler"]
 
 _SIZES = (0.15, 0.3)
 """Width of a box, or diameter of a disc [m]."""
@@ -52,31 +52,40 @@ def _slope(world: World, foot: Vector2, angle: float, length: float) -> None:
     box(world, foot + along * (length / 2.0) + below, width=length, height=1.0, angle=angle, static=True)
 
 
-def _funnel(count: int, *, floored: bool) -> World:
-    """Return mixed bodies above two slopes of 35 degrees, which leave a gap of 2 m."""
-    world, steep, columns = open_space(collisions="step"), math.radians(35.0), 50
-    across = 0.5 * columns * _PITCH + 1.0
+def _space() -> World:
+    return open_space(collisions="step", contacts="soft")
+
+
+def funnel(count: int, *, floored: bool = True) -> World:
+    """Return mixed bodies above two slopes of 35 degrees that leave a gap, with a container below or without.
+
+    Lengths go by the root of the number, so that funnels of all sizes are alike; of 3,000 bodies the gap has
+    2 m.
+    """
+    world, steep, scale = _space(), math.radians(35.0), math.sqrt(count / 3_000)
+    columns = max(4, round(50 * scale))
+    across = 0.5 * columns * _PITCH + scale
     for side in (-1.0, 1.0):
         angle = steep if side > 0.0 else math.pi - steep
-        _slope(world, Vector2(side, 0.0), angle, (across - 1.0) / math.cos(steep))
-        box(world, (side * (across + 0.5), 25.0), width=1.0, height=60.0, static=True)
+        _slope(world, Vector2(side * scale, 0.0), angle, (across - scale) / math.cos(steep))
+        box(world, (side * (across + 0.5), 25.0 * scale), width=1.0, height=60.0 * scale, static=True)
     _mixed(world, count, Vector2(0.0, math.tan(steep) * across), columns=columns)
     if floored:
-        container(world, (0.0, -12.0), width=60.0, height=8.0)
+        container(world, (0.0, -12.0 * scale), width=60.0 * scale, height=8.0 * scale)
     return world
 
 
-def _heap(count: int) -> World:
+def heap(count: int) -> World:
     """Return mixed bodies that fall into a container."""
-    world = open_space(collisions="step")
-    container(world, width=20.0, height=30.0)
-    _mixed(world, count, Vector2(0.0, 0.2), columns=40)
+    world, scale = _space(), math.sqrt(count / 2_000)
+    container(world, width=20.0 * scale, height=30.0 * scale)
+    _mixed(world, count, Vector2(0.0, 0.2), columns=max(4, round(40 * scale)))
     return world
 
 
-def _chains(count: int, discs: int = 10) -> World:
+def chains(count: int, discs: int = 10) -> World:
     """Return chains of discs on springs of omega dt = 1, bent a little, that fall flat on a floor."""
-    world, random = open_space(collisions="step"), np.random.default_rng(1)
+    world, random = _space(), np.random.default_rng(1)
     link, mass = 0.25, 0.1
     stiffness = mass / world.simulation.dt**2
     floor(world, width=2.0 * count * discs * link)
@@ -90,9 +99,9 @@ def _chains(count: int, discs: int = 10) -> World:
     return world
 
 
-def _tumbler(count: int) -> World:
+def tumbler(count: int) -> World:
     """Return boxes between four walls."""
-    world, columns = open_space(collisions="step"), math.ceil(math.sqrt(count))
+    world, columns = _space(), math.ceil(math.sqrt(count))
     inside = (columns + 2) * _PITCH
     container(world, width=inside, height=inside)
     box(world, (0.0, inside + 0.5), width=inside + 2.0, height=1.0, static=True)
@@ -108,24 +117,34 @@ _scene = partial(BenchScene, group="moving", quality=(overlap(_OVERLAP),), by_de
 
 MOVING = (
     _scene(
-        name="funnel", title="3,000 mixed boxes and discs in a funnel, from which they fall for ever",
-        size=3_000, build=partial(_funnel, 3_000, floored=False), seconds=5.0, steps=600,
+        name="funnel", title="3,000 mixed boxes and discs in a funnel over a floor", size=3_000,
+        build=partial(funnel, 3_000), seconds=5.0, steps=600,
     ),
     _scene(
-        name="funnel_floor", title="the same funnel over a floor", size=3_000,
-        build=partial(_funnel, 3_000, floored=True), seconds=5.0, steps=600,
+        name="funnel_open", title="the same funnel without a floor: they fall on for ever", size=3_000,
+        build=partial(funnel, 3_000, floored=False), seconds=5.0, steps=600,
     ),
     _scene(
         name="heap", title="2,000 mixed boxes and discs that fall into a heap", size=2_000,
-        build=partial(_heap, 2_000),
+        build=partial(heap, 2_000),
     ),
     _scene(
         name="chains", title="200 chains of ten discs on springs, on a floor", size=2_000,
-        build=partial(_chains, 200),
+        build=partial(chains, 200),
     ),
     _scene(
         name="tumbler", title="1,000 boxes between walls, gravity turning by 30 degrees a second", size=1_000,
-        build=partial(_tumbler, 1_000), gravity_at=_turning_gravity,
+        build=partial(tumbler, 1_000), gravity_at=_turning_gravity,
     ),
 )  # fmt: skip
 """Their scenes; none is run unless it is named."""
+
+FUNNELS = tuple(
+    _scene(
+        name=f"funnel_{count}", title=f"a funnel of {count:,} mixed boxes and discs", group="funnels",
+        size=count, build=partial(funnel, count),
+        seconds=5.0 * (count / 3_000) ** 0.25, steps=100,
+    )
+    for count in (1_000, 2_000, 4_000, 8_000, 16_000)
+)  # fmt: skip
+"""Funnels alike in shape, looked at when as much of each has flowed, for the growth of a step's cost."""

@@ -31,8 +31,13 @@ class BenchScene(Case):
         What is measured beside the times.
     compiled_runs : bool
         Whether many steps are taken in one call, as headless runs do, and not one by one.
+    in_window : bool
+        Whether it is stepped with the systems of a window installed.
     gravity_at : callable, optional
         Returns gravity [m/s^2] at a time [s]; it is set before every step.
+    edit : callable, optional
+        Takes the world and the number of the step; it is called before every step, as part of what is timed.
+        Other engines do not run such a scene.
     by_default : bool
         Whether the scene is run where none is named.
     """
@@ -43,5 +48,7 @@ class BenchScene(Case):
     steps: int = 300
     quality: tuple[Quality, ...] = ()
     compiled_runs: bool = False
+    in_window: bool = False
     gravity_at: Callable[[float], Vector2] | None = None
+    edit: Callable[[World, int], None] | None = None
     by_default: bool = True
