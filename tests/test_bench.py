@@ -246,3 +246,7 @@ def test_large_scenes_are_run_without_peers_unless_they_are_named(
     assert "beyond 10, which take others minutes, PhysicsLab alone" in out
     assert cli.main(["bench", "pile_20", "--peers"]) == 0
     assert "pymunk" in capsys.readouterr().err
+    monkeypatch.setattr("physicslab.commands.bench._SIZE_LIMITS", {"Box2D 2.3": 5})
+    assert cli.main(["bench", "piles", "--peers"]) == 0
+    five, ten, _ = (line for line in capsys.readouterr().err.splitlines() if line)
+    assert "Box2D 2.3" in five and "Box2D 2.3" not in ten and "Box2D 3" in ten

@@ -27,6 +27,7 @@ from physicslab.lab.bench.tables import report_text, scene_text
 from physicslab.lab.bench.unused import UNUSED, Unused, measure_unused
 from physicslab.lab.case import Job
 from physicslab.lab.peers.box2d3_built import BuildError, built_box2d
+from physicslab.lab.peers.box2d_mirror import Box2DMirror
 from physicslab.lab.peers.peer import Peer
 from physicslab.scenes import SCENES as BUILT_IN
 from physicslab.world import World
@@ -34,6 +35,8 @@ from physicslab.world import World
 __all__ = ["add_arguments", "execute"]
 
 _MEMORY, _UNUSED = "memory", "unused"
+_SIZE_LIMITS = {Box2DMirror.title: 2_000}
+"""Bodies of the largest scene that an engine runs unless it is named; ``PEER_SIZE_LIMIT`` for others."""
 _UNUSED_SIZE = 1_000
 """Bodies that timing the unused systems takes as long as."""
 
@@ -48,7 +51,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_lab_arguments(parser, "scene", what, "draw growth and ratios, as bench.png")
     peers = (
         "time pymunk, Box2D 2.3 and Box2D 3 on the same scenes, in turn (needs the dependency group peers); "
-        f"those of more than {PEER_SIZE_LIMIT:,} bodies only where they are named, for they take them minutes"
+        f"those of more than {PEER_SIZE_LIMIT:,} bodies, for Box2D 2.3 {_SIZE_LIMITS[Box2DMirror.title]:,}, "
+        "only where they are named"
     )
     parser.add_argument("--peers", action="store_true", help=peers)
     built = (
@@ -138,9 +142,13 @@ def _jobs(
     """Return the work, with the bodies of each as how much of the whole it is."""
     jobs: list[tuple[float, Job[SceneResult | Unused]]] = []
     for scene in scenes:
-        beside = scene.size <= PEER_SIZE_LIMIT or scene.name in named
+        beside = [
+            peer for peer in peers
+            if scene.size <= min(PEER_SIZE_LIMIT, _SIZE_LIMITS.get(peer.title, PEER_SIZE_LIMIT))
+            or scene.name in named
+        ]  # fmt: skip
         make = _in_window if scene.in_window else OurEngine
-        jobs.append((float(scene.size), measure_scene(scene, peers if beside else (), make)))
+        jobs.append((float(scene.size), measure_scene(scene, beside, make)))
     if _UNUSED in extras:
         jobs += [(float(_UNUSED_SIZE), measure_unused(case)) for case in UNUSED]
     return jobs
