@@ -1,10 +1,10 @@
 """Print the tables of docs/performance.md from what the benchmark found beside other engines.
 
 ``uv run --group peers physicslab bench --peers --box2d DIR --json FILE``, then
-``uv run python benchmarks/speed_table.py FILE``: for each scene the median of a step's processor time [ms],
-while it falls and after that, in every engine, and how many times as long PhysicsLab takes as the fastest of
-the others (above 1 it loses); its 99th percentile over the median; then figures of quality and growth with
-the number of bodies. The file's time is printed as that of the measurement, with the machine.
+``uv run python benchmarks/speed_table.py FILE [FILE ...]``: for each scene the median of a step's processor
+time [ms], while it falls and after that, in every engine, and how many times as long PhysicsLab takes as the
+fastest of the others (above 1 it loses); its 99th percentile over the median; then figures of quality and
+growth with the number of bodies. The last file's time is printed as that of the measurement.
 """
 
 from __future__ import annotations
@@ -83,12 +83,13 @@ def growth(found: dict[str, Any]) -> list[str]:
 
 def main() -> None:
     """Print every table."""
-    path = Path(sys.argv[1])
-    found = json.loads(path.read_text("utf-8"))
+    paths = [Path(name) for name in sys.argv[1:]]
+    files = [json.loads(path.read_text("utf-8")) for path in paths]
+    found = files[0] | {key: [part for file in files for part in file[key]] for key in ("scenes", "growth")}
     engines = list(dict.fromkeys(engine["name"] for scene in found["scenes"] for engine in scene["engines"]))
-    measured = datetime.fromtimestamp(path.stat().st_mtime, UTC).strftime("%Y-%m-%d %H:%M UTC")
+    measured = datetime.fromtimestamp(max(path.stat().st_mtime for path in paths), UTC)
     machine = ", ".join(f"{key} {value}" for key, value in found["machine"].items())
-    print(f"Measured {measured}: {machine}.")
+    print(f"Measured {measured:%Y-%m-%d %H:%M} UTC: {machine}.")
     for lines in (times(found, engines), quality(found, engines), growth(found)):
         print("", *lines, sep="\n")
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from physicslab.kernels import compile_kernels
 from physicslab.lab.bench.clock import Spread, Times, take_turns
 from physicslab.lab.bench.engine import Engine, OtherEngine, OurEngine, prepared
 from physicslab.lab.bench.judge import Judge
@@ -44,6 +45,7 @@ def measure_scene(
     result = SceneResult(scene, scene.steps)
     result.engines[ours.title] = EngineResult(ours.title)
     engines = [prepared(engine, scene) for engine in (ours, *_others(scene, peers, result))]
+    _load_kernels(ours.world)
     judge = Judge(result)
     settling, begin = round(scene.seconds / ours.dt), math.ceil(_BEGIN_S / ours.dt)
     total = settling + scene.steps
@@ -70,6 +72,13 @@ def measure_scene(
         result.contacts = ours.world.contacts.count
         result.systems = _shares(before, _spent(ours.world), times[0])
     yield result
+
+
+def _load_kernels(world: World) -> None:
+    """Load what a world's steppers call: the first steps would be timed with it."""
+    world.synchronise()
+    for stepper in world.steppers.usable:
+        compile_kernels(stepper.kernels)
 
 
 def _others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult) -> list[Engine]:
