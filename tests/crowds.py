@@ -11,9 +11,9 @@ _INTEGRATORS = ("auto", "auto", "auto", "leapfrog", "symplectic_euler", "dop853"
 
 
 def crowd(seed: int) -> dict[str, Any]:
-    """Return the document of a scene: 1 to 70 bodies, most of them so near each other that they touch."""
+    """Return the document of a scene: 1 to 120 bodies, most of them so near each other that they touch."""
     rng = random.Random(seed)
-    count = rng.choice((rng.randint(1, 8), rng.randint(8, 30), rng.randint(30, 70)))
+    count = rng.choice((rng.randint(1, 8), rng.randint(8, 30), rng.randint(30, 70), rng.randint(65, 120)))
     width = 0.32 * max(2, count) ** 0.5 * rng.uniform(0.9, 2.0)
     spread = rng.choice((0.0, 0.0, 0.3, 1.5))  # of masses: unlike ones take many small substeps
     bodies = [_body(rng, number, width, spread) for number in range(count)]

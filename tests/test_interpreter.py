@@ -39,6 +39,7 @@ from physicslab.kernels.ode.dop853 import dop853
 from physicslab.kernels.stand_ins import math_functions
 from physicslab.kernels.warm import Warmup
 from physicslab.stepping import rigid_motion
+from physicslab.stepping.rigid import Rigid
 from physicslab.systems.system import ForceSystem
 from physicslab.view.canvas.canvas import Look
 from physicslab.view.canvas.display import Display
@@ -192,9 +193,29 @@ def rigid_contacts() -> None:
         assert world.stepper is not None and world.stepper.name == "rigid"
 
 
+def impacts() -> None:
+    """Let a rod slide on its end, which would gain energy by Newton's law, and a corner turn into a disc."""
+    bouncing, weightless = {"friction": 0.3, "restitution": 1.0}, {"gravity_mode": "none"}
+    rod: Entity = {
+        "Transform": {"position": [0, 0.82], "angle": 0.785}, "Velocity": {"linear": [0.8, -1.0]},
+        "Mass": {"mass": 1.0}, "Shape": {"kind": "box", "width": 2, "height": 0.02}, "Material": bouncing,
+    }  # fmt: skip
+    for contacts in ("soft", "rigid"):
+        floor = FLOOR | {"Material": bouncing}
+        world = scene(floor, rod, physics=weightless, contacts=contacts, collisions="step")
+        world.run(steps=9)
+        rigid = next((stepper for stepper in world.steppers.usable if isinstance(stepper, Rigid)), None)
+        assert world.contacts.energetic_impacts + (0 if rigid is None else rigid.energetic_impacts) == 1
+    turning = body(0.0, 0.0, "box", Velocity={"angular": 9.0})
+    disc = body(1.3, 0.2, "disc", Velocity={"linear": [-2.0, 0.0]})
+    world = scene(turning, disc, physics=weightless, contacts="soft", collisions="step")
+    world.run(steps=12)
+    assert world.collisions > 0
+
+
 def test_every_kernel_gives_the_same_bits_as_python() -> None:
     calls: Counter[str] = Counter()
-    scenes = built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, rigid_contacts
+    scenes = built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, rigid_contacts, impacts
     for drive in (*scenes, forces_by_hand, drawn):
         with compared(calls):
             drive()

@@ -143,7 +143,7 @@ def test_just_those_within_reach_are_promoted(made: list[tuple[float, float]], h
         0.01,
     )
     moved = np.abs(linear[:, None] - linear[None]).sum(axis=2) * h
-    apart = np.linalg.norm(position[:, None] - position[None], axis=2) - (0.8 + moved + 0.01)
+    apart = np.linalg.norm(position[:, None] - position[None], axis=2) - (0.8 + np.sqrt(2.0) * (moved + 0.01))
     left = {tuple(pair) for pair in proximity[: 2 * proximity_count].reshape(-1, 2).tolist()}
     promoted = [(int(m["a"]), int(m["b"])) for m in manifolds[scalar[:scalar_count]]]
     assert count == scalar_count == room - proximity_count

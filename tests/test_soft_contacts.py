@@ -196,3 +196,23 @@ def test_mirror_images_of_boxes_that_fall_on_their_corners_stay_mirror_images(
         world.run(seconds=1.0)
         found.append([(sign * place(world, one).x, place(world, one).y) for one in boxes])
     assert np.abs(np.subtract(found[0], found[1])).max() < largest
+
+
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 240, 1 / 960, 1 / 3840])
+@pytest.mark.parametrize(("sign", "order"), [(-1.0, 1), (1.0, -1)])
+def test_two_boxes_that_fall_on_each_other_go_alike_mirrored_and_in_another_order(
+    dt: float, sign: float, order: int
+) -> None:
+    """As the first point of a pair does, so does the second; and of two faces the better holds the points."""
+    found = []
+    for side, way in ((1.0, 1), (sign, order)):
+        world = laboratory(dt)
+        box(world, (0, -0.5), width=100, height=1, static=True, friction=0.6, restitution=0.5)
+        boxes = [
+            box(world, (side * x, y), width=1, height=1, angle=side * angle, friction=0.6, restitution=0.5)
+            for x, y, angle in ((0.1, 0.57, 0.02), (-0.1, 1.62, 0.04))[::way]
+        ][::way]
+        world.run(seconds=1.5)
+        angles = [side * world.component(one, Transform).angle for one in boxes]
+        found.append([(side * place(world, one).x, place(world, one).y) for one in boxes] + [tuple(angles)])
+    assert np.abs(np.subtract(found[0], found[1])).max() < 1e-12

@@ -59,11 +59,14 @@ def bounds_of(state: State) -> BoundsTuple:
 
 def near_in(state: State) -> NearTuple:
     """Return the near pairs."""
-    contacts = state.contacts
+    contacts, rows = state.contacts, len(state.entity_index)
+    if len(contacts.rotations) != rows:
+        contacts.rotations = np.full((rows, 3), np.nan)
     return (
         contacts.counts, contacts.manifolds, contacts.points, contacts.scalar, contacts.touching,
         contacts.wide.discs.slots, contacts.wide.boxes.slots,
         contacts.proximity, contacts.activation_distance, state.entity_index.entities,
+        contacts.rotations,
     )  # fmt: skip
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape
 from physicslab.contacts import wide
+from physicslab.contacts.arguments import sizes_of
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.kernels.wide import slots
@@ -16,19 +16,21 @@ __all__ = ["list_all", "partition"]
 
 
 def partition(
-    state: State, couples: NDArray[np.uint32], found: int, pairs: NDArray[np.int64], walls: int
-) -> None:
+    state: State, couples: NDArray[np.uint32], found: int, pairs: NDArray[np.int64], walls: int,
+    fat: NDArray[np.float64],
+) -> None:  # fmt: skip
     """Take a new list of near pairs: ``found`` of bodies, in no order, and ``walls`` of the bounds.
 
-    Pairs of discs without a record get none until they come near.
+    Pairs without a record get none until they come near. ``fat`` (6, rows) is what the broad phase keeps of
+    each body's fat box.
     """
-    contacts, shape = state.contacts, state.table(Shape)
+    contacts = state.contacts
     _make_table(state)
     if len(contacts.activation_distance) < found:
         contacts.proximity = np.zeros(4 * found, np.uint32)
         contacts.activation_distance = np.zeros(2 * found)
     count, contacts.proximity_count = near_pairs.partition(
-        couples, found, pairs, walls, shape["kind"], shape["radius"], state.bodies.inverse_mass,
+        couples, found, pairs, walls, sizes_of(state), fat, state.bodies.inverse_mass,
         state.entity_index.entities, contacts.manifolds, contacts.recorded, contacts.stale, contacts.table,
         contacts.proximity, contacts.activation_distance,
     )  # fmt: skip

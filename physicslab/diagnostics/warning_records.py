@@ -43,7 +43,7 @@ class ModelWarning:
         words = f"{self.entity}: {self.what}" if self.entity else self.what
         if self.value is not None and self.limit is not None:
             unit = f" {self.unit}" if self.unit else ""
-            words += f": {self.value:.3g}{unit}, well up to {self.limit:.3g}"
+            words += f": {self.value:.3g}{unit}" + (f", well up to {self.limit:.3g}" if self.limit else "")
         return (
             f"{words}; {self.setting} would help" if self.setting else f"{words}; no setting is known to help"
         )

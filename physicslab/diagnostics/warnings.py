@@ -63,10 +63,7 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
     if rigid is not None and rigid.by_impulses:
         what = f"steps were made by impulses in 32 parts, an error of order one: {rigid.why_impulses}"
         found.append(ModelWarning(None, what, float(rigid.by_impulses), "", 0.0, ""))
-    lowered = world.contacts.restitutions_lowered + (0 if rigid is None else rigid.restitutions_lowered)
-    if lowered:
-        what = "impacts have a lower restitution, as Newton's law with friction would have made energy"
-        found.append(ModelWarning(None, what, float(lowered), "", 0.0, ""))
+    found += _laws(world, rigid)
     if world.plan.collisions == "step" and (rigid is None or rigid.left_to_soft):
         graph = contact_graph(world)
         found += [
@@ -74,6 +71,25 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
             *_spins(world, graph),
         ]  # fmt: skip
     return tuple(found)
+
+
+def _laws(world: World, rigid: Rigid | None) -> Iterator[ModelWarning]:
+    """Yield how many impacts obeyed another law than Newton's, and which."""
+    energetic, lowered = world.contacts.energetic_impacts, world.contacts.restitutions_lowered
+    if rigid is not None:
+        energetic, lowered = energetic + rigid.energetic_impacts, lowered + rigid.restitutions_lowered
+    if energetic:
+        what = (
+            "impacts obey Stronge's law (the normal force gives back e^2 of the work of the approach), as "
+            "Newton's with friction would have made energy"
+        )
+        yield ModelWarning(None, what, float(energetic), "", 0.0, "")
+    if lowered:
+        what = (
+            "impacts of several points at once have a lower restitution, as Newton's law with friction would "
+            "have made energy"
+        )
+        yield ModelWarning(None, what, float(lowered), "", 0.0, "")
 
 
 def _refusals(world: World) -> Iterator[ModelWarning]:

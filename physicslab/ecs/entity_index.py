@@ -41,6 +41,8 @@ class EntityIndex:
     motion_edited : bool
         Whether a change concerned the motion since this was last set to false: a component that is physical
         came or went.
+    revision : int
+        How often entities or components have come or gone.
     """
 
     def __init__(self) -> None:
@@ -53,6 +55,7 @@ class EntityIndex:
         self.capacity = 16
         self._components: dict[int, tuple[Any, ...]] = {}
         self._seen: list[Any] | None = None
+        self.revision = 0
         self._batches: dict[tuple[type[Any], ...], Batch] = {}
 
     def __len__(self) -> int:
@@ -83,6 +86,7 @@ class EntityIndex:
         self._follow_components(changed)
         self._components.update(changed)
         self._seen = esper.get_component(_Nothing)
+        self.revision += 1
         return True
 
     def flush_deleted(self) -> None:

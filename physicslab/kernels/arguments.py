@@ -70,7 +70,7 @@ class Near(NamedTuple):
     """The near pairs: their records, points and counts, which are scalar, which of them touch.
 
     Then the slots of discs and of boxes; the pairs without records, the distance at which each gets one [m],
-    and the entities of all rows.
+    the entities of all rows, and the angle of each box when its cosine and sine were computed, and those.
     """
 
     counts: Rows
@@ -83,6 +83,7 @@ class Near(NamedTuple):
     proximity: Couples
     activation_distance: Numbers
     entities: Rows
+    rotations: Vectors
 
 
 class Contacts(NamedTuple):
@@ -160,7 +161,9 @@ MaterialsTuple = tuple[Numbers, Numbers]
 InverseTuple = tuple[Numbers, Numbers]
 ActingTuple = tuple[Vectors, Numbers, bool]
 BoundsTuple = tuple[Numbers, float, float]
-NearTuple = tuple[Rows, Manifolds, Points, Rows, Rows, SlotsTuple, SlotsTuple, Couples, Numbers, Rows]
+NearTuple = tuple[
+    Rows, Manifolds, Points, Rows, Rows, SlotsTuple, SlotsTuple, Couples, Numbers, Rows, Vectors
+]
 SoftnessTuple = tuple[float, float, float]
 PlanTuple = tuple[int, int, float, float, float]
 GravityTuple = tuple[Numbers, Numbers, float, float, float]
@@ -171,10 +174,11 @@ SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows]
 @fused
 def named_near(plain: NearTuple) -> Near:
     """Give names to a tuple, and to the slots within it."""
-    counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities = (
-        plain
-    )
+    (
+        counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities,
+        rotations,
+    ) = plain  # fmt: skip
     return Near(
         counts, manifolds, points, scalar, touching, Slots(*discs), Slots(*boxes),
-        proximity, activation_distance, entities,
+        proximity, activation_distance, entities, rotations,
     )  # fmt: skip

@@ -87,7 +87,11 @@ class Contacts:
     left = _count(near_counts.LEFT, "How many pairs the impacts of this substep have left to the solver.")
     logged = _count(near_counts.LOGGED, "How many impacts were ever logged.")
     restitutions_lowered = _count(
-        near_counts.LOWERED, "How many impacts had their restitution lowered, so that no energy was made."
+        near_counts.LOWERED,
+        "How many impacts of two points had their restitution lowered, so that no energy was made.",
+    )
+    energetic_impacts = _count(
+        near_counts.ENERGETIC, "How many impacts obeyed Stronge's law, as Newton's would have made energy."
     )
     unordered = _count(
         near_counts.UNORDERED, "Whether scalar pairs were added since those were last put in order."
@@ -134,6 +138,7 @@ class Contacts:
         self.scalar: NDArray[np.int64] = np.zeros(capacity, np.int64)
         self.proximity: NDArray[np.uint32] = np.zeros(2 * capacity, np.uint32)
         self.activation_distance: NDArray[np.float64] = np.zeros(capacity)
+        self.rotations: NDArray[np.float64] = np.zeros((0, 3))
         self.table: NDArray[np.int64] = np.zeros(16, np.int64)
         self.sleeping: NDArray[np.int64] = np.zeros(capacity, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.

@@ -23,7 +23,7 @@ from physicslab.contacts.islands import all_asleep, keep_places
 from physicslab.contacts.wide import refill
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators.leapfrog import LEAPFROG
-from physicslab.kernels.broad import grid, near_pairs
+from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import fat_boxes
 from physicslab.kernels.loading import working_ns
 from physicslab.kernels.solver import fused_contact as fused
@@ -63,8 +63,8 @@ class FusedContact:
     leaps: bool = False
     leaves_forces: ClassVar[bool] = True
     kernels: tuple[Any, ...] = (
-        fused.advance, fat_boxes, grid.find_pairs, near_pairs.partition, near_pairs.carry_over,
-        near_pairs.sort_scalar, slots.list_scalar,
+        fused.advance, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs,
+        near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
     )  # fmt: skip
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:

@@ -46,8 +46,10 @@ class Rigid:
         How many steps were made by impulses in short steps, at least from some time on.
     why_impulses : str
         Why, at the last of them.
+    energetic_impacts : int
+        How many impacts obeyed Stronge's law, as Newton's would have made energy.
     restitutions_lowered : int
-        How often impacts at one time got lower restitutions, as Newton's law would have made energy.
+        How often impacts of several points got lower restitutions, as Newton's law would have made energy.
     """
 
     name: ClassVar[str] = "rigid"
@@ -67,7 +69,7 @@ class Rigid:
         self._pairs = pairs_that_may_meet(state)
         self._records = RigidRecords(self._pairs)
         self._refused, self.left_to_soft, self.why_soft = -1, 0, ""
-        self.restitutions_lowered = self.by_impulses = 0
+        self.energetic_impacts = self.restitutions_lowered = self.by_impulses = 0
         self.why_impulses = ""
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
@@ -119,6 +121,7 @@ class Rigid:
             q[-1], v[-1] = moment, 1.0  # the clock goes by one second a second
             step = self._motion.step(scene, state, moment, h / parts)
             state.force_evaluations += step.evaluations
+            self.energetic_impacts += step.energetic
             self.restitutions_lowered += step.lowered
             if step.refused:
                 q[:], v[:] = before

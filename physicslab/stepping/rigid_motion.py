@@ -68,8 +68,9 @@ class MadeStep:
         Of the points that are closed at the end: what they are, where they are, and their forces [N].
     closed, impacts, evaluations : int
         How many points are closed at the end; how many impacts and force evaluations there were.
-    lowered : int
-        How often restitutions were lowered, as Newton's law would have made energy.
+    energetic, lowered : int
+        How many impacts obeyed Stronge's law, and how often those of several points had their restitutions
+        lowered, as Newton's law would have made energy.
     work : int
         Force evaluations, each counted with 1 + n^2 / 8 for n points, and as much for impacts.
     by_impulses : str
@@ -84,6 +85,7 @@ class MadeStep:
     closed: int = 0
     impacts: int = 0
     evaluations: int = 0
+    energetic: int = 0
     lowered: int = 0
     work: int = 0
     by_impulses: str = ""
@@ -262,12 +264,13 @@ class RigidMotion:
     ) -> int:  # fmt: skip
         """Resolve impacts; return how many points the last impulses act at, -1 where there are none."""
         contacts = state.contacts
-        why, new, lowered, points, rounds = motion.collide(
+        why, new, energetic, lowered, points, rounds = motion.collide(
             scene, self._equations, count, self._room, rest, rate, self._ode.q, self._ode.v,
             state.entity_index.entities, contacts.log, contacts.logged, time,
         )  # fmt: skip
         contacts.logged += new
         made.impacts += new
+        made.energetic += energetic
         made.lowered += lowered
         made.work += _WORK_OF_A_ROUND * rounds * (8 + count * count) // 8
         return points if why == motion.DONE else -1

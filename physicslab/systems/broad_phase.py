@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.contacts.arguments import motion_of, sizes_of, speculative_margin
+from physicslab.contacts.arguments import motion_of, near_in, sizes_of, speculative_margin
 from physicslab.contacts.near_pairs import partition
-from physicslab.kernels.broad import grid, near_pairs
+from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import fat_boxes, still_holds
 from physicslab.kernels.wide import slots
 from physicslab.state.state import State
@@ -18,6 +18,8 @@ __all__ = ["BroadPhaseSystem"]
 
 _MAX_LOOKAHEAD = 8.0
 """Largest factor by which the margin of a moving body is increased."""
+_FEW = 64
+"""Number of bodies up to which all pairs are listed again: that takes no longer than to find the new ones."""
 
 
 def nothing_to_touch(state: State) -> str | None:
@@ -40,35 +42,79 @@ def _lookahead(sleepers: int, awake: int) -> float:
     return min(max(1.0, sleepers / max(1, awake)), _MAX_LOOKAHEAD)
 
 
-class BroadPhaseSystem(System):
-    """Keeps the list of near pairs: those whose fat boxes overlap, found with a uniform grid.
-
-    The list is valid, and nothing is done, until a body leaves the fat box that was made for it.
+class Leavers:
+    """The bodies that have left their fat boxes since all were made, and the index to find their neighbours.
 
     Attributes
     ----------
-    fat : float64 array (5, rows)
-        Where each body was (x, y, angle), its bounding radius then, and the margin around it [m].
+    moved : bool array (rows,)
+        Which they are.
+    number : int
+        How many they are.
+    indexed : tuple of (int, int, float), optional
+        What :func:`leaving.index_bodies` returned, if it was needed already; it fills the arrays beside it.
+    crowded : bool
+        Whether pairs were left out, since too many bodies are on one spot.
+    """
+
+    def __init__(self, rows: int) -> None:
+        self.moved = np.zeros(rows, np.bool_)
+        self.first: NDArray[np.int64] = np.zeros(1 + (1 << (2 * rows).bit_length()), np.int64)
+        self.body, self.home_x, self.home_y = np.zeros((3, rows), np.int64)
+        self.begin()
+        self.crowded = False
+
+    def begin(self) -> None:
+        """Begin again: all fat boxes are new."""
+        self.moved[:] = False
+        self.number = 0
+        self.indexed: tuple[int, int, float] | None = None
+
+
+class BroadPhaseSystem(System):
+    """Keeps the list of near pairs: those whose fat boxes overlap, found with a uniform grid.
+
+    The list is valid, and nothing is done, until a body leaves the fat box that was made for it. Then its
+    box grows, and its new pairs are added; when many have left, all boxes and pairs are found again.
+
+    Attributes
+    ----------
+    fat : float64 array (6, rows)
+        Where each body was (x, y, angle), its bounding radius then, the margin around it, and how far its box
+        has grown since all were made [m].
+    boxes : float64 array (rows, 4)
+        The fat boxes: xmin, ymin, xmax, ymax [m].
+    leavers : Leavers
+        Which bodies have left theirs since all were made.
     bounds : float64 array (4,)
         Of the world: xmin, ymin, xmax, ymax [m].
     """
 
     engine = True
     kernels = (
-        still_holds, fat_boxes, grid.find_pairs,
+        still_holds, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs,
         near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
     )  # fmt: skip
 
     def __init__(self) -> None:
-        self.fat: NDArray[np.float64] = np.zeros((5, 0))
-        self._boxes: NDArray[np.float64] = np.zeros((0, 4))
+        self.fat: NDArray[np.float64] = np.zeros((6, 0))
+        self.leavers = Leavers(0)
+        self.boxes: NDArray[np.float64] = np.zeros((0, 4))
         self._couples: NDArray[np.uint32] = np.zeros(512, np.uint32)
         self._pairs: NDArray[np.int64] = np.zeros((512, 3), np.int64)
         self.bounds: NDArray[np.float64] = np.zeros(4)
+        self._listed_for: tuple[object, ...] = ()
 
     def attach(self, state: State) -> None:
-        """Mark the list as stale: bodies came, went or changed."""
-        state.contacts.stale = True
+        """Mark the list as stale where bodies came, went or changed, or contacts are found in another way.
+
+        The other laws do not change what is near what.
+        """
+        ways = state.event_driven, state.rigid_contacts
+        listed_for = (state.entity_index.revision, state.physics.bounds, state.simulation, *ways)
+        if listed_for != self._listed_for:
+            self._listed_for = listed_for
+            state.contacts.stale = True
         if state.physics.bounds is not None:
             self.bounds[:] = state.physics.bounds
 
@@ -83,7 +129,8 @@ class BroadPhaseSystem(System):
         """Make room for every row; where the list is stale, invalidate every fat box."""
         rows = len(state.entity_index)
         if self.fat.shape[1] != rows:
-            self.fat, self._boxes = np.zeros((5, rows)), np.zeros((rows, 4))
+            self.fat, self.boxes = np.zeros((6, rows)), np.zeros((rows, 4))
+            self.leavers = Leavers(rows)
             state.contacts.stale = True
         if state.contacts.stale:
             self.fat[3] = np.nan
@@ -96,24 +143,45 @@ class BroadPhaseSystem(System):
             self.list_pairs(state, h)
 
     def list_pairs(self, state: State, h: float) -> None:
-        """List the near pairs again, with margins for the time to come."""
-        shape = state.table(Shape)
+        """Add the new pairs of the bodies that have left their fat boxes; where many have, list all again."""
         awake = state.bodies.awake_inverse_mass
         ahead = h * _lookahead(state.sleep.count, int(np.count_nonzero(awake)))
-        margin = speculative_margin(state, h)
-        fat_boxes(*motion_of(state), *sizes_of(state), awake, self.fat, self._boxes, ahead, margin)
+        if not self._add_pairs(state, h, ahead):
+            self._list_all(state, awake, ahead, speculative_margin(state, h))
+
+    def _add_pairs(self, state: State, h: float, ahead: float) -> bool:
+        """Add the new pairs of those bodies; return whether that was possible."""
+        left, kind = self.leavers, state.table(Shape)["kind"]
+        if len(kind) <= _FEW or left.crowded or state.contacts.stale:
+            return False
+        if left.indexed is None:
+            left.indexed = leaving.index_bodies(
+                self.boxes, kind, left.first, left.body, left.home_x, left.home_y
+            )
+        left.number = leaving.add_pairs(
+            near_in(state), motion_of(state), sizes_of(state), state.bodies.inverse_mass,
+            self.fat, self.boxes, left.moved, left.number, state.physics.bounds is not None, self.bounds,
+            left.first, left.body, left.home_x, left.home_y, left.indexed,
+            h, ahead, speculative_margin(state, h),
+        )  # fmt: skip
+        return left.number >= 0
+
+    def _list_all(self, state: State, awake: NDArray[np.float64], ahead: float, margin: float) -> None:
+        """List all near pairs again."""
+        fat_boxes(motion_of(state), sizes_of(state), awake, self.fat, self.boxes, ahead, margin)
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
-        found, walls = self._count_pairs(shape["kind"], inverse_mass, bounded)
-        partition(state, self._couples, found, self._pairs, walls)
+        found, walls = self._count_pairs(state.table(Shape)["kind"], inverse_mass, bounded)
+        self.leavers.begin()
+        partition(state, self._couples, found, self._pairs, walls, self.fat)
 
     def _count_pairs(
         self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool
     ) -> tuple[int, int]:
         """Find the pairs, with more room where it is too little; return how many of bodies, of walls."""
         while True:
-            found, walls = grid.find_pairs(
-                self._boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs, self._couples
+            found, walls, self.leavers.crowded = grid.find_pairs(
+                self.boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs, self._couples
             )
             if 2 * found <= len(self._couples) and found + walls <= len(self._pairs):
                 return found, walls

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,7 +57,7 @@ class Schedule:
 
     def __init__(self, systems: Iterable[System]) -> None:
         self.systems: tuple[System, ...] = ()
-        self._marked: dict[System, dict[Stage, str]] = {}
+        self._marked: dict[System, Mapping[Stage, str]] = {}
         self.extend(systems)
         self.running: tuple[System, ...] = ()
         self.left_out: tuple[LeftOut, ...] = ()
@@ -141,7 +141,7 @@ class Schedule:
         return next((system for system in self.running if isinstance(system, kind)), None)
 
 
-def _checked(system: System) -> dict[Stage, str]:
+def _checked(system: System) -> Mapping[Stage, str]:
     """Return the stages of a system; refuse what could never run, with the reason."""
     if isinstance(system, type):
         raise TypeError(f"a world takes systems, not their types: write {system.__name__}()")

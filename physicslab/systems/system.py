@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import Enum
+from functools import cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -136,7 +137,8 @@ class System:
         return not AROUND.isdisjoint(cls.marked())
 
     @classmethod
-    def marked(cls) -> dict[Stage, str]:
+    @cache  # the steppers of a world are chosen again whenever its laws are edited
+    def marked(cls) -> Mapping[Stage, str]:
         """Return the stages of the system, each with the name of its method.
 
         A method that overrides a marked one keeps its stage. Two at one stage have no order, and are refused.
@@ -241,9 +243,10 @@ class ForceSystem(System):
         return None
 
     @classmethod
-    def marked(cls) -> dict[Stage, str]:
+    @cache
+    def marked(cls) -> Mapping[Stage, str]:
         """Return the stages of the system; a force that is packed is added by its kernel."""
-        found = super().marked()
+        found = dict(super().marked())
         if cls.packed is not ForceSystem.packed:
             found.setdefault(Stage.FORCE, "add_packed")
         return found

@@ -7,16 +7,19 @@ and velocities, and not on when pairs were last listed.
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.arguments import Motion, MotionTuple, Sizes, SizesTuple
 from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN
 
-__all__ = ["fat_boxes", "still_holds"]
+__all__ = ["CORNERWISE", "fat_boxes", "fatten", "left", "still_holds", "usual_speed"]
 
-_DIAGONAL = math.sqrt(2.0)
+CORNERWISE = math.sqrt(2.0)
 """Largest ratio of the distance of two boxes to their distance along the normal of a side."""
-_BOX_SHARE = 0.5 * _DIAGONAL * (1.5 * CONTACT_MARGIN + CACHE_TOLERANCE)
+_BOX_SHARE = 0.5 * CORNERWISE * (1.5 * CONTACT_MARGIN + CACHE_TOLERANCE)
 """Share of its smaller side up to which a slow box is one half of a pair that has points, or keeps them."""
-_TURN_SHARE = _DIAGONAL * CACHE_TURN_TOLERANCE
+_HIT_SHARE = 1.0
+"""Share of its bounding radius by which the margin of a slow body is increased at most."""
+_TURN_SHARE = CORNERWISE * CACHE_TURN_TOLERANCE
 """The same for points that are kept while it turns, as a share of its bounding radius."""
 
 
@@ -41,6 +44,21 @@ def _touching_distance(
     return share + speculative_margin
 
 
+@inlined
+def left(i: int, motion: Motion, sizes: Sizes, fat: Vectors, h: float, speculative_margin: float) -> bool:
+    """Whether body i may, in a time h, have points with what does not meet the fat box made for it."""
+    kind, position, linear = sizes.kind[i], motion.position, motion.linear
+    if kind == 0:
+        return bool(fat[3, i] != 0.0)
+    reach = _bounding_radius(kind, sizes.radius[i], sizes.width[i], sizes.height[i])
+    moved_x, moved_y = abs(position[i, 0] - fat[0, i]), abs(position[i, 1] - fat[1, i])
+    ux, uy = linear[i, 0] * h, linear[i, 1] * h
+    ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if kind == 2 else 1.0)
+    turned = (abs(motion.angle[i] - fat[2, i]) + abs(motion.angular[i]) * h) * (reach if kind == 2 else 0.0)
+    needed = _touching_distance(kind, reach, sizes.width[i], sizes.height[i], speculative_margin)
+    return not (max(moved_x, moved_y) + ahead + turned + needed <= fat[4, i] and reach == fat[3, i])
+
+
 @kernel
 def still_holds(
     position: Vectors,
@@ -57,8 +75,9 @@ def still_holds(
 ) -> bool:
     """Whether whatever each body may have points with in a time h meets the fat box made for it.
 
-    ``fat`` (5, rows) holds where each body was (x, y, angle), its bounding radius then, and the margin around
-    it. ``speculative_margin`` is how far the forces may bring two bodies together within ``h``.
+    ``fat`` (6, rows) holds where each body was (x, y, angle), its bounding radius then, the margin around it,
+    and what :mod:`physicslab.kernels.broad.leaving` keeps there. ``speculative_margin`` is how far the forces
+    may bring two bodies together within ``h``.
     """
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)
     holds = True
@@ -67,7 +86,7 @@ def still_holds(
         made_for = reach if kind[i] != 0 else 0.0
         moved_x, moved_y = abs(places[2 * i] - fat[0, i]), abs(places[2 * i + 1] - fat[1, i])
         ux, uy = velocities[2 * i] * h, velocities[2 * i + 1] * h
-        ahead = math.sqrt(ux * ux + uy * uy) * (_DIAGONAL if kind[i] == 2 else 1.0)
+        ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if kind[i] == 2 else 1.0)
         turned = (abs(angle[i] - fat[2, i]) + abs(angular[i]) * h) * (reach if kind[i] == 2 else 0.0)
         needed = _touching_distance(kind[i], reach, width[i], height[i], speculative_margin)
         inside = (max(moved_x, moved_y) + ahead + turned + needed <= fat[4, i]) | (kind[i] == 0)
@@ -75,46 +94,55 @@ def still_holds(
     return holds
 
 
-@kernel
-def fat_boxes(
-    position: Vectors,
-    angle: Numbers,
-    linear: Vectors,
-    angular: Numbers,
-    kind: Rows,
-    radius: Numbers,
-    width: Numbers,
-    height: Numbers,
-    inverse_mass: Numbers,
-    fat: Vectors,
-    boxes: Vectors,
-    h: float,
-    speculative_margin: float,
-) -> None:
-    """Make each body's fat box (xmin, ymin, xmax, ymax), good for some three steps of four substeps h."""
+@inlined
+def usual_speed(motion: Motion, sizes: Sizes) -> float:
+    """Return the mean speed [m/s] of what moves."""
     moving, speeds = 0, 0.0
-    for i in range(len(angle)):
-        speed = abs(linear[i, 0]) + abs(linear[i, 1])
-        if speed > 0.0 and kind[i] != 0:
+    for i in range(len(motion.angle)):
+        speed = abs(motion.linear[i, 0]) + abs(motion.linear[i, 1])
+        if speed > 0.0 and sizes.kind[i] != 0:
             moving += 1
             speeds += min(speed, 1e9)
-    usual = speeds / moving if moving else 0.0
-    for i in range(len(angle)):
+    return speeds / moving if moving else 0.0
+
+
+@inlined
+def fatten(
+    i: int, motion: Motion, sizes: Sizes, fat: Vectors, h: float, usual: float, speculative_margin: float
+) -> tuple[float, float, float, float]:
+    """Return the fat box (xmin, ymin, xmax, ymax) of body i, good for some three steps of four substeps h.
+
+    A slow body among fast ones is likely to be hit: if the ``usual`` speed [m/s] is larger than its own, its
+    margin goes by that, but for no more than a share of its size.
+    """
+    kind, angle = sizes.kind[i], motion.angle[i]
+    x, y, width, height = motion.position[i, 0], motion.position[i, 1], sizes.width[i], sizes.height[i]
+    reach = _bounding_radius(kind, sizes.radius[i], width, height)
+    half_x = half_y = reach
+    if kind == 2:
+        c, s = abs(math.cos(angle)), abs(math.sin(angle))
+        half_x, half_y = 0.5 * (c * width + s * height), 0.5 * (s * width + c * height)
+    speed = max(abs(motion.linear[i, 0]), abs(motion.linear[i, 1]))
+    likely = min(13.0 * h * usual, _HIT_SHARE * reach)
+    margin = 0.08 * min(half_x, half_y) + max(13.0 * h * speed, likely)
+    margin += 2.0 * h * abs(motion.angular[i]) * (reach if kind == 2 else 0.0)
+    margin += _touching_distance(kind, reach, width, height, speculative_margin)
+    fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i] = x, y, angle, reach, margin
+    return x - half_x - margin, y - half_y - margin, x + half_x + margin, y + half_y + margin
+
+
+@kernel
+def fat_boxes(
+    plain_motion: MotionTuple, plain_sizes: SizesTuple, inverse_mass: Numbers, fat: Vectors, boxes: Vectors,
+    h: float, speculative_margin: float,
+) -> None:  # fmt: skip
+    """Make each body's fat box (xmin, ymin, xmax, ymax), good for some three steps of four substeps h."""
+    motion, sizes = Motion(*plain_motion), Sizes(*plain_sizes)
+    usual = usual_speed(motion, sizes)
+    for i in range(len(motion.angle)):
         fat[3, i] = 0.0
-        if kind[i] == 0:
-            continue
-        reach = _bounding_radius(kind[i], radius[i], width[i], height[i])
-        half_x = half_y = reach
-        if kind[i] == 2:
-            c, s = abs(math.cos(angle[i])), abs(math.sin(angle[i]))
-            half_x = 0.5 * (c * width[i] + s * height[i])
-            half_y = 0.5 * (s * width[i] + c * height[i])
-        # A slow body among fast ones is likely to be hit.
-        speed = max(abs(linear[i, 0]), abs(linear[i, 1]), usual if inverse_mass[i] > 0.0 else 0.0)
-        margin = 0.08 * min(half_x, half_y) + 13.0 * h * speed
-        margin += 2.0 * h * abs(angular[i]) * (reach if kind[i] == 2 else 0.0)
-        margin += _touching_distance(kind[i], reach, width[i], height[i], speculative_margin)
-        fat[0, i], fat[1, i], fat[2, i] = position[i, 0], position[i, 1], angle[i]
-        fat[3, i], fat[4, i] = reach, margin
-        boxes[i, 0], boxes[i, 2] = position[i, 0] - half_x - margin, position[i, 0] + half_x + margin
-        boxes[i, 1], boxes[i, 3] = position[i, 1] - half_y - margin, position[i, 1] + half_y + margin
+        if sizes.kind[i] != 0:
+            hit = usual if inverse_mass[i] > 0.0 else 0.0
+            boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = fatten(
+                i, motion, sizes, fat, h, hit, speculative_margin
+            )

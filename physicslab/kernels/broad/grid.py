@@ -273,8 +273,10 @@ def _level(
 def find_pairs(
     boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers,
     bounded: bool, bounds: Numbers, pairs: Pairs, couples: Couples,
-) -> tuple[int, int]:  # fmt: skip
+) -> tuple[int, int, bool]:  # fmt: skip
     """Find the pairs whose fat boxes overlap, each once; return how many of bodies there are, and of walls.
+
+    Then whether so many bodies are on one spot that some of their pairs were left out.
 
     A grid whose cells fit the usual body finds the pairs of small ones, and of small with large ones; the
     large ones go on to a coarser grid. Their rows are written to ``couples``. Bodies past the bounds make
@@ -307,4 +309,7 @@ def find_pairs(
         # One by one: for slices, numba compiles the text of an error that cannot occur.
         for k in range(count):
             members[k] = larges[k]
-    return found, walls
+    crowded = False
+    for i in range(n):
+        crowded |= search.company[i] >= _COMPANY_LIMIT
+    return found, walls, crowded

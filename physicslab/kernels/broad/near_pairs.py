@@ -1,19 +1,26 @@
 """The list of near pairs: which have a record, and which are proximity pairs without one.
 
-Most near pairs of discs do not touch for long. They are kept as two rows and a distance each, so that looking
-at them all takes a nanosecond or two a pair; the record of a contact, of hundreds of bytes, is made when the
-two come so near that they may touch within the substep.
+Most near pairs do not touch for long. They are kept as two rows and a distance each, so that looking at them
+all takes a nanosecond or two a pair; the record of a contact, of hundreds of bytes, is made when the two come
+so near that they may touch within the substep.
 """
+
+import math
 
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
+from physicslab.kernels.arguments import Sizes, SizesTuple
+from physicslab.kernels.broad.fat_boxes import CORNERWISE
+from physicslab.kernels.narrow.contact import ACTIVATION_RATIO
 from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points
 
-__all__ = ["ACTIVATION_RATIO", "activate", "carry_over", "partition", "sort_scalar"]
+__all__ = [
+    "activate", "beside", "carry_over", "distance_to_activate", "make_blank", "partition", "sort_scalar",
+]  # fmt: skip
 
-ACTIVATION_RATIO = 1.02
-"""Distance within which two discs may have contact points, as a multiple of the sum of their radii."""
+_LONG = 4.0
+"""Ratio of bounding radii from which the circle around the larger body shows little of where it is."""
 _FREE = -1
 
 
@@ -35,10 +42,8 @@ def _mask(count: int) -> int:
 
 @inlined
 def _has_contents(manifold: Manifold) -> bool:
-    """Whether the record of a pair holds more than that it is near."""
-    return bool(
-        (manifold.count != 0) | (manifold.impact_count != 0) | (manifold.found != 0) | (manifold.slot >= 0)
-    )
+    """Whether the record of a pair holds more than that it is near, and how far apart it was."""
+    return bool((manifold.count != 0) | (manifold.impact_count != 0) | (manifold.slot >= 0))
 
 
 @inlined
@@ -68,23 +73,55 @@ def _note_known(manifolds: Manifolds, count: int, table: Rows) -> None:
             table[place] = q
 
 
+@inlined
+def beside(sizes: Sizes, fat: Vectors, one: int, other: int) -> bool:
+    """Whether the smaller of two bodies stays beside the other, though it is in the upright box around that.
+
+    Both may leave the places for which the fat boxes were made by no more than their margins.
+    """
+    long, small = (one, other) if fat[3, one] > fat[3, other] else (other, one)
+    if sizes.kind[long] != 2:
+        return False
+    c, s = math.cos(fat[2, long]), math.sin(fat[2, long])
+    x, y = fat[0, small] - fat[0, long], fat[1, small] - fat[1, long]
+    clear = fat[3, small] + CORNERWISE * (fat[4, long] + fat[4, small])
+    across, up = abs(c * x + s * y), abs(c * y - s * x)
+    return bool((across > 0.5 * sizes.width[long] + clear) | (up > 0.5 * sizes.height[long] + clear))
+
+
+@inlined
+def distance_to_activate(fat: Vectors, a: int, b: int) -> float:
+    """Return the distance of two centres within which a pair gets its record [m].
+
+    Where one body is far longer than the other, the circle around it says little: infinity.
+    """
+    reach_a, reach_b = fat[3, a], fat[3, b]
+    if max(reach_a, reach_b) > _LONG * min(reach_a, reach_b):
+        return math.inf
+    distance: float = ACTIVATION_RATIO * (reach_a + reach_b)
+    return distance
+
+
 @allocating_kernel
 def partition(
     couples: Couples, found: int, pairs: Pairs, walls: int,
-    kind: Rows, radius: Numbers, inverse_mass: Numbers, entities: Rows,
+    plain_sizes: SizesTuple, fat: Vectors, inverse_mass: Numbers, entities: Rows,
     manifolds: Manifolds, known: int, stale: bool, table: Rows, proximity: Couples,
     activation_distance: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
-    """Partition the pairs that were found: discs without a record so far get none, all others get one.
+    """Partition the pairs that were found: those without points so far get no record, all others get one.
 
     The rows of those that were ``found`` are in ``couples``, in either order; where neither body can be moved
     they are dropped. In ``pairs`` are the first ``walls``, those of the bounds, and to these are added the
     others with records, sorted; returns how many there are then, and how many proximity pairs. The first
-    ``known`` of ``manifolds`` are the records so far, whose rows have changed if they are ``stale``.
-    ``table`` is filled for :func:`carry_over`.
+    ``known`` of ``manifolds`` are the records so far, whose rows have changed if they are ``stale``. ``fat``
+    is that of :mod:`physicslab.kernels.broad.fat_boxes`. ``table`` is filled for :func:`carry_over`.
+
+    Of a long body and a short one that are not ``beside`` each other, the record is made at once.
     """
     _note_known(manifolds, known, table)
-    mask, n = _mask(known), len(kind)
+    sizes = Sizes(*plain_sizes)
+    mask, n = _mask(known), len(sizes.kind)
     recorded = np.full(n, stale)
     if not stale:
         for q in range(known):
@@ -94,17 +131,21 @@ def partition(
     kept, proximity_count = walls, 0
     for k in range(found):
         one, other = np.int64(couples[2 * k]), np.int64(couples[2 * k + 1])
-        a, b = min(one, other), max(one, other)
+        a, b = int(min(one, other)), int(max(one, other))
         if inverse_mass[a] + inverse_mass[b] == 0.0:
             continue
-        if (kind[a] == 1) & (kind[b] == 1) and (
+        if (
             not (recorded[a] & recorded[b])
             or _known(table, mask, manifolds, entities[a], entities[b], -1) < 0
         ):
-            proximity[2 * proximity_count], proximity[2 * proximity_count + 1] = a, b
-            activation_distance[proximity_count] = ACTIVATION_RATIO * (radius[a] + radius[b])
-            proximity_count += 1
-            continue
+            distance = distance_to_activate(fat, a, b)
+            if distance < math.inf:
+                proximity[2 * proximity_count], proximity[2 * proximity_count + 1] = a, b
+                activation_distance[proximity_count] = distance
+                proximity_count += 1
+                continue
+            if beside(sizes, fat, a, b):
+                continue
         pairs[kept, 0], pairs[kept, 1], pairs[kept, 2] = a, b, -1
         kept += 1
     _sort_pairs(pairs, walls, kept, n)
@@ -150,7 +191,7 @@ def carry_over(
             points[2 * p] = old_points[2 * q]
             points[2 * p + 1] = old_points[2 * q + 1]
         else:
-            _make_blank(manifolds, points, p)
+            make_blank(manifolds, points, p)
             manifold = manifolds[p]
             manifold.entity_a, manifold.entity_b, manifold.wall = entities[a], entities[b], wall
         manifold = manifolds[p]
@@ -158,7 +199,7 @@ def carry_over(
 
 
 @inlined
-def _make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
+def make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
     """Clear a record of all contents."""
     manifold = manifolds[p]
     manifold.count, manifold.found, manifold.impact_count, manifold.slot, manifold.size = 0, 0, 0, -1, 0.0
@@ -192,7 +233,7 @@ def activate(
         ya, yb = xa + np.uint64(1), xb + np.uint64(1)
         dx, dy = places[xb] - places[xa], places[yb] - places[ya]
         moved = abs(velocities[xb] - velocities[xa]) + abs(velocities[yb] - velocities[ya])
-        far = activation_distance[k] + moved * h + speculative_margin
+        far = activation_distance[k] + CORNERWISE * (moved * h + speculative_margin)
         near[came] = k  # kept by counting: which pair comes near cannot be predicted
         came += not (dx * dx + dy * dy > far * far)
     if came == 0:
@@ -201,7 +242,7 @@ def activate(
         p = count + k
         manifold = manifolds[p]
         a, b = np.int64(proximity[2 * near[k]]), np.int64(proximity[2 * near[k] + 1])
-        _make_blank(manifolds, points, p)
+        make_blank(manifolds, points, p)
         manifold.a, manifold.b, manifold.wall = a, b, -1
         manifold.entity_a, manifold.entity_b = entities[a], entities[b]
         scalar[scalar_count + k] = p

@@ -136,7 +136,7 @@ def touch_pair(
         )
     else:
         # At any distance: the pair is known to touch.
-        touch_with_circle(manifold, first, Way(dx, dy, 0.0, 0.0), 0.0, 1e300, one, two)
+        touch_with_circle(manifold, first, Way(dx, dy, 0.0, 0.0), 0.0, 0.0, 1e300, one, two)
 
 
 @inlined

@@ -2,21 +2,25 @@
 
 import math
 
-from physicslab.kernels import Rows, fused, inlined
+from physicslab.kernels import Rows, Vectors, fused, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
-from physicslab.kernels.broad.near_pairs import ACTIVATION_RATIO
-from physicslab.kernels.narrow.outline import Way, outline_of
+from physicslab.kernels.narrow.outline import Way, kept_outline
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point, Points
 
 __all__ = [
-    "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "effective_masses", "find_contacts", "follow_pose", "mix",
+    "ACTIVATION_RATIO", "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "TOLERANCE_WITHIN_STEP",
+    "effective_masses", "find_contacts", "follow_pose", "forget_points", "mix", "note_pose", "touch",
 ]  # fmt: skip
 
+ACTIVATION_RATIO = 1.02
+"""Distance within which two bodies may have contact points, as a multiple of their bounding radii's sum."""
 CACHE_TOLERANCE = 0.004
 """Share of the smaller box's size that a pair of boxes may move before its points are found again."""
 CACHE_TURN_TOLERANCE = 0.002
 """How far [rad] either may turn."""
+TOLERANCE_WITHIN_STEP = 12.0
+"""Multiple of these tolerances that counts after the first substep of a step."""
 _ROWS_FOUND_AGAIN = 64
 """Number of bodies up to which points of boxes are found again after any motion."""
 _ROUNDING = 1e-9
@@ -84,25 +88,48 @@ def _too_far(
     return bool(clear > margin + speculative_margin)
 
 
+@inlined
+def note_pose(manifold: Manifold, dx: float, dy: float, angle_a: float, angle_b: float) -> None:
+    """Record the pose in which the points of a pair are found."""
+    manifold.base_x, manifold.base_y = dx, dy
+    manifold.base_angle_a, manifold.base_angle_b = angle_a, angle_b
+
+
+@inlined
+def forget_points(one: Point, two: Point) -> None:
+    """Clear what the points of a pair that has none any more would be warm-started with."""
+    one.feature = two.feature = one.ahead = two.ahead = 0
+    one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
+
+
 @fused
 def _look_up(
     manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, sizes: Sizes,
-    speculative_margin: float, tolerance: float,
+    h: float, speculative_margin: float, tolerance: float, circular: bool,
 ) -> int:  # fmt: skip
-    """Use what was found of two boxes, or of one and a wall, if they have hardly moved against each other.
+    """Use what was found of a pair with a box, if they have hardly moved against each other.
 
+    Points are kept of two boxes, or of one and a wall; that there are none, of any pair with a box.
     ``tolerance`` is a share of :data:`CACHE_TOLERANCE` and :data:`CACHE_TURN_TOLERANCE`. Returns what is
     known of them now. Where that is nothing, their present pose is recorded, for which their points are to be
     found.
     """
     a, b, width, height, angle = manifold.a, manifold.b, sizes.width, sizes.height, motion.angle
+    radius = sizes.radius
     size, sizes_of_both = min(width[b], height[b]), width[b] + 2.0 * height[b]
     if manifold.wall < 0:
         size = min(size, min(width[a], height[a]))
         sizes_of_both += 3.0 * width[a] + 5.0 * height[a]
+    travel = abs(way.ux) + abs(way.uy)
+    if circular:
+        spin = abs(motion.angular[a]) * (width[a] + height[a]) + abs(motion.angular[b]) * (
+            width[b] + height[b]
+        )
+        travel += 0.5 * h * spin  # how far a corner comes
+        size = min(max(0.5 * width[a], radius[a]), max(0.5 * width[b], radius[b]))
+        sizes_of_both += 7.0 * radius[a] + 11.0 * radius[b]
     moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
     turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
-    travel = abs(way.ux) + abs(way.uy)
     slow = travel <= 0.5 * CONTACT_MARGIN * size
     if manifold.found == 2 and manifold.base_sizes == sizes_of_both:
         if manifold.count == 0:
@@ -111,7 +138,7 @@ def _look_up(
             nearest = manifold.gap - abs(moved_x) - abs(moved_y) - 0.5 * turned - 0.0025 * size
             if nearest > CONTACT_MARGIN * size + travel + speculative_margin:
                 return _APART
-        elif (
+        elif not circular and (
             abs(moved_x) + abs(moved_y) <= tolerance * CACHE_TOLERANCE * size
             and abs(turn_a) <= tolerance * CACHE_TURN_TOLERANCE
             and abs(turn_b) <= tolerance * CACHE_TURN_TOLERANCE
@@ -119,32 +146,32 @@ def _look_up(
         ):
             follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
             return _KEPT
-    manifold.base_x, manifold.base_y = way.dx, way.dy
-    manifold.base_angle_a, manifold.base_angle_b = angle[a], angle[b]
+    note_pose(manifold, way.dx, way.dy, angle[a], angle[b])
     manifold.base_sizes = sizes_of_both
     manifold.found = 2 if slow else 1
     return _OUTDATED
 
 
 @fused
-def _touch(
+def touch(
     manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, sizes: Sizes, bounds: Bounds,
-    h: float, start: float, speculative_margin: float,
+    rotations: Vectors, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Find the points of a pair, of whatever shapes."""
     b = manifold.b
-    body = outline_of(b, motion.angle, sizes)
+    body = kept_outline(b, motion.angle, sizes, rotations)
     if manifold.wall >= 0:
         farthest = math.sqrt(body.half_x * body.half_x + body.half_y * body.half_y)
         spin = abs(motion.angular[b]) * h * farthest
         place = Way(motion.position[b, 0], motion.position[b, 1], way.ux, way.uy)
         touch_wall(manifold, one, two, place, spin, speculative_margin, body, bounds.walls)
         return
-    other = outline_of(manifold.a, motion.angle, sizes)
+    other = kept_outline(manifold.a, motion.angle, sizes, rotations)
     if other.box and body.box:
         touch_boxes(manifold, one, two, way, start, speculative_margin, other, body)
     else:
-        touch_with_circle(manifold, one, way, start, speculative_margin, other, body)
+        turn = motion.angular[manifold.a] if other.box else (motion.angular[b] if body.box else 0.0)
+        touch_with_circle(manifold, one, way, turn * h, start, speculative_margin, other, body)
 
 
 @inlined
@@ -175,7 +202,9 @@ def find_contacts(
     position, linear, touching = motion.position, motion.linear, near.touching
     found, held = 0, count
     # The arms of kept points are those of the pose in which they were found.
-    tolerance = _ROUNDING if len(motion.angle) <= _ROWS_FOUND_AGAIN else 1.0
+    tolerance = 1.0 if first else TOLERANCE_WITHIN_STEP
+    if len(motion.angle) <= _ROWS_FOUND_AGAIN:
+        tolerance = _ROUNDING
     for number in range(count):
         p = near.scalar[number]
         manifold, one, two = near.manifolds[p], near.points[2 * p], near.points[2 * p + 1]
@@ -193,17 +222,24 @@ def find_contacts(
         )  # fmt: skip
         boxes = int(sizes.kind[a] == 2) + int(sizes.kind[b] == 2)
         walled = manifold.wall >= 0
+        circular = not walled and boxes == 1
         round_pair = not had_points and (sizes.kind[b] != 2 if walled else boxes == 0)
         if round_pair and _too_far(manifold, way, motion, sizes, bounds, speculative_margin):
             continue
         manifold.offset_x, manifold.offset_y = way.dx, way.dy
         known = _OUTDATED
-        if sizes.kind[b] == 2 and (walled or boxes == 2):
-            known = _look_up(manifold, near.points, p, way, motion, sizes, speculative_margin, tolerance)
+        if sizes.kind[b] == 2 if walled else boxes > 0:
+            known = _look_up(
+                manifold, near.points, p, way, motion, sizes, h, speculative_margin, tolerance, circular
+            )
             if known == _APART:
                 continue
         if known == _OUTDATED:
-            _touch(manifold, one, two, way, motion, sizes, bounds, h, start, speculative_margin)
+            touch(
+                manifold, one, two, way, motion, sizes, bounds, near.rotations, h, start, speculative_margin
+            )
+            if circular:
+                manifold.found = 2 if manifold.count == 0 else 0
         if manifold.count > 0:
             if first or known == _OUTDATED:
                 effective_masses(manifold, near.points, p, inverse)
@@ -216,6 +252,5 @@ def find_contacts(
                 held -= 1
                 touching[held] = p
         elif had_points:
-            one.feature = two.feature = one.ahead = two.ahead = 0
-            one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
+            forget_points(one, two)
     return _put_last(touching, found, held, count)

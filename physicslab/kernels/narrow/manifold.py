@@ -10,6 +10,9 @@ __all__ = ["LEVEL", "Corner", "box_box", "circle_box", "circle_circle", "wall_co
 
 _PARALLEL = 0.9998
 """Cosine of the angle between axes of boxes from which on these count as parallel: 0.02 rad."""
+_FAVOUR, _ALIKE = 0.005, 1e-9
+"""Share of the smallest half extent by which an axis must be better than that of old points, and up to which
+two axes are as good."""
 LEVEL = 0.01
 """Share of the smaller half extent by which the surfaces of parallel boxes may differ and still be level."""
 
@@ -77,6 +80,19 @@ class Corner(NamedTuple):
 
 
 @inlined
+def _feature_of(face: int, edge: int, incident: int) -> int:
+    """Return the number of the first of two points of a face, its edge, and the edge that it faces."""
+    return 1 + 2 * (incident + 4 * (edge + (4 if face >= 2 else 0)))
+
+
+@inlined
+def _face_of(feature: int) -> int:
+    """Return the axis of a point's number: x or y of A, x or y of B."""
+    edge = (feature - 1) // 8
+    return (0 if edge % 2 == 1 else 1) + (2 if edge >= 4 else 0)
+
+
+@inlined
 def _grazes(across: float, slack: float, toward: float, aside: float) -> bool:
     """Whether what comes on along an axis hardly overlaps across it: it slides over what it meets."""
     return across > -slack and toward < 0.0 and -toward > abs(aside)
@@ -84,12 +100,14 @@ def _grazes(across: float, slack: float, toward: float, aside: float) -> bool:
 
 @inlined
 def _best_axis(
-    dx: float, dy: float, ux: float, uy: float, a: Outline, b: Outline, margin: float
+    dx: float, dy: float, ux: float, uy: float, a: Outline, b: Outline, margin: float, feature: int
 ) -> tuple[float, int]:
     """Return the largest separation [m] along an axis of two boxes, and which: x or y of A, x or y of B.
 
-    (ux, uy) is how B moves against A. Where parallel boxes are level but for a little, and B slides on to A,
-    the axis across the way is returned: the side of the next tile of a floor is no wall.
+    (ux, uy) is how B moves against A. The axis of an old point's ``feature`` stays unless another one is
+    better by a little, so that the reference face does not change to and fro; else the best is taken,
+    whichever box is A. Where parallel boxes are level but for a little, and B slides on to A, the axis across
+    the way is returned: the side of the next tile of a floor is no wall.
     """
     # d in the frames of A and of B; the axes of B seen from A
     dax, day = a.c * dx + a.s * dy, a.c * dy - a.s * dx
@@ -99,16 +117,19 @@ def _best_axis(
     gap_ay = abs(day) - a.half_y - (s * b.half_x + c * b.half_y)
     gap_bx = abs(dbx) - b.half_x - (c * a.half_x + s * a.half_y)
     gap_by = abs(dby) - b.half_y - (s * a.half_x + c * a.half_y)
-    # A new axis must be better by a little, so that the reference face does not change to and fro.
     smallest = min(min(a.half_x, a.half_y), min(b.half_x, b.half_y))
-    favour = 0.005 * smallest
-    gap, face = gap_ax, 0
-    if gap_ay > gap + favour:
+    rounding, gap, face = _ALIKE * smallest, gap_ax, 0
+    if gap_ay > gap + rounding:
         gap, face = gap_ay, 1
-    if gap_bx > gap + favour:
+    if gap_bx > gap + rounding:
         gap, face = gap_bx, 2
-    if gap_by > gap + favour:
+    if gap_by > gap + rounding:
         gap, face = gap_by, 3
+    if feature > 0:
+        held = _face_of(feature)
+        held_gap = (gap_ax if held == 0 else gap_ay) if held < 2 else (gap_bx if held == 2 else gap_by)
+        if gap <= held_gap + _FAVOUR * smallest:
+            gap, face = held_gap, held
     if (c < _PARALLEL and s < _PARALLEL) or gap > margin or (ux == 0.0 and uy == 0.0):
         return gap, face
     # Of parallel boxes, A has the axes of B, which may be turned by a right angle.
@@ -163,11 +184,12 @@ def _clipped(along1: float, along2: float, side: float) -> tuple[float, float]:
 
 @inlined
 def box_box(
-    dx: float, dy: float, ux: float, uy: float, a: Outline, b: Outline, margin: float
+    dx: float, dy: float, ux: float, uy: float, a: Outline, b: Outline, margin: float, old: int
 ) -> tuple[float, float, float, int, Corner, Corner]:
     """Return the contact of two boxes: separating axes, then the incident edge clipped to the reference face.
 
-    (dx, dy) leads from A's centre to B's, (ux, uy) is how B moves against A.
+    (dx, dy) leads from A's centre to B's, (ux, uy) is how B moves against A. ``old`` is the feature of a
+    point that they have had, or 0.
 
     Returns
     -------
@@ -175,7 +197,7 @@ def box_box(
         ``gap`` is the separation along the best axis, the normal leads from A to B. No points where the gap
         exceeds ``margin``. (After Catto, box2d-lite.)
     """
-    gap, face = _best_axis(dx, dy, ux, uy, a, b, margin)
+    gap, face = _best_axis(dx, dy, ux, uy, a, b, margin, old)
     none = Corner(0.0, 0.0, 0.0, 0)
     if gap > margin:
         return gap, 0.0, 0.0, 0, none, none
@@ -205,7 +227,7 @@ def box_box(
     px1, py1 = x1 + start * (x2 - x1), y1 + start * (y2 - y1)
     px2, py2 = x1 + end * (x2 - x1), y1 + end * (y2 - y1)
     separation1, separation2 = px1 * nx + py1 * ny - depth, px2 * nx + py2 * ny - depth
-    feature = 1 + 2 * (incident + 4 * (edge + (4 if flip else 0)))
+    feature = _feature_of(face, edge, incident)
     one = Corner(
         px1 - 0.5 * separation1 * nx + origin_x, py1 - 0.5 * separation1 * ny + origin_y, separation1, feature
     )

@@ -3,10 +3,10 @@
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, fused
+from physicslab.kernels import Numbers, Vectors, fused, inlined
 from physicslab.kernels.arguments import Sizes
 
-__all__ = ["Outline", "Way", "outline_of"]
+__all__ = ["Outline", "Way", "kept_outline", "outline_of", "turned"]
 
 
 class Outline(NamedTuple):
@@ -35,3 +35,24 @@ def outline_of(i: int, angle: Numbers, sizes: Sizes) -> Outline:
     box = sizes.kind[i] == 2
     c, s = (math.cos(angle[i]), math.sin(angle[i])) if box else (1.0, 0.0)
     return Outline(box, c, s, 0.5 * sizes.width[i], 0.5 * sizes.height[i], sizes.radius[i])
+
+
+@fused
+def kept_outline(i: int, angle: Numbers, sizes: Sizes, rotations: Vectors) -> Outline:
+    """Return the same; ``rotations`` (rows, 3) keeps each box's angle, its cosine and its sine."""
+    box = sizes.kind[i] == 2
+    if box and rotations[i, 0] != angle[i]:
+        rotations[i, 0] = angle[i]
+        rotations[i, 1], rotations[i, 2] = math.cos(angle[i]), math.sin(angle[i])
+    c, s = (rotations[i, 1], rotations[i, 2]) if box else (1.0, 0.0)
+    return Outline(box, c, s, 0.5 * sizes.width[i], 0.5 * sizes.height[i], sizes.radius[i])
+
+
+@inlined
+def turned(outline: Outline, angle: float) -> Outline:
+    """Return an outline turned by an angle [rad]."""
+    box, c, s, half_x, half_y, radius = outline
+    if angle == 0.0 or not box:
+        return outline
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return Outline(box, c * cosine - s * sine, s * cosine + c * sine, half_x, half_y, radius)

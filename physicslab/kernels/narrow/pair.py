@@ -5,8 +5,14 @@ from typing import NamedTuple
 
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.narrow.manifold import LEVEL, box_box, circle_box, circle_circle, wall_corner
-from physicslab.kernels.narrow.outline import Outline, Way
-from physicslab.kernels.narrow.sweep import MISS, sweep_box_box, sweep_circle_box, sweep_circle_circle
+from physicslab.kernels.narrow.outline import Outline, Way, turned
+from physicslab.kernels.narrow.sweep import (
+    MISS,
+    sweep_box_box,
+    sweep_circle_box,
+    sweep_circle_circle,
+    sweep_turning_box,
+)
 from physicslab.kernels.records import Manifold, Point
 
 __all__ = ["CONTACT_MARGIN", "SWEEP_THRESHOLD", "touch_boxes", "touch_wall", "touch_with_circle"]
@@ -17,7 +23,10 @@ not touch."""
 _ROUNDING = 1e-6
 """Share of the size within which two surfaces count as just meeting."""
 SWEEP_THRESHOLD = 0.002
-"""Share of the smaller body's size below which a substep's motion is not swept at all."""
+"""Share of the smaller body's size below which a substep's motion, or that of a turning box's corners, is not
+swept at all."""
+_TURNING = 0.1
+"""Share of a body's way that the corners of a box may turn meanwhile, as the next tile of a floor may."""
 _FAST = 0.25
 """Share of the smaller box's size beyond which a substep's motion of boxes is swept."""
 
@@ -70,8 +79,12 @@ def _circle_pose(
 
 
 @inlined
-def _sweep_circle(x: float, y: float, way: Way, a: Outline, b: Outline) -> float:
-    """Return when a pair with a circle touches, B's centre being at (x, y) first."""
+def _sweep_circle(x: float, y: float, way: Way, start: float, turn: float, a: Outline, b: Outline) -> float:
+    """Return when a pair with a circle touches, B's centre being at (x, y) first, and its box turning."""
+    if turn != 0.0:
+        if a.box:
+            return sweep_turning_box(Way(x, y, way.ux, way.uy), start, a, turn, b.radius)
+        return sweep_turning_box(Way(-x, -y, -way.ux, -way.uy), start, b, turn, a.radius)
     if a.box:
         return sweep_circle_box(x, y, way.ux, way.uy, a, b.radius)
     if b.box:
@@ -109,39 +122,55 @@ def _slides_over(nx: float, ny: float, dx: float, dy: float, way: Way, a: Outlin
 
 @inlined
 def touch_with_circle(
-    manifold: Manifold, point: Point, way: Way, start: float, speculative_margin: float,
+    manifold: Manifold, point: Point, way: Way, turn: float, start: float, speculative_margin: float,
     a: Outline, b: Outline,
 ) -> None:  # fmt: skip
     """Find the one point of a pair with a circle: where they meet in this substep, or are now.
 
-    The substep takes B from d + start u to d + (start + 1) u, seen from A.
+    The substep takes B from d + start u to d + (start + 1) u, seen from A; a box turns by ``turn`` [rad].
     """
     dx, dy, ux, uy = way
     size = min(max(a.half_x, a.radius), max(b.half_x, b.radius))
     tie = 7 * manifold.a + manifold.b
     nx, ny, arm_ax, arm_ay, arm_bx, arm_by, separation = _circle_pose(dx, dy, a, b, tie)
     reach = math.sqrt(ux * ux + uy * uy)
-    manifold.count, manifold.swept, manifold.size = 0, 0, 2.0 * size
+    manifold.count, manifold.swept, manifold.size, manifold.gap = 0, 0, 2.0 * size, -math.inf
     near = CONTACT_MARGIN * size + speculative_margin
-    if separation > max(reach, near):
+    # How far a corner of the box comes.
+    swing = 0.0
+    if turn != 0.0:
+        half_x, half_y = max(a.half_x, b.half_x), max(a.half_y, b.half_y)
+        swing = abs(turn) * math.sqrt(half_x * half_x + half_y * half_y)
+    level = swing <= _TURNING * reach
+    if swing <= _ROUNDING * size:
+        swing = turn = 0.0
+    if separation > max(reach + swing, near):
+        manifold.gap = separation
         return
-    fast = reach > SWEEP_THRESHOLD * size
+    fast = reach + swing > SWEEP_THRESHOLD * size
     approach = -(ux * nx + uy * ny)
     # What rests on each other touches as it does now: the normal of another moment would do work on it.
     loaded = point.normal_impulse > 0.0 and separation < near
-    if not loaded and (fast or approach > max(4.0 * speculative_margin, _ROUNDING * size)):
+    if not loaded and (fast or approach + swing > max(4.0 * speculative_margin, _ROUNDING * size)):
         # The normal is that of the moment of contact, if there is one in this substep.
         x, y = dx + start * ux, dy + start * uy
-        t = _sweep_circle(x, y, way, a, b)
+        t = _sweep_circle(x, y, way, start, turn, a, b)
         met = False
         if t <= 1.0:
-            mx, my, met_ax, met_ay, met_bx, met_by, gap = _circle_pose(x + t * ux, y + t * uy, a, b, tie)
+            met_a, met_b = turned(a, (start + t) * turn), turned(b, (start + t) * turn)
+            x, y = x + t * ux, y + t * uy
+            mx, my, met_ax, met_ay, met_bx, met_by, gap = _circle_pose(x, y, met_a, met_b, tie)
             met = gap > -_ROUNDING * size  # else they overlapped before the substep began
-        if met and _slides_over(mx, my, x + t * ux, y + t * uy, way, a, b):
-            return
+            if met and level and _slides_over(mx, my, x, y, way, met_a, met_b):
+                return
         if met:
             nx, ny, arm_ax, arm_ay, arm_bx, arm_by = mx, my, met_ax, met_ay, met_bx, met_by
-            separation = gap - (start + t) * (ux * nx + uy * ny)
+            opening = ux * nx + uy * ny
+            if a.box:
+                opening -= turn * (met_ax * ny - met_ay * nx)
+            else:
+                opening += turn * (met_bx * ny - met_by * nx)
+            separation = gap - (start + t) * opening
             manifold.swept = 1
         elif separation > near:
             return
@@ -149,7 +178,7 @@ def touch_with_circle(
             manifold.swept = 2
     elif separation > near:
         return
-    if not loaded and manifold.swept != 1 and _slides_over(nx, ny, dx, dy, way, a, b):
+    if level and not loaded and manifold.swept != 1 and _slides_over(nx, ny, dx, dy, way, a, b):
         return
     manifold.normal_x, manifold.normal_y, manifold.count = nx, ny, 1
     before = _impulses_of(point)
@@ -175,7 +204,7 @@ def touch_boxes(
         margin = CONTACT_MARGIN * size + speculative_margin
         x, y = dx + start * ux, dy + start * uy
         t = 0.0
-        if box_box(x, y, 0.0, 0.0, a, b, -math.inf)[0] > 0.0:
+        if box_box(x, y, 0.0, 0.0, a, b, -math.inf, 0)[0] > 0.0:
             t = sweep_box_box(Way(x, y, ux, uy), a, b)
         if t == MISS:
             manifold.count = 0
@@ -184,7 +213,8 @@ def touch_boxes(
         x, y = dx + lead_x, dy + lead_y
         manifold.swept = 1
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
-    gap, nx, ny, count, first, second = box_box(x, y, ux, uy, a, b, margin)
+    old = one.feature if manifold.count > 0 else 0
+    gap, nx, ny, count, first, second = box_box(x, y, ux, uy, a, b, margin, old)
     if not manifold.swept:
         manifold.gap = gap
     manifold.count = count

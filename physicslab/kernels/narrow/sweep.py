@@ -1,17 +1,23 @@
 """When moving shapes first touch: for bodies so fast that they could step over each other.
 
 Each function returns the share of the displacement (ux, uy) of B against A, 0 to 1, at which they touch, or 2
-where they miss each other. Rotation within the displacement is neglected.
+where they miss each other. Rotation within the displacement is neglected, but for a box that turns into a
+circle.
 """
 
 import math
 
 from physicslab.kernels import inlined
-from physicslab.kernels.narrow.outline import Outline, Way
+from physicslab.kernels.narrow.manifold import circle_box
+from physicslab.kernels.narrow.outline import Outline, Way, turned
 
-__all__ = ["MISS", "sweep_box_box", "sweep_circle_box", "sweep_circle_circle"]
+__all__ = ["MISS", "sweep_box_box", "sweep_circle_box", "sweep_circle_circle", "sweep_turning_box"]
 
 MISS = 2.0
+_APPROACHES, _REFINEMENTS = 40, 8
+"""Largest numbers of steps towards a meeting, none of which can pass it, and of Newton's steps at its end."""
+_NEAR = 0.02
+"""Share of the farthest motion from which on the gap is nearly linear."""
 
 
 @inlined
@@ -57,6 +63,35 @@ def sweep_circle_box(x: float, y: float, ux: float, uy: float, box: Outline, rad
     corner_x = half_x if at_x > 0.0 else -half_x
     corner_y = half_y if at_y > 0.0 else -half_y
     return sweep_circle_circle(px - corner_x, py - corner_y, qx, qy, radius)
+
+
+@inlined
+def sweep_turning_box(way: Way, start: float, box: Outline, turn: float, radius: float) -> float:
+    """Return when a circle and a box touch that turns by ``turn`` [rad] meanwhile.
+
+    The circle is at (dx, dy) from the box's centre at first; the box has its angle ``-start`` of the
+    displacement later.
+    """
+    x, y, ux, uy = way
+    swing = abs(turn) * math.sqrt(box.half_x * box.half_x + box.half_y * box.half_y)
+    farthest, t = math.sqrt(ux * ux + uy * uy) + swing, 0.0
+    for step in range(_APPROACHES + _REFINEMENTS):
+        at_x, at_y = x + t * ux, y + t * uy
+        nx, ny, _px, _py, gap = circle_box(at_x, at_y, turned(box, (start + t) * turn), radius)
+        if step < _APPROACHES and gap > _NEAR * farthest:
+            t += gap / farthest
+        else:
+            rate = nx * ux + ny * uy - turn * (ny * at_x - nx * at_y)
+            if rate >= 0.0:
+                return MISS
+            if step == 0 and gap < 0.0:
+                return 0.0
+            t -= gap / rate
+            if abs(gap) <= 1e-14 * radius:
+                break
+        if t > 1.0 or t < 0.0:
+            return MISS
+    return t
 
 
 @inlined

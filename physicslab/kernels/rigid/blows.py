@@ -4,12 +4,14 @@ Points that approach at the same time are resolved together: each leaves with e 
 (Newton), and its tangential impulse is what stops the sliding, at most mu times the normal one. Those that
 approach because of that come in the next round, so that a row of touching discs passes an impulse on.
 Inelastic ones take all inelastic contacts that touch with them. Where Newton's law would make energy, as
-it can where a body sticks with one end and pivots, restitutions are lowered until it makes none.
+it can where a body sticks with one end and pivots, Stronge's law takes over; there is none for several
+points at once, and their restitutions are lowered until no energy is made.
 """
 
 import math
 
 from physicslab.kernels import Numbers, Rows, fused, inlined
+from physicslab.kernels.energetic import energetic_blow
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
@@ -120,21 +122,33 @@ def _energy_gained(blow: Equations, n: int) -> tuple[float, float]:
 
 
 @fused
-def _find_impulses(blow: Equations, n: int, rest: float, rate: float) -> tuple[bool, bool]:
-    """Find the impulses, with restitutions lowered where they would make energy.
+def _solve_by_energy(blow: Equations) -> None:
+    """Find the impulses of a single point by Stronge's law."""
+    a, measures = blow.a, blow.measures
+    blow.vectors[UNKNOWN, 0], blow.vectors[UNKNOWN, 1] = energetic_blow(
+        a[0, 0], a[1, 1], a[0, 1], measures[0, VN], measures[0, VT], measures[0, RESTITUTION], measures[0, MU]
+    )
 
-    Returns whether there are any, and whether restitutions were lowered.
+
+@fused
+def _find_impulses(blow: Equations, n: int, rest: float, rate: float) -> tuple[bool, int, int]:
+    """Find the impulses, by Stronge's law or with restitutions lowered where Newton's would make energy.
+
+    Returns whether there are any, how many obey Stronge's law, and how often restitutions were lowered.
     """
     low, high, work_low, work_high, share, side = 0.0, 1.0, 0.0, 0.0, 1.0, 0
     for trial in range(_TRIALS):
         solved = _solve(blow, n, share, rest, rate)
         work, scale = _energy_gained(blow, n)
         if trial == 0 and solved and work <= 1e-13 * scale:
-            return True, False
+            return True, 0, 0
+        if trial == 0 and n == 1 and blow.measures[0, RESTITUTION] > 0.0:
+            _solve_by_energy(blow)
+            return True, 1, 0
         if trial == 1 or (solved and work <= 0.0):
             low, work_low = share, work
             if not solved or work >= -1e-13 * scale or high - low <= 1e-13 or trial == _TRIALS - 1:
-                return solved, True
+                return solved, 0, 1
             work_high *= 0.5 if side == -1 else 1.0
             side = -1
         else:
@@ -149,7 +163,7 @@ def _find_impulses(blow: Equations, n: int, rest: float, rate: float) -> tuple[b
             share = 0.0
         elif high - low <= 1e-13 or trial == _TRIALS - 2:
             share = low
-    return False, True
+    return False, 0, 1
 
 
 @fused
@@ -192,25 +206,25 @@ def _write(
 def resolve_blows(
     scene: Scene, equations: Equations, count: int, blow: Equations, q: Numbers, v: Numbers, rest: float,
     rate: float, entities: Rows, log: Impacts, logged: int, time: float,
-) -> tuple[int, bool, bool, int, int]:  # fmt: skip
+) -> tuple[int, bool, int, int, int, int]:  # fmt: skip
     """Let all points that approach faster than ``rest`` bounce, until none does.
 
     Those that do not bounce may use up their gap in 1 / ``rate`` seconds. Returns how many impacts there
-    were, whether each could be resolved, whether energy had to be kept, how many points the last impulses
-    act at, and how many rounds there were.
+    were, whether each could be resolved, how many obeyed Stronge's law, how often restitutions were lowered,
+    how many points the last impulses act at, and how many rounds there were.
     """
-    impacts, lowered, last = 0, False, 0
+    impacts, energetic, lowered, last = 0, 0, 0, 0
     most = _SHORT_ROUNDS if rate > 0.0 else _MAX_ROUNDS
     for turn in range(most + 2):
         measure_all(scene, equations, count, q, v)
         n, approaching = _gather(equations, count, blow, rest, rate, turn >= most)
         if not approaching:
-            return impacts, True, lowered, last, turn
+            return impacts, True, energetic, lowered, last, turn
         assemble(scene, blow, n)
-        solved, kept = _find_impulses(blow, n, rest, rate)
+        solved, by_energy, less = _find_impulses(blow, n, rest, rate)
         if not solved:
-            return impacts, False, lowered, last, turn
-        lowered, last = lowered or kept, n
+            return impacts, False, energetic, lowered, last, turn
+        energetic, lowered, last = energetic + by_energy, lowered + less, n
         impacts += _write(scene, blow, n, rest, entities, log, logged + impacts, time)
         apply(scene, blow, n, v)
-    return impacts, True, lowered, last, most
+    return impacts, True, energetic, lowered, last, most

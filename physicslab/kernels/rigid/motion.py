@@ -211,15 +211,15 @@ def begin_motion(
 def collide(
     scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, rest: float,
     rate: float, q: Numbers, v: Numbers, entities: Rows, log: Impacts, logged: int, time: float,
-) -> tuple[int, int, bool, int, int]:  # fmt: skip
+) -> tuple[int, int, int, int, int, int]:  # fmt: skip
     """Resolve the impacts of the points that touch, or will in 1 / ``rate`` seconds.
 
-    Returns why the motion cannot go on (DONE if it can), how many impacts there were, whether restitutions
-    were lowered to keep the energy, how many points the last impulses act at, which are left in ``room``, and
-    how many rounds of impulses there were.
+    Returns why the motion cannot go on (DONE if it can), how many impacts there were, how many obeyed
+    Stronge's law, how often restitutions were lowered to keep the energy, how many points the last impulses
+    act at, which are left in ``room``, and how many rounds of impulses there were.
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
-    impacts, solved, lowered, last, rounds = resolve_blows(
+    impacts, solved, energetic, lowered, last, rounds = resolve_blows(
         of, points, count, scratch, q, v, rest, rate, entities, log, logged, time
     )
-    return DONE if solved else UNRESOLVED, impacts, lowered, last, rounds
+    return DONE if solved else UNRESOLVED, impacts, energetic, lowered, last, rounds

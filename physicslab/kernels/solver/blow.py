@@ -2,19 +2,24 @@
 
 A point leaves with e times its approach (Newton); its tangential impulse stops the sliding, at most mu times
 the normal one (Coulomb). Where that would make energy, as it can where a body sticks with one end and pivots,
-the restitution is lowered until it makes none.
+Stronge's law takes over; there is none for two points at once, and their restitution is lowered until it
+makes no energy.
 """
 
 from typing import NamedTuple
 
 from physicslab.kernels import inlined
+from physicslab.kernels.energetic import energetic_blow
 
-__all__ = ["Blow", "Lever", "Weights", "one_blow", "two_blows"]
+__all__ = ["ENERGETIC", "LOWERED", "NEWTON", "Blow", "Lever", "Weights", "one_blow", "two_blows"]
+
+NEWTON, ENERGETIC, LOWERED = range(3)
+"""The law of an impact: Newton's; Stronge's, or Newton's with a lower restitution, where it makes energy."""
 
 _MAX_SWEEPS = 200
 """Largest number of sweeps over the two points of a pair."""
 _HALVINGS = 48
-"""Bisections for the restitution that makes no energy."""
+"""Bisections for the restitution of two points that makes no energy."""
 _SEPARATE = 1.0 + 1e-9
 """One, and so much more that two points of a pair are never quite one."""
 _ROUNDING = 1e-12
@@ -64,12 +69,10 @@ def _across_element(weights: Weights, lever: Lever) -> float:
 
 
 @inlined
-def _coupled(lever: Lever, weights: Weights, gained: float, friction: float) -> tuple[float, float]:
+def _newton(
+    kn: float, kt: float, between: float, lever: Lever, gained: float, friction: float
+) -> tuple[float, float]:
     """Return the impulses that change the approach of a point by ``gained`` [m/s] under friction."""
-    kn, kt = _normal_element(weights, lever, lever), _across_element(weights, lever)
-    between = (
-        weights.turn_a * lever.normal_a * lever.across_a + weights.turn_b * lever.normal_b * lever.across_b
-    )
     frictionless = gained / kn
     if friction == 0.0:
         return frictionless, 0.0
@@ -94,41 +97,20 @@ def _coupled(lever: Lever, weights: Weights, gained: float, friction: float) -> 
 
 
 @inlined
-def _work(lever: Lever, weights: Weights, normal: float, tangent: float) -> tuple[float, float]:
-    """Return the work of the impulses at a single point [J], and the sum of the magnitudes of its parts."""
+def one_blow(lever: Lever, weights: Weights, restitution: float, friction: float) -> tuple[float, float, int]:
+    """Return the normal and tangential impulse of a point that approaches [N s], and which law they obey."""
     kn, kt = _normal_element(weights, lever, lever), _across_element(weights, lever)
     between = (
         weights.turn_a * lever.normal_a * lever.across_a + weights.turn_b * lever.normal_b * lever.across_b
     )
-    v, sliding = lever.v + 0.5 * (kn * normal + between * tangent), lever.sliding
-    sliding += 0.5 * (between * normal + kt * tangent)
-    return normal * v + tangent * sliding, abs(normal * lever.v) + abs(tangent * lever.sliding)
-
-
-@inlined
-def one_blow(
-    lever: Lever, weights: Weights, restitution: float, friction: float
-) -> tuple[float, float, bool]:
-    """Return the normal and tangential impulse of a point that approaches [N s].
-
-    Then whether its restitution had to be lowered.
-    """
-    normal, tangent = _coupled(lever, weights, -(1.0 + restitution) * lever.v, friction)
-    work, scale = _work(lever, weights, normal, tangent)
-    if work <= _ROUNDING * scale:
-        return normal, tangent, False
-    low, high = 0.0, restitution
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        normal, tangent = _coupled(lever, weights, -(1.0 + middle) * lever.v, friction)
-        if _work(lever, weights, normal, tangent)[0] <= 0.0:
-            low = middle
-        else:
-            high = middle
-    normal, tangent = _coupled(lever, weights, -(1.0 + low) * lever.v, friction)
-    if _work(lever, weights, normal, tangent)[0] > _ROUNDING * scale:  # sliding that turns round takes none
-        return -(1.0 + low) * lever.v / _normal_element(weights, lever, lever), 0.0, True
-    return normal, tangent, True
+    normal, tangent = _newton(kn, kt, between, lever, -(1.0 + restitution) * lever.v, friction)
+    v = lever.v + 0.5 * (kn * normal + between * tangent)
+    sliding = lever.sliding + 0.5 * (between * normal + kt * tangent)
+    scale = abs(normal * lever.v) + abs(tangent * lever.sliding)
+    if normal * v + tangent * sliding <= _ROUNDING * scale:
+        return normal, tangent, NEWTON
+    normal, tangent = energetic_blow(kn, kt, between, lever.v, lever.sliding, restitution, friction)
+    return normal, tangent, ENERGETIC
 
 
 @inlined
@@ -211,14 +193,14 @@ def _work_of_both(one: Lever, two: Lever, weights: Weights, blow: Blow) -> float
 @inlined
 def two_blows(
     one: Lever, two: Lever, weights: Weights, restitution: float, friction: float
-) -> tuple[Blow, bool]:
+) -> tuple[Blow, int]:
     """Return the impulses of two points of a pair that approach at once, as a box that lands flat.
 
-    Then whether their restitution had to be lowered.
+    Then which law they obey.
     """
     blow = _both(one, two, weights, restitution, friction)
     if _work_of_both(one, two, weights, blow) <= _ROUNDING:
-        return blow, False
+        return blow, NEWTON
     low, high = 0.0, restitution
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
@@ -229,4 +211,4 @@ def two_blows(
     blow = _both(one, two, weights, low, friction)
     if _work_of_both(one, two, weights, blow) > _ROUNDING:
         blow = _both(one, two, weights, low, 0.0)
-    return blow, True
+    return blow, LOWERED

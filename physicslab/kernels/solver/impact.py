@@ -6,7 +6,7 @@ from typing import NamedTuple
 from physicslab.kernels import fused, inlined
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion, Sizes
 from physicslab.kernels.records import Manifold, Point
-from physicslab.kernels.solver.blow import Lever, Weights, one_blow, two_blows
+from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON, Lever, Weights, one_blow, two_blows
 from physicslab.kernels.solver.impact_log import write_impact
 from physicslab.kernels.solver.impact_pose import Meeting, is_known, meeting_at
 from physicslab.kernels.solver.impulse import follow_drift, relative_velocity
@@ -113,11 +113,10 @@ def _strike(
 def _exchange(
     manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, motion: Motion, sizes: Sizes,
     inverse: Inverse, pull: float, t: float,
-) -> tuple[float, float, float, float, bool]:  # fmt: skip
+) -> tuple[float, float, float, float, int]:  # fmt: skip
     """Bounce a pair at the time t, with the normal, the arms and the speeds of that time.
 
-    Returns the normal impulses [N s] and the approach speeds [m/s] of its points, and whether the restitution
-    had to be lowered.
+    Returns the normal impulses [N s] and the approach speeds [m/s] of its points, and which law they obey.
     """
     a, b = manifold.a, manifold.b
     weights = Weights(inverse.mass[a] + inverse.mass[b], inverse.inertia[a], inverse.inertia[b])
@@ -128,10 +127,10 @@ def _exchange(
             meeting_at(manifold, two, motion, sizes, t),
         )
         lever1, lever2 = _lever(where1, a, b, motion, pull * t), _lever(where2, a, b, motion, pull * t)
-        blow, lowered = two_blows(lever1, lever2, weights, e, mu)
+        blow, law = two_blows(lever1, lever2, weights, e, mu)
         _strike(manifold, one, where1, lever1, blow.normal1, blow.tangent1, motion, inverse)
         _strike(manifold, two, where2, lever2, blow.normal2, blow.tangent2, motion, inverse)
-        return blow.normal1, blow.normal2, lever1.v, lever2.v, lowered
+        return blow.normal1, blow.normal2, lever1.v, lever2.v, law
     point = one if meets_1 else two
     if is_known(manifold, motion, sizes):
         where = Meeting(
@@ -141,12 +140,12 @@ def _exchange(
         where = meeting_at(manifold, point, motion, sizes, t)
     lever = _lever(where, a, b, motion, pull * t)
     if lever.v >= 0.0:  # it turns away until then
-        return 0.0, 0.0, 0.0, 0.0, False
-    normal, tangent, lowered = one_blow(lever, weights, e, mu)
+        return 0.0, 0.0, 0.0, 0.0, NEWTON
+    normal, tangent, law = one_blow(lever, weights, e, mu)
     _strike(manifold, point, where, lever, normal, tangent, motion, inverse)
     if meets_1:
-        return normal, 0.0, lever.v, 0.0, lowered
-    return 0.0, normal, 0.0, lever.v, lowered
+        return normal, 0.0, lever.v, 0.0, law
+    return 0.0, normal, 0.0, lever.v, law
 
 
 @inlined
@@ -178,17 +177,17 @@ def _meeting_times(
 def _resolve_pair(
     manifold: Manifold, one: Point, two: Point, motion: Motion, sizes: Sizes, inverse: Inverse,
     pull: float, t1: float, t2: float, log: Log, number: int,
-) -> tuple[bool, bool]:  # fmt: skip
+) -> tuple[bool, int]:  # fmt: skip
     """Bounce a pair of which one point meets, or both do, at ``t1`` and ``t2`` from now.
 
-    Returns whether it did, and whether its restitution had to be lowered.
+    Returns whether it did, and by which law.
     """
     meets_1, meets_2 = abs(t1) < math.inf, abs(t2) < math.inf
     t = min(t1, t2) if meets_1 and meets_2 else (t1 if meets_1 else t2)
     a, b, position, linear, angular = manifold.a, manifold.b, motion.position, motion.linear, motion.angular
     before = (linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
     earlier = one.impact_normal + two.impact_normal, one.impact_tangent + two.impact_tangent
-    j1, j2, v1, v2, lowered = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, inverse, pull, t)
+    j1, j2, v1, v2, law = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, inverse, pull, t)
     if (j1 > 0.0 or j2 > 0.0) and len(log.impacts) > 0:
         where, v = (one, v1) if j1 >= j2 else (two, v2)
         x, y = position[b, 0] + t * before[3], position[b, 1] + t * before[4]
@@ -199,7 +198,7 @@ def _resolve_pair(
     if manifold.swept == 1 and manifold.restitution > 0.0:
         # Its normal is not that of now: the solver must not push along it.
         one.ahead = two.ahead = 1
-    return j1 > 0.0 or j2 > 0.0, lowered
+    return j1 > 0.0 or j2 > 0.0, law
 
 
 @fused
@@ -230,12 +229,13 @@ def _forced(
 def _resolve_once(
     contacts: Contacts, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log, logged: int,
     h: float, window: Window, again: bool,
-) -> tuple[int, int, int]:  # fmt: skip
+) -> tuple[int, int, int, int]:  # fmt: skip
     """Resolve the pairs one after the other; inelastic ones are resolved once, and not ``again``.
 
-    Returns how many bounced, how many are left to the solver, and how many restitutions were lowered.
+    Returns how many bounced, how many are left to the solver, how many obeyed Stronge's law, and how many had
+    their restitution lowered.
     """
-    bounced, left, lowered = 0, 0, 0
+    bounced, left, energetic, lowered = 0, 0, 0, 0
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
@@ -270,21 +270,22 @@ def _resolve_once(
             continue
         t1, t2 = _meeting_times(manifold, one, two, motion, Approach(v1, v2, pull, resting_speed), window)
         if abs(t1) < math.inf or abs(t2) < math.inf:
-            met, less = _resolve_pair(
+            met, law = _resolve_pair(
                 manifold, one, two, motion, sizes, inverse, pull, t1, t2, log, logged + bounced
             )
             bounced += 1 if met else 0
             manifold.impact_count += 1 if met else 0
-            lowered += 1 if less else 0
-        left += 1 - one.ahead
-    return bounced, left, lowered
+            energetic += 1 if law == ENERGETIC else 0
+            lowered += 1 if law == LOWERED else 0
+        left += 1 - (min(one.ahead, two.ahead) if manifold.count == 2 else one.ahead)
+    return bounced, left, energetic, lowered
 
 
 @inlined
 def resolve_impacts(
     contacts: Contacts, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log, logged: int,
     h: float, start: float, end: float,
-) -> tuple[int, int, int]:  # fmt: skip
+) -> tuple[int, int, int, int]:  # fmt: skip
     """Bounce the pairs that meet in this substep, each at its own time.
 
     The substep spans the times ``start`` to ``end`` from now. An impact at the time t takes normal, arms and
@@ -297,16 +298,18 @@ def resolve_impacts(
     none meets any more; inelastic ones only once, for the solver removes what is left of their approach.
 
     Impacts go into ``log``, unless it has no length, from number ``logged`` on. Returns how many there were,
-    how many pairs are left to the solver, and how many restitutions were lowered, so that no energy was made.
+    how many pairs are left to the solver, and how many impacts obeyed Stronge's law, or had their restitution
+    lowered, as Newton's would have made energy.
     """
-    impacts, left, lowered = 0, contacts.number, 0
+    impacts, left, energetic, lowered = 0, contacts.number, 0, 0
     # Without forces there are no piles.
     window = Window(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     for sweep in range(_MAX_SWEEPS):
-        bounced, left, less = _resolve_once(
+        bounced, left, stronge, less = _resolve_once(
             contacts, motion, sizes, inverse, acting, log, logged + impacts, h, window, sweep > 0
         )
         impacts += bounced
+        energetic += stronge
         lowered += less
         if bounced == 0:
             break
@@ -314,7 +317,7 @@ def resolve_impacts(
         _measure_again(contacts, motion)
     if left == 0:
         follow_drift(contacts, motion, end)
-    return impacts, left, lowered
+    return impacts, left, energetic, lowered
 
 
 @inlined

@@ -20,6 +20,7 @@ from physicslab.kernels.broad.near_pairs import activate, sort_scalar
 from physicslab.kernels.narrow.contact import find_contacts
 from physicslab.kernels.near_counts import (
     ACTIVE,
+    ENERGETIC,
     LEFT,
     LOGGED,
     LOWERED,
@@ -58,7 +59,9 @@ def find_touching(
     if counts[WIDE_COUNT] > 0:
         before = counts[SCALAR]
         for slots in (near.discs, near.boxes):
-            refresh(slots, near, motion, first, h, speculative_margin)
+            refresh(
+                slots, near, motion, sizes, materials, inverse, bounds, first, h, start, speculative_margin
+            )
         came = counts[SCALAR] - before
         counts[WIDE_COUNT] -= came
         if came > 0:
@@ -87,10 +90,11 @@ def resolve_all_impacts(
     counts, impacts = near.counts, 0
     counts[LEFT] = 0
     while counts[ACTIVE] > 0:
-        came, counts[LEFT], lowered = resolve_impacts(
+        came, counts[LEFT], energetic, lowered = resolve_impacts(
             _contacts(near), motion, sizes, inverse, acting, log, counts[LOGGED], h, start, end
         )
         impacts += came
+        counts[ENERGETIC] += energetic
         counts[LOWERED] += lowered
         counts[LOGGED] += came if len(log.impacts) > 0 else 0
         before = counts[ACTIVE]

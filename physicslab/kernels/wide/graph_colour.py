@@ -17,6 +17,7 @@ from physicslab.kernels.arguments import (
     named_near,
 )
 from physicslab.kernels.broad.near_pairs import sort_scalar
+from physicslab.kernels.narrow.contact import note_pose
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
 from physicslab.kernels.near_counts import (
     ACTIVE,
@@ -29,8 +30,8 @@ from physicslab.kernels.near_counts import (
     WIDE_COUNT,
 )
 from physicslab.kernels.records import Manifold, Manifolds, Point
-from physicslab.kernels.wide.layout import DISC, WIDE, Masks, Slots, rows_of
-from physicslab.kernels.wide.restore_slots import fill_slot
+from physicslab.kernels.wide.layout import BOX, WIDE, Masks, Slots, rows_of
+from physicslab.kernels.wide.restore_slots import fill_slot, is_of_kind
 from physicslab.kernels.wide.slots import COLOURS, clear_slot, list_scalar
 
 __all__ = ["ADDED", "FULL", "MIN_WIDE", "SPARSE", "add_constraints", "add_to_blocks", "sort_blocks"]
@@ -41,8 +42,8 @@ ADDED, SPARSE, FULL = range(3)
 """Results of :func:`add_constraints`: all steady contacts have slots; blocks must be rebuilt; or enlarged."""
 _SPARSE = 0.5
 """Share of slots in use below which blocks are rebuilt."""
-_ENTRY = 0.25
-"""Share of the sweep threshold below which a contact gets a slot: half of the share at which it loses it."""
+_ENTRY = 0.5
+"""Share of the speed at which a contact loses its slot, up to which it gets one."""
 
 _OF_FIXED = 48
 """The first colour of contacts with fixed bodies: they are solved last, and so are the most exact."""
@@ -57,7 +58,8 @@ def _is_steady(manifold: Manifold, one: Point, two: Point, linear: Vectors, h: f
     if one.separation < deep or (manifold.count == 2 and (two.separation < deep or two.ahead != 0)):
         return False
     ux, uy = (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h
-    slow = _ENTRY * (SWEEP_THRESHOLD if manifold.found == 0 else CONTACT_MARGIN)
+    loaded = one.normal_impulse > 0.0 or manifold.found == 2 or manifold.restitution == 0.0
+    slow = _ENTRY * (CONTACT_MARGIN if loaded else SWEEP_THRESHOLD)
     return bool(ux * ux + uy * uy <= slow * slow * manifold.size * manifold.size)
 
 
@@ -107,8 +109,9 @@ def _may_enter(
     """
     manifold = near.manifolds[p]
     i, j = manifold.a, manifold.b
-    discs, boxes = shape[i] == 1 and shape[j] == 1, shape[i] == 2 and shape[j] == 2
-    if manifold.wall >= 0 or not (discs if slots.kind == DISC else boxes and manifold.found == 2):
+    if manifold.wall >= 0 or not is_of_kind(slots.kind, shape[i], shape[j]):
+        return False
+    if shape[i] == 2 and shape[j] == 2 and manifold.found != 2:
         return False
     if asleep[i] or asleep[j]:
         return False
@@ -161,6 +164,12 @@ def _assign_colours(
             while empty < blocks and slots.colour[empty] >= 0:
                 empty += 1
         opened[c] = slot // WIDE
+        if slots.kind == BOX and manifold.found != 2:
+            manifold.found = 2
+            note_pose(
+                manifold, manifold.offset_x, manifold.offset_y, motion.angle[manifold.a],
+                motion.angle[manifold.b],
+            )  # fmt: skip
         fill_slot(slots, slot, c, near.manifolds, near.points, p, sizes, materials, inverse)
         came += 1
     return blocks, came

@@ -16,14 +16,15 @@ from physicslab.kernels import Numbers, Rows, fused
 __all__ = [
     "ANGLE_A", "ANGLE_B", "ARM_AX", "ARM_AY", "ARM_BX", "ARM_BY", "BASE_X", "BASE_Y", "BOX", "BOX_ROWS",
     "DISC", "DISC_ROWS", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS", "MASS_A",
-    "MASS_B", "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "SEPARATION", "SIZE",
-    "TANGENT_IMPULSE", "TANGENT_MASS", "TWO", "WIDE", "Masks", "Slots", "SlotsTuple", "rows_of",
+    "MASS_B", "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "RESTITUTION", "SEPARATION", "SIZE",
+    "TANGENT_IMPULSE", "TANGENT_MASS", "TURNS_A", "TURNS_B", "TWO", "WIDE", "Masks", "Slots",
+    "SlotsTuple", "rows_of",
 ]  # fmt: skip
 
 WIDE = 8
 """Slots of a block."""
 DISC, BOX = 0, 1
-"""The kinds of blocks: pairs of discs, with one point, and pairs of boxes, with two."""
+"""The kinds of blocks: pairs of discs, with one point, and pairs with a box, with one or two."""
 
 # Of every pair: the normal from A to B, the friction coefficient, inverse masses and moments of inertia, the
 # size of the smaller body.
@@ -36,15 +37,17 @@ ONE = 8 * WIDE
 """Offset of the first point."""
 
 # The arms of discs are along the normal.
-RADIUS_A, RADIUS_B = ONE + 5 * WIDE, ONE + 6 * WIDE
-DISC_ROWS = ONE + 7 * WIDE
+RADIUS_A, RADIUS_B, RESTITUTION = ONE + 5 * WIDE, ONE + 6 * WIDE, ONE + 7 * WIDE
+DISC_ROWS = ONE + 8 * WIDE
 """Numbers in a block of discs."""
 
 TWO = ONE + 10 * WIDE
-"""Offset of the second point of boxes."""
+"""Offset of the second point of pairs with a box."""
 BASE_X, BASE_Y, ANGLE_A, ANGLE_B = (TWO + WIDE * i for i in range(10, 14))
-BOX_ROWS = TWO + 14 * WIDE
-"""Numbers in a block of boxes."""
+# 1 where a body's points turn with it, 0 for a disc.
+TURNS_A, TURNS_B = TWO + 14 * WIDE, TWO + 15 * WIDE
+BOX_ROWS = TWO + 16 * WIDE
+"""Numbers in a block of pairs with a box."""
 
 Masks = Annotated[NDArray[np.uint64], uint64[::1]]
 """A uint64 array (n,), bit by bit."""

@@ -1,8 +1,16 @@
 """Where wide contacts touch now, eight at a time; those that are not steady any more become scalar."""
 
 from physicslab.kernels import Numbers, fused, inlined, kernel
-from physicslab.kernels.arguments import Motion, Near
-from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE
+from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
+from physicslab.kernels.narrow.contact import (
+    CACHE_TOLERANCE,
+    CACHE_TURN_TOLERANCE,
+    TOLERANCE_WITHIN_STEP,
+    forget_points,
+    note_pose,
+    touch,
+)
+from physicslab.kernels.narrow.outline import Way
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
 from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
 from physicslab.kernels.wide.float64x8 import (
@@ -30,19 +38,24 @@ from physicslab.kernels.wide.layout import (
     DISC,
     DISC_ROWS,
     FOUND,
+    IMPULSE,
     NORMAL_X,
     NORMAL_Y,
     ONE,
     RADIUS_A,
     RADIUS_B,
+    RESTITUTION,
     SEPARATION,
     SIZE,
+    TURNS_A,
+    TURNS_B,
     TWO,
     WIDE,
     Slots,
     rows_of,
 )  # fmt: skip
-from physicslab.kernels.wide.slots import set_scalar
+from physicslab.kernels.wide.restore_slots import fill_slot
+from physicslab.kernels.wide.slots import clear_slot, empty_slot, set_scalar, store_slot
 
 __all__ = ["deepest_wide", "refresh"]
 
@@ -54,12 +67,22 @@ _ONE_SPOT = 1e-300
 
 @fused
 def _restless(slots: Slots, k: int, motion: Motion, h: float) -> int:
-    """Return the slots of a block whose bodies move too far for their size in a substep, as bits."""
-    still = 0.5 * SWEEP_THRESHOLD if slots.kind == DISC else 0.5 * CONTACT_MARGIN
+    """Return the slots of a block whose bodies move too far for their size in a substep, as bits.
+
+    Discs that do not press on each other may meet within it, and bounce at a time and with a normal that are
+    to be found.
+    """
     vax, vay = take_vectors(motion.linear, slots.a, k * WIDE)
     vbx, vby = take_vectors(motion.linear, slots.b, k * WIDE)
-    size = take(slots.data, k * rows_of(slots.kind) + SIZE)
-    ux, uy, limit = (vbx - vax) * h, (vby - vay) * h, still * size
+    at = k * rows_of(slots.kind)
+    size = take(slots.data, at + SIZE)
+    limit = CONTACT_MARGIN * size
+    if slots.kind == DISC:
+        meets = (take(slots.data, at + ONE + IMPULSE) < _ONE_SPOT) & (
+            take(slots.data, at + RESTITUTION) > 0.0
+        )
+        limit = choose(meets, SWEEP_THRESHOLD * size, limit)
+    ux, uy = (vbx - vax) * h, (vby - vay) * h
     return mask_bits(ux * ux + uy * uy > limit * limit)
 
 
@@ -97,8 +120,11 @@ def _separation(
 
 
 @fused
-def _refresh_boxes(slots: Slots, k: int, motion: Motion) -> int:
-    """Update the separations of a block of boxes; return which points must be found again."""
+def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> tuple[int, int]:
+    """Update the separations of a block with boxes; return whose points to find again, which overlap much.
+
+    ``tolerance`` is a share of :data:`CACHE_TOLERANCE` and :data:`CACHE_TURN_TOLERANCE`.
+    """
     data, at = slots.data, k * BOX_ROWS
     xa, ya = take_vectors(motion.position, slots.a, k * WIDE)
     xb, yb = take_vectors(motion.position, slots.b, k * WIDE)
@@ -106,36 +132,82 @@ def _refresh_boxes(slots: Slots, k: int, motion: Motion) -> int:
     x, y = xb - xa - take(data, at + BASE_X), yb - ya - take(data, at + BASE_Y)
     turn_a = take_numbers(motion.angle, slots.a, k * WIDE) - take(data, at + ANGLE_A)
     turn_b = take_numbers(motion.angle, slots.b, k * WIDE) - take(data, at + ANGLE_B)
+    turn_a, turn_b = turn_a * take(data, at + TURNS_A), turn_b * take(data, at + TURNS_B)
     one = _separation(data, at + ONE, x, y, nx, ny, turn_a, turn_b)
     two = _separation(data, at + TWO, x, y, nx, ny, turn_a, turn_b)
     size = take(data, at + SIZE)
     moved = (
-        (size_of(x) + size_of(y) > CACHE_TOLERANCE * size)
-        | (size_of(turn_a) > CACHE_TURN_TOLERANCE)
-        | (size_of(turn_b) > CACHE_TURN_TOLERANCE)
+        (size_of(x) + size_of(y) > tolerance * CACHE_TOLERANCE * size)
+        | (size_of(turn_a) > tolerance * CACHE_TURN_TOLERANCE)
+        | (size_of(turn_b) > tolerance * CACHE_TURN_TOLERANCE)
     )
     deep = -_DEEP * size
-    return mask_bits(moved | (one < deep) | (two < deep))
+    return mask_bits(moved), mask_bits((one < deep) | (two < deep))
+
+
+@fused
+def _find_again(
+    slots: Slots, slot: int, near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
+    bounds: Bounds, h: float, start: float, speculative_margin: float,
+) -> bool:  # fmt: skip
+    """Find the points of a slot's pair in its present pose; return whether it keeps its slot."""
+    p = slots.pair[slot]
+    manifold, one, two = near.manifolds[p], near.points[2 * p], near.points[2 * p + 1]
+    a, b, position, linear = manifold.a, manifold.b, motion.position, motion.linear
+    store_slot(slots, slot, near.manifolds, near.points)
+    way = Way(
+        position[b, 0] - position[a, 0], position[b, 1] - position[a, 1],
+        (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h,
+    )  # fmt: skip
+    manifold.offset_x, manifold.offset_y = way.dx, way.dy
+    touch(manifold, one, two, way, motion, sizes, bounds, near.rotations, h, start, speculative_margin)
+    deep = -_DEEP * manifold.size
+    fits = manifold.count > 0 and manifold.swept == 0 and one.separation >= deep
+    if not fits or (manifold.count == 2 and two.separation < deep):
+        if manifold.count == 0:
+            forget_points(one, two)
+        manifold.found, manifold.slot = 0, -1
+        empty_slot(slots, slot)
+        return False
+    note_pose(manifold, way.dx, way.dy, motion.angle[a], motion.angle[b])
+    colour = slots.colour[slot // WIDE]
+    clear_slot(slots, slot)
+    fill_slot(slots, slot, colour, near.manifolds, near.points, p, sizes, materials, inverse)
+    return True
 
 
 @inlined
 def refresh(
-    slots: Slots, near: Near, motion: Motion, first: bool, h: float, speculative_margin: float
-) -> None:
+    slots: Slots, near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
+    bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
+) -> None:  # fmt: skip
     """Find where the contacts of all blocks of a kind touch now.
 
-    What is too fast (looked at in the ``first`` substep of a step), has come apart, overlaps deeply, or whose
-    points must be found again is written to its records and added to the scalar pairs.
+    What is too fast (looked at in the ``first`` substep of a step), has come apart or overlaps deeply is
+    written to its records and added to the scalar pairs. The points of a pair with a box are followed; where
+    it has moved, they are found again in the first substep, and it keeps its slot.
     """
-    counts = near.counts
-    for k in range(counts[DISC_BLOCKS + slots.kind]):
-        lost = _restless(slots, k, motion, h) if first else 0
+    tolerance = 1.0 if first else TOLERANCE_WITHIN_STEP
+    for k in range(near.counts[DISC_BLOCKS + slots.kind]):
+        lost, moved = _restless(slots, k, motion, h) if first else 0, 0
         if slots.kind == DISC:
             lost |= _refresh_discs(slots, k, motion, speculative_margin)
         else:
-            lost |= _refresh_boxes(slots, k, motion)
+            moved, deep = _refresh_boxes(slots, k, motion, tolerance)
+            lost |= deep if first else deep | moved
         if lost != 0:
             _lose(slots, k, lost, near)
+        if first and moved & ~lost != 0:
+            for place in range(WIDE):
+                slot = k * WIDE + place
+                p = slots.pair[slot]
+                if p < 0 or not (moved >> place) & 1:
+                    continue
+                if not _find_again(
+                    slots, slot, near, motion, sizes, materials, inverse, bounds, h, start, speculative_margin
+                ):
+                    near.scalar[near.counts[SCALAR]] = p
+                    near.counts[SCALAR] += 1
 
 
 @inlined

@@ -38,10 +38,13 @@ from physicslab.kernels.wide.layout import (
     ONE,
     RADIUS_A,
     RADIUS_B,
+    RESTITUTION,
     SEPARATION,
     SIZE,
     TANGENT_IMPULSE,
     TANGENT_MASS,
+    TURNS_A,
+    TURNS_B,
     TWO,
     WIDE,
     Slots,
@@ -50,7 +53,7 @@ from physicslab.kernels.wide.layout import (
 )  # fmt: skip
 from physicslab.kernels.wide.slots import clear_slot
 
-__all__ = ["fill_slot", "outdated", "remember", "restore_slots"]
+__all__ = ["fill_slot", "is_of_kind", "outdated", "remember", "restore_slots"]
 
 
 @inlined
@@ -95,7 +98,7 @@ def fill_slot(
     _fill_point(data, at + ONE, one)
     if slots.kind == DISC:
         ra, rb, linear = radius[i], radius[j], inverse.mass[i] + inverse.mass[j]
-        data[at + RADIUS_A], data[at + RADIUS_B] = ra, rb
+        data[at + RADIUS_A], data[at + RADIUS_B], data[at + RESTITUTION] = ra, rb, manifold.restitution
         data[at + ONE + MASS] = 1.0 / linear
         data[at + ONE + TANGENT_MASS] = 1.0 / (
             linear + inverse.inertia[i] * ra * ra + inverse.inertia[j] * rb * rb
@@ -103,6 +106,8 @@ def fill_slot(
     else:
         data[at + BASE_X], data[at + BASE_Y] = manifold.base_x, manifold.base_y
         data[at + ANGLE_A], data[at + ANGLE_B] = manifold.base_angle_a, manifold.base_angle_b
+        data[at + TURNS_A] = 1.0 if sizes.kind[i] == 2 else 0.0
+        data[at + TURNS_B] = 1.0 if sizes.kind[j] == 2 else 0.0
         _fill_arms(data, at + ONE, one)
         if manifold.count == 2:
             _fill_point(data, at + TWO, two)
@@ -115,15 +120,22 @@ def fill_slot(
 
 
 @inlined
+def is_of_kind(kind: int, one: int, other: int) -> bool:
+    """Whether blocks of a kind are for pairs of such shapes."""
+    discs = one == 1 and other == 1
+    return discs if kind == DISC else not discs and one != 0 and other != 0
+
+
+@inlined
 def _may_hold(slots: Slots, slot: int, manifold: Manifold, shape: Rows, inverse_mass: Numbers) -> bool:
     """Whether a pair can be in the slot that its record names."""
-    i, j, wanted = manifold.a, manifold.b, 1 if slots.kind == DISC else 2
+    i, j = manifold.a, manifold.b
     bit = np.uint64(1) << np.uint64(slots.colour[slot // WIDE])
     taken = (slots.used[i] if inverse_mass[i] > 0.0 else np.uint64(0)) | (
         slots.used[j] if inverse_mass[j] > 0.0 else np.uint64(0)
     )
     fits = slots.pair[slot] < 0 and taken & bit == np.uint64(0) and manifold.wall < 0
-    fits = fits and shape[i] == wanted and shape[j] == wanted and manifold.count > 0
+    fits = fits and is_of_kind(slots.kind, shape[i], shape[j]) and manifold.count > 0
     return bool(fits and inverse_mass[i] + inverse_mass[j] != 0.0)
 
 

@@ -27,6 +27,8 @@ from physicslab.kernels.wide.layout import (
     SIZE,
     TANGENT_IMPULSE,
     TANGENT_MASS,
+    TURNS_A,
+    TURNS_B,
     TWO,
     WIDE,
     Slots,
@@ -203,12 +205,13 @@ def _measure_now(slots: Slots, slot: int, manifolds: Manifolds, points: Points, 
     manifold, one = manifolds[p], points[2 * p]
     i, j = manifold.a, manifold.b
     dx, dy = position[j, 0] - position[i, 0], position[j, 1] - position[i, 1]
+    at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
     if slots.kind == DISC:
-        at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
         along = dx * manifold.normal_x + dy * manifold.normal_y
         one.separation = along - data[at + RADIUS_A] - data[at + RADIUS_B]
     else:
-        turn_a, turn_b = angle[i] - manifold.base_angle_a, angle[j] - manifold.base_angle_b
+        turn_a = data[at + TURNS_A] * (angle[i] - manifold.base_angle_a)
+        turn_b = data[at + TURNS_B] * (angle[j] - manifold.base_angle_b)
         follow_pose(manifold, points, p, dx - manifold.base_x, dy - manifold.base_y, turn_a, turn_b)
     manifold.offset_x, manifold.offset_y = dx, dy
 
