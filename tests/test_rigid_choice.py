@@ -169,7 +169,7 @@ def test_where_events_accumulate_the_step_is_finished_by_impulses_and_that_is_to
         energy = measure_energy(world).total
         for _ in range(120):
             world.step()
-            assert measure_energy(world).total <= energy + 1e-5 * abs(energy)
+            assert measure_energy(world).total <= energy + 1e-9 * abs(energy)
             energy = measure_energy(world).total
         assert rigid_of(world).left_to_soft == 0, rigid_of(world).why_soft
         told = [warning for warning in find_warnings(world) if "by impulses in 32 parts" in warning.what]
