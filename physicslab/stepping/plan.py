@@ -108,9 +108,10 @@ class StepPlan:
     @property
     def kept(self) -> tuple[str, str, int]:
         """What a file keeps: how collisions are found, what follows the forces, and in how many steps."""
+        collisions = "rigid" if self.contacts == "rigid" and self.collisions == "step" else self.collisions
         if self.split_forces is not None:
-            return self.collisions, self.split_forces.name, self.split_steps
-        return self.collisions, self.integrator.name, self.substeps
+            return collisions, self.split_forces.name, self.split_steps
+        return collisions, self.integrator.name, self.substeps
 
     @property
     def kick_before_contacts(self) -> float:
@@ -130,15 +131,15 @@ def default_plan(simulation: SimulationConfig) -> StepPlan:
     return StepPlan(method, "asked for", simulation.substeps, smooth=False, stages=stages)
 
 
-def choose_plan(state: State, schedule: Schedule, collisions: str | None = None) -> StepPlan:
+def choose_plan(state: State, schedule: Schedule, kept: str | None = None) -> StepPlan:
     """Return the method for what a world holds, or the configured one if it can advance it.
 
-    ``collisions`` stands for the configured way to find them.
+    ``kept`` is how collisions were found when ``auto`` chose for an earlier state of motion, if it did.
     """
     if not schedule.runs(Stage.CONTACT):
         return _mover(state, schedule)
-    contacts, reason = choose_contacts(state, schedule)
-    plan = _plan_of_collisions(state, schedule, collisions)
+    contacts, reason = choose_contacts(state, schedule, kept)
+    plan = _plan_of_collisions(state, schedule, "step" if kept == "rigid" else kept)
     if contacts == "rigid" and (state.simulation.contacts == "rigid" or plan.collisions == "step"):
         # The rest of the plan is for steps that are left to soft contacts.
         plan = replace(
@@ -148,9 +149,11 @@ def choose_plan(state: State, schedule: Schedule, collisions: str | None = None)
     return replace(plan, contacts=contacts, contact_reason=reason)
 
 
-def _plan_of_collisions(state: State, schedule: Schedule, collisions: str | None) -> StepPlan:
+def _plan_of_collisions(state: State, schedule: Schedule, kept: str | None) -> StepPlan:
     """Return the method where bodies can touch, and how their collisions are found."""
-    wish = collisions or state.simulation.collisions
+    wish = state.simulation.collisions
+    if wish == "auto" and kept in ("exact", "step"):
+        wish = kept
     if wish == "step":
         return replace(_mover(state, schedule), collisions="step", collision_reason="asked for")
     obstacle = why_not_exact(state, schedule)
@@ -185,9 +188,8 @@ def outlived(state: State, schedule: Schedule, plan: StepPlan) -> tuple[str, str
 
 def resumed_plan(state: State, schedule: Schedule, kept: tuple[str, str, int]) -> StepPlan:
     """Return the plan with what was ``kept`` of an earlier one, where it can advance the world."""
-    wish = state.simulation.collisions
     collisions, method, steps = kept
-    plan = choose_plan(state, schedule, collisions if wish == "auto" and collisions != "none" else None)
+    plan = choose_plan(state, schedule, collisions)
     if plan.kept == kept or plan.integrator.name == state.simulation.integrator:
         return plan
     reason = f"{method} was chosen before the scene was saved"

@@ -30,7 +30,7 @@ SIZES = (1_000, 2_000, 4_000, 8_000, 16_000)
 PEER_SIZE_LIMIT = 4_000
 """Bodies of the largest scene that other engines run unless it is named: piles of more take them minutes."""
 _STEPS_OF_LARGE = {8_000: 150, 16_000: 100}
-_AWAKE = SimulationConfig(sleeping=False)
+_AWAKE = SimulationConfig(sleeping=False, contacts="soft")
 _OVERLAP = 0.02
 """Deepest overlap that counts as right [m]: a tenth of a disc."""
 _ENERGY = 1e-3
@@ -41,7 +41,7 @@ _PITCH = 0.25
 
 def _boxes(base: int) -> World:
     """Return a pyramid of boxes of 1 m on a floor."""
-    world = open_space(gravity=10.0)
+    world = open_space(gravity=10.0, contacts="soft")
     box(world, (0.0, -0.5), width=200.0, height=1.0, static=True, friction=0.6)
     pyramid(world, base)
     return world
@@ -65,7 +65,7 @@ def _gas(count: int) -> World:
     scale = math.sqrt(count / 2_000)
     bounds = (-12.0 * scale, -7.5 * scale, 12.0 * scale, 7.5 * scale)
     laws = PhysicsConfig(gravity_mode="none", bounds=bounds, bounds_restitution=1.0, bounds_friction=0.0)
-    world = open_space(physics=laws)
+    world = open_space(physics=laws, contacts="soft")
     gas(world, count, bounds)
     return world
 

@@ -54,7 +54,7 @@ def _slope(world: World, foot: Vector2, angle: float, length: float) -> None:
 
 def _funnel(count: int, *, floored: bool) -> World:
     """Return mixed bodies above two slopes of 35 degrees, which leave a gap of 2 m."""
-    world, steep, columns = open_space(collisions="step"), math.radians(35.0), 50
+    world, steep, columns = open_space(collisions="step", contacts="soft"), math.radians(35.0), 50
     across = 0.5 * columns * _PITCH + 1.0
     for side in (-1.0, 1.0):
         angle = steep if side > 0.0 else math.pi - steep
@@ -68,7 +68,7 @@ def _funnel(count: int, *, floored: bool) -> World:
 
 def _heap(count: int) -> World:
     """Return mixed bodies that fall into a container."""
-    world = open_space(collisions="step")
+    world = open_space(collisions="step", contacts="soft")
     container(world, width=20.0, height=30.0)
     _mixed(world, count, Vector2(0.0, 0.2), columns=40)
     return world
@@ -76,7 +76,7 @@ def _heap(count: int) -> World:
 
 def _chains(count: int, discs: int = 10) -> World:
     """Return chains of discs on springs of omega dt = 1, bent a little, that fall flat on a floor."""
-    world, random = open_space(collisions="step"), np.random.default_rng(1)
+    world, random = open_space(collisions="step", contacts="soft"), np.random.default_rng(1)
     link, mass = 0.25, 0.1
     stiffness = mass / world.simulation.dt**2
     floor(world, width=2.0 * count * discs * link)
@@ -92,7 +92,7 @@ def _chains(count: int, discs: int = 10) -> World:
 
 def _tumbler(count: int) -> World:
     """Return boxes between four walls."""
-    world, columns = open_space(collisions="step"), math.ceil(math.sqrt(count))
+    world, columns = open_space(collisions="step", contacts="soft"), math.ceil(math.sqrt(count))
     inside = (columns + 2) * _PITCH
     container(world, width=inside, height=inside)
     box(world, (0.0, inside + 0.5), width=inside + 2.0, height=1.0, static=True)
