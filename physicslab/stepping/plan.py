@@ -52,6 +52,7 @@ bodies at 100 to 10^6 N/m and damping ratios from 1.5 on are then 6e-12 m off at
 times the time of the cheapest method that reaches 1e-10 m; 1e-13 takes 5 to 15 times as long."""
 _OVERDAMPED = 1.4
 """The damping ratio from which that holds."""
+_ASKED_FOR = "asked for"
 _FOLLOWING = (BLANES_MOAN.name, DOP853.name, IMPLICIT_MIDPOINT.name)
 """The methods that ``auto`` chooses by the state of motion."""
 
@@ -128,7 +129,7 @@ def default_plan(simulation: SimulationConfig) -> StepPlan:
         return StepPlan(LEAPFROG, "nothing moves", simulation.substeps, smooth=False)
     method = INTEGRATORS[name]
     stages = method if method.substep else LEAPFROG
-    return StepPlan(method, "asked for", simulation.substeps, smooth=False, stages=stages)
+    return StepPlan(method, _ASKED_FOR, simulation.substeps, smooth=False, stages=stages)
 
 
 def choose_plan(state: State, schedule: Schedule, kept: str | None = None) -> StepPlan:
@@ -142,9 +143,11 @@ def choose_plan(state: State, schedule: Schedule, kept: str | None = None) -> St
     plan = _plan_of_collisions(state, schedule, "step" if kept == "rigid" else kept)
     if contacts == "rigid" and (state.simulation.contacts == "rigid" or plan.collisions == "step"):
         # The rest of the plan is for steps that are left to soft contacts.
+        own = "rigid contacts locate their own events"
+        bounced = plan.collisions == "step" and plan.collision_reason != _ASKED_FOR
         plan = replace(
             _mover(state, schedule), integrator=DOP853, reason="contacts are rigid: the step follows events",
-            collisions="step", collision_reason="rigid contacts locate their own events",
+            collisions="step", collision_reason=f"{plan.collision_reason}; {own}" if bounced else own,
         )  # fmt: skip
     return replace(plan, contacts=contacts, contact_reason=reason)
 
@@ -155,13 +158,13 @@ def _plan_of_collisions(state: State, schedule: Schedule, kept: str | None) -> S
     if wish == "auto" and kept in ("exact", "step"):
         wish = kept
     if wish == "step":
-        return replace(_mover(state, schedule), collisions="step", collision_reason="asked for")
+        return replace(_mover(state, schedule), collisions="step", collision_reason=_ASKED_FOR)
     obstacle = why_not_exact(state, schedule)
     if wish == "exact":
         if obstacle is not None:
             reason = f"exact was asked for, and {obstacle}"
             return replace(_mover(state, schedule), collisions="step", collision_reason=reason)
-        return _event_driven_plan(state, "asked for")
+        return _event_driven_plan(state, _ASKED_FOR)
     obstacle = obstacle or why_not_worthwhile(state, schedule)
     if obstacle is not None:
         return replace(_mover(state, schedule), collisions="step", collision_reason=obstacle)

@@ -221,11 +221,13 @@ class RigidMotion:
             _ROUNDING * float(np.abs(q[:-1]).max(initial=0.0)) / float(scene[7][:, 2].min(initial=math.inf))
         )
         for _ in range(_SEPARATIONS):
-            why, count, _, _, deepest = motion.touch(
+            why, count, rest, _, deepest = motion.touch(
                 scene, self._equations, self._room, self._stages[-1], q, v, _NEAR * deepest
             )
             if why != motion.DONE:
                 return _WHY[why]
+            if not math.isfinite(rest):  # every speed would count as none
+                return "squares of speeds or accelerations are not finite"
             if deepest <= max(_SEPARATE, rounding):
                 return ""
             if deepest > allowed or not time_stepping.separate(scene, self._equations, count, q, v):

@@ -95,8 +95,10 @@ def _stepper_lines(world: World) -> list[Line]:
     """Say which stepper makes the steps, and why so."""
     if world.stepper is None:
         return []
-    reasons = [world.plan.collision_reason] if world.plan.collisions != "none" else []
-    if world.stepper.reason not in (world.plan.reason, *reasons):
+    plan, reasons = world.plan, []
+    if plan.collisions != "none":
+        reasons = [plan.collision_reason, f"contacts are {plan.contacts}: {plan.contact_reason}"]
+    if world.stepper.reason not in (plan.reason, plan.collision_reason, plan.contact_reason):
         reasons.append(world.stepper.reason)
     lines = [Line(world.stepper.title, kind="remark")]
     return lines + [Line(f"because: {'; '.join(reasons)}", kind="remark")] * bool(reasons)
