@@ -51,11 +51,12 @@ def complaint(capsys: pytest.CaptureFixture[str], *arguments: str, status: int =
 def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[str]) -> None:
     report = document(capsys, "run", "drop", "--seconds", "1")
     assert list(report) == [
-        "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason",
-        "collision_method", "collision_reason", "contact_model", "contact_reason", "summation", "interpreted",
+        "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason", "collision_method",
+        "collision_reason", "contact_model", "contact_reason", "summation", "interpreted",
         "force_evaluations", "wall_s", "compile_s", "interpreted_steps", "interpreted_s", "stepper",
-        "steppers_left_out", "systems", "left_out", "energy", "momentum", "angular_momentum", "candidate_pairs", "contacts",
-        "asleep", "contact_forces", "collisions", "max_penetration", "divided", "advice", "entities",
+        "steppers_left_out", "systems", "left_out", "energy", "momentum", "angular_momentum",
+        "candidate_pairs", "contacts", "asleep", "contact_forces", "collisions", "max_penetration",
+        "divided", "advice", "entities",
     ]  # fmt: skip
     assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
     assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "exact")
