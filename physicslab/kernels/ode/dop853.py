@@ -90,15 +90,14 @@ def total(values: Numbers) -> tuple[float, float]:
 
 @inlined
 def step_error(
-    rates: Vectors, pushes: Vectors, h: float, q_scale: float, v_scale: float, tolerance: float
+    rates: Vectors, pushes: Vectors, n: int, h: float, q_scale: float, v_scale: float, tolerance: float
 ) -> float:
-    """Return the estimated error of a step, 1 where it is just tolerated.
+    """Return the estimated error of a step, the mean over ``n`` coordinates that move; 1 is just tolerated.
 
     It is measured against the largest coordinate and the largest speed of all.
     """
     fifth, third = 0.0, 0.0
-    n = len(rates)
-    for i in range(n):
+    for i in range(len(rates)):
         for values, scale in ((rates, q_scale), (pushes, v_scale)):
             high, low = 0.0, 0.0
             for stage in range(LAST):
@@ -227,7 +226,9 @@ def dop853(
         spent += LAST
         q_reach, v_reach = max(q_scale, largest(stage_q, n)), max(v_scale, largest(stage_v, n))
         # Where all is at rest, the measure is the distance that an error of the speed makes within the step.
-        error = step_error(rates, pushes, taken, q_reach, max(v_reach, _LEADS * q_reach / taken), tolerance)
+        error = step_error(
+            rates, pushes, len(rates), taken, q_reach, max(v_reach, _LEADS * q_reach / taken), tolerance
+        )
         if not (math.isfinite(error) and _all_finite(stage_q, stage_v, n)):
             h, grow = _MIN_GROWTH * taken, 1.0
             last_error = math.inf

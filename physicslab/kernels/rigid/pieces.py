@@ -67,8 +67,11 @@ def make_piece(
         constrained_acceleration(scene, equations, count, stages.q, stages.v, stages.acceleration)
         for i in range(n):
             stages.rates[i, stage], stages.pushes[i, stage] = stages.v[i], stages.acceleration[i]
-    n = 3 * scene.rows  # without the clock
+    n, free = 3 * scene.rows, 0  # without the clock
+    for i in range(n):  # rows of what is fixed, or gone, are no reason for another step
+        free += 1 if scene.inverse_mass[i] > 0.0 else 0
     q_scale = max(largest(q, n), largest(stages.q, n))
     v_scale = max(largest(v, n), largest(stages.v, n))
-    error = step_error(stages.rates, stages.pushes, h, q_scale, max(v_scale, _LEADS * q_scale / h), tolerance)
+    v_scale = max(v_scale, _LEADS * q_scale / h)
+    error = step_error(stages.rates, stages.pushes, max(free, 1), h, q_scale, v_scale, tolerance)
     return error if math.isfinite(error) else math.inf
