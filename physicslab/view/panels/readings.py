@@ -96,8 +96,12 @@ def _stepper_lines(world: World) -> list[Line]:
     if world.stepper is None:
         return []
     plan, reasons = world.plan, []
-    if plan.collisions != "none":
-        reasons = [plan.collision_reason, f"contacts are {plan.contacts}: {plan.contact_reason}"]
+    if plan.contacts == "rigid" and plan.collisions == "step":
+        reasons = [plan.contact_reason]
+    elif plan.collisions != "none":
+        reasons = [plan.collision_reason]
+        if plan.contacts == "soft" and world.simulation.contacts != "soft":
+            reasons.append(f"contacts are soft: {plan.contact_reason}")
     if world.stepper.reason not in (plan.reason, plan.collision_reason, plan.contact_reason):
         reasons.append(world.stepper.reason)
     lines = [Line(world.stepper.title, kind="remark")]
