@@ -19,7 +19,7 @@ from physicslab.world import World
 
 FLOOR, LOWEST, TOP = 1, 2, 11
 """Entities of the built-in stack."""
-SOFT = "contacts are soft: more than 12 bodies can touch"
+SOFT = "because: more than 12 bodies can touch"
 JUMP = 1e-3
 """Largest motion of what rests where the model changes [m]: a stack of ten sinks by 0.56 mm where contacts are
 soft, and is lifted by as much where they become rigid."""

@@ -95,15 +95,13 @@ def _stepper_lines(world: World) -> list[Line]:
     """Say which stepper makes the steps, and why so."""
     if world.stepper is None:
         return []
-    plan, reasons = world.plan, []
-    if plan.contacts == "rigid" and plan.collisions == "step":
-        reasons = [plan.contact_reason]
-    elif plan.collisions != "none":
-        reasons = [plan.collision_reason]
-        if plan.contacts == "soft" and world.simulation.contacts != "soft":
-            reasons.append(f"contacts are soft: {plan.contact_reason}")
-    if world.stepper.reason not in (plan.reason, plan.collision_reason, plan.contact_reason):
-        reasons.append(world.stepper.reason)
+    plan = world.plan
+    if plan.collisions == "step" and world.simulation.contacts == "auto":
+        reasons = [plan.contact_reason]  # in few words: the figures must fit into the window
+    else:
+        reasons = [plan.collision_reason] if plan.collisions != "none" else []
+        if world.stepper.reason not in (plan.reason, *reasons):
+            reasons.append(world.stepper.reason)
     lines = [Line(world.stepper.title, kind="remark")]
     return lines + [Line(f"because: {'; '.join(reasons)}", kind="remark")] * bool(reasons)
 
