@@ -33,7 +33,7 @@ def choose_contacts(state: State, schedule: Schedule, kept: str | None = None) -
     if wish == "rigid":
         why = "asked for" if obstacle is None else f"rigid was asked for, and {obstacle}"
         return "rigid" if obstacle is None else "soft", why
-    obstacle = obstacle or _why_not_worthwhile(state)
+    obstacle = _why_not_worthwhile(state) or obstacle
     if obstacle is None and kept != "rigid":
         before = "soft contacts were chosen before the scene was saved"
         obstacle = before if kept == "step" else _why_too_fast(state, schedule)
