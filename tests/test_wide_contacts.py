@@ -109,7 +109,7 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
 
 
 def test_few_contacts_stay_scalar() -> None:
-    world = open_space()
+    world = open_space(contacts="soft")
     floor(world)
     for i in range(5):
         box(world, (0.0, 0.5 + i), width=1.0, height=1.0)
