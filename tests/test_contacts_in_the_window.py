@@ -21,8 +21,8 @@ FLOOR, LOWEST, TOP = 1, 2, 11
 """Entities of the built-in stack."""
 SOFT = "because: more than 12 bodies can touch"
 JUMP = 1e-3
-"""Largest motion of what rests where the model changes [m]: a stack of ten sinks by 0.56 mm where contacts are
-soft, and is lifted by as much where they become rigid."""
+"""Largest motion of what rests where the model changes [m]: a stack of ten sinks by 0.56 mm where contacts
+are soft, and is lifted by as much where they become rigid."""
 
 
 @pytest.fixture
@@ -92,7 +92,7 @@ def test_a_body_is_dragged_thrown_and_comes_to_rest(desk: Desk) -> None:
 
 
 def test_a_body_that_is_pressed_into_others_does_no_harm(desk: Desk) -> None:
-    """What is held cannot be stopped, so the boxes below it are driven into each other and out to the sides."""
+    """What is held cannot be stopped: the boxes below it are driven into each other and out to the sides."""
     world = desk.world
     desk.press(0.0, 9.5)
     desk.frames()
