@@ -22,7 +22,7 @@ from physicslab.files.scene import load_scene, read_scene, save_scene, write_sce
 from physicslab.prefabs import box, circle
 from physicslab.stepping.rigid import Rigid
 from physicslab.systems.standard import standard_systems
-from physicslab.systems.system import ForceSystem, Stage, at
+from physicslab.systems.system import ForceSystem, Stage, System, at
 
 G = 9.81
 
@@ -87,6 +87,18 @@ def test_auto_overrules_no_wish_that_only_soft_contacts_fulfil(setting: dict[str
     world.simulation = replace(world.simulation, **setting)
     world.synchronise()
     assert (world.plan.contacts, world.plan.contact_reason) == ("soft", reason)
+
+
+def test_a_system_that_acts_within_the_step_has_soft_contacts_and_is_named() -> None:
+    class Wind(System):
+        @at(Stage.KICK)
+        def blow(self, world: World, h: float) -> None:
+            world.table(Velocity)["linear"][world.entity_index.row_of[2], 0] += h
+
+    world = row_of_boxes(1)
+    world.install(Wind())
+    world.step()
+    assert (world.plan.contacts, world.plan.contact_reason) == ("soft", "Wind acts within the step")
 
 
 def test_a_body_that_is_held_counts_and_the_model_does_not_change_when_it_is_let_go() -> None:
