@@ -74,7 +74,7 @@ def begin_piece(
 def _error(
     stages: Stages, n: int, free: int, h: float, q_scale: float, v_scale: float, tolerance: float
 ) -> float:
-    """Return the estimated error of a piece (Hairer's), the mean over ``free`` coordinates; 1 is tolerated."""
+    """Return the estimated error of a piece (Hairer's), a mean over ``free`` coordinates; 1 is tolerated."""
     fifth, third = 0.0, 0.0
     for i in range(n):
         moved, pushed, moved_low, pushed_low = 0.0, 0.0, 0.0, 0.0
