@@ -23,7 +23,7 @@ _TOLERANCE = 1e-13
 """Error of a smooth piece, as a share of the largest coordinate and speed."""
 _MAX_EVENTS = 2000
 """Largest number of events in a step."""
-_MAX_WORK = 10_000
+_MAX_WORK = 7_000
 """Largest work of a step by events (:attr:`MadeStep.work`): short steps need the rest of a frame."""
 _WORK_OF_A_PIECE = 40
 """Of a piece of motion, beside its force evaluations."""
