@@ -30,7 +30,7 @@ _OVERLAP = 0.06
 """Deepest overlap that counts as right [m]: a quarter of a body of middle size, as bodies land on others."""
 _LARGEST, _LANDING = 0.1, 0.2
 """Deepest overlap while bodies move, and while they land in a funnel at up to 20 m/s [m]: Box2D 3's."""
-_KINETIC, _CREEP = 1e-3, 1e-3
+_KINETIC, _CREEP = 1e-3, 2e-3
 """Largest kinetic energy [J] and drift [m] of a heap that count as rest."""
 _TURN = math.radians(30.0)
 """How fast gravity turns [rad/s]."""
