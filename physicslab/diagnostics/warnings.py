@@ -63,6 +63,9 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
     if rigid is not None and rigid.by_impulses:
         what = f"steps were made by impulses in 32 parts, an error of order one: {rigid.why_impulses}"
         found.append(ModelWarning(None, what, float(rigid.by_impulses), "", 0.0, ""))
+    if rigid is not None and rigid.energy_added:
+        what = "was added by moving bodies apart that overlapped"
+        found.append(ModelWarning(None, what, rigid.energy_added, "J", 0.0, ""))
     found += _laws(world, rigid)
     if world.plan.collisions == "step" and (rigid is None or rigid.left_to_soft):
         graph = contact_graph(world)

@@ -46,6 +46,8 @@ class Rigid:
         How many steps were made by impulses in short steps, at least from some time on.
     why_impulses : str
         Why, at the last of them.
+    energy_added : float
+        By moving bodies apart that overlapped, as soft contacts or a scene had left them [J].
     energetic_impacts : int
         How many impacts obeyed Stronge's law, as Newton's would have made energy.
     restitutions_lowered : int
@@ -57,8 +59,8 @@ class Rigid:
     leaps: bool = False
     leaves_forces: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (
-        motion.touch, motion.advance_piece, motion.begin_motion, motion.collide,
-        time_stepping.drift, time_stepping.kick, time_stepping.separate,
+        motion.meet, motion.advance_piece, motion.begin_motion,
+        time_stepping.drift, time_stepping.kick, time_stepping.separate, time_stepping.take_work,
         near_pairs.carry_over, slots.list_scalar,
     )  # fmt: skip
 
@@ -70,7 +72,7 @@ class Rigid:
         self._records = RigidRecords(self._pairs)
         self._refused, self.left_to_soft, self.why_soft = -1, 0, ""
         self.energetic_impacts = self.restitutions_lowered = self.by_impulses = 0
-        self.why_impulses = ""
+        self.why_impulses, self.energy_added = "", 0.0
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
         self._motion = RigidMotion(
@@ -114,7 +116,7 @@ class Rigid:
 
     def _step(self, scene: tuple[Any, ...], state: State, at: float, h: float, parts: int) -> MadeStep:
         """Make a step from time ``at`` in parts; where one cannot be made, all is as before the step."""
-        q, v, impacts = self._ode.q, self._ode.v, 0
+        q, v, impacts, added = self._ode.q, self._ode.v, 0, 0.0
         before, logged = (q.copy(), v.copy()), state.contacts.logged
         for part in range(parts):
             moment = at + part * h / parts
@@ -129,8 +131,9 @@ class Rigid:
                 return step
             if step.by_impulses:
                 self.by_impulses, self.why_impulses = self.by_impulses + 1, step.by_impulses
-            impacts += step.impacts
+            impacts, added = impacts + step.impacts, added + step.energy_added
         state.collisions += impacts
+        self.energy_added += added
         step.impacts = impacts
         return step
 

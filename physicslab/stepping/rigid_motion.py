@@ -23,12 +23,12 @@ _TOLERANCE = 1e-13
 """Error of a smooth piece, as a share of the largest coordinate and speed."""
 _MAX_EVENTS = 2000
 """Largest number of events in a step."""
-_MAX_WORK = 60_000
-"""Largest work of a step by events (:attr:`MadeStep.work`)."""
-_WORK_OF_A_ROUND = 3
-"""Force evaluations that take as long as a round of impulses."""
-_REPEATS = 8
-"""How often contacts are found again after impacts at one time."""
+_MAX_WORK = 10_000
+"""Largest work of a step by events (:attr:`MadeStep.work`): short steps need the rest of a frame."""
+_WORK_OF_A_PIECE = 40
+"""Of a piece of motion, beside its force evaluations."""
+_REPEATS, _SHORT_REPEATS = 8, 3
+"""How often contacts are found again after impacts at one time, and within a short step."""
 _MAX_STALLED = 60
 """Largest number of events in a row without time between them."""
 _NO_TIME = 1e-13
@@ -71,8 +71,11 @@ class MadeStep:
     energetic, lowered : int
         How many impacts obeyed Stronge's law, and how often those of several points had their restitutions
         lowered, as Newton's law would have made energy.
+    energy_added : float
+        By moving bodies apart that overlapped [J].
     work : int
-        Force evaluations, each counted with 1 + n^2 / 8 for n points, and as much for impacts.
+        About as many as microseconds: of pieces, of force evaluations with n points (1 + 2 n) / 4, of
+        impacts.
     by_impulses : str
         Why the step, or its last part, was made by impulses in short steps; empty if it was not.
     refused : str
@@ -87,6 +90,7 @@ class MadeStep:
     evaluations: int = 0
     energetic: int = 0
     lowered: int = 0
+    energy_added: float = 0.0
     work: int = 0
     by_impulses: str = ""
     refused: str = ""
@@ -116,8 +120,8 @@ class RigidMotion:
             )
             for _ in range(2)
         )  # fmt: skip
-        self._stages = np.zeros((n, 16)), np.zeros((n, 16)), np.zeros(n), np.zeros(n), np.zeros(n)
-        self._start = np.zeros((5, max(MAX_POINTS, pairs)))
+        self._stages = np.zeros((16, n)), np.zeros((16, n)), np.zeros(n), np.zeros(n), np.zeros(n)
+        self._start = np.zeros((6, max(MAX_POINTS, pairs)))
         self._changed = np.full((MAX_POINTS, POINT_FIELDS), -1)
 
     def step(self, scene: tuple[Any, ...], state: State, at: float, h: float) -> MadeStep:
@@ -131,9 +135,9 @@ class RigidMotion:
     def _by_events(self, scene: tuple[Any, ...], state: State, at: float, h: float, made: MadeStep) -> float:
         """Go from event to event; return how far that leads [s]. What stops it is noted in ``made``."""
         q, v, changed = self._ode.q, self._ode.v, self._changed
-        done, stalled = 0.0, 0
+        done, stalled, foreseen = 0.0, 0, True
         changed[0, PAIR] = -1
-        made.refused = self._move_apart(scene, _OVERLAP)
+        made.refused = self._move_apart(scene, state, _OVERLAP, made, pay=False)
         if made.refused:
             return 0.0
         for _ in range(_MAX_EVENTS):
@@ -152,12 +156,12 @@ class RigidMotion:
             made.closed = count
             if done >= h or still:
                 return h
-            piece, evaluations = motion.advance_piece(
+            piece, evaluations, foreseen = motion.advance_piece(
                 scene, self._equations, count, self._room, self._stages, self._start, changed, q, v,
-                h - done, _TOLERANCE, rest,
+                h - done, _TOLERANCE, rest, foreseen,
             )  # fmt: skip
             made.evaluations += evaluations
-            made.work += evaluations * (8 + count * count) // 8
+            made.work += _WORK_OF_A_PIECE + evaluations * (1 + 2 * count) // 4
             stalled = stalled + 1 if piece <= _NO_TIME * h else 0
             done = h if piece == h - done else done + piece
             if not math.isfinite(piece):
@@ -187,7 +191,7 @@ class RigidMotion:
                 return _WHY[why]
             time_stepping.drift(q, v, 0.5 * h)
         made.forces /= h
-        refused = self._move_apart(scene, math.inf)
+        refused = self._move_apart(scene, state, math.inf, made, pay=True)
         if refused:
             return refused
         self._find_forces(scene, state, at + left, made)
@@ -213,23 +217,32 @@ class RigidMotion:
             made.forces = self._equations[3][UNKNOWN]
         made.closed = closed
 
-    def _move_apart(self, scene: tuple[Any, ...], allowed: float) -> str:
+    def _move_apart(
+        self, scene: tuple[Any, ...], state: State, allowed: float, made: MadeStep, *, pay: bool
+    ) -> str:
         """Move bodies apart that overlap; return why that is not possible, nothing if it is.
 
-        An overlap beyond the share ``allowed`` of a size is left, and refused.
+        An overlap beyond the share ``allowed`` of a size is left, and refused. The energy that this adds is
+        noted, less what the bodies ``pay`` for it with their speeds.
         """
         q, v, deepest = self._ode.q, self._ode.v, 0.0
         rounding = (
             _ROUNDING * float(np.abs(q[:-1]).max(initial=0.0)) / float(scene[7][:, 2].min(initial=math.inf))
         )
+        before = None
         for _ in range(_SEPARATIONS):
-            why, count, _, _, deepest = motion.touch(
-                scene, self._equations, self._room, self._stages[-1], q, v, _NEAR * deepest
-            )
+            why, count, rest, deepest, *_ = self._meet(scene, state, q, _NEAR * deepest, 0.0, 0.0, 0, 0.0)
             if why != motion.DONE:
                 return _WHY[why]
+            if not math.isfinite(rest):  # every speed would count as none
+                return "squares of speeds or accelerations are not finite"
             if deepest <= max(_SEPARATE, rounding):
+                if before is not None:
+                    made.energy_added += time_stepping.take_work(
+                        scene, self._equations, count, self._stages, before, q, v, pay
+                    )
                 return ""
+            before = q.copy() if before is None else before
             if deepest > allowed or not time_stepping.separate(scene, self._equations, count, q, v):
                 break
         return f"bodies overlap by {deepest:.2g} of their size"
@@ -241,52 +254,43 @@ class RigidMotion:
 
         They act at all points that would touch by its end, or bounce. Speeds up to ``none`` are none [m/s].
         """
-        q, v, soon, acceleration = self._ode.q, self._ode.v, self._stages[2], self._stages[-1]
-        for _ in range(_REPEATS):
+        q, v, soon = self._ode.q, self._ode.v, self._stages[2]
+        for _ in range(_SHORT_REPEATS):
             soon[:] = q
             time_stepping.drift(soon, v, h)
-            why, count, rest, approaching, _ = motion.touch(
-                scene, self._equations, self._room, acceleration, soon, v, 0.0
-            )
-            if why != motion.DONE or not approaching:
-                return int(why)
-            points = self._resolve(scene, state, time, count, max(rest, none), 2.0 / h, made)
-            if points <= 0:
-                return motion.UNRESOLVED if points < 0 else motion.DONE
+            found = self._meet(scene, state, soon, 0.0, none, 2.0 / h, 1, time)
+            self._note(found, state, made)
+            why, points = found[0], found[7]
+            if why != motion.DONE or points == 0:
+                return why
             made.closed = points
             made.points, made.measures = self._room[0].copy(), self._room[1].copy()
             made.forces = self._room[3][UNKNOWN].copy()
         return motion.DONE
 
-    def _resolve(
-        self, scene: tuple[Any, ...], state: State, time: float, count: int, rest: float, rate: float,
-        made: MadeStep,
-    ) -> int:  # fmt: skip
-        """Resolve impacts; return how many points the last impulses act at, -1 where there are none."""
-        contacts = state.contacts
-        why, new, energetic, lowered, points, rounds = motion.collide(
-            scene, self._equations, count, self._room, rest, rate, self._ode.q, self._ode.v,
-            state.entity_index.entities, contacts.log, contacts.logged, time,
-        )  # fmt: skip
-        contacts.logged += new
-        made.impacts += new
-        made.energetic += energetic
-        made.lowered += lowered
-        made.work += _WORK_OF_A_ROUND * rounds * (8 + count * count) // 8
-        return points if why == motion.DONE else -1
-
     def _collide(self, scene: tuple[Any, ...], state: State, time: float, made: MadeStep) -> tuple[int, int]:
-        """Find what touches, and resolve impacts; return why that failed, and how many points touch.
+        """Find what touches, and resolve impacts; return why that failed, and how many points touch."""
+        found = self._meet(scene, state, self._ode.q, 0.0, 0.0, 0.0, _REPEATS, time)
+        self._note(found, state, made)
+        return found[0], found[1]
 
-        An impact can change which faces two boxes turn to each other, so contacts are then found again.
-        """
-        for _ in range(_REPEATS):
-            why, count, rest, approaching, _ = motion.touch(
-                scene, self._equations, self._room, self._stages[-1], self._ode.q, self._ode.v, 0.0
-            )
-            if why != motion.DONE or not approaching:
-                break
-            if self._resolve(scene, state, time, count, rest, 0.0, made) < 0:
-                why = motion.UNRESOLVED
-                break
-        return why, count
+    def _meet(
+        self, scene: tuple[Any, ...], state: State, place: NDArray[np.float64], within: float, none: float,
+        rate: float, repeats: int, time: float,
+    ) -> tuple[int, int, float, float, int, int, int, int, int]:  # fmt: skip
+        """Call :func:`motion.meet` for the state of motion."""
+        contacts = state.contacts
+        return motion.meet(
+            scene, self._equations, self._room, self._stages[-1], place, self._ode.q, self._ode.v, within,
+            none, rate, repeats, state.entity_index.entities, contacts.log, contacts.logged, time,
+        )  # fmt: skip
+
+    def _note(
+        self, found: tuple[int, int, float, float, int, int, int, int, int], state: State, made: MadeStep
+    ) -> None:
+        """Note the impacts that were found."""
+        state.contacts.logged += found[4]
+        made.impacts += found[4]
+        made.energetic += found[5]
+        made.lowered += found[6]
+        made.work += found[8] // 4

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -74,22 +77,28 @@ class RigidRecords:
         contacts = state.contacts
         if not impacts:
             return
-        records = contacts.manifolds[: contacts.recorded]
-        keys = zip(
-            records["entity_a"].tolist(), records["entity_b"].tolist(), records["wall"].tolist(), strict=True
-        )
-        number = {key: p for p, key in enumerate(keys)}
-        position = state.table(Transform)["position"]
-        for n in range(max(0, contacts.logged - min(impacts, len(contacts.log))), contacts.logged):
-            impact = contacts.log[n % len(contacts.log)]
-            p = number[int(impact["entity_a"]), int(impact["entity_b"]), int(impact["wall"])]
-            record, point = records[p], contacts.points[2 * p]
-            record["impact_count"] += 1
+        records, position = contacts.manifolds[: contacts.recorded], state.table(Transform)["position"]
+        last = np.arange(max(0, contacts.logged - min(impacts, len(contacts.log))), contacts.logged)
+        log = contacts.log[last % len(contacts.log)]
+        number = {key: p for p, key in enumerate(_pairs_of(records))}
+        pairs = np.array([number[key] for key in _pairs_of(log)])
+        np.add.at(records["impact_count"], pairs, 1)
+        points = contacts.points[: 2 * len(records) : 2]
+        np.maximum.at(points["approach_speed"], pairs, log["approach_speed"])
+        np.add.at(points["impact_normal"], pairs, log["normal_impulse"])
+        np.add.at(points["impact_tangent"], pairs, log["tangent_impulse"])
+        latest = dict(zip(pairs.tolist(), range(len(log)), strict=True))
+        for p, n in latest.items():
+            record, point, impact = records[p], points[p], log[n]
             if not record["count"]:
                 record["normal_x"], record["normal_y"] = impact["normal_x"], impact["normal_y"]
                 place = np.array((impact["x"], impact["y"]))
                 point["arm_ax"], point["arm_ay"] = place - position[record["a"]]
                 point["arm_bx"], point["arm_by"] = place - position[record["b"]]
-            point["approach_speed"] = max(point["approach_speed"], impact["approach_speed"])
-            point["impact_normal"] += impact["normal_impulse"]
-            point["impact_tangent"] += impact["tangent_impulse"]
+
+
+def _pairs_of(records: NDArray[Any]) -> Iterator[tuple[int, int, int]]:
+    """Return the entities and the wall of each record."""
+    return zip(
+        records["entity_a"].tolist(), records["entity_b"].tolist(), records["wall"].tolist(), strict=True
+    )

@@ -41,7 +41,7 @@ NOT_FOUND, FITTING, SETTLED = 0, 1, 2
 """Whether forces were found."""
 _FEW_CHANGES = 4
 """Number of changes that are tried before the pivots where they are good enough."""
-_SLACKS = (1e-10, 1e-12, 1e-8)
+_SLACKS = (1e-10, 1e-12, 1e-8, 1e-9, 1e-7)
 """Slacks of the pivots, one after the other."""
 _AT_REST = 1e-7
 """Share of the largest free acceleration below which what pivots leave open or sliding may be at rest."""
@@ -282,7 +282,7 @@ def solve_complementarity(equations: Equations, count: int, scale: float, exactl
     if _settle_by_changes(equations, count, 4 + 2 * count if exactly else _FEW_CHANGES, w_scale, z_scale):
         return SETTLED
     # Of what the pivots leave open or sliding, some may rest with the others: forces are of least norm then.
-    for attempt in range(3):
+    for attempt in range(len(_SLACKS)):
         if not find_by_pivots(equations, count, _SLACKS[attempt]):
             continue
         for i in range(2 * count):
@@ -290,7 +290,7 @@ def solve_complementarity(equations: Equations, count: int, scale: float, exactl
         limit = _AT_REST * w_scale if attempt == 0 else -1.0
         _take_pivots(equations, count, limit, limit)
         fits = _largest_violation(equations, count, w_scale, z_scale) <= _AT_REST
-        if fits and (attempt == 2 or not exactly):
+        if fits and (attempt >= 2 or not exactly):
             return FITTING
         if _settle_by_changes(equations, count, 2 + count, w_scale, z_scale):
             return SETTLED

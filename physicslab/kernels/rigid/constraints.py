@@ -22,7 +22,10 @@ from physicslab.kernels.rigid.features import (
     measure,
 )
 
-__all__ = ["apply", "assemble", "constrained_acceleration", "find_free_rates", "measure_all", "project"]
+__all__ = [
+    "apply", "assemble", "constrained_acceleration", "find_free_rates", "measure_all", "project",
+    "rates_without_forces",
+]  # fmt: skip
 
 
 @inlined
@@ -98,19 +101,27 @@ def apply(scene: Scene, equations: Equations, count: int, target: Numbers) -> No
 
 
 @inlined
+def rates_without_forces(
+    scene: Scene, equations: Equations, i: int, acceleration: Numbers
+) -> tuple[float, float]:
+    """Return how the speeds of point i along its normal and its tangent change at given accelerations."""
+    rows, measures, points = scene.rows, equations.measures, equations.points
+    one, other = points[i, ONE], points[i, OTHER]
+    nx, ny = measures[i, NX], measures[i, NY]
+    dx = acceleration[2 * other] - acceleration[2 * one]
+    dy = acceleration[2 * other + 1] - acceleration[2 * one + 1]
+    turn_one, turn_other = acceleration[2 * rows + one], acceleration[2 * rows + other]
+    opening = nx * dx + ny * dy - turn_other * measures[i, TB] + turn_one * measures[i, TA]
+    sliding = nx * dy - ny * dx + turn_other * measures[i, NB] - turn_one * measures[i, NA]
+    return opening + measures[i, BIAS_N], sliding + measures[i, BIAS_T]
+
+
+@inlined
 def find_free_rates(scene: Scene, equations: Equations, count: int, acceleration: Numbers) -> None:
     """Find how the speeds of points would change without contact forces."""
-    rows, measures, points = scene.rows, equations.measures, equations.points
     for i in range(count):
-        one, other = points[i, ONE], points[i, OTHER]
-        nx, ny = measures[i, NX], measures[i, NY]
-        dx = acceleration[2 * other] - acceleration[2 * one]
-        dy = acceleration[2 * other + 1] - acceleration[2 * one + 1]
-        turn_one, turn_other = acceleration[2 * rows + one], acceleration[2 * rows + other]
-        opening = nx * dx + ny * dy - turn_other * measures[i, TB] + turn_one * measures[i, TA]
-        sliding = nx * dy - ny * dx + turn_other * measures[i, NB] - turn_one * measures[i, NA]
-        equations.vectors[FREE, 2 * i] = opening + measures[i, BIAS_N]
-        equations.vectors[FREE, 2 * i + 1] = sliding + measures[i, BIAS_T]
+        opening, sliding = rates_without_forces(scene, equations, i, acceleration)
+        equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = opening, sliding
 
 
 @inlined

@@ -26,6 +26,9 @@ __all__ = ["find_points", "seen_from"]
 
 _TIE = 1e-9
 """Share of the size within which two faces are equally far, so that speeds decide."""
+Lie = tuple[float, float, float, float]
+"""Centre of a box in another one's directions, from its centre [m]; cosine and sine of the angle between
+them."""
 
 
 @inlined
@@ -85,36 +88,67 @@ def _box_to_wall(
 
 
 @inlined
+def _lie(q: Numbers, rows: int, one: int, other: int) -> tuple[Lie, Lie]:
+    """Return how OTHER lies, seen from ONE, and how ONE does, seen from OTHER."""
+    angle, angle_other = q[2 * rows + one], q[2 * rows + other]
+    c, s, co, so = math.cos(angle), math.sin(angle), math.cos(angle_other), math.sin(angle_other)
+    dx, dy = q[2 * other] - q[2 * one], q[2 * other + 1] - q[2 * one + 1]
+    turn_c, turn_s = c * co + s * so, c * so - s * co
+    there = (c * dx + s * dy, c * dy - s * dx, turn_c, turn_s)
+    return there, (-co * dx - so * dy, so * dx - co * dy, turn_c, -turn_s)
+
+
+@inlined
+def _nearest_corner(lie: Lie, outlines: Vectors, one: int, face: int, other: int) -> tuple[float, int]:
+    """Return how far all of OTHER is from a face of ONE [m], and its corner that is nearest."""
+    x, y, c, s = lie
+    fx, fy, distance, _ = face_of(outlines, one, face)
+    along, across = fx * c + fy * s, fy * c - fx * s  # the normal, seen from OTHER
+    nearest = 0 if across <= 0.0 else 3
+    if along > 0.0:
+        nearest = 1 if across <= 0.0 else 2
+    reach = 0.5 * (abs(along) * outlines[other, WIDTH] + abs(across) * outlines[other, HEIGHT])
+    return fx * x + fy * y - reach - distance, nearest
+
+
+@inlined
 def _farthest_face(
-    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, other: int, tie: float
-) -> tuple[int, float, float]:
-    """Return the face of ONE from which all of OTHER is farthest, how far [m], and how fast that grows [m/s].
+    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, other: int, lie: Lie, tie: float
+) -> tuple[int, float]:
+    """Return the face of ONE from which all of OTHER is farthest, and how far [m].
 
     Of faces that are equally far, as where two corners meet, the one that recedes faster: only there could
     they pass each other, and a box that slides over the joint of two tiles is not stopped by the side of
     the next.
     """
-    best, best_gap, best_rate = 0, -math.inf, 0.0
+    best, farthest, count = 0, -math.inf, 0
     for face in range(4):
-        fx, fy, distance, _ = face_of(outlines, one, face)
-        gap, rate = math.inf, 0.0
-        for vertex in range(4):
-            cx, cy = _corner(q, rows, outlines, other, vertex)
-            x, y = seen_from(q, rows, one, cx, cy)
-            found = fx * x + fy * y - distance
-            if found < gap:
-                gap = found
-                rate = _face_rate(q, v, rows, one, other, fx, fy, cx, cy)
-        if gap > best_gap + tie or (gap > best_gap - tie and rate > best_rate):
-            best, best_gap, best_rate = face, gap, rate
-    return best, best_gap, best_rate
+        gap, _ = _nearest_corner(lie, outlines, one, face, other)
+        if gap > farthest:
+            best, farthest = face, gap
+    for face in range(4):
+        gap, _ = _nearest_corner(lie, outlines, one, face, other)
+        count += gap > farthest - tie
+    if count == 1:
+        return best, farthest
+    fastest = -math.inf
+    for face in range(4):
+        gap, _ = _nearest_corner(lie, outlines, one, face, other)
+        if gap > farthest - tie:
+            rate = _face_rate(q, v, rows, outlines, one, face, other, lie)
+            if rate > fastest:
+                best, fastest = face, rate
+    return best, farthest
 
 
 @inlined
 def _face_rate(
-    q: Numbers, v: Numbers, rows: int, one: int, other: int, fx: float, fy: float, x: float, y: float
+    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, face: int, other: int, lie: Lie
 ) -> float:
-    """Return how fast OTHER recedes from ONE at a place, along a normal of ONE [m/s]."""
+    """Return how fast the nearest corner of OTHER recedes from a face of ONE [m/s]."""
+    fx, fy, _, _ = face_of(outlines, one, face)
+    _, vertex = _nearest_corner(lie, outlines, one, face, other)
+    x, y = _corner(q, rows, outlines, other, vertex)
     c, s = math.cos(q[2 * rows + one]), math.sin(q[2 * rows + one])
     nx, ny = c * fx - s * fy, s * fx + c * fy
     vx = v[2 * other] - v[2 * rows + other] * (y - q[2 * other + 1])
@@ -138,47 +172,57 @@ def _facing(q: Numbers, rows: int, one: int, face: int, other: int) -> int:
 def _box_to_box(
     points: Points, n: int, pair: int, q: Numbers, v: Numbers, rows: int, outlines: Vectors,
     a: int, b: int, tie: float,
-) -> int:  # fmt: skip
-    """Find the ends of the stretch along which two boxes face each other."""
-    face_a, gap_a, rate_a = _farthest_face(q, v, rows, outlines, a, b, tie)
-    face_b, gap_b, rate_b = _farthest_face(q, v, rows, outlines, b, a, tie)
-    one, other, face = a, b, face_a
-    if gap_b > gap_a + tie or (gap_b > gap_a - tie and rate_b > rate_a + tie):
-        one, other, face = b, a, face_b
+) -> tuple[int, float]:  # fmt: skip
+    """Find the ends of the stretch along which two boxes face each other, and how far they are apart [m]."""
+    b_from_a, a_from_b = _lie(q, rows, a, b)
+    face_a, gap_a = _farthest_face(q, v, rows, outlines, a, b, b_from_a, tie)
+    face_b, gap_b = _farthest_face(q, v, rows, outlines, b, a, a_from_b, tie)
+    one, other, face, lie, lie_back = a, b, face_a, b_from_a, a_from_b
+    instead = gap_b > gap_a + tie
+    if abs(gap_b - gap_a) <= tie:
+        rate = _face_rate(q, v, rows, outlines, a, face_a, b, b_from_a)
+        instead = _face_rate(q, v, rows, outlines, b, face_b, a, a_from_b) > rate + tie
+    if instead:
+        one, other, face, lie, lie_back = b, a, face_b, a_from_b, b_from_a
     against = _facing(q, rows, one, face, other)
     for k in range(2):
         vertex = (against + 3) % 4 if k == 0 else against
-        if _within(q, rows, outlines, one, face, other, vertex) >= -tie:
+        if _within(lie, outlines, one, face, other, vertex) >= -tie:
             n = _write(points, n, pair, one, face, other, vertex)
     for k in range(2):
         vertex = (face + 3) % 4 if k == 0 else face
-        if _within(q, rows, outlines, other, against, one, vertex) > tie:
+        if _within(lie_back, outlines, other, against, one, vertex) > tie:
             n = _write(points, n, pair, other, against, one, vertex)
-    return n
+    return n, max(gap_a, gap_b)
 
 
 @inlined
-def _within(q: Numbers, rows: int, outlines: Vectors, one: int, face: int, other: int, vertex: int) -> float:
+def _within(lie: Lie, outlines: Vectors, one: int, face: int, other: int, vertex: int) -> float:
     """Return how far a corner of OTHER is from the nearer end of a face of ONE, along it [m]."""
     fx, fy, _, half = face_of(outlines, one, face)
-    cx, cy = _corner(q, rows, outlines, other, vertex)
-    x, y = seen_from(q, rows, one, cx, cy)
+    ux, uy, _ = vertex_of(outlines, other, vertex)
+    x, y, c, s = lie
+    x, y = x + c * ux - s * uy, y + s * ux + c * uy
     return half - abs(fx * y - fy * x)
 
 
 @inlined
-def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points, n: int) -> int:
-    """Write the points where pair ``p`` touches, or would, from number ``n`` on; return the next."""
+def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points) -> tuple[int, float]:
+    """Write the points where pair ``p`` touches, or would; return how many they are.
+
+    And, of two boxes, a distance that they have at least where it is positive [m]; infinity of other pairs,
+    which have the smallest gap of their points.
+    """
     rows, outlines = scene.rows, scene.outlines
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
     if wall >= 0:
         if outlines[b, KIND] == BOX:
-            return _box_to_wall(points, n, p, q, rows, outlines, b, wall)
-        return _write(points, n, p, 0, WALL + wall, b, CENTRE)
+            return _box_to_wall(points, 0, p, q, rows, outlines, b, wall), math.inf
+        return _write(points, 0, p, 0, WALL + wall, b, CENTRE), math.inf
     if outlines[a, KIND] == BOX and outlines[b, KIND] == BOX:
-        return _box_to_box(points, n, p, q, v, rows, outlines, a, b, _TIE * scene.coefficients[p, 2])
+        return _box_to_box(points, 0, p, q, v, rows, outlines, a, b, _TIE * scene.coefficients[p, 2])
     if outlines[a, KIND] == BOX:
-        return _disc_to_box(points, n, p, q, rows, outlines, a, b)
+        return _disc_to_box(points, 0, p, q, rows, outlines, a, b), math.inf
     if outlines[b, KIND] == BOX:
-        return _disc_to_box(points, n, p, q, rows, outlines, b, a)
-    return _write(points, n, p, a, CENTRE, b, CENTRE)
+        return _disc_to_box(points, 0, p, q, rows, outlines, b, a), math.inf
+    return _write(points, 0, p, a, CENTRE, b, CENTRE), math.inf

@@ -3,34 +3,48 @@
 import math
 
 from physicslab.kernels import Numbers, Vectors, fused, inlined
-from physicslab.kernels.rigid.constraints import constrained_acceleration
-from physicslab.kernels.rigid.curve import keep_ends, place_on_curve
+from physicslab.kernels.rigid.constraints import constrained_acceleration, rates_without_forces
+from physicslab.kernels.rigid.curve import curve_is_exact, fit_curve, place_bodies, place_on_curve
 from physicslab.kernels.rigid.equations import SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import MARGIN, MU, STATUS, VT, Scene, measure
+from physicslab.kernels.rigid.features import (
+    GAP,
+    MARGIN,
+    MU,
+    ONE,
+    OTHER,
+    PAIR,
+    STATUS,
+    VN,
+    VT,
+    Scene,
+    measure,
+)
 from physicslab.kernels.rigid.pieces import Stages, make_piece
-from physicslab.kernels.rigid.touching import open_gap
+from physicslab.kernels.rigid.touching import find_open, moved_closer
 
 __all__ = ["APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "cut_at_first_event", "note_start"]
 
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
 """What must stay positive: a normal force, what is
 left of the friction cone, a sliding speed, the distance to the end of a feature, a gap."""
+_CLEAR = 5
+"""The row of what is noted at a start that holds how far pairs are apart at least."""
 _CLOSED = 1e-13
 """Share of a size by which a gap may change by rounding."""
 _NO_FORCE = 1e-9
 """Share of the largest force that is rounding."""
+_NO_SPEED = 1e-8
+"""Share of the speed that counts as none that is rounding."""
 _ROUNDING = 1e-14
-"""Share of a size, or of the speed that counts as none, that is rounding."""
+"""Share of a size that is rounding."""
 _HALVINGS = 40
 """How often a piece is halved to find a time at which a point that has bounced is above the other body."""
 _TRIALS = 120
 """Largest number of trials to locate an event."""
-_ON_CURVE = 1e-12
-"""Share of a piece to which an event is located on its curve."""
 _STEEP = 1e-7
 """Share of a piece below which rounding may be most of a slope."""
 _LOCATED = 1e-13
-"""Share of a piece by which its end may be past the event."""
+"""Share of a piece by which its end may be past the event, and to which that is located on its curve."""
 _BY_SLOPE = 6
 """Trials that follow the slope of the curve; later ones do without it."""
 _CUTS = 16
@@ -44,7 +58,8 @@ def _value(
 ) -> float:  # fmt: skip
     """Return what must stay positive, of a point that is measured in the state or of a pair."""
     if kind == APART:
-        return open_gap(scene, equations, count, scratch, index, q, v)
+        _, gap, _ = find_open(scene, equations, count, scratch, index, q, v)
+        return gap
     value: float = equations.measures[index, MARGIN]
     if kind <= HOLDS:
         value = equations.vectors[UNKNOWN, 2 * index]
@@ -57,14 +72,39 @@ def _value(
     return value
 
 
+@inlined
+def _time_to_fall(height: float, speed: float, acceleration: float) -> float:
+    """Return when a height that changes at an even rate is zero [s]."""
+    if acceleration >= 0.0 and speed >= 0.0:
+        return math.inf
+    root = speed * speed - 2.0 * acceleration * height
+    if root < 0.0:
+        return math.inf
+    if speed < 0.0:
+        return 2.0 * height / (math.sqrt(root) - speed)
+    return (speed + math.sqrt(root)) / -acceleration
+
+
 @fused
 def note_start(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers, start: Vectors
-) -> None:
-    """Note all functions at the start of a piece: ``start`` (5, points or pairs)."""
-    for kind in range(5):
-        for i in range(len(scene.pairs) if kind == APART else count):
+    scene: Scene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
+    acceleration: Numbers, start: Vectors,
+) -> float:  # fmt: skip
+    """Note all functions at the start of a piece, and distances of pairs: ``start`` (6, points or pairs).
+
+    Returns when the first gap would close if all went on as it begins [s].
+    """
+    soonest = math.inf
+    for kind in range(APART):
+        for i in range(count):
             start[kind, i] = _value(kind, i, scene, equations, count, scratch, q, v)
+    for p in range(len(scene.pairs)):
+        n, start[APART, p], start[_CLEAR, p] = find_open(scene, equations, count, scratch, p, q, v)
+        for k in range(n):
+            height = max(scratch.measures[k, GAP], _CLOSED * scene.coefficients[p, 2])
+            opening, _ = rates_without_forces(scene, scratch, k, acceleration)
+            soonest = min(soonest, _time_to_fall(height, scratch.measures[k, VN], opening))
+    return soonest
 
 
 @inlined
@@ -91,18 +131,19 @@ def _allowance(kind: int, i: int, scene: Scene, start: float, rest: float) -> fl
 @inlined
 def _noise(kind: int, index: int, scene: Scene, equations: Equations, rest: float) -> float:
     """Return by how much rounding may change a function."""
-    noise: float = _ROUNDING * rest
-    if kind == APART:
-        noise = _ROUNDING * scene.coefficients[index, 2]
-    elif kind <= HOLDS:
-        noise = _NO_FORCE * abs(equations.vectors[UNKNOWN, 2 * index])
-    return noise
+    if kind <= HOLDS:
+        force: float = abs(equations.vectors[UNKNOWN, 2 * index])
+        return _NO_FORCE * force
+    if kind == SLIDES:
+        return _NO_SPEED * rest
+    size: float = scene.coefficients[index if kind == APART else equations.points[index, PAIR], 2]
+    return _ROUNDING * size
 
 
 @inlined
 def _first_event(
     scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
-    rest: float, last_kind: int, last: int,
+    q: Numbers, rest: float, last_kind: int, last: int,
 ) -> tuple[int, int]:  # fmt: skip
     """Return which function fell below zero first within the piece: kind and index, -1 if none did.
 
@@ -114,6 +155,8 @@ def _first_event(
     for kind in range(5):
         for i in range(len(scene.pairs) if kind == APART else count):
             before = start[kind, i]
+            if kind == APART and start[_CLEAR, i] > moved_closer(scene, i, q, stages.q):
+                continue
             if (kind == last_kind and i == last) or not _can_end(kind, i, equations, before):
                 continue
             allowance = _allowance(kind, i, scene, before, rest)
@@ -138,24 +181,31 @@ def _cross(
     falls below zero at all; how many trials there were. The state is left in ``stages``.
     """
     low, high, f_high, side, wide = 0.0, end, slope * (end - t), 0, math.inf
-    moment = (_ON_CURVE if on_curve else _LOCATED) * h
-    depth, last = noise - slope * moment, _TRIALS - 1
+    moment = _LOCATED * h
+    depth, past, last = noise - slope * moment, -math.inf, _TRIALS - 1
+    if kind == APART:
+        one, other = scene.pairs[index, 0], scene.pairs[index, 1]
+    else:
+        one, other = equations.points[index, ONE], equations.points[index, OTHER]
     # A point that has just bounced begins at nothing and rises: the fall back is looked for after that.
     rising = _HALVINGS if on_curve and kind == APART and f_low <= 0.0 else 0
     for trial in range(_TRIALS):
-        located = on_curve and trial > 0 and rising == 0 and (high - low <= moment or trial == last)
+        near = high - low <= moment or past >= -noise or trial == last
+        located = on_curve and trial > 0 and rising == 0 and near
         if on_curve:
             t = high if located else t
-            place_on_curve(stages, q, v, h, t)
             if located or kind <= HOLDS:
+                place_on_curve(stages, q, v, h, t)
                 constrained_acceleration(scene, equations, count, stages.q, stages.v, stages.acceleration)
-            elif kind < APART:
-                measure(scene, equations.points, index, stages.q, stages.v, equations.measures)
+            else:
+                place_bodies(stages, q, v, h, t, scene.rows, one, other)
+                if kind < APART:
+                    measure(scene, equations.points, index, stages.q, stages.v, equations.measures)
         else:
             make_piece(scene, equations, count, q, v, t, tolerance, stages)
         f = _value(kind, index, scene, equations, count, scratch, stages.q, stages.v) + allowance
         if f <= 0.0:
-            high, f_high, rising = t, f, max(rising - 1, 0)
+            high, f_high, past, rising = t, f, f, max(rising - 1, 0)
             f_low *= 0.5 if side == -1 else 1.0
             side = -1
         else:
@@ -184,27 +234,34 @@ def _cross(
 @fused
 def cut_at_first_event(
     scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
-    q: Numbers, v: Numbers, h: float, tolerance: float, rest: float,
+    q: Numbers, v: Numbers, h: float, tolerance: float, rest: float, short: bool,
 ) -> tuple[float, int, int, int]:  # fmt: skip
     """Cut a piece that was made of ``h`` seconds where its first event is, if there is one in it.
 
     Returns its length, kind and index of the event, -1 if there is none, and how many pieces were made. The
-    event is found on the curve of the piece; pieces of other lengths then locate it to rounding.
+    event is found on the curve of the piece. Where the curve is not exact, pieces of other lengths then
+    locate it to rounding; but a ``short`` one, whose length is then returned as -1, has to be made again.
     """
-    kind, index, slope, at, end, f_low, allowance = -1, -1, 0.0, h, h, 0.0, 0.0
-    keep_ends(stages)
+    kind, index, slope, at, end, f_low, allowance, exact = -1, -1, 0.0, h, h, 0.0, 0.0, False
     for cut in range(_CUTS + 1):
         next_kind, next_index = _first_event(
-            scene, equations, count, scratch, start, stages, rest, kind, index
+            scene, equations, count, scratch, start, stages, q, rest, kind, index
         )
+        if cut == 0 and (short or next_kind >= 0):
+            fit_curve(stages, v, h, short)
+            exact = curve_is_exact(scene, equations, count, q, v, h, tolerance, stages)
+            if short and not exact:
+                return -1.0, kind, index, 0
         on_curve = next_kind >= 0 and cut < _CUTS
         if on_curve:
             kind, index, end, slope = next_kind, next_index, at, 0.0
             allowance = _allowance(kind, index, scene, start[kind, index], rest)
             f_low = max(start[kind, index] + allowance, 0.0)
-        elif kind < 0:
-            return h, kind, index, 0
-        noise = 0.0 if on_curve else _noise(kind, index, scene, equations, rest)
+        elif kind < 0 or (exact and next_kind < 0):
+            if kind < 0 and short:
+                place_on_curve(stages, q, v, h, h)
+            return at, kind, index, 0
+        noise = _noise(kind, index, scene, equations, rest)
         at, slope, found, trials = _cross(
             on_curve, kind, index, scene, equations, count, scratch, stages, q, v, h, at, end, slope, f_low,
             allowance, noise, tolerance,

@@ -7,15 +7,29 @@ exist where forces do not (Painleve's paradox), and no number of events within a
 of order one.
 """
 
+import math
+
 from physicslab.kernels import Numbers, inlined, kernel
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
-from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, EquationsTuple, named_equations
-from physicslab.kernels.rigid.features import GAP, GIVEN, MU, SceneTuple, named_scene
+from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, Equations, EquationsTuple, named_equations
+from physicslab.kernels.rigid.features import (
+    FEATURE,
+    GAP,
+    GIVEN,
+    MU,
+    ONE,
+    OTHER,
+    WALL,
+    Scene,
+    SceneTuple,
+    named_scene,
+)
+from physicslab.kernels.rigid.pieces import StagesTuple, named_stages
 from physicslab.kernels.rigid.touching import length_of
 
-__all__ = ["drift", "kick", "separate"]
+__all__ = ["drift", "kick", "separate", "take_work"]
 
 _SEPARATIONS = 2
 """How often bodies that overlap are moved apart: gaps are not linear in angles."""
@@ -62,3 +76,55 @@ def separate(scene: SceneTuple, equations: EquationsTuple, count: int, q: Number
             return False
         apply(of, points, count, q)
     return True
+
+
+@inlined
+def _find_islands(scene: Scene, equations: Equations, count: int, island: Numbers) -> None:
+    """Give all bodies that hang together by points one number: the lowest row of them."""
+    for row in range(scene.rows):
+        island[row] = row
+    changed = True
+    while changed:
+        changed = False
+        for i in range(count):
+            one, other = equations.points[i, ONE], equations.points[i, OTHER]
+            moving = scene.inverse_mass[2 * one] > 0.0 and scene.inverse_mass[2 * other] > 0.0
+            if moving and equations.points[i, FEATURE] < WALL and island[one] != island[other]:
+                island[one] = island[other] = min(island[one], island[other])
+                changed = True
+
+
+@kernel
+def take_work(
+    scene: SceneTuple, equations: EquationsTuple, count: int, stages: StagesTuple, before: Numbers,
+    q: Numbers, v: Numbers, pay: bool,
+) -> float:  # fmt: skip
+    """Return the energy that a short move from ``before`` to ``q`` adds, by its work against forces [J].
+
+    Where it is to ``pay`` for it, what was added is taken from the kinetic energy of the bodies that hang
+    together by the ``count`` points: all their speeds are lowered by one factor, so that what slides and what
+    rests does so still. What their energy does not suffice for is returned.
+    """
+    of, points, room = named_scene(scene), named_equations(equations), named_stages(stages)
+    rows, island, push, added = of.rows, room.v, room.acceleration, 0.0
+    accelerate(before, v, room.q, of.inverse_mass, of.damping, of.calls)
+    accelerate(q, v, push, of.inverse_mass, of.damping, of.calls)
+    _find_islands(of, points, count, island)
+    for first in range(rows):
+        work, energy = 0.0, 0.0
+        for row in range(rows):
+            for k in range(3 if island[row] == first else 0):
+                i = 2 * row + k if k < 2 else 2 * rows + row
+                if of.inverse_mass[i] > 0.0:
+                    work -= 0.5 * (room.q[i] + push[i]) * (q[i] - before[i]) / of.inverse_mass[i]
+                    energy += 0.5 * v[i] * v[i] / of.inverse_mass[i]
+        if pay and work > 0.0:
+            share = math.sqrt(max(1.0 - work / energy, 0.0)) if energy > 0.0 else 0.0
+            work = max(work - energy, 0.0)
+            for row in range(rows):
+                if island[row] == first:
+                    v[2 * row], v[2 * row + 1] = share * v[2 * row], share * v[2 * row + 1]
+                    v[2 * rows + row] *= share
+        if not pay or work > 0.0:
+            added += work
+    return added

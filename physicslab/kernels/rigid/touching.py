@@ -29,7 +29,15 @@ from physicslab.kernels.rigid.features import (
     measure,
 )
 
-__all__ = ["far_apart", "find_touching", "hold_closed", "length_of", "open_gap", "rest_limits"]
+__all__ = [
+    "far_apart",
+    "find_open",
+    "find_touching",
+    "hold_closed",
+    "length_of",
+    "moved_closer",
+    "rest_limits",
+]
 
 _TOUCH = 1e-10
 """Share of the smaller size within which a gap is closed."""
@@ -53,8 +61,11 @@ def _from_box(scene: Scene, box: int, other: int, q: Numbers) -> float:
 
 
 @inlined
-def far_apart(scene: Scene, p: int, q: Numbers) -> float:
-    """Return a distance that the shapes of a pair have at least [m]; negative where they may touch."""
+def far_apart(scene: Scene, p: int, q: Numbers, enough: float) -> float:
+    """Return a distance that the shapes of a pair have at least [m]; negative where they may touch.
+
+    One above ``enough`` is not the best that can be found.
+    """
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
     reach = scene.outlines[b, REACH]
     if wall >= 0:
@@ -65,7 +76,7 @@ def far_apart(scene: Scene, p: int, q: Numbers) -> float:
     apart: float = math.sqrt(dx * dx + dy * dy) - reach - scene.outlines[a, REACH]
     for side in range(2):
         box, other = (a, b) if side == 0 else (b, a)
-        if scene.outlines[box, KIND] == BOX:
+        if apart <= enough and scene.outlines[box, KIND] == BOX:
             apart = max(apart, _from_box(scene, box, other, q) - scene.outlines[other, REACH])
     return apart
 
@@ -80,23 +91,46 @@ def _is_same(points: Points, i: int, others: Points, k: int) -> bool:
 
 
 @inlined
-def open_gap(
+def find_open(
     scene: Scene, equations: Equations, count: int, scratch: Equations, p: int, q: Numbers, v: Numbers
-) -> float:
-    """Return the smallest gap of the points of a pair that are not closed [m], at most the size."""
-    size: float = scene.coefficients[p, 2]
-    if far_apart(scene, p, q) > size:
-        return size
-    n = find_points(scene, p, q, v, scratch.points, 0)
-    gap: float = size
-    for k in range(n):
+) -> tuple[int, float, float]:
+    """Find and measure the points of a pair that are not closed, unless it is more than a size apart.
+
+    Returns how many there are, their smallest gap [m], at most the size, and a distance that the pair has at
+    least [m], minus infinity where a point is closed.
+    """
+    gap: float = scene.coefficients[p, 2]
+    apart = far_apart(scene, p, q, gap)
+    if apart > gap:
+        return 0, gap, apart
+    n = 0
+    found, apart = find_points(scene, p, q, v, scratch.points)
+    for k in range(found):
         closed = False
         for i in range(count):
             closed = closed or _is_same(equations.points, i, scratch.points, k)
-        if not closed:
-            measure(scene, scratch.points, k, q, v, scratch.measures)
-            gap = min(gap, scratch.measures[k, GAP])
-    return gap
+        if closed:
+            apart = -math.inf
+        else:
+            for column in range(GIVEN):
+                scratch.points[n, column] = scratch.points[k, column]
+            measure(scene, scratch.points, n, q, v, scratch.measures)
+            gap = min(gap, scratch.measures[n, GAP])
+            n += 1
+    return n, gap, min(apart, gap)
+
+
+@inlined
+def moved_closer(scene: Scene, p: int, q: Numbers, later: Numbers) -> float:
+    """Return by how much the distance of a pair can have changed from one state to a later one [m]."""
+    rows, a, b = scene.rows, scene.pairs[p, 0], scene.pairs[p, 1]
+    x, y = later[2 * b] - q[2 * b], later[2 * b + 1] - q[2 * b + 1]
+    turned = abs(later[2 * rows + b] - q[2 * rows + b]) * scene.outlines[b, REACH]
+    if scene.pairs[p, 2] < 0:
+        x, y = x - (later[2 * a] - q[2 * a]), y - (later[2 * a + 1] - q[2 * a + 1])
+        turned += abs(later[2 * rows + a] - q[2 * rows + a]) * scene.outlines[a, REACH]
+    moved: float = length_of(x, y) + turned
+    return moved
 
 
 @inlined
@@ -112,9 +146,9 @@ def find_touching(
     for p in range(len(scene.pairs)):
         size = scene.coefficients[p, 2]
         limit = (_TOUCH + within) * size
-        if far_apart(scene, p, q) > limit:
+        if far_apart(scene, p, q, limit) > limit:
             continue
-        n = find_points(scene, p, q, v, scratch.points, 0)
+        n, _ = find_points(scene, p, q, v, scratch.points)
         for k in range(n):
             measure(scene, scratch.points, k, q, v, scratch.measures)
             gap = scratch.measures[k, GAP]
