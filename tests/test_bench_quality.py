@@ -20,7 +20,7 @@ from physicslab.lab.bench.clock import Spread
 from physicslab.lab.bench.engine import OurEngine
 from physicslab.lab.bench.judge import Judge
 from physicslab.lab.bench.measure import measure_scene
-from physicslab.lab.bench.moving import funnel
+from physicslab.lab.bench.moving import _in_funnel, funnel
 from physicslab.lab.bench.quality import at_rest, largest_overlap, lost, within
 from physicslab.lab.bench.result import EngineResult, SceneResult
 from physicslab.lab.bench.scene import BenchScene
@@ -250,3 +250,10 @@ def test_the_command_line_takes_sources_without_peers(
     monkeypatch.setattr("physicslab.commands.bench.built_box2d", built)
     assert cli.main(["bench", "circles_10", "--box2d", str(tmp_path)]) == 2
     assert used[0][0] == tmp_path and not used[0][1].exists()
+
+
+def test_what_fell_out_of_an_open_funnel_may_be_anywhere_below() -> None:
+    places = np.array(((300.0, -900.0), (0.0, 5.0), (6.0, 0.5), (31.0, -5.0), (0.0, -13.0)))
+    inside = partial(_in_funnel, places, count=3_000)
+    assert inside(floored=False).tolist() == [True, True, False, True, True]
+    assert inside(floored=True).tolist() == [False, True, False, False, False]

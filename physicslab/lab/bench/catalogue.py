@@ -44,7 +44,7 @@ _OVERLAP = 0.02
 """Deepest overlap that counts as right [m]: a tenth of a disc."""
 _ENERGY = 1e-3
 """Largest change of a gas's energy that counts as right, as a share of it."""
-_KINETIC, _CREEP = 1e-6, 1e-4
+_KINETIC, _CREEP = 1e-6, 2e-3
 """Largest kinetic energy a body [J] and drift [m] of bodies that count as being at rest."""
 _NAMED = {"piles": (2_000, 8_000), "gases": (4_000, 8_000)}
 """Sizes that are run only where they are named: three others of the group show how the cost grows."""
