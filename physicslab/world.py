@@ -117,22 +117,22 @@ class World(State):
     def _advance(self, h: float, steps: int) -> Advance:
         """Advance with the best stepper; choose again where its numbers do not apply any more."""
         try:
-            made = self._best(h).advance(self, h, steps)
+            made = self._make(h, steps)
         except NoClosedForm:  # a body was given another velocity, or another spring
             self._choose()
-            made = self._best(h).advance(self, h, steps)
+            made = self._make(h, steps)
         except NotSmooth:
             self._choose(plan_for_jumps(self, self.schedule, self.plan))
-            made = self._best(h).advance(self, h, steps)
+            made = self._make(h, steps)
         while not made.steps:  # it cannot make this step, and is not ready for it any more
-            made = self._best(h).advance(self, h, steps)
+            made = self._make(h, steps)
         return made
 
-    def _best(self, h: float) -> Stepper:
-        """Return the best stepper for the coming step, with its kernels compiled."""
+    def _make(self, h: float, steps: int) -> Advance:
+        """Make steps with the best stepper for the coming one, with its kernels compiled."""
         self.stepper = self.stepper_for(h)
         self.compile(self.stepper.kernels)
-        return self.stepper
+        return self.stepper.advance(self, h, self.steppers.at_once(self.stepper, steps))
 
     def stepper_for(self, h: float) -> Stepper:
         """Return the best stepper for a coming step of ``h`` seconds."""
@@ -248,7 +248,7 @@ class World(State):
         The stages of a step leave them there; a compiled flow does not, and they are added up at the present
         state. The state of motion is not changed.
         """
-        if self.steppers.usable and not self.steppers.usable[-1].leaves_forces:
+        if not all(stepper.leaves_forces for stepper in self.steppers.usable):
             with self.active():
                 add_up_forces(self, self.schedule)
 

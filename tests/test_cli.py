@@ -51,11 +51,12 @@ def complaint(capsys: pytest.CaptureFixture[str], *arguments: str, status: int =
 def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[str]) -> None:
     report = document(capsys, "run", "drop", "--seconds", "1")
     assert list(report) == [
-        "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason",
-        "collision_method", "collision_reason", "summation", "interpreted", "force_evaluations", "wall_s",
-        "compile_s", "interpreted_steps", "interpreted_s", "stepper", "steppers_left_out",
-        "systems", "left_out", "energy", "momentum", "angular_momentum", "candidate_pairs", "contacts",
-        "asleep", "contact_forces", "collisions", "max_penetration", "divided", "advice", "entities",
+        "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason", "collision_method",
+        "collision_reason", "contact_model", "contact_reason", "summation", "interpreted",
+        "force_evaluations", "wall_s", "compile_s", "interpreted_steps", "interpreted_s", "stepper",
+        "steppers_left_out", "systems", "left_out", "energy", "momentum", "angular_momentum",
+        "candidate_pairs", "contacts", "asleep", "contact_forces", "collisions", "max_penetration",
+        "divided", "advice", "entities",
     ]  # fmt: skip
     assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
     assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "exact")
@@ -305,13 +306,20 @@ def test_how_collisions_are_found_is_said_with_the_reason(
     report = document(capsys, "run", "stack", "--contacts", "soft", "--steps", "1")
     assert (report["collision_method"], report["integrator"]) == ("step", "leapfrog")
     assert "is a box that may turn" in report["collision_reason"]
+    assert (report["contact_model"], report["contact_reason"]) == ("soft", "asked for")
     report = document(capsys, "run", "stack", "--steps", "1")
     assert (report["stepper"]["name"], report["integrator"]) == ("rigid", "dop853")
+    assert "is a box that may turn" in report["collision_reason"]
+    assert report["collision_reason"].endswith("; rigid contacts locate their own events")
+    assert (report["contact_model"], report["contact_reason"]) == ("rigid", "few bodies touch")
+    assert cli.main(["run", "stack", "--steps", "1"]) == 0
+    assert "\n  touching    rigid contacts: few bodies touch\n" in capsys.readouterr().out
     path = tmp_path / "exact.json"
     scene = {"format": "physicslab-scene/1", "simulation": {"collisions": "exact"}, "entities": []}
     path.write_text(json.dumps(scene))
     report = document(capsys, "run", str(path), "--steps", "1")
     assert (report["collision_method"], report["collision_reason"]) == ("none", "nothing can touch")
+    assert (report["contact_model"], report["contact_reason"]) == ("none", "nothing can touch")
 
 
 def test_a_run_of_no_steps_writes_the_start(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -58,13 +58,17 @@ def test_it_never_gives_energy(c: float, k: float, mass: float, vx: float, vy: f
     assert measure_energy(world).total <= before + 1e-9 * (1 + abs(before))
 
 
-def test_it_acts_in_scenes_that_touch_too() -> None:
-    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"))
+@pytest.mark.parametrize(
+    ("contacts", "method", "error"), [("soft", "leapfrog", 1e-2), ("auto", "dop853", 1e-12)]
+)
+def test_it_acts_in_scenes_that_touch_too(contacts: str, method: str, error: float) -> None:
+    simulation = SimulationConfig(contacts=contacts)
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"), simulation=simulation)
     ball = world.spawn(Transform(), Velocity((1, 0)), Mass(1), Shape.circle(0.1), Drag(linear=1.0))
     world.spawn(Transform((9, 9)), Shape.circle(0.1))
     world.run(seconds=1.0)
-    assert world.plan.integrator.name == "leapfrog"
-    assert world.component(ball, Velocity).linear.x == pytest.approx(math.exp(-1), rel=1e-2)
+    assert world.plan.integrator.name == method
+    assert world.component(ball, Velocity).linear.x == pytest.approx(math.exp(-1), rel=error)
 
 
 @pytest.mark.parametrize("field", ["linear", "quadratic"])

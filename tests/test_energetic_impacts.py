@@ -17,6 +17,7 @@ from physicslab.kernels.solver import blow
 
 energetic_blow: Any = compiled(energetic.energetic_blow)
 one_blow: Any = compiled(blow.one_blow)
+two_blows: Any = compiled(blow.two_blows)
 
 
 class Struck(NamedTuple):
@@ -239,3 +240,32 @@ def test_it_takes_over_where_newton_makes_energy_and_nowhere_else(
             ]
             asked = gained / (kn + edges[0] * between) * np.array((1.0, edges[0]))
         assert asked @ (e * approach - approach, 2.0 * sliding + between * asked[0] + kt * asked[1]) > 0.0
+
+
+def test_two_points_at_once_have_their_restitution_lowered_instead() -> None:
+    """No accepted law has the order in which they end their approach."""
+    random, lowered = np.random.default_rng(3), 0
+    for _ in range(3000):
+        both, turn_a, turn_b = random.uniform(0.05, 5.0, 3)
+        na, nb, ta, tb = random.uniform(-2.0, 2.0, 4)
+        apart, v, turning = random.uniform(0.1, 2.0), -random.uniform(0.1, 3.0), random.uniform(-1.0, 1.0)
+        sliding, e, mu = random.normal(0.0, 3.0), random.random(), random.uniform(0.0, 1.5)
+        one = blow.Lever(na, nb, ta, tb, v, sliding)
+        two = blow.Lever(na + apart, nb + apart, ta, tb, v + turning * apart, sliding)
+        if two.v >= 0.0:
+            continue
+        found, law = two_blows(one, two, blow.Weights(both, turn_a, turn_b), e, mu)
+        normal, tangent = found.normal1 + found.normal2, found.tangent1 + found.tangent2
+        moments = []
+        for levers, turn in (((na, na + apart, ta), turn_a), ((nb, nb + apart, tb), turn_b)):
+            arm_1, arm_2, across = levers
+            moments.append((turn, arm_1 * found.normal1 + arm_2 * found.normal2 + across * tangent))
+        work = normal * v + found.normal2 * turning * apart + tangent * sliding
+        work += 0.5 * (both * (normal**2 + tangent**2) + sum(turn * moment**2 for turn, moment in moments))
+        scale = abs(found.normal1 * one.v) + abs(found.normal2 * two.v) + abs(tangent * sliding)
+        assert work <= 1e-11 * scale
+        assert abs(found.tangent1) <= mu * found.normal1 * (1.0 + 1e-12)
+        assert abs(found.tangent2) <= mu * found.normal2 * (1.0 + 1e-12)
+        assert law != blow.ENERGETIC
+        lowered += law == blow.LOWERED
+    assert lowered > 20

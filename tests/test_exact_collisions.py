@@ -539,12 +539,17 @@ def many(world: World) -> None:
 def test_the_choice_and_its_reason(
     fill: Any, wish: str, physics: dict[str, Any], found: str, reason: str
 ) -> None:
-    world = falling(wish, e=0.5)
-    world.physics = dataclasses.replace(world.physics, **physics)
-    fill(world)
-    world.synchronise()
-    assert (world.plan.collisions, world.plan.collision_reason) == (found, reason)
-    world.run(seconds=0.2)
+    for contacts in ("soft", "auto"):
+        world = falling(wish, e=0.5)
+        world.physics = dataclasses.replace(world.physics, **physics)
+        world.simulation = dataclasses.replace(world.simulation, contacts=contacts)
+        fill(world)
+        world.synchronise()
+        own = "; rigid contacts locate their own events" if "rigid" in world.plan.kept else ""
+        assert (world.plan.collisions, world.plan.collision_reason) == (found, reason + own)
+        rigid = contacts == "auto" and wish != "step" and fill is not many
+        assert world.plan.contacts == ("rigid" if rigid else "soft")
+        world.run(seconds=0.2)
 
 
 def test_a_box_set_free_to_turn_is_noticed() -> None:
@@ -554,7 +559,8 @@ def test_a_box_set_free_to_turn_is_noticed() -> None:
     assert world.plan.collisions == "exact"
     world.component(crate, Mass).fixed_rotation = False
     world.run(seconds=0.1)
-    assert world.plan.collision_reason == f"exact was asked for, and {TURNS}"
+    own = "rigid contacts locate their own events"
+    assert world.plan.collision_reason == f"exact was asked for, and {TURNS}; {own}"
 
 
 def test_a_method_chosen_by_name_comes_first() -> None:

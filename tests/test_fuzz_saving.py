@@ -30,9 +30,11 @@ def bits(world: World) -> list[bytes]:
     return [world.table(kind)[name][1:].tobytes() for kind, name in columns]
 
 
-def goes_on(seed: int, steps: int) -> None:
+def goes_on(seed: int, steps: int, contacts: str) -> None:
     """Run a scene, save and load it, and go on with both."""
-    world = read_scene(crowd(seed))
+    document = crowd(seed)
+    document["simulation"]["contacts"] = contacts
+    world = read_scene(document)
     try:
         world.run(steps=steps)
         again = read_scene(json.loads(json_text(write_scene(world))))
@@ -56,4 +58,5 @@ THOROUGH = settings().max_examples > 40
 @example(226807876, 40).via("an approach noted at a point that had been lost and found since")
 @example(36669189, 1).via("a box that turned fast, whose pair with a wall was not listed")
 def test_a_scene_goes_on_from_a_file_with_the_same_bits(seed: int, steps: int) -> None:
-    goes_on(seed, steps)
+    for contacts in ("soft", "auto"):
+        goes_on(seed, steps, contacts)

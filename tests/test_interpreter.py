@@ -40,6 +40,7 @@ from physicslab.kernels.stand_ins import math_functions
 from physicslab.kernels.warm import Warmup
 from physicslab.stepping import rigid_motion
 from physicslab.stepping.rigid import Rigid
+from physicslab.systems import broad_phase
 from physicslab.systems.system import ForceSystem
 from physicslab.view.canvas.canvas import Look
 from physicslab.view.canvas.display import Display
@@ -89,6 +90,9 @@ def heaps() -> None:
         for _ in range(40):  # through every stage by itself, while a ball strikes the heap
             world.step(0.015)
         read_scene(write_scene(world)).step(0.01)
+        world.component(7, Velocity).linear = (30.0, 0.0)
+        with patch.object(broad_phase, "_FEW", 1_000):  # all pairs are listed, while contacts have slots
+            world.step()
         world.component(7, Mass).mass = 3.0
         world.step()
         assert world.contacts.max_penetration >= 0.0

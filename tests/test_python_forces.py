@@ -114,8 +114,9 @@ def test_a_force_of_time_is_followed_to_rounding_by_what_chooses_its_steps(name:
 
 
 def test_a_force_of_time_beside_contacts_keeps_the_order_of_leapfrog() -> None:
-    coarse, fine = (driven(n, touching=True) for n in (8, 16))
+    coarse, fine = (driven(n, touching=True, contacts="soft") for n in (8, 16))
     assert math.log2(coarse / fine) == pytest.approx(2, abs=0.1)
+    assert driven(8, touching=True) < 1e-11, "rigid contacts follow it, as what chooses its steps does"
     assert driven(16, touching=True, integrator="symplectic_euler") < 0.01
 
 
@@ -224,11 +225,15 @@ def test_auto_believes_a_force_that_denies_it() -> None:
 
 
 def test_a_force_of_velocity_beside_contacts_is_followed_where_it_states_it() -> None:
-    coarse, fine = (off_circle(circling(StatedLorentz(), n, touching=True)) for n in (2, 4))
+    def beside(force: ForceSystem, substeps: int = 4) -> World:
+        return circling(force, substeps, touching=True, contacts="soft")
+
+    coarse, fine = (off_circle(beside(StatedLorentz(), n)) for n in (2, 4))
     assert math.log2(coarse / fine) == pytest.approx(4, abs=0.1)
-    world = circling(StatedLorentz(), touching=True)
-    assert world.plan.split_forces is INTEGRATORS["rk4"]
-    assert circling(Lorentz(), touching=True).plan.split_forces is None, "it may be a wind, and bodies sleep"
+    assert beside(StatedLorentz()).plan.split_forces is INTEGRATORS["rk4"]
+    assert beside(Lorentz()).plan.split_forces is None, "it may be a wind, and bodies sleep"
+    for force in (Lorentz(), StatedLorentz()):
+        assert off_circle(circling(force, touching=True)) < 1e-12, "with rigid contacts"
 
 
 @pytest.mark.parametrize("touching", [False, True])

@@ -21,8 +21,19 @@ from physicslab.world import World
 NO_GRAVITY = PhysicsConfig(gravity_mode="none")
 
 
+MODEL = {"contacts": "soft"}
+
+
+@pytest.fixture(params=["soft", "auto"], scope="module", autouse=True)
+def contacts(request: pytest.FixtureRequest) -> str:
+    """Make laboratories with each model of contacts: what is tested here holds with both."""
+    MODEL["contacts"] = request.param
+    return MODEL["contacts"]
+
+
 def laboratory(physics: PhysicsConfig = NO_GRAVITY, integrator: str = "auto") -> World:
-    return World(*standard_systems(), physics=physics, simulation=SimulationConfig(integrator=integrator))
+    simulation = SimulationConfig(integrator=integrator, contacts=MODEL["contacts"])
+    return World(*standard_systems(), physics=physics, simulation=simulation)
 
 
 def disc(

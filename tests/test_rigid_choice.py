@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import json
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from desk import bits
 
 from physicslab import World
-from physicslab.components import Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.files.scene import load_scene, save_scene
+from physicslab.files.json_text import json_text
+from physicslab.files.scene import load_scene, read_scene, save_scene, write_scene
 from physicslab.prefabs import box, circle
 from physicslab.stepping.rigid import Rigid
 from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import ForceSystem, Stage, System, at
 
 G = 9.81
 
@@ -54,13 +59,102 @@ def test_auto_leaves_stiff_springs_to_soft_contacts() -> None:
     assert world.plan.contact_reason.startswith("forces act at 4.47e+03 rad/s")
 
 
-def test_a_scene_that_states_nothing_has_soft_contacts(tmp_path: Path) -> None:
+@pytest.mark.parametrize("stated", ["auto", "rigid", "soft"])
+def test_a_file_states_its_contacts_and_one_that_does_not_has_auto(stated: str, tmp_path: Path) -> None:
     world = row_of_boxes(1)
-    world.simulation = replace(world.simulation, contacts=SimulationConfig().contacts)
+    world.simulation = replace(world.simulation, contacts=stated)
     save_scene(world, tmp_path / "scene.json")
-    loaded = load_scene(tmp_path / "scene.json")
-    loaded.synchronise()
-    assert (loaded.plan.contacts, loaded.plan.contact_reason) == ("soft", "asked for")
+    document = json.loads((tmp_path / "scene.json").read_text())
+    assert (
+        document["simulation"]["contacts"]
+        == stated
+        == load_scene(tmp_path / "scene.json").simulation.contacts
+    )
+    del document["simulation"]["contacts"]
+    assert read_scene(document).simulation.contacts == "auto"
+
+
+@pytest.mark.parametrize(
+    ("setting", "reason"),
+    [
+        ({"sleeping": True}, "sleeping was asked for, and with rigid contacts nothing sleeps"),
+        ({"collisions": "step"}, "collisions within steps were asked for, and rigid contacts locate them"),
+        ({"integrator": "leapfrog"}, "leapfrog was asked for, and rigid contacts go by dop853"),
+    ],
+)
+def test_auto_overrules_no_wish_that_only_soft_contacts_fulfil(setting: dict[str, Any], reason: str) -> None:
+    world = row_of_boxes(2)
+    world.simulation = replace(world.simulation, **setting)
+    world.synchronise()
+    assert (world.plan.contacts, world.plan.contact_reason) == ("soft", reason)
+
+
+def test_a_system_that_acts_within_the_step_has_soft_contacts_and_is_named() -> None:
+    class Wind(System):
+        @at(Stage.KICK)
+        def blow(self, world: World, h: float) -> None:
+            world.table(Velocity)["linear"][world.entity_index.row_of[2], 0] += h
+
+    world = row_of_boxes(1)
+    world.install(Wind())
+    world.step()
+    assert (world.plan.contacts, world.plan.contact_reason) == ("soft", "Wind acts within the step")
+
+
+def test_a_body_that_is_held_counts_and_the_model_does_not_change_when_it_is_let_go() -> None:
+    world = row_of_boxes(13)
+    world.add(2, Held())
+    world.synchronise()
+    assert (world.plan.contacts, world.plan.contact_reason) == ("soft", "more than 12 bodies can touch")
+
+
+def test_what_was_chosen_for_an_earlier_motion_outlives_a_file() -> None:
+    """Drag that would now be too fast for rigid contacts: the present speed is not that of the choice."""
+    world = row_of_boxes(1)
+    world.add(2, Drag(0.0, 2.0))
+    world.run(steps=5)
+    assert world.plan.contacts == "rigid"
+    fast = world.table(Velocity)["linear"]
+    fast[world.entity_index.row_of[2]] = (1e4, 0.0)
+    saved = read_scene(json.loads(json_text(write_scene(world))))
+    for one in (world, saved):
+        one.run(steps=20)
+        assert one.plan.contacts == "rigid"
+    assert bits(world) == bits(saved)
+
+
+def test_speeds_whose_squares_are_not_finite_are_left_to_soft_contacts() -> None:
+    """Every speed counted as none, and the fast body stood still."""
+    world = laboratory("auto", gravity_mode="none")
+    box(world, (0, -9), width=1, height=1, static=True)
+    circle(world, (0, 0), velocity=(1e200, 0.0))
+    world.step()
+    assert world.component(2, Velocity).linear.x == 1e200
+    assert rigid_of(world).why_soft == "squares of speeds or accelerations are not finite"
+
+
+def test_forces_at_the_end_of_a_step_can_be_read() -> None:
+    world = row_of_boxes(1)
+    world.step()
+    assert world.stepper is not None and world.stepper.name == "rigid"
+    world.add_up_forces()
+    assert world.bodies.force[world.entity_index.row_of[2]] == pytest.approx((0.0, -G), abs=1e-12)
+
+
+def test_a_force_on_what_is_fixed_moves_it_no_more_than_in_soft_contacts() -> None:
+    class Blast(ForceSystem):
+        needs = (Velocity,)
+
+        @at(Stage.FORCE)
+        def push(self, world: World, h: float) -> None:
+            world.bodies.force[world.entity_index.row_of[1]] = math.inf
+
+    world = row_of_boxes(1)
+    world.install(Blast())
+    world.run(steps=3)
+    assert world.stepper is not None and world.stepper.name == "rigid"
+    assert tuple(world.component(1, Transform).position) == (0.0, -0.5)
+    assert tuple(world.component(2, Transform).position) == pytest.approx((0.0, 0.5), abs=1e-15)
 
 
 def into_a_corner(contacts: str) -> World:

@@ -44,7 +44,8 @@ def worlds(draw: st.DrawFn) -> World:
         linear_damping=draw(share),
         bounds=draw(st.none() | st.just((-1e4, -1e4, 1e4, 1e4))),
     )
-    simulation = SimulationConfig(dt=draw(st.floats(1e-4, 0.1)), substeps=draw(st.integers(1, 4)))
+    dt, substeps = draw(st.floats(1e-4, 0.1)), draw(st.integers(1, 4))
+    simulation = SimulationConfig(dt=dt, substeps=substeps, contacts=draw(st.sampled_from(("soft", "auto"))))
     world = World(*standard_systems(), physics=physics, simulation=simulation)
     world.time = draw(st.floats(0.0, 1e6))
     bodies: list[int] = []
@@ -95,9 +96,13 @@ def outcome(world: World) -> str:
     return "none"
 
 
+@pytest.mark.parametrize("contacts", ["soft", "auto"])
 @pytest.mark.parametrize("name", SCENES)
-def test_every_built_in_scene_goes_on_bit_for_bit_from_a_file(name: str, tmp_path: Path) -> None:
+def test_every_built_in_scene_goes_on_bit_for_bit_from_a_file(
+    name: str, contacts: str, tmp_path: Path
+) -> None:
     world = load_scene(name)
+    world.simulation = dataclasses.replace(world.simulation, contacts=contacts)
     world.run(steps=40)
     save_scene(world, tmp_path / "scene.json")
     again = load_scene(tmp_path / "scene.json")

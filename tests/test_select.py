@@ -18,9 +18,12 @@ from physicslab.view.panels.readings import method_lines
 from physicslab.world import World
 
 
-def world_of(*bodies: tuple[object, ...], integrator: str = "auto", **physics: object) -> World:
+def world_of(
+    *bodies: tuple[object, ...], integrator: str = "auto", contacts: str = "auto", **physics: object
+) -> World:
     settings = PhysicsConfig(**physics)  # type: ignore[arg-type]
-    world = World(*standard_systems(), physics=settings, simulation=SimulationConfig(integrator=integrator))
+    simulation = SimulationConfig(integrator=integrator, contacts=contacts)
+    world = World(*standard_systems(), physics=settings, simulation=simulation)
     for body in bodies:
         world.spawn(*body)
     world.synchronise()
@@ -29,6 +32,10 @@ def world_of(*bodies: tuple[object, ...], integrator: str = "auto", **physics: o
 
 def ball(x: float = 0.0, *more: object) -> tuple[object, ...]:
     return (Transform((x, 1)), Velocity(), Mass(1), *more)
+
+
+def two_discs(**settings: str) -> World:
+    return world_of(ball(0, Shape.circle(1)), ball(9, Shape.circle(1)), **settings)
 
 
 def planets(count: int, softening: float) -> World:
@@ -52,7 +59,8 @@ def planets(count: int, softening: float) -> World:
         (planets(3, 0.0), "dop853", "planets may come close"),
         (planets(240, 0.1), "leapfrog", "240 bodies attract each other, softened"),
         (planets(40, 0.0), "dop853", "planets may come close"),
-        (world_of(ball(0, Shape.circle(1)), ball(9, Shape.circle(1))), "leapfrog", "bodies can touch"),
+        (two_discs(contacts="soft"), "leapfrog", "bodies can touch"),
+        (two_discs(), "dop853", "contacts are rigid"),
     ],
 )
 def test_auto_chooses_by_what_there_is_and_says_why(world: World, name: str, reason: str) -> None:
@@ -105,7 +113,7 @@ def test_strong_drag_on_a_body_at_rest_at_the_origin_is_no_trap() -> None:
 
 
 def test_a_chosen_method_that_cannot_run_is_refused_in_words() -> None:
-    touching = world_of(ball(0, Shape.circle(1)), ball(9, Shape.circle(1)), integrator="rk4")
+    touching = two_discs(integrator="rk4")
     assert touching.plan.integrator.name == "leapfrog"
     assert touching.plan.refused == touching.plan.reason
     assert "rk4 was asked for" in touching.plan.reason
@@ -139,12 +147,13 @@ def test_a_force_written_in_python_works_with_every_method_and_is_named(name: st
     assert "Wind: computed by Python" in run_summary(report, "")
 
 
-def test_a_force_written_in_python_is_named_beside_contacts_too() -> None:
-    world = World(*standard_systems(), Wind())
+@pytest.mark.parametrize(("contacts", "stepper"), [("soft", "contact"), ("auto", "rigid")])
+def test_a_force_written_in_python_is_named_beside_contacts_too(contacts: str, stepper: str) -> None:
+    world = World(*standard_systems(), Wind(), simulation=SimulationConfig(contacts=contacts))
     box(world, (0, -0.5), width=20, height=1, static=True)
     box(world, (0, 0.5), width=1, height=1)
     world.step()
-    assert world.stepper is not None and world.stepper.name == "contact"
+    assert world.stepper is not None and world.stepper.name == stepper
     assert world.interpreted == ("Wind",)
     assert run_report(world, RunRecord("wind", Drift(world)))["interpreted"] == ["Wind"]
     assert "Wind is computed by Python: slower" in [line.label for line in method_lines(world)]

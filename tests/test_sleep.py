@@ -221,7 +221,7 @@ def test_no_body_sleeps_where_impacts_are_located() -> None:
 def test_a_discs_pile_sleeps_out_of_its_blocks_and_wakes_into_them() -> None:
     world = open_space(sleeping=True)
     container(world, width=3.0, height=6.0)
-    pile(world, 120, columns=10)
+    pile(world, 120, columns=12)
     world.run(seconds=4.0)
     contacts = world.contacts
     assert world.sleep.count == 120

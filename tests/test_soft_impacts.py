@@ -15,7 +15,7 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.kernels import energetic
+from physicslab.kernels import energetic, near_counts
 from physicslab.prefabs import box, circle
 from physicslab.systems.standard import standard_systems
 
@@ -124,6 +124,16 @@ def test_an_impact_that_goes_by_energy_is_told(mu: float, told: bool) -> None:
     found = [warning for warning in find_warnings(world) if "Stronge's law" in warning.what]
     assert world.collisions == 1 and [warning.value for warning in found] == ([1.0] if told else [])
     assert all(str(warning).count(": 1;") == 1 for warning in found)
+
+
+def test_restitutions_of_several_points_that_were_lowered_are_told_apart_from_that() -> None:
+    world, _ = sliding_rod(0.3, 1.0)
+    world.contacts.counts[near_counts.LOWERED] = 2
+    found = [str(warning) for warning in find_warnings(world)]
+    assert [
+        text for text in found if "several points at once have a lower restitution" in text and ": 2;" in text
+    ]
+    assert not [text for text in found if "Stronge's law" in text]
 
 
 def test_a_box_that_falls_flat_with_speed_turns_alike_in_its_mirror_image() -> None:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -17,9 +18,12 @@ from physicslab.files.scene import read_scene, write_scene
 from physicslab.integrators.blanes_moan import BLANES_MOAN
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
-from physicslab.lab.worlds import floor, open_space, place
+from physicslab.lab import worlds
+from physicslab.lab.worlds import floor, place
 from physicslab.prefabs import box, circle
 from physicslab.world import World
+
+open_space = partial(worlds.open_space, contacts="soft")
 
 
 def far_floor(world: World) -> World:
@@ -71,9 +75,10 @@ def test_what_no_spring_holds_is_not_sub_integrated() -> None:
 
 
 @given(rate=st.floats(0.1, 6000.0), start=st.floats(0.001, 0.4))
+@pytest.mark.parametrize("contacts", ["soft", "auto"])
 @settings(max_examples=15, deadline=None)
-def test_an_oscillation_is_that_of_the_formula(rate: float, start: float) -> None:
-    world = far_floor(open_space(gravity=None))
+def test_an_oscillation_is_that_of_the_formula(contacts: str, rate: float, start: float) -> None:
+    world = far_floor(open_space(gravity=None, contacts=contacts))
     bob = circle(world, (1.0 + start, 0.0), radius=0.1)
     world.add(bob, Spring(rest_length=1.0, stiffness=rate**2))
     world.run(seconds=0.5)
@@ -94,8 +99,9 @@ def test_the_scene_beside_it_moves_as_it_would_without() -> None:
 
 
 @pytest.mark.parametrize("stiffness", [10.0, 1e3, 1e5, 1e7, 1e9])
-def test_what_a_spring_presses_on_the_floor_stays_there(stiffness: float) -> None:
-    world = open_space()
+@pytest.mark.parametrize("contacts", ["soft", "auto"])
+def test_what_a_spring_presses_on_the_floor_stays_there(contacts: str, stiffness: float) -> None:
+    world = open_space(contacts=contacts)
     floor(world)
     block = box(world, (0.0, 0.5), width=1.0, height=1.0, mass=1.0)
     world.add(block, Spring(None, None, (0.0, 0.0), (0.0, 2.5), 2.0 + 100.0 / stiffness, stiffness))
@@ -105,9 +111,10 @@ def test_what_a_spring_presses_on_the_floor_stays_there(stiffness: float) -> Non
     assert world.component(block, Velocity).linear.magnitude < 1e-4
 
 
-def test_drag_brings_a_body_to_its_limit_beside_contacts() -> None:
+@pytest.mark.parametrize("contacts", ["soft", "auto"])
+def test_drag_brings_a_body_to_its_limit_beside_contacts(contacts: str) -> None:
     for coefficient in (0.5, 1e6, 1e12):
-        world = far_floor(open_space())
+        world = far_floor(open_space(contacts=contacts))
         ball = circle(world, (0.0, 0.0), radius=0.1, mass=1.0)
         world.add(ball, Drag(linear=coefficient))
         lowest = 0.0

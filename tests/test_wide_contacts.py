@@ -144,7 +144,7 @@ def test_what_moves_has_slots_too_and_a_file_goes_on_with_them() -> None:
 
 
 def test_few_contacts_stay_scalar() -> None:
-    world = open_space()
+    world = open_space(contacts="soft")
     floor(world)
     for i in range(5):
         box(world, (0.0, 0.5 + i), width=1.0, height=1.0)

@@ -6,8 +6,11 @@ import os
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
@@ -23,34 +26,45 @@ from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.bench.tables import report_text, scene_text
 from physicslab.lab.bench.unused import UNUSED, Unused, measure_unused
 from physicslab.lab.case import Job
+from physicslab.lab.peers.box2d3_built import BuildError, built_box2d
+from physicslab.lab.peers.box2d_mirror import Box2DMirror
+from physicslab.lab.peers.peer import Peer
 from physicslab.scenes import SCENES as BUILT_IN
 from physicslab.world import World
 
 __all__ = ["add_arguments", "execute"]
 
 _MEMORY, _UNUSED = "memory", "unused"
+_SIZE_LIMITS = {Box2DMirror.title: 2_000}
+"""Bodies of the largest scene that an engine runs unless it is named; ``PEER_SIZE_LIMIT`` for others."""
 _UNUSED_SIZE = 1_000
 """Bodies that timing the unused systems takes as long as."""
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
-    moving = ", ".join(name for name, scene in SCENES.items() if not scene.by_default)
+    others = ", ".join(name for name, scene in SCENES.items() if not scene.by_default)
     what = (
         f"a scene of the benchmark, a group of them, a built-in scene or a scene file; if none, everything "
-        f"but {moving}, which would take minutes more"
+        f"but {others}"
     )
     add_lab_arguments(parser, "scene", what, "draw growth and ratios, as bench.png")
     peers = (
-        "time pymunk and Box2D on the same scenes, in turn (needs the dependency group peers); those of more "
-        f"than {PEER_SIZE_LIMIT:,} bodies only where they are named, for they take them minutes"
+        "time pymunk, Box2D 2.3 and Box2D 3 on the same scenes, in turn (needs the dependency group peers); "
+        f"those of more than {PEER_SIZE_LIMIT:,} bodies, for Box2D 2.3 {_SIZE_LIMITS[Box2DMirror.title]:,}, "
+        "only where they are named"
     )
     parser.add_argument("--peers", action="store_true", help=peers)
+    built = (
+        "time Box2D 3 in C as well, compiled with cc, or CC, from this checkout of its sources (3.2 or "
+        "later); with AVX2 where the processor has it"
+    )
+    parser.add_argument("--box2d", metavar="DIR", type=Path, help=built)
     parser.epilog = (
         f"groups: {', '.join(SCENES.families)}; --list names the {len(SCENES)} scenes; {_UNUSED}: what a "
         f"step costs more for systems that the scene does not use; {_MEMORY}: bytes a body. dt is 1/60 s, 4 "
-        "substeps, one thread, nothing sleeps; pymunk takes 10 iterations with a slop of 5 mm, Box2D 8 and "
-        "3. The exit status is 0 whether targets are met or not, and 1 if a run diverges."
+        "substeps, one thread, nothing sleeps; pymunk takes 10 iterations with a slop of 5 mm, Box2D 2.3 8 "
+        "and 3. The exit status is 0 whether targets are met or not, and 1 if a run diverges."
     )
 
 
@@ -66,13 +80,14 @@ def execute(arguments: Namespace) -> int:
         _check_peers()
     run = LabRun("bench", arguments, "bench")
     report = BenchReport(arguments.peers)
-    results: Iterator[SceneResult | Unused] = run.results(_jobs(scenes, extras, arguments))
-    for found in results:
-        if isinstance(found, SceneResult):
-            report.scenes.append(found)
-            _note(run, scene_text(found))
-        else:
-            report.unused.append(found)
+    with _other_engines(arguments) as peers:
+        results: Iterator[SceneResult | Unused] = run.results(_jobs(scenes, extras, peers, arguments.names))
+        for found in results:
+            if isinstance(found, SceneResult):
+                report.scenes.append(found)
+                _note(run, scene_text(found))
+            else:
+                report.unused.append(found)
     if _MEMORY in extras:
         report.memory = measure_memory()
     _note(run, "")
@@ -106,15 +121,34 @@ def _check_peers() -> None:
         )
 
 
+@contextmanager
+def _other_engines(arguments: Namespace) -> Iterator[tuple[type[Peer], ...]]:
+    """Return the engines that take part beside PhysicsLab; a compiled library is deleted afterwards."""
+    peers = PEERS if arguments.peers else ()
+    if arguments.box2d is None:
+        yield peers
+        return
+    with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        try:
+            built = built_box2d(arguments.box2d, Path(folder))
+        except BuildError as error:
+            raise CommandError(f"--box2d: {error}") from error
+        yield (*peers, built)
+
+
 def _jobs(
-    scenes: list[BenchScene], extras: list[str], arguments: Namespace
+    scenes: list[BenchScene], extras: list[str], peers: tuple[type[Peer], ...], named: list[str]
 ) -> list[tuple[float, Job[SceneResult | Unused]]]:
     """Return the work, with the bodies of each as how much of the whole it is."""
     jobs: list[tuple[float, Job[SceneResult | Unused]]] = []
     for scene in scenes:
-        beside = arguments.peers and (scene.size <= PEER_SIZE_LIMIT or scene.name in arguments.names)
+        beside = [
+            peer for peer in peers
+            if scene.size <= min(PEER_SIZE_LIMIT, _SIZE_LIMITS.get(peer.title, PEER_SIZE_LIMIT))
+            or scene.name in named
+        ]  # fmt: skip
         make = _in_window if scene.in_window else OurEngine
-        jobs.append((float(scene.size), measure_scene(scene, PEERS if beside else (), make)))
+        jobs.append((float(scene.size), measure_scene(scene, beside, make)))
     if _UNUSED in extras:
         jobs += [(float(_UNUSED_SIZE), measure_unused(case)) for case in UNUSED]
     return jobs

@@ -81,6 +81,8 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "integrator_reason": world.plan.reason,
         "collision_method": world.plan.collisions,
         "collision_reason": world.plan.collision_reason,
+        "contact_model": "none" if world.plan.collisions == "none" else world.plan.contacts,
+        "contact_reason": world.plan.contact_reason,
         "summation": summation(world),
         "interpreted": list(world.interpreted),
         "force_evaluations": world.force_evaluations,
@@ -205,6 +207,8 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         f"{report['collisions']} collisions, deepest overlap {report['max_penetration']:.3g} m",
         f"  systems     {systems or 'none'}",
     ]
+    if report["contact_model"] != "none":
+        lines.insert(4, f"  touching    {report['contact_model']} contacts: {report['contact_reason']}")
     if report["asleep"]:
         lines.insert(-1, f"  asleep      {report['asleep']} of {len(report['entities'])} bodies, at rest")
     if report["summation"]:

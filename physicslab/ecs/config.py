@@ -144,7 +144,7 @@ class SimulationConfig:
     integrator: str = "auto"
     sleeping: bool | Literal["auto"] = "auto"
     collisions: str = "auto"
-    contacts: str = "soft"
+    contacts: str = "auto"
     tolerance: float = 1e-17
 
     section: ClassVar[str] = "simulation"

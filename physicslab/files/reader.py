@@ -185,7 +185,7 @@ def _chosen(value: Any, where: str) -> tuple[str, str, int]:
     allowed = f"[how collisions are found, a method, a whole number from 1 to {MAX_STEPS}]"
     if isinstance(value, list) and len(value) == 3:
         collisions, method, steps = value
-        known = collisions in ("exact", "step", "none") and isinstance(method, str)
+        known = collisions in ("exact", "rigid", "step", "none") and isinstance(method, str)
         if known and method in INTEGRATORS and type(steps) is int and 1 <= steps <= MAX_STEPS:
             return collisions, method, steps
     raise refusal(where, value, allowed)

@@ -266,8 +266,11 @@ class OdeSystem:
                 for method in methods:
                     method(state, 0.0)
                 total = np.ctypeslib.as_array(force, (size,))
-                total[:n] += bodies.force[layout.moving].ravel()
-                total[n:d] += bodies.torque[layout.turning]
+                # What is fixed stays where it is, be the force on it infinite: no product with zero.
+                pulled = bodies.inverse_mass[layout.moving] > 0.0
+                total[:n] += np.where(pulled[:, None], bodies.force[layout.moving], 0.0).ravel()
+                turned = bodies.inverse_inertia[layout.turning] > 0.0
+                total[n:d] += np.where(turned, bodies.torque[layout.turning], 0.0)
             except BaseException as error:  # C code cannot be unwound: it is raised when that has returned
                 self._error = error
             finally:

@@ -2,7 +2,6 @@
 
 import math
 
-from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box
 from physicslab.scenes.scene import Scene
@@ -29,5 +28,4 @@ SLOPE = Scene(
     title="Friction on a slope",
     description="Four blocks on a slope of 20 degrees: those with a friction below tan 20 = 0.364 slide.",
     fill=_fill,
-    simulation=SimulationConfig(contacts="auto"),
 )

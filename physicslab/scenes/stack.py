@@ -1,6 +1,5 @@
 """A tower of ten boxes."""
 
-from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import box, stack
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
@@ -18,5 +17,4 @@ STACK = Scene(
     title="A tower of ten boxes",
     description="Ten boxes of 1 m and 1 kg on top of each other; they should stand.",
     fill=_fill,
-    simulation=SimulationConfig(contacts="auto"),
 )

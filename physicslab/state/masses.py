@@ -67,6 +67,8 @@ def _refuse_size(state: State, row: int) -> None:
 def check_finite(state: State, time: float) -> None:
     """Stop a run that has diverged at ``time`` [s], naming the entity and the component.
 
+    A body that can be moved is named before a fixed one, which can only have been drawn into it.
+
     Raises
     ------
     Diverged
@@ -76,6 +78,8 @@ def check_finite(state: State, time: float) -> None:
     for table, vectors, numbers in ((transform, "position", "angle"), (velocity, "linear", "angular")):
         row = motion.find_not_finite(table[vectors], table[numbers])
         if row >= 0:
+            lost = ~(np.isfinite(table[vectors]).all(axis=1) & np.isfinite(table[numbers]))
+            row = int(next(iter(np.flatnonzero(lost & (state.bodies.inverse_mass > 0.0))), row))
             raise Diverged(
                 f"{state.label_of_row(row)}: {table.component.__name__} is no longer finite at "
                 f"t = {time:.9g} s; a smaller dt or more substeps may help"

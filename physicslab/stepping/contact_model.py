@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from physicslab.components import Shape, Transform, Velocity
+from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
 from physicslab.stepping.forces import fastest_rate
@@ -23,8 +21,11 @@ _OBSERVING = OF_FRAMES | AROUND | {Stage.IMPACT}
 """The stages at which a system may observe without changing the motion."""
 
 
-def choose_contacts(state: State, schedule: Schedule) -> tuple[str, str]:
-    """Return whether contacts are ``"rigid"`` or ``"soft"``, and the reason."""
+def choose_contacts(state: State, schedule: Schedule, kept: str | None = None) -> tuple[str, str]:
+    """Return whether contacts are ``"rigid"`` or ``"soft"``, and the reason.
+
+    ``kept`` is how collisions were found when ``auto`` chose for an earlier state of motion, if it did.
+    """
     wish = state.simulation.contacts
     if wish == "soft":
         return "soft", "asked for"
@@ -32,15 +33,30 @@ def choose_contacts(state: State, schedule: Schedule) -> tuple[str, str]:
     if wish == "rigid":
         why = "asked for" if obstacle is None else f"rigid was asked for, and {obstacle}"
         return "rigid" if obstacle is None else "soft", why
-    obstacle = obstacle or _why_not_worthwhile(state, schedule)
+    obstacle = _why_not_worthwhile(state) or obstacle
+    if obstacle is None and kept != "rigid":
+        before = "soft contacts were chosen before the scene was saved"
+        obstacle = before if kept == "step" else _why_too_fast(state, schedule)
     return ("rigid", "few bodies touch") if obstacle is None else ("soft", obstacle)
 
 
-def _why_not_worthwhile(state: State, schedule: Schedule) -> str | None:
-    """Return why a world that can have rigid contacts is better off with soft ones, or ``None``."""
-    bodies = np.count_nonzero(state.bodies.inverse_mass[state.batch(Shape, Transform, Velocity).rows] > 0.0)
-    if bodies > _MAX_BODIES:
+def _why_not_worthwhile(state: State) -> str | None:
+    """Return why a world that can have rigid contacts is better off with soft ones, or ``None``.
+
+    What was asked for, and only soft contacts have, is not overruled by a default.
+    """
+    if state.simulation.sleeping is True:
+        return "sleeping was asked for, and with rigid contacts nothing sleeps"
+    if state.simulation.collisions == "step":
+        return "collisions within steps were asked for, and rigid contacts locate them"
+    # A body that is held counts: the model must not change when it is let go.
+    if len(state.batch(Shape, Transform, Velocity, Mass)) > _MAX_BODIES:
         return f"more than {_MAX_BODIES} bodies can touch"
+    return None
+
+
+def _why_too_fast(state: State, schedule: Schedule) -> str | None:
+    """Return whether forces act too fast for rigid contacts, in the present state of motion, or ``None``."""
     rate = fastest_rate(state, schedule.forces)
     if rate * state.simulation.dt > _MAX_RATE:
         return f"forces act at {rate:.3g} rad/s, which rigid contacts would follow in many steps"

@@ -52,6 +52,7 @@ bodies at 100 to 10^6 N/m and damping ratios from 1.5 on are then 6e-12 m off at
 times the time of the cheapest method that reaches 1e-10 m; 1e-13 takes 5 to 15 times as long."""
 _OVERDAMPED = 1.4
 """The damping ratio from which that holds."""
+_ASKED_FOR = "asked for"
 _FOLLOWING = (BLANES_MOAN.name, DOP853.name, IMPLICIT_MIDPOINT.name)
 """The methods that ``auto`` chooses by the state of motion."""
 
@@ -108,9 +109,10 @@ class StepPlan:
     @property
     def kept(self) -> tuple[str, str, int]:
         """What a file keeps: how collisions are found, what follows the forces, and in how many steps."""
+        collisions = "rigid" if self.contacts == "rigid" and self.collisions == "step" else self.collisions
         if self.split_forces is not None:
-            return self.collisions, self.split_forces.name, self.split_steps
-        return self.collisions, self.integrator.name, self.substeps
+            return collisions, self.split_forces.name, self.split_steps
+        return collisions, self.integrator.name, self.substeps
 
     @property
     def kick_before_contacts(self) -> float:
@@ -127,38 +129,42 @@ def default_plan(simulation: SimulationConfig) -> StepPlan:
         return StepPlan(LEAPFROG, "nothing moves", simulation.substeps, smooth=False)
     method = INTEGRATORS[name]
     stages = method if method.substep else LEAPFROG
-    return StepPlan(method, "asked for", simulation.substeps, smooth=False, stages=stages)
+    return StepPlan(method, _ASKED_FOR, simulation.substeps, smooth=False, stages=stages)
 
 
-def choose_plan(state: State, schedule: Schedule, collisions: str | None = None) -> StepPlan:
+def choose_plan(state: State, schedule: Schedule, kept: str | None = None) -> StepPlan:
     """Return the method for what a world holds, or the configured one if it can advance it.
 
-    ``collisions`` stands for the configured way to find them.
+    ``kept`` is how collisions were found when ``auto`` chose for an earlier state of motion, if it did.
     """
     if not schedule.runs(Stage.CONTACT):
         return _mover(state, schedule)
-    contacts, reason = choose_contacts(state, schedule)
-    plan = _plan_of_collisions(state, schedule, collisions)
+    contacts, reason = choose_contacts(state, schedule, kept)
+    plan = _plan_of_collisions(state, schedule, "step" if kept == "rigid" else kept)
     if contacts == "rigid" and (state.simulation.contacts == "rigid" or plan.collisions == "step"):
         # The rest of the plan is for steps that are left to soft contacts.
+        own = "rigid contacts locate their own events"
+        bounced = plan.collisions == "step" and plan.collision_reason != _ASKED_FOR
         plan = replace(
             _mover(state, schedule), integrator=DOP853, reason="contacts are rigid: the step follows events",
-            collisions="step", collision_reason="rigid contacts locate their own events",
+            collisions="step", collision_reason=f"{plan.collision_reason}; {own}" if bounced else own,
         )  # fmt: skip
     return replace(plan, contacts=contacts, contact_reason=reason)
 
 
-def _plan_of_collisions(state: State, schedule: Schedule, collisions: str | None) -> StepPlan:
+def _plan_of_collisions(state: State, schedule: Schedule, kept: str | None) -> StepPlan:
     """Return the method where bodies can touch, and how their collisions are found."""
-    wish = collisions or state.simulation.collisions
+    wish = state.simulation.collisions
+    if wish == "auto" and kept in ("exact", "step"):
+        wish = kept
     if wish == "step":
-        return replace(_mover(state, schedule), collisions="step", collision_reason="asked for")
+        return replace(_mover(state, schedule), collisions="step", collision_reason=_ASKED_FOR)
     obstacle = why_not_exact(state, schedule)
     if wish == "exact":
         if obstacle is not None:
             reason = f"exact was asked for, and {obstacle}"
             return replace(_mover(state, schedule), collisions="step", collision_reason=reason)
-        return _event_driven_plan(state, "asked for")
+        return _event_driven_plan(state, _ASKED_FOR)
     obstacle = obstacle or why_not_worthwhile(state, schedule)
     if obstacle is not None:
         return replace(_mover(state, schedule), collisions="step", collision_reason=obstacle)
@@ -185,9 +191,8 @@ def outlived(state: State, schedule: Schedule, plan: StepPlan) -> tuple[str, str
 
 def resumed_plan(state: State, schedule: Schedule, kept: tuple[str, str, int]) -> StepPlan:
     """Return the plan with what was ``kept`` of an earlier one, where it can advance the world."""
-    wish = state.simulation.collisions
     collisions, method, steps = kept
-    plan = choose_plan(state, schedule, collisions if wish == "auto" and collisions != "none" else None)
+    plan = choose_plan(state, schedule, collisions)
     if plan.kept == kept or plan.integrator.name == state.simulation.integrator:
         return plan
     reason = f"{method} was chosen before the scene was saved"

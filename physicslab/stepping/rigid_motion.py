@@ -231,9 +231,11 @@ class RigidMotion:
         )
         before = None
         for _ in range(_SEPARATIONS):
-            why, count, _, deepest, *_ = self._meet(scene, state, q, _NEAR * deepest, 0.0, 0.0, 0, 0.0)
+            why, count, rest, deepest, *_ = self._meet(scene, state, q, _NEAR * deepest, 0.0, 0.0, 0, 0.0)
             if why != motion.DONE:
                 return _WHY[why]
+            if not math.isfinite(rest):  # every speed would count as none
+                return "squares of speeds or accelerations are not finite"
             if deepest <= max(_SEPARATE, rounding):
                 if before is not None:
                     made.energy_added += time_stepping.take_work(

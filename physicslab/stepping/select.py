@@ -40,6 +40,15 @@ class Steppers:
         awake = [stepper for stepper in self.usable if not isinstance(stepper, Asleep)]
         return next(stepper for stepper in awake if stepper.ready(state, state.simulation.dt))
 
+    def at_once(self, stepper: Stepper, steps: int) -> int:
+        """Return how many of ``steps`` a stepper makes in one call.
+
+        It is one where a better stepper has left the coming step to it, and may make the next: a run makes
+        the same steps as single ones.
+        """
+        first = next(one for one in self.usable if not isinstance(one, Asleep))
+        return steps if stepper is first or isinstance(stepper, Asleep) else 1
+
     def hold(self, state: State) -> bool:
         """Whether the numbers that they were made from are still the same."""
         return all(stepper.holds(state) for stepper in self.usable)

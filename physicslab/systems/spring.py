@@ -49,6 +49,8 @@ class SpringSystem(ForceSystem):
             raise InvalidValue(f"{state.label(int(entities[i]))}: Spring", "b", end, OTHER_END)
         for i in np.flatnonzero(lost_a | lost_b).tolist():
             entity, name = int(entities[i]), "a" if lost_a[i] else "b"
+            if not (esper.entity_exists(entity) and esper.has_component(entity, Spring)):
+                continue  # removed by an earlier call, before rows were numbered again
             end = int(spring[name][rows[i]]) or entity
             if end in state.entity_index.row_of or end > state.entity_index.newest:
                 raise InvalidValue(f"{state.label(entity)}: Spring", name, end, "an entity with a Transform")

@@ -81,15 +81,13 @@ def _circle_pose(
 @inlined
 def _sweep_circle(x: float, y: float, way: Way, start: float, turn: float, a: Outline, b: Outline) -> float:
     """Return when a pair with a circle touches, B's centre being at (x, y) first, and its box turning."""
+    if not a.box and not b.box:
+        return sweep_circle_circle(x, y, way.ux, way.uy, a.radius + b.radius)
+    box, radius, sign = (a, b.radius, 1.0) if a.box else (b, a.radius, -1.0)
+    x, y, ux, uy = sign * x, sign * y, sign * way.ux, sign * way.uy
     if turn != 0.0:
-        if a.box:
-            return sweep_turning_box(Way(x, y, way.ux, way.uy), start, a, turn, b.radius)
-        return sweep_turning_box(Way(-x, -y, -way.ux, -way.uy), start, b, turn, a.radius)
-    if a.box:
-        return sweep_circle_box(x, y, way.ux, way.uy, a, b.radius)
-    if b.box:
-        return sweep_circle_box(-x, -y, -way.ux, -way.uy, b, a.radius)
-    return sweep_circle_circle(x, y, way.ux, way.uy, a.radius + b.radius)
+        return sweep_turning_box(Way(x, y, ux, uy), start, box, turn, radius)
+    return sweep_circle_box(x, y, ux, uy, box, radius)
 
 
 @inlined

@@ -71,8 +71,10 @@ def begin_piece(
 
 
 @inlined
-def _error(stages: Stages, n: int, h: float, q_scale: float, v_scale: float, tolerance: float) -> float:
-    """Return the estimated error of a piece, 1 where it is just tolerated (Hairer's estimate)."""
+def _error(
+    stages: Stages, n: int, free: int, h: float, q_scale: float, v_scale: float, tolerance: float
+) -> float:
+    """Return the estimated error of a piece (Hairer's), a mean over ``free`` coordinates; 1 is tolerated."""
     fifth, third = 0.0, 0.0
     for i in range(n):
         moved, pushed, moved_low, pushed_low = 0.0, 0.0, 0.0, 0.0
@@ -92,7 +94,7 @@ def _error(stages: Stages, n: int, h: float, q_scale: float, v_scale: float, tol
             third += pushed_low * pushed_low
     if fifth == 0.0:
         return 0.0
-    return h * fifth / math.sqrt((fifth + 0.01 * third) * 2 * n) / tolerance
+    return h * fifth / math.sqrt((fifth + 0.01 * third) * 2 * free) / tolerance
 
 
 @inlined
@@ -130,8 +132,10 @@ def make_piece(
 ) -> float:  # fmt: skip
     """Make a step of order 8; return the estimated error, 1 where it is just tolerated."""
     make_stages(scene, equations, count, q, v, h, False, stages)
-    n = 3 * scene.rows  # without the clock
+    n, free = 3 * scene.rows, 0  # without the clock
+    for i in range(n):  # rows of what is fixed, or gone, are no reason for another step
+        free += 1 if scene.inverse_mass[i] > 0.0 else 0
     q_scale = max(largest(q, n), largest(stages.q, n))
     v_scale = max(largest(v, n), largest(stages.v, n))
-    error = _error(stages, n, h, q_scale, max(v_scale, _LEADS * q_scale / h), tolerance)
+    error = _error(stages, n, max(free, 1), h, q_scale, max(v_scale, _LEADS * q_scale / h), tolerance)
     return error if math.isfinite(error) else math.inf

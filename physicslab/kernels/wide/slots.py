@@ -68,6 +68,7 @@ def store_slot(slots: Slots, slot: int, manifolds: Manifolds, points: Points) ->
     data, p = slots.data, slots.pair[slot]
     at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
     manifold = manifolds[p]
+    manifold.offset_x = manifold.offset_y = 0.0  # a slot has none: it would be as old as the contact
     for j in range(manifold.count):
         point = points[2 * p + j]
         base = at + (ONE if j == 0 else TWO)
@@ -75,6 +76,7 @@ def store_slot(slots: Slots, slot: int, manifolds: Manifolds, points: Points) ->
         point.separation = data[base + SEPARATION]
     if slots.kind == DISC:
         nx, ny, point = data[at + NORMAL_X], data[at + NORMAL_Y], points[2 * p]
+        point.found_separation = point.separation
         manifold.normal_x, manifold.normal_y = nx, ny
         point.arm_ax, point.arm_ay = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
         point.arm_bx, point.arm_by = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny

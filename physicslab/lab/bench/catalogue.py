@@ -12,7 +12,15 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene
 from physicslab.lab.bench.edits import edit_scenes
 from physicslab.lab.bench.moving import FUNNELS, MOVING
-from physicslab.lab.bench.quality import energy_change, overlap, sideways, sink
+from physicslab.lab.bench.quality import (
+    at_rest,
+    energy_change,
+    lost,
+    overlap,
+    sideways,
+    sink,
+    within,
+)
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.case import Catalogue
 from physicslab.lab.worlds import open_space
@@ -36,6 +44,10 @@ _OVERLAP = 0.02
 """Deepest overlap that counts as right [m]: a tenth of a disc."""
 _ENERGY = 1e-3
 """Largest change of a gas's energy that counts as right, as a share of it."""
+_KINETIC, _CREEP = 1e-6, 2e-3
+"""Largest kinetic energy a body [J] and drift [m] of bodies that count as being at rest."""
+_NAMED = {"piles": (2_000, 8_000), "gases": (4_000, 8_000)}
+"""Sizes that are run only where they are named: three others of the group show how the cost grows."""
 _PITCH = 0.25
 """From one disc of a pile to the next at the start [m]: that of the prefab."""
 
@@ -48,23 +60,38 @@ def _boxes(base: int) -> World:
     return world
 
 
+def _columns(count: int) -> int:
+    return max(3, round(1.82 * math.sqrt(count)))
+
+
+def _pile_width(count: int) -> float:
+    """Return the width of a pile's container [m]."""
+    return _PITCH * _columns(count) + 1.25
+
+
 def discs(count: int, systems: tuple[System, ...] | None = None) -> World:
     """Return discs of 0.2 m in a container, three times as wide as high for any number.
 
     ``systems`` are every physics system there is, where none are given.
     """
-    columns = max(3, round(1.82 * math.sqrt(count)))
+    columns = _columns(count)
     world = World(*(systems or standard_systems()), simulation=_SOFT)
     height = _PITCH * math.ceil(count / columns)
-    container(world, width=_PITCH * columns + 1.25, height=height + 11.0)
+    container(world, width=_pile_width(count), height=height + 11.0)
     pile(world, count, columns=columns)
     return world
 
 
+def _gas_box(count: int) -> tuple[float, float]:
+    """Return half the width and half the height of a gas's box [m]."""
+    scale = math.sqrt(count / 2_000)
+    return 12.0 * scale, 7.5 * scale
+
+
 def _gas(count: int) -> World:
     """Return elastic discs that fill 17 % of a box, for any number."""
-    scale = math.sqrt(count / 2_000)
-    bounds = (-12.0 * scale, -7.5 * scale, 12.0 * scale, 7.5 * scale)
+    half, top = _gas_box(count)
+    bounds = (-half, -top, half, top)
     laws = PhysicsConfig(gravity_mode="none", bounds=bounds, bounds_restitution=1.0, bounds_friction=0.0)
     world = open_space(physics=laws, collisions="step", contacts="soft")
     gas(world, count, bounds)
@@ -83,40 +110,48 @@ def _pyramid_scene(base: int, drift: float, sunk: float) -> BenchScene:
     count = base * (base + 1) // 2
     return BenchScene(
         name=f"pyramid_{base}", title=f"pyramid of {count:,} boxes", group="pyramids", size=count,
-        build=partial(_boxes, base), quality=(sideways(drift), sink(sunk)),
+        build=partial(_boxes, base),
+        quality=(sideways(drift), sink(sunk), *at_rest(_KINETIC * count, _CREEP)),
     )  # fmt: skip
 
 
 def pile_scene(count: int) -> BenchScene:
     """Return the pile of so many discs."""
+    inside = within(0.5 * _pile_width(count))
     return BenchScene(
         name=f"pile_{count}", title=f"pile of {count:,} discs", group="piles", size=count,
-        build=partial(discs, count), steps=_STEPS_OF_LARGE.get(count, 300), quality=(overlap(_OVERLAP),),
+        build=partial(discs, count), steps=_STEPS_OF_LARGE.get(count, 300),
+        by_default=count not in _NAMED["piles"],
+        quality=(overlap(_OVERLAP), *at_rest(_KINETIC * count, _CREEP), lost(inside)),
     )  # fmt: skip
 
 
 def gas_scene(count: int) -> BenchScene:
     """Return the gas of so many discs."""
+    half, top = _gas_box(count)
     return BenchScene(
         name=f"gas_{count}", title=f"gas of {count:,} elastic discs", group="gases", size=count,
-        build=partial(_gas, count), steps=_STEPS_OF_LARGE.get(count, 300), quality=(energy_change(_ENERGY),),
+        build=partial(_gas, count), steps=_STEPS_OF_LARGE.get(count, 300),
+        by_default=count not in _NAMED["gases"],
+        quality=(energy_change(_ENERGY), lost(within(half, floor=-top, top=top))),
     )  # fmt: skip
 
 
 _TEN_DISCS = BenchScene(
     name="circles_10", title="ten discs at rest, many steps in one call", group="ten_discs", size=10,
-    build=ten_discs, steps=6_000, quality=(overlap(_OVERLAP),), compiled_runs=True,
+    build=ten_discs, steps=6_000, compiled_runs=True,
+    quality=(overlap(_OVERLAP), *at_rest(_KINETIC * 10, _CREEP), lost(within(0.65))),
 )  # fmt: skip
 _STEPPED = replace(
     _TEN_DISCS, name="circles_10_stepped", title="the same ten discs, step by step", steps=3_000,
-    compiled_runs=False, by_default=False,
+    compiled_runs=False,
 )  # fmt: skip
 _IN_WINDOW = replace(
     _STEPPED, name="circles_10_window", title="the same ten discs, step by step in a window", in_window=True
 )
 _AUTO = replace(
     _TEN_DISCS, name="circles_10_auto", title="the ten discs with contacts and collisions of a scene file",
-    build=partial(ten_discs, simulation=SimulationConfig(contacts="auto")), by_default=False,
+    build=partial(ten_discs, simulation=SimulationConfig(contacts="auto")), steps=2_000,
 )  # fmt: skip
 _PILE_EDITED = 1_000
 

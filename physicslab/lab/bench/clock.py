@@ -35,6 +35,11 @@ class Spread:
         self.median_ms, self.p90_ms, self.p99_ms = map(float, found)
         self.mean_ms = float(np.mean(milliseconds))
 
+    @property
+    def tail(self) -> float:
+        """The 99th percentile as a multiple of the median: how much longer the longest steps are."""
+        return self.p99_ms / self.median_ms
+
 
 class Times:
     """What each step of an engine took.

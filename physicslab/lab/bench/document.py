@@ -51,7 +51,8 @@ def _scene(result: SceneResult) -> dict[str, Any]:
         "steps": result.steps,
         "one_call": scene.compiled_runs,
         "quality_limits": [
-            {"name": quality.name, "unit": quality.unit, "limit": quality.limit} for quality in scene.quality
+            {"name": quality.name, "unit": quality.unit, "limit": quality.limit, "when": quality.when}
+            for quality in scene.quality
         ],
         "systems_ms": result.systems,
         "engines": [_engine(found) for found in result.engines.values()],
@@ -66,6 +67,7 @@ def _engine(found: EngineResult) -> dict[str, Any]:
         "first_seconds_ms": _spread(found.begin),
         "times_ours": found.ratio,
         "times_ours_with_read": found.ratio_with_read,
+        "times_ours_first_seconds": found.begin_ratio,
         "quality": found.quality,
         "failure": found.failure,
     }

@@ -51,9 +51,7 @@ def edit_scenes(build: Callable[[], World], size: int, limit: float) -> tuple[Be
     limit : float
         Deepest overlap that counts as right [m].
     """
-    scene = partial(
-        BenchScene, group="edits", size=size, build=build, quality=(overlap(limit),), by_default=False
-    )
+    scene = partial(BenchScene, group="edits", size=size, build=build, quality=(overlap(limit),))
     return (
         scene(name="edit_name", title=f"{size:,} discs at rest, one renamed before every step", edit=_rename),
         scene(name="edit_mass", title="the same, the mass of one set", edit=_weigh),

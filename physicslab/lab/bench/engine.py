@@ -11,6 +11,7 @@ from typing import override
 from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.peers.box2d3_mirror import Box2D3Mirror
 from physicslab.lab.peers.box2d_mirror import Box2DMirror
 from physicslab.lab.peers.peer import Peer
 from physicslab.lab.peers.pymunk_mirror import PymunkMirror
@@ -19,7 +20,7 @@ from physicslab.world import World
 __all__ = ["OURS", "PEERS", "Engine", "OtherEngine", "OurEngine", "missing_peers", "prepared"]
 
 OURS = "PhysicsLab"
-PEERS: tuple[type[Peer], ...] = (PymunkMirror, Box2DMirror)
+PEERS: tuple[type[Peer], ...] = (PymunkMirror, Box2DMirror, Box2D3Mirror)
 """The engines that PhysicsLab is compared with."""
 
 

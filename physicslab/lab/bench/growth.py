@@ -11,6 +11,7 @@ from physicslab.lab.bench.result import SceneResult
 
 __all__ = ["Growth", "exponent", "growths"]
 
+_GROUPS = ("piles", "gases", "funnels")
 _SIZES_NEEDED = 3
 """Without so many, no exponent is fitted."""
 
@@ -53,7 +54,7 @@ def growths(results: Sequence[SceneResult]) -> list[Growth]:
     costs: dict[tuple[str, str], dict[int, float]] = {}
     for result in results:
         for engine, found in result.engines.items():
-            if found.step is not None and result.scene.group in ("piles", "gases"):
+            if found.step is not None and result.scene.group in _GROUPS:
                 costs.setdefault((result.scene.group, engine), {})[result.scene.size] = found.step.median_ms
     return [
         Growth(

@@ -7,14 +7,16 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from physicslab.kernels import compile_kernels
 from physicslab.lab.bench.clock import Spread, Times, take_turns
 from physicslab.lab.bench.engine import Engine, OtherEngine, OurEngine, prepared
-from physicslab.lab.bench.quality import Start
+from physicslab.lab.bench.judge import Judge
 from physicslab.lab.bench.result import EngineResult, SceneResult
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.case import Job
 from physicslab.lab.peers.peer import CannotBuild, Peer
 from physicslab.state.masses import Diverged
+from physicslab.systems.system import OF_FRAMES
 from physicslab.world import World
 
 __all__ = ["measure_scene"]
@@ -43,28 +45,40 @@ def measure_scene(
     result = SceneResult(scene, scene.steps)
     result.engines[ours.title] = EngineResult(ours.title)
     engines = [prepared(engine, scene) for engine in (ours, *_others(scene, peers, result))]
-    starts = [Start.of(engine.world) for engine in engines]
-    dt = ours.world.simulation.dt
-    settling = round(scene.seconds / dt)
+    _load_kernels(ours.world)
+    judge = Judge(result)
+    settling, begin = round(scene.seconds / ours.dt), math.ceil(_BEGIN_S / ours.dt)
     total = settling + scene.steps
     try:
+        judge.begin(engines)
         for times in take_turns(engines, settling):
+            judge.look(engines, "throughout")
             yield len(times[0].step) / total
-        for engine, spent, start in zip(engines, times if settling else [], starts, strict=False):
-            result.engines[engine.title].begin = Spread(np.array(spent.step[: math.ceil(_BEGIN_S / dt)]))
-            _judge(result.engines[engine.title], engine, scene, start)
+        if settling:
+            _note_begin(result, engines, [spent.step[:begin] for spent in times])
+        judge.look(engines, "settled")
         engines = [engine for engine in engines if not result.engines[engine.title].failure]
+        judge.begin(engines)
         before = _spent(ours.world)
         block = _BLOCK if scene.compiled_runs else 0
         for times in take_turns(engines, math.ceil(scene.steps / max(1, block)), block):
+            judge.look(engines, "throughout")
             yield (settling + len(times[0].step) * max(1, block)) / total
     except Diverged as error:
         result.ours.failure = str(error)
     else:
+        judge.look(engines, "end")
         _summarise(result, engines, times)
         result.contacts = ours.world.contacts.count
         result.systems = _shares(before, _spent(ours.world), times[0])
     yield result
+
+
+def _load_kernels(world: World) -> None:
+    """Load what a world's steppers call: the first steps would be timed with it."""
+    world.synchronise()
+    for stepper in world.steppers.usable:
+        compile_kernels(stepper.kernels)
 
 
 def _others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult) -> list[Engine]:
@@ -79,21 +93,12 @@ def _others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult)
     return others
 
 
-def _judge(found: EngineResult, engine: Engine, scene: BenchScene, start: Start) -> None:
-    """Write into an engine's result how well it has simulated the scene so far."""
-    try:
-        world = engine.look()
-    except Diverged:
-        found.failure = "NaN"
-        return
-    for quality in scene.quality:
-        figure = quality.measure(world, start)
-        found.quality[quality.name] = figure if math.isfinite(figure) else None
-
-
 def _spent(world: World) -> dict[str, int]:
-    """Return what each system has cost so far [ns]."""
-    return {name: timing.nanoseconds for name, timing in world.schedule.timings.items()}
+    """Return what each system has cost so far in steps [ns]."""
+    of_frames = {system.name for system in world.schedule.systems if OF_FRAMES & system.marked().keys()}
+    return {
+        name: timing.nanoseconds for name, timing in world.schedule.timings.items() if name not in of_frames
+    }
 
 
 def _shares(before: dict[str, int], after: dict[str, int], ours: Times) -> dict[str, float]:
@@ -102,6 +107,14 @@ def _shares(before: dict[str, int], after: dict[str, int], ours: Times) -> dict[
     return {
         name: (spent - before.get(name, 0)) / 1e6 / ours.wall_ms * median for name, spent in after.items()
     }
+
+
+def _note_begin(result: SceneResult, engines: Sequence[Engine], spent: Sequence[list[float]]) -> None:
+    """Write what the first two seconds took [ms] into the result."""
+    for engine, steps in zip(engines, spent, strict=True):
+        found = result.engines[engine.title]
+        found.begin = Spread(np.array(steps))
+        found.begin_ratio = float(np.median(np.divide(steps, spent[0])))
 
 
 def _summarise(result: SceneResult, engines: Sequence[Engine], times: Sequence[Times]) -> None:

@@ -15,8 +15,11 @@ if TYPE_CHECKING:
 
 __all__ = ["bench_picture"]
 
-_COLOURS = {OURS: COLOURS["blue"], "pymunk": COLOURS["vermilion"], "Box2D": COLOURS["green"]}
-_STYLES = {"piles": ("o", "-"), "gases": ("s", "--")}
+_COLOURS = {
+    OURS: COLOURS["blue"], "pymunk": COLOURS["vermilion"], "Box2D 2.3": COLOURS["green"],
+    "Box2D 3": COLOURS["purple"], "Box2D 3 C": COLOURS["orange"], "Box2D 3 C AVX2": COLOURS["orange"],
+}  # fmt: skip
+_STYLES = {"piles": ("o", "-"), "gases": ("s", "--"), "funnels": ("^", ":")}
 _FRAME_MS = 1e3 / 60.0
 """A frame of 60 Hz."""
 

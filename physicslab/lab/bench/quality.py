@@ -2,23 +2,35 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform
+from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.lab.peers.peer import find_contacts
 from physicslab.world import World
 
-__all__ = ["Quality", "Start", "energy_change", "overlap", "sideways", "sink"]
+__all__ = [
+    "Moment", "Places", "Quality", "When", "at_rest", "energy_change", "largest_overlap", "lost", "overlap",
+    "sideways", "sink", "within",
+]  # fmt: skip
+
+type When = Literal["settled", "throughout", "end"]
+"""Before the steps that are timed; the largest of all looks, from the start on; after those steps."""
+type Places = NDArray[np.float64]
+"""Positions of bodies (n, 2) [m]."""
+type Inside = Callable[[Places], NDArray[np.bool_]]
+"""Returns which positions are where bodies may be (n,)."""
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
-    """A world as it was at the start.
+class Moment:
+    """A world as it was.
 
     Attributes
     ----------
@@ -28,11 +40,11 @@ class Start:
         Their energy [J].
     """
 
-    positions: NDArray[np.float64]
+    positions: Places
     energy: float
 
     @classmethod
-    def of(cls, world: World) -> Start:
+    def of(cls, world: World) -> Moment:
         """Note how a world is now."""
         world.synchronise()
         return cls(world.table(Transform)["position"].copy(), measure_energy(world).total)
@@ -45,39 +57,53 @@ class Quality:
     Attributes
     ----------
     name, unit : str
-        What it is, and its SI unit; no unit for a share.
+        What it is, and its SI unit; no unit for a share or a number.
     limit : float
         The largest that counts as right.
     measure : callable
-        Takes the world as it is now, and as it was at the start.
+        Takes the world as it is now, and as it was: at the end since the steps that are timed began, else
+        since the start.
+    when : str
+        When it is measured.
     """
 
     name: str
     unit: str
     limit: float
-    measure: Callable[[World, Start], float]
+    measure: Callable[[World, Moment], float]
+    when: When = "settled"
 
 
-def _moved(world: World, start: Start) -> NDArray[np.float64]:
-    moved: NDArray[np.float64] = world.table(Transform)["position"] - start.positions
+def _moved(world: World, before: Moment) -> Places:
+    moved: Places = world.table(Transform)["position"] - before.positions
     return moved
 
 
-def _sideways(world: World, start: Start) -> float:
-    return float(np.abs(_moved(world, start)[:, 0]).max())
+def _sideways(world: World, before: Moment) -> float:
+    return float(np.abs(_moved(world, before)[:, 0]).max())
 
 
-def _sink(world: World, start: Start) -> float:
-    return float(max(0.0, -_moved(world, start)[:, 1].min()))
+def _sink(world: World, before: Moment) -> float:
+    return float(max(0.0, -_moved(world, before)[:, 1].min()))
 
 
-def _overlap(world: World, start: Start) -> float:
+def _overlap(world: World, before: Moment) -> float:
     find_contacts(world)  # the same measure for every engine
     return max(0.0, world.contacts.max_penetration)
 
 
-def _energy(world: World, start: Start) -> float:
-    return abs(measure_energy(world).total / start.energy - 1.0)
+def _energy(world: World, before: Moment) -> float:
+    return abs(measure_energy(world).total / before.energy - 1.0)
+
+
+def _kinetic_energy(world: World, before: Moment) -> float:
+    energy = measure_energy(world)
+    return energy.kinetic_linear + energy.kinetic_angular
+
+
+def _creep(world: World, before: Moment) -> float:
+    moving = world.batch(Transform, Velocity).rows
+    return float(np.sqrt((_moved(world, before)[moving] ** 2).sum(axis=1).mean()))
 
 
 def sideways(limit: float) -> Quality:
@@ -98,3 +124,47 @@ def overlap(limit: float) -> Quality:
 def energy_change(limit: float) -> Quality:
     """Return the change of the energy since the start, as a share of it, as a quality."""
     return Quality("energy change", "", limit, _energy)
+
+
+def largest_overlap(limit: float) -> Quality:
+    """Return the deepest overlap of two bodies [m] that was seen while they moved, as a quality."""
+    return Quality("largest overlap", "m", limit, _overlap, "throughout")
+
+
+def at_rest(energy: float, drift: float) -> tuple[Quality, Quality]:
+    """Return what still moves in a scene that should be at rest, as qualities.
+
+    They are the kinetic energy [J] at the end, and how far bodies went while they were timed [m, rms].
+    """
+    return (
+        Quality("kinetic energy at rest", "J", energy, _kinetic_energy, "end"),
+        Quality("drift at rest", "m", drift, _creep, "end"),
+    )
+
+
+def within(half: float, *, floor: float = 0.0, top: float = math.inf) -> Inside:
+    """Return which places are less than ``half`` from the middle, above a floor and below a top [m]."""
+
+    def inside(places: Places) -> NDArray[np.bool_]:
+        found: NDArray[np.bool_] = (
+            (np.abs(places[:, 0]) < half) & (places[:, 1] > floor) & (places[:, 1] < top)
+        )
+        return found
+
+    return inside
+
+
+def lost(inside: Inside) -> Quality:
+    """Return how many bodies are where they can only be by having passed through others, as a quality.
+
+    Parameters
+    ----------
+    inside : callable
+        Takes positions of bodies, and returns which of them are where they may be.
+    """
+
+    def count(world: World, before: Moment) -> float:
+        places = world.table(Transform)["position"][world.batch(Transform, Velocity).rows]
+        return float(np.count_nonzero(~inside(places)))
+
+    return Quality("lost bodies", "", 0.0, count, "end")

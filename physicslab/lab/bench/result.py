@@ -25,10 +25,10 @@ class EngineResult:
         The same, with the state read back; ``None`` for runs in one call.
     begin : Spread, optional
         A step of the first two seconds, while a pile falls.
-    ratio, ratio_with_read : float, optional
+    ratio, ratio_with_read, begin_ratio : float, optional
         Median of how many times longer than PhysicsLab it took for the same step; 1 for PhysicsLab.
     quality : dict of str to float or None
-        What was measured before the timing; ``None`` where it is not finite.
+        What was measured of how well it simulates; ``None`` where it is not finite.
     failure : str
         Why it was not timed.
     """
@@ -39,6 +39,7 @@ class EngineResult:
     begin: Spread | None = None
     ratio: float | None = None
     ratio_with_read: float | None = None
+    begin_ratio: float | None = None
     quality: dict[str, float | None] = field(default_factory=dict)
     failure: str = ""
 

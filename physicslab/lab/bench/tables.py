@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT
 from physicslab.lab.bench.clock import Spread
@@ -14,10 +14,16 @@ from physicslab.lab.table import cell, table
 
 __all__ = ["report_text", "scene_text"]
 
+_BEGIN = (
+    "ms of CPU time a step of the first 2 s: median; p99: the 99th percentile as a multiple of it; ratio: "
+    "the median of how many times as long others take for the same step"
+)
+_SETTLED = "the same of the steps after that, from when most scenes have settled"
+_WITH_READ = "the same, with every position read back after each step"
 
-def _ms(spread: Spread | None, *, high: bool = False) -> str:
-    milliseconds = None if spread is None else spread.p90_ms if high else spread.median_ms
-    return cell(milliseconds, "#.3g")
+
+def _ms(spread: Spread | None) -> str:
+    return cell(None if spread is None else spread.median_ms, "#.3g")
 
 
 def scene_text(result: SceneResult) -> str:
@@ -30,12 +36,13 @@ def report_text(report: BenchReport) -> str:
     """Return every table that is not empty, the machine first."""
     blocks = [("", machine_text(peers=report.peers))]
     if report.scenes:
+        blocks += [(_BEGIN, _begin(report)), (_SETTLED, _settled(report))]
+        if report.peers:
+            blocks.append((_WITH_READ, _with_read(report)))
         blocks += [
-            ("ms of CPU time a step: median and p90 of the settled scene, median of the first 2 s",
-             _times(report)),
-            ("quality after the seconds before the timing", _quality(report)),
+            ("quality: the largest that was seen, before the timing, or at the end", _quality(report)),
             ("ms a step by system, as shares of the median", _systems(report)),
-        ]  # fmt: skip
+        ]
     if report.growths:
         blocks.append((_growth_title(report), _growth(report)))
     if report.unused:
@@ -54,25 +61,33 @@ def report_text(report: BenchReport) -> str:
     return "\n\n".join(f"{title}\n{text}" if title else text for title, text in blocks)
 
 
-def _times(report: BenchReport) -> str:
+def _begin(report: BenchReport) -> str:
+    return _times(report, lambda found: (found.begin, found.begin_ratio))
+
+
+def _settled(report: BenchReport) -> str:
+    return _times(report, lambda found: (found.step, found.ratio))
+
+
+def _with_read(report: BenchReport) -> str:
+    return _times(report, lambda found: (found.with_read, found.ratio_with_read))
+
+
+def _times(report: BenchReport, of: Callable[[EngineResult], tuple[Spread | None, float | None]]) -> str:
+    """Return a table of one kind of step, which is what ``of`` returns of an engine's results."""
     peers = [name for name in _engines(report) if name != OURS]
-    head = ["scene", "bodies", "contacts", OURS, "p90", "first 2 s"]
-    for name in peers:
-        head += [name, "ratio", "read back", "ratio"]
-    return table([head, *(_scene_row(result, peers) for result in report.scenes)])
-
-
-def _scene_row(result: SceneResult, peers: Sequence[str]) -> list[str]:
-    ours = result.ours
-    row = [result.scene.name, f"{result.scene.size}", f"{result.contacts}"]
-    row += [_ms(ours.step), _ms(ours.step, high=True), _ms(ours.begin)]
-    for name in peers:
-        found = result.engines.get(name, EngineResult(name))
-        row += [
-            _ms(found.step), cell(found.ratio, ".2f"),
-            _ms(found.with_read), cell(found.ratio_with_read, ".2f"),
-        ]  # fmt: skip
-    return row
+    rows = [
+        ["scene", "bodies", "contacts", OURS, "p99", *(word for name in peers for word in (name, "ratio"))]
+    ]
+    for result in report.scenes:
+        ours, _ = of(result.ours)
+        row = [result.scene.name, f"{result.scene.size}", f"{result.contacts}", _ms(ours)]
+        row.append(cell(None if ours is None else ours.tail, ".1f"))
+        for name in peers:
+            spread, ratio = of(result.engines.get(name, EngineResult(name)))
+            row += [_ms(spread), cell(ratio, ".2f")]
+        rows.append(row)
+    return table(rows)
 
 
 def _engines(report: BenchReport) -> list[str]:

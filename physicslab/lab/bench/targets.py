@@ -9,6 +9,7 @@ from physicslab.lab.bench.catalogue import SIZES
 from physicslab.lab.bench.growth import Growth
 from physicslab.lab.bench.result import SceneResult
 from physicslab.lab.bench.unused import Unused
+from physicslab.lab.peers.box2d3_built import BuiltBox2D
 from physicslab.lab.peers.pymunk_mirror import PymunkMirror
 
 __all__ = ["Check", "checks"]
@@ -17,10 +18,17 @@ FASTER = {"pyramid_30": 4.0, "pyramid_60": 4.0, "pile_1000": 4.0, "pile_4000": 4
 """Lower limit of how many times as long pymunk's step takes."""
 FASTER_WITH_READ = 6.0
 """The same of each of these scenes, with positions read back."""
-COMPILED_RUN = 2.0
+MANY = ("pyramid_60", "pile_4000", "gas_2000", "funnel", "funnel_open", "heap", "chains", "tumbler")
+"""Scenes of many bodies, settled or not, to which the three limits below apply."""
+FASTER_THAN_PYMUNK, BESIDE_BOX2D, TAIL = 1.5, 1.2, 3.0
+"""How many times as long pymunk's step takes at least; upper limits of a step in steps of Box2D 3's in C,
+and of its 99th percentile in medians."""
+COMPILED_RUN = 1.0
 """Upper limit of a step of the ten discs, in a run of many, in steps of pymunk's."""
+SINGLE_STEPS = {"circles_10_stepped": 20.0, "circles_10_window": 20.0}
+"""Upper limits of a single step [us]."""
 EXPONENT = 1.1
-"""Upper limit of the p of N^p by which the cost of piles and gases grows."""
+"""Upper limit of the p of N^p by which the cost of piles, gases and funnels grows."""
 UNUSED = 1.02
 """Upper limit of how many times as long a step takes with systems that it does not use: 1, but for noise."""
 
@@ -73,16 +81,42 @@ def checks(results: Sequence[SceneResult], grown: Sequence[Growth], unused: Sequ
 
 
 def _of_scene(result: SceneResult) -> list[Check]:
-    name = result.scene.name
+    name, right = result.scene.name, result.right
     peer = result.engines.get(PymunkMirror.title)
-    if peer is None or peer.ratio is None:
-        return []
-    if result.scene.compiled_runs:
-        return [Check(name, "run, PhysicsLab / pymunk", 1.0 / peer.ratio, COMPILED_RUN, False, result.right)]
-    if name not in FASTER:
-        return []
-    found = [Check(name, "step, pymunk / PhysicsLab", peer.ratio, FASTER[name], True, result.right)]
-    if peer.ratio_with_read is not None:
-        what = "the same, positions read back"
-        found.append(Check(name, what, peer.ratio_with_read, FASTER_WITH_READ, True, result.right))
+    found: list[Check] = []
+    if result.ours.step is not None and name in SINGLE_STEPS:
+        found.append(
+            Check(
+                name, "a single step, us", 1e3 * result.ours.step.median_ms, SINGLE_STEPS[name], False, right
+            )
+        )
+    if peer is not None and peer.ratio is not None:
+        if name == "circles_10":
+            found.append(
+                Check(name, "run, PhysicsLab / pymunk", 1.0 / peer.ratio, COMPILED_RUN, False, right)
+            )
+        if name in FASTER:
+            found.append(Check(name, "step, pymunk / PhysicsLab", peer.ratio, FASTER[name], True, right))
+            if peer.ratio_with_read is not None:
+                what = "the same, positions read back"
+                found.append(Check(name, what, peer.ratio_with_read, FASTER_WITH_READ, True, right))
+    return found + _of_many(result) if name in MANY else found
+
+
+def _of_many(result: SceneResult) -> list[Check]:
+    """Return the checks of a scene of many bodies: of the first two seconds, and of the steps after that."""
+    name, right, found = result.scene.name, result.right, list[Check]()
+    for when, spread in (("first 2 s", result.ours.begin), ("then", result.ours.step)):
+        for engine in result.engines.values():
+            ratio = engine.begin_ratio if when == "first 2 s" else engine.ratio
+            if ratio is None:
+                continue
+            if engine.title == PymunkMirror.title:
+                what = f"{when}: pymunk / PhysicsLab"
+                found.append(Check(name, what, ratio, FASTER_THAN_PYMUNK, True, right))
+            elif engine.title.startswith(BuiltBox2D.title):
+                what = f"{when}: PhysicsLab / {engine.title}"
+                found.append(Check(name, what, 1.0 / ratio, BESIDE_BOX2D, False, right))
+        if spread is not None:
+            found.append(Check(name, f"{when}: p99 / median", spread.tail, TAIL, False, right))
     return found

@@ -26,14 +26,18 @@ class Box2D3Mirror(Peer):
 
     @override
     def make_space(self) -> None:
-        restitutions = self.world.table(Material)["restitution"][self.world.batch(Material).rows]
-        if len(set(restitutions.tolist())) > 1:
+        if len(self.restitutions()) > 1:
             raise CannotBuild("no restitutions that differ")
-        if self.world.physics.bounds is not None:
-            raise CannotBuild("no bounds")
         self.space = self.engine.World(gravity=(self.gravity.x, self.gravity.y))
         self.space.sleeping_enabled = False
         self._ground = self.space.create_static_body()
+        physics = self.world.physics
+        surface = self.engine.surface_material(
+            friction=physics.bounds_friction, restitution=physics.bounds_restitution
+        )
+        for x, y, to_x, to_y in self.walls():
+            wall = self.engine.segment((x, y), (to_x, to_y))
+            self._ground.create_shape(self.engine.shape_def(material=surface), wall)
         self._bodies: dict[int, Any] = {}
 
     @override
@@ -84,20 +88,14 @@ class Box2D3Mirror(Peer):
 
     @override
     def add_spring(self, entity: int, spring: Spring) -> None:
-        """Add a spring, which Box2D takes by frequency and share of critical damping."""
-        if spring.stiffness == 0.0:
-            raise CannotBuild("no damper alone")
-        ends = [spring.a or entity, spring.b]
-        bodies = [self._bodies[end] if end else self._ground for end in ends]
-        free = [self.world.component(end, Mass).mass for end in ends if end and self.world.has(end, Mass)]
-        mass = 1.0 / sum(1.0 / weight for weight in free)
-        rate = math.sqrt(spring.stiffness / mass)
+        bodies = [self._bodies[end] if end else self._ground for end in (spring.a or entity, spring.b)]
+        hertz, damping = self.frequency(entity, spring)
         self.space.create_distance_joint(
             body_a=bodies[0], body_b=bodies[1],
             local_anchor_a=(spring.anchor_a.x, spring.anchor_a.y),
             local_anchor_b=(spring.anchor_b.x, spring.anchor_b.y),
-            length=spring.rest_length, enable_spring=True, hertz=rate / (2.0 * math.pi),
-            damping_ratio=spring.damping / (2.0 * mass * rate), collide_connected=True,
+            length=spring.rest_length, enable_spring=True, hertz=hertz,
+            damping_ratio=damping, collide_connected=True,
         )  # fmt: skip
 
     @override

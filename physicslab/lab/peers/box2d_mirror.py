@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any, override
 
 from physicslab.components import Mass, Material, Shape, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.peers.peer import CannotBuild, Peer
+from physicslab.lab.peers.peer import Peer
 
 __all__ = ["Box2DMirror"]
 
@@ -33,12 +32,12 @@ class Box2DMirror(Peer):
     Masses, moments of inertia, outlines, springs and their dampers, friction and restitution are the world's.
     """
 
-    title, module = "Box2D", "Box2D"
+    title, module = "Box2D 2.3", "Box2D"
 
     @override
     def make_space(self) -> None:
         self.space = self.engine.b2World(gravity=(self.gravity.x, self.gravity.y), doSleep=False)
-        if self._restitutions() > 1:  # a call into Python for each contact would be most of a step
+        if len(self.restitutions()) > 1:  # a call into Python for each contact would be most of a step
             self._listener = _smaller_restitution(self.engine)
             self.space.contactListener = self._listener
         self._ground = self.space.CreateStaticBody()
@@ -51,12 +50,6 @@ class Box2DMirror(Peer):
                 shape=self.engine.b2ChainShape(vertices_chain=corners),
                 friction=physics.bounds_friction, restitution=physics.bounds_restitution,
             )  # fmt: skip
-
-    def _restitutions(self) -> int:
-        """Return how many different restitutions there are."""
-        physics, rows = self.world.physics, self.world.batch(Material).rows
-        found = set(self.world.table(Material)["restitution"][rows].tolist())
-        return len(found if physics.bounds is None else {*found, physics.bounds_restitution})
 
     @override
     def set_gravity(self, gravity: Vector2) -> None:
@@ -108,20 +101,14 @@ class Box2DMirror(Peer):
 
     @override
     def add_spring(self, entity: int, spring: Spring) -> None:
-        """Add a spring as a soft joint, which Box2D takes by frequency and share of critical damping."""
-        if spring.stiffness == 0.0:
-            raise CannotBuild("no damper alone")
-        ends = [spring.a or entity, spring.b]
-        bodies = [self._bodies[end] if end else self._ground for end in ends]
-        free = [body.mass for body in bodies if body.type == self.engine.b2_dynamicBody]
-        mass = 1.0 / sum(1.0 / weight for weight in free)
-        rate = math.sqrt(spring.stiffness / mass)
+        bodies = [self._bodies[end] if end else self._ground for end in (spring.a or entity, spring.b)]
+        hertz, damping = self.frequency(entity, spring)
         self.space.CreateDistanceJoint(
             bodyA=bodies[0], bodyB=bodies[1],
             localAnchorA=(spring.anchor_a.x, spring.anchor_a.y),
             localAnchorB=(spring.anchor_b.x, spring.anchor_b.y),
-            length=spring.rest_length, frequencyHz=rate / (2.0 * math.pi),
-            dampingRatio=spring.damping / (2.0 * mass * rate), collideConnected=True,
+            length=spring.rest_length, frequencyHz=hertz, dampingRatio=damping,
+            collideConnected=True,
         )  # fmt: skip
 
     @override

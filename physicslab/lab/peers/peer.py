@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import importlib
+import math
 import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from physicslab.components import Drag, Shape, Spring, Transform, Velocity
+from physicslab.components import Drag, Mass, Material, Shape, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.state.masses import Diverged
 from physicslab.systems.system import Stage
@@ -32,6 +34,8 @@ class Peer(ABC):
         The engine's name, and that of its package.
     world : World
         Where the bodies came from, and where :meth:`bring_back` writes their state.
+    moving : list of int
+        The entities that can move.
 
     Raises
     ------
@@ -62,7 +66,7 @@ class Peer(ABC):
         for entity in world.batch(Spring).entities.tolist():
             self.add_spring(entity, world.component(entity, Spring))
         moving = world.batch(Transform, Velocity)
-        self._rows, self._moving = moving.rows.copy(), moving.entities.tolist()
+        self._rows, self.moving = moving.rows.copy(), moving.entities.tolist()
 
     @abstractmethod
     def make_space(self) -> None:
@@ -94,12 +98,50 @@ class Peer(ABC):
             self.step(dt)
 
     @abstractmethod
-    def positions(self) -> list[tuple[float, float]]:
-        """Return where every body is [m], as a user of the engine reads it: in a loop."""
+    def positions(self) -> object:
+        """Return where every body is [m], as a user of the engine reads it: in Python in a loop."""
 
     @abstractmethod
     def state(self, entity: int) -> Sequence[float]:
         """Return a body's place [m], velocity [m/s], angle [rad] and angular velocity [rad/s]."""
+
+    def states(self) -> NDArray[np.float64]:
+        """Return the state of every body that can move (n, 6)."""
+        return np.array([self.state(entity) for entity in self.moving]).reshape(-1, 6)
+
+    def restitutions(self) -> set[float]:
+        """Return the restitutions that there are, of bodies and bounds."""
+        physics, rows = self.world.physics, self.world.batch(Material).rows
+        found: set[float] = set(self.world.table(Material)["restitution"][rows].tolist())
+        return found if physics.bounds is None else {*found, physics.bounds_restitution}
+
+    def walls(self) -> list[tuple[float, float, float, float]]:
+        """Return the bounds of the world as lines [m]: x, y of one end, x, y of the other."""
+        if self.world.physics.bounds is None:
+            return []
+        xmin, ymin, xmax, ymax = self.world.physics.bounds
+        corners = ((xmin, ymin), (xmax, ymin), (xmax, ymax), (xmin, ymax))
+        return [(*start, *end) for start, end in zip(corners, corners[1:] + corners[:1], strict=True)]
+
+    def frequency(self, entity: int, spring: Spring) -> tuple[float, float]:
+        """Return a spring's frequency [Hz] and share of critical damping, by which Box2D takes springs.
+
+        Raises
+        ------
+        CannotBuild
+            If it is a damper alone.
+        """
+        if spring.stiffness == 0.0:
+            raise CannotBuild("no damper alone")
+        ends = (spring.a or entity, spring.b)
+        free = [
+            self.world.component(end, Mass).mass
+            for end in ends
+            if end and self.world.has(end, Mass) and self.world.has(end, Velocity)
+        ]
+        mass = 1.0 / sum(1.0 / weight for weight in free)
+        rate = math.sqrt(spring.stiffness / mass)
+        return rate / (2.0 * math.pi), spring.damping / (2.0 * mass * rate)
 
     def bring_back(self) -> None:
         """Write where the bodies are, and how they move, into the world's tables.
@@ -109,7 +151,7 @@ class Peer(ABC):
         Diverged
             If a number of a body is not finite.
         """
-        state = np.array([self.state(entity) for entity in self._moving]).reshape(-1, 6)
+        state = self.states()
         if not np.isfinite(state).all():
             raise Diverged("NaN")
         rows, transform, velocity = self._rows, self.world.table(Transform), self.world.table(Velocity)

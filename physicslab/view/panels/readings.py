@@ -95,9 +95,13 @@ def _stepper_lines(world: World) -> list[Line]:
     """Say which stepper makes the steps, and why so."""
     if world.stepper is None:
         return []
-    reasons = [world.plan.collision_reason] if world.plan.collisions != "none" else []
-    if world.stepper.reason not in (world.plan.reason, *reasons):
-        reasons.append(world.stepper.reason)
+    plan = world.plan
+    if plan.collisions == "step" and world.simulation.contacts == "auto":
+        reasons = [plan.contact_reason]  # in few words: the figures must fit into the window
+    else:
+        reasons = [plan.collision_reason] if plan.collisions != "none" else []
+        if world.stepper.reason not in (plan.reason, *reasons):
+            reasons.append(world.stepper.reason)
     lines = [Line(world.stepper.title, kind="remark")]
     return lines + [Line(f"because: {'; '.join(reasons)}", kind="remark")] * bool(reasons)
 

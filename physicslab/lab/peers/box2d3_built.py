@@ -1,0 +1,194 @@
+"""A world's scene in Box2D 3 in C, compiled here from its sources with a driver of our own, ``box2d3.c``."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import os
+import shlex
+import subprocess
+import weakref
+from collections.abc import Sequence
+from pathlib import Path
+from typing import ClassVar, override
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.ecs.vector import Vector2
+from physicslab.lab.peers.peer import Peer
+
+__all__ = ["BuildError", "BuiltBox2D", "built_box2d"]
+
+SUBSTEPS = 4
+_DRIVER = Path(__file__).with_name("box2d3.c")
+_OPTIONS = ("-std=c17", "-O3", "-DNDEBUG", "-ffp-contract=off", "-w", "-shared", "-fPIC")
+"""Those of Box2D's own release build, for a library."""
+_WIDE = ("-mavx2", "-DBOX2D_AVX2")
+_STATIC, _KINEMATIC, _DYNAMIC = range(3)
+_Numbers = ctypes.POINTER(ctypes.c_double)
+
+
+class BuildError(Exception):
+    """Box2D's sources cannot be compiled; the message has the reason."""
+
+
+class BuiltBox2D(Peer):
+    """A world in one of Box2D 3's in C: its usual contact stiffness, one worker, no Python within a step.
+
+    Masses, moments of inertia, outlines, springs, friction and restitution are the world's. Made of a
+    subclass that has a library: :func:`built_box2d`.
+    """
+
+    title, module = "Box2D 3 C", "ctypes"
+    library: ClassVar[ctypes.CDLL]
+
+    @override
+    def make_space(self) -> None:
+        self._scene = self.library.scene_open(*self.gravity)
+        weakref.finalize(self, self.library.scene_close, self._scene)
+        self._bodies: dict[int, int] = {}
+        self._ground = self._body(_STATIC, (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0))
+        physics = self.world.physics
+        for wall in self.walls():
+            surface = physics.bounds_friction, physics.bounds_restitution
+            self.library.scene_wall(self._scene, self._ground, _array(wall), *surface)
+
+    def _body(self, kind: int, state: Sequence[float]) -> int:
+        return int(self.library.scene_body(self._scene, kind, _array(state)))
+
+    @override
+    def set_gravity(self, gravity: Vector2) -> None:
+        self.library.scene_gravity(self._scene, *gravity)
+
+    @override
+    def add_body(self, entity: int) -> None:
+        world, kind = self.world, _STATIC
+        pose = world.component(entity, Transform)
+        state = [*pose.position, math.cos(pose.angle), math.sin(pose.angle), 0.0, 0.0, 0.0]
+        if world.has(entity, Velocity):
+            velocity = world.component(entity, Velocity)
+            state[4:] = *velocity.linear, velocity.angular
+            kind = _DYNAMIC if world.has(entity, Mass) else _KINEMATIC
+        self._bodies[entity] = self._body(kind, state)
+        self._weigh(entity)
+
+    @override
+    def add_shape(self, entity: int) -> None:
+        outline, material = self.world.component(entity, Shape), self.world.component(entity, Material)
+        body, surface = self._bodies[entity], (material.friction, material.restitution)
+        if outline.kind == "circle":
+            self.library.scene_disc(self._scene, body, outline.radius, *surface)
+        else:
+            self.library.scene_box(self._scene, body, outline.width, outline.height, *surface)
+        self._weigh(entity)  # again: a shape changes the mass of its body
+
+    def _weigh(self, entity: int) -> None:
+        world = self.world
+        if world.has(entity, Mass) and world.has(entity, Velocity):
+            mass = world.component(entity, Mass)
+            turns = world.has(entity, Shape) and not mass.fixed_rotation
+            inertia = float(mass.inertia or 0.0) if turns else 0.0
+            self.library.scene_mass(self._scene, self._bodies[entity], mass.mass, inertia)
+
+    @override
+    def add_spring(self, entity: int, spring: Spring) -> None:
+        ends = [self._bodies[end] if end else self._ground for end in (spring.a or entity, spring.b)]
+        anchors = _array((*spring.anchor_a, *spring.anchor_b))
+        numbers = spring.rest_length, *self.frequency(entity, spring)
+        self.library.scene_spring(self._scene, *ends, anchors, *numbers)
+
+    @override
+    def step(self, dt: float) -> None:
+        self.run(dt, 1)
+
+    @override
+    def run(self, dt: float, steps: int) -> None:
+        self.library.scene_step(self._scene, dt, SUBSTEPS, steps)
+
+    @override
+    def positions(self) -> NDArray[np.float64]:
+        return self._every_state()[:, :2]
+
+    def _every_state(self) -> NDArray[np.float64]:
+        """Return x, y, vx, vy, angle and angular velocity of the ground and of every body (n, 6)."""
+        found = np.empty((len(self._bodies) + 1, 6))
+        self.library.scene_state(self._scene, found.ctypes.data_as(_Numbers))
+        return found
+
+    @override
+    def states(self) -> NDArray[np.float64]:
+        found: NDArray[np.float64] = self._every_state()[[self._bodies[entity] for entity in self.moving]]
+        return found
+
+    @override
+    def state(self, entity: int) -> Sequence[float]:
+        found: list[float] = self._every_state()[self._bodies[entity]].tolist()
+        return found
+
+
+def built_box2d(sources: Path, folder: Path) -> type[BuiltBox2D]:
+    """Compile Box2D and return it as an engine.
+
+    The compiler is ``cc``, or what the environment's ``CC`` is. Where this processor has AVX2, Box2D's
+    vectors of eight are used.
+
+    Parameters
+    ----------
+    sources : Path
+        A checkout of Box2D 3.2 or later, with its folders ``include`` and ``src``.
+    folder : Path
+        Where the library is written; it must stay there while the engine is in use.
+
+    Raises
+    ------
+    BuildError
+        If there is no such checkout, or no compiler, or the sources do not compile.
+    """
+    if not (sources / "include" / "box2d" / "box2d.h").is_file():
+        raise BuildError(f"{sources}: no checkout of Box2D 3: there is no include/box2d/box2d.h")
+    compiler = shlex.split(os.environ.get("CC", "cc"))
+    wide = "__AVX2__" in _run([*compiler, "-march=native", "-dM", "-E", "-x", "c", os.devnull])
+    library = folder / "box2d3.so"
+    found = map(str, (_DRIVER, *sorted((sources / "src").glob("*.c"))))
+    places = "-I", str(sources / "include"), "-I", str(sources / "src"), "-o", str(library)
+    _run([*compiler, *_OPTIONS, *(_WIDE if wide else ()), *places, *found, "-lm", "-lpthread"])
+
+    class Engine(BuiltBox2D):
+        title = f"{BuiltBox2D.title} AVX2" if wide else BuiltBox2D.title
+
+    Engine.library = _loaded(library)
+    return Engine
+
+
+def _run(command: Sequence[str]) -> str:
+    """Run a compiler and return what it printed."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise BuildError(f"no compiler: {command[0]}: {error.strerror}") from error
+    if done.returncode:
+        reason = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr[:200])
+        raise BuildError(f"{command[0]} cannot compile Box2D: {reason}")
+    return done.stdout
+
+
+def _loaded(library: Path) -> ctypes.CDLL:
+    """Return a library with the types of its functions, all of which take a scene first."""
+    loaded = ctypes.CDLL(str(library))
+    number, whole, scene = ctypes.c_double, ctypes.c_int, ctypes.c_void_p
+    for name, types in {
+        "close": (), "gravity": (number,) * 2, "body": (whole, _Numbers), "disc": (whole, *(number,) * 3),
+        "box": (whole, *(number,) * 4), "wall": (whole, _Numbers, number, number),
+        "mass": (whole, number, number), "spring": (whole, whole, _Numbers, *(number,) * 3),
+        "step": (number, whole, whole), "state": (_Numbers,),
+    }.items():  # fmt: skip
+        function = getattr(loaded, f"scene_{name}")
+        function.argtypes, function.restype = (scene, *types), whole if name == "body" else None
+    loaded.scene_open.argtypes, loaded.scene_open.restype = (number, number), scene
+    return loaded
+
+
+def _array(numbers: Sequence[float]) -> ctypes.Array[ctypes.c_double]:
+    return (ctypes.c_double * len(numbers))(*numbers)
