@@ -218,10 +218,7 @@ def test_bodies_that_hang_together_pay_for_their_move() -> None:
         before = ode.q.copy()
         ode.q[3:6:2] += by
         energy = 0.5 * 4 * ode.v[2] ** 2
-        found = motion.meet(
-            scene, made._equations, made._room, made._stages[-1], ode.q, ode.q, ode.v, 0.0, 0.0, 0.0, 0,
-            world.entity_index.entities, world.contacts.log, 0, 0.0,
-        )  # fmt: skip
+        found = motion.touch(scene, made._equations, made._room, made._stages[-1], ode.q, ode.q, ode.v, 0.0)
         left = time_stepping.take_work(
             scene, made._equations, found[1], made._stages, before, ode.q, ode.v, True
         )

@@ -19,13 +19,9 @@ SLOW = {
 }  # fmt: skip
 """Cases that take more than a second of processor time each."""
 SHORT = {
-    "tower_10x10cm_soft": "the contact spring does not follow the load of small cubes: they fall",
-    "tower_10x5cm_soft": "as above", "tower_10x2cm_soft": "as above", "tower_5x1cm_soft": "as above",
-    "tower_15x15cm_soft": "as above", "tower_7x2cm_soft": "as above",
-    "rods_5_soft": "they sink by what cubes of 1 m do, which is more than their thickness",
-    "rods_10_soft": "as above",
-    "gravity_1000_soft": "the sink grows with the weight", "gravity_10000_soft": "as above",
-    "dt_0.1_x1_soft": "the contact spring becomes softer as the substep grows: the stack lies down",
+    "rods_10_soft": "they sink by what cubes of 1 m do, which is half their thickness",
+    "gravity_10000_soft": "the sink grows with the weight",
+    "piston_0.2_speed_rigid": "soft contacts go on where discs overlap by nine tenths: one slips out under another",
 }  # fmt: skip
 """Cases that fall short so far, and why: they stand in the table of docs/stability.md."""
 
@@ -41,7 +37,6 @@ def parameter(case: StabilityCase) -> Any:
 def test_slow_cases_are_cases() -> None:
     assert CASES.keys() >= SLOW
     assert CASES.keys() >= SHORT.keys()
-    assert all("soft" in name for name in SHORT), "rigid contacts fall short nowhere"
 
 
 @pytest.mark.parametrize("case", [parameter(case) for case in TESTED])

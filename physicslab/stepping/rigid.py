@@ -59,7 +59,7 @@ class Rigid:
     leaps: bool = False
     leaves_forces: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (
-        motion.meet, motion.advance_piece, motion.begin_motion,
+        motion.touch, motion.collide, motion.advance_piece, motion.begin_motion,
         time_stepping.drift, time_stepping.kick, time_stepping.separate, time_stepping.take_work,
         near_pairs.carry_over, slots.list_scalar,
     )  # fmt: skip

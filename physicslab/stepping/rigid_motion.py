@@ -23,10 +23,10 @@ _TOLERANCE = 1e-13
 """Error of a smooth piece, as a share of the largest coordinate and speed."""
 _MAX_EVENTS = 2000
 """Largest number of events in a step."""
-_MAX_WORK = 7_000
+_MAX_WORK = 8_500
 """Largest work of a step by events (:attr:`MadeStep.work`): short steps need the rest of a frame."""
-_WORK_OF_A_PIECE = 40
-"""Of a piece of motion, beside its force evaluations."""
+_WORK_OF_A_PIECE = 8
+"""Of a piece of motion, beside its force evaluations and half a unit for each pair that may touch."""
 _REPEATS, _SHORT_REPEATS = 8, 3
 """How often contacts are found again after impacts at one time, and within a short step."""
 _MAX_STALLED = 60
@@ -110,7 +110,7 @@ class RigidMotion:
     """
 
     def __init__(self, ode: OdeSystem, rows: int, pairs: int, steady: bool) -> None:
-        self._ode, self._steady = ode, steady
+        self._ode, self._steady, self._pairs = ode, steady, pairs
         m, n = 2 * MAX_POINTS, 3 * rows + 1
         self._equations, self._room = (
             (
@@ -161,7 +161,7 @@ class RigidMotion:
                 h - done, _TOLERANCE, rest, foreseen,
             )  # fmt: skip
             made.evaluations += evaluations
-            made.work += _WORK_OF_A_PIECE + evaluations * (1 + 2 * count) // 4
+            made.work += _WORK_OF_A_PIECE + self._pairs // 2 + evaluations * (1 + 2 * count) // 4
             stalled = stalled + 1 if piece <= _NO_TIME * h else 0
             done = h if piece == h - done else done + piece
             if not math.isfinite(piece):
@@ -231,7 +231,7 @@ class RigidMotion:
         )
         before = None
         for _ in range(_SEPARATIONS):
-            why, count, rest, deepest, *_ = self._meet(scene, state, q, _NEAR * deepest, 0.0, 0.0, 0, 0.0)
+            why, count, rest, deepest, _ = self._touch(scene, q, _NEAR * deepest)
             if why != motion.DONE:
                 return _WHY[why]
             if not math.isfinite(rest):  # every speed would count as none
@@ -258,9 +258,7 @@ class RigidMotion:
         for _ in range(_SHORT_REPEATS):
             soon[:] = q
             time_stepping.drift(soon, v, h)
-            found = self._meet(scene, state, soon, 0.0, none, 2.0 / h, 1, time)
-            self._note(found, state, made)
-            why, points = found[0], found[7]
+            why, _, points = self._meet(scene, state, soon, none, 2.0 / h, 1, time, made)
             if why != motion.DONE or points == 0:
                 return why
             made.closed = points
@@ -270,27 +268,40 @@ class RigidMotion:
 
     def _collide(self, scene: tuple[Any, ...], state: State, time: float, made: MadeStep) -> tuple[int, int]:
         """Find what touches, and resolve impacts; return why that failed, and how many points touch."""
-        found = self._meet(scene, state, self._ode.q, 0.0, 0.0, 0.0, _REPEATS, time)
-        self._note(found, state, made)
-        return found[0], found[1]
+        why, count, _ = self._meet(scene, state, self._ode.q, 0.0, 0.0, _REPEATS, time, made)
+        return why, count
+
+    def _touch(
+        self, scene: tuple[Any, ...], place: NDArray[np.float64], within: float = 0.0
+    ) -> tuple[int, int, float, float, bool]:
+        """Find which points touch at a place; returns what :func:`motion.touch` does."""
+        acceleration, q, v = self._stages[-1], self._ode.q, self._ode.v
+        return motion.touch(scene, self._equations, self._room, acceleration, place, q, v, within)
 
     def _meet(
-        self, scene: tuple[Any, ...], state: State, place: NDArray[np.float64], within: float, none: float,
-        rate: float, repeats: int, time: float,
-    ) -> tuple[int, int, float, float, int, int, int, int, int]:  # fmt: skip
-        """Call :func:`motion.meet` for the state of motion."""
-        contacts = state.contacts
-        return motion.meet(
-            scene, self._equations, self._room, self._stages[-1], place, self._ode.q, self._ode.v, within,
-            none, rate, repeats, state.entity_index.entities, contacts.log, contacts.logged, time,
-        )  # fmt: skip
+        self, scene: tuple[Any, ...], state: State, place: NDArray[np.float64], none: float, rate: float,
+        repeats: int, time: float, made: MadeStep,
+    ) -> tuple[int, int, int]:  # fmt: skip
+        """Find which points touch at a place, and let those that approach bounce; repeat both.
 
-    def _note(
-        self, found: tuple[int, int, float, float, int, int, int, int, int], state: State, made: MadeStep
-    ) -> None:
-        """Note the impacts that were found."""
-        state.contacts.logged += found[4]
-        made.impacts += found[4]
-        made.energetic += found[5]
-        made.lowered += found[6]
-        made.work += found[8] // 4
+        An impact can change which faces two boxes turn to each other. Speeds up to ``none`` are none [m/s];
+        points that would touch in 1 / ``rate`` seconds do. Returns why the motion cannot go on, how many
+        points touch, and how many the last impulses act at.
+        """
+        contacts, count, last = state.contacts, 0, 0
+        for _ in range(repeats):
+            why, count, rest, _, approaching = self._touch(scene, place)
+            if why != motion.DONE or not approaching:
+                return why, count, last
+            new, solved, energetic, lowered, last, work = motion.collide(
+                scene, self._equations, count, self._room, self._ode.q, self._ode.v, max(rest, none), rate,
+                state.entity_index.entities, contacts.log, contacts.logged, time,
+            )  # fmt: skip
+            contacts.logged += new
+            made.impacts += new
+            made.energetic += energetic
+            made.lowered += lowered
+            made.work += work // 4
+            if not solved:
+                return motion.UNRESOLVED, count, last
+        return motion.DONE, count, last

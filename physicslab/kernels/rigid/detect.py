@@ -88,7 +88,9 @@ def _box_to_wall(
 
 
 @inlined
-def _lie(q: Numbers, rows: int, one: int, other: int) -> tuple[Lie, Lie]:
+def _lie(
+    q: Numbers, rows: int, one: int, other: int
+) -> tuple[tuple[float, float, float, float], tuple[float, float, float, float]]:
     """Return how OTHER lies, seen from ONE, and how ONE does, seen from OTHER."""
     angle, angle_other = q[2 * rows + one], q[2 * rows + other]
     c, s, co, so = math.cos(angle), math.sin(angle), math.cos(angle_other), math.sin(angle_other)

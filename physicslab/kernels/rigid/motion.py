@@ -59,7 +59,8 @@ __all__ = [
     "UNRESOLVED",
     "advance_piece",
     "begin_motion",
-    "meet",
+    "collide",
+    "touch",
 ]
 
 DONE, NO_FORCES, UNRESOLVED, TOO_MANY = 0, 1, 2, 3
@@ -143,41 +144,41 @@ def _at_rest(scene: Scene, acceleration: Numbers, v: Numbers, rest: float, least
 
 
 @kernel
-def meet(
+def touch(
     scene: SceneTuple, equations: EquationsTuple, room: EquationsTuple, acceleration: Numbers,
-    place: Numbers, q: Numbers, v: Numbers, within: float, none: float, rate: float, repeats: int,
-    entities: Rows, log: Impacts, logged: int, time: float,
-) -> tuple[int, int, float, float, int, int, int, int, int]:  # fmt: skip
-    """Find which points touch at ``place``, and let those that approach in (q, v) bounce; repeat both.
-
-    An impact can change which faces two boxes turn to each other. With 0 repeats, points that are
-    ``within`` a share of a size are found, and nothing bounces. Speeds up to ``none`` are none [m/s];
-    points that would touch in 1 / ``rate`` seconds do.
+    place: Numbers, q: Numbers, v: Numbers, within: float,
+) -> tuple[int, int, float, float, bool]:  # fmt: skip
+    """Find which points touch at ``place``, or are ``within`` a share of a size.
 
     Returns why the motion cannot go on (DONE if it can), how many points touch, the speed that counts as none
-    [m/s], the deepest overlap as a share of a size; how many impacts there were, how many obeyed Stronge's
-    law, how often restitutions were lowered to keep the energy, how many points the last impulses act at,
-    which are left in ``room`` where there is one repeat, and the work of all rounds (1 + n^4 / 500 for n
-    points).
+    [m/s], the deepest overlap as a share of a size, and whether any point approaches in (q, v).
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
-    count, rest, deepest, impacts, energetic, lowered, last, work = 0, 0.0, 0.0, 0, 0, 0, 0, 0
-    for _ in range(max(repeats, 1)):
-        accelerate(place, v, acceleration, of.inverse_mass, of.damping, of.calls)
-        rest, _ = rest_limits(of, acceleration, v)
-        count, deepest = find_touching(of, points, scratch, place, v, within)
-        if count > len(points.points):
-            return TOO_MANY, 0, rest, deepest, impacts, energetic, lowered, last, work
-        if repeats == 0 or not _any_approaches(of, points, count, place, v, rest):
-            break
-        new, solved, by_energy, kept, last, rounds = resolve_blows(
-            of, points, count, scratch, q, v, max(rest, none), rate, entities, log, logged + impacts, time
-        )
-        impacts, energetic, lowered = impacts + new, energetic + by_energy, lowered + kept
-        work += rounds * (500 + count * count * count * count) // 500
-        if not solved:
-            return UNRESOLVED, count, rest, deepest, impacts, energetic, lowered, last, work
-    return DONE, count, rest, deepest, impacts, energetic, lowered, last, work
+    accelerate(place, v, acceleration, of.inverse_mass, of.damping, of.calls)
+    rest, _ = rest_limits(of, acceleration, v)
+    count, deepest = find_touching(of, points, scratch, place, v, within)
+    if count > len(points.points):
+        return TOO_MANY, 0, rest, deepest, False
+    return DONE, count, rest, deepest, _any_approaches(of, points, count, place, v, rest)
+
+
+@kernel
+def collide(
+    scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, q: Numbers, v: Numbers,
+    none: float, rate: float, entities: Rows, log: Impacts, logged: int, time: float,
+) -> tuple[int, bool, int, int, int, int]:  # fmt: skip
+    """Let those of ``count`` points that approach in (q, v) bounce.
+
+    Speeds up to ``none`` are none [m/s]; points that would touch in 1 / ``rate`` seconds do. Returns how many
+    impacts there were, whether impulses were found, how many impacts obeyed Stronge's law, how often
+    restitutions were lowered to keep the energy, how many points the last impulses act at, which are left in
+    ``room``, and the work of all rounds (1 + n^4 / 500 for n points).
+    """
+    of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
+    new, solved, by_energy, kept, last, rounds = resolve_blows(
+        of, points, count, scratch, q, v, none, rate, entities, log, logged, time
+    )
+    return new, solved, by_energy, kept, last, rounds * (500 + count * count * count * count) // 500
 
 
 @inlined
