@@ -211,7 +211,7 @@ def touch_boxes(
         x, y = dx + lead_x, dy + lead_y
         manifold.swept = 1
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
-    old = one.feature if manifold.count > 0 else 0
+    old = one.feature if loaded else 0  # of others a file keeps none
     gap, nx, ny, count, first, second = box_box(x, y, ux, uy, a, b, margin, old)
     if not manifold.swept:
         manifold.gap = gap
