@@ -286,7 +286,7 @@ def check_scenes(worlds: list[World], every: int, short: float = 1e-9) -> int:
                 rigid_steps += 1
                 # What rests cannot pay for being moved out of an overlap: that is booked.
                 added, booked = rigid_of(world).energy_added - booked, rigid_of(world).energy_added
-                assert 0.0 <= added <= 1e-6 * abs(highest), (seed, world.time)
+                assert -1e-15 * abs(highest) <= added <= 1e-6 * abs(highest), (seed, world.time)
                 limit = short if rigid_of(world).by_impulses > by_impulses else 1e-9
                 by_impulses = rigid_of(world).by_impulses
                 assert after <= energy + added + limit * abs(highest), (seed, world.time)
