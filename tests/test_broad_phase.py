@@ -184,3 +184,13 @@ def test_all_pairs_of_boxes_that_overlap_are_listed_when_some_have_left(bounded:
             reach = system.fat[3, [a, b]]
             if max(reach) <= 4.0 * min(reach):  # else one may be beside the other
                 assert (int(entities[a]), int(entities[b])) in listed
+
+
+def test_a_body_whose_box_meets_more_cells_than_there_are_integers_is_listed_in_no_time() -> None:
+    for speed in (1e10, 5e10, 9e10, 2e11, 5e11, 9e11):
+        world = funnel(3, False)
+        world.step()
+        first = next(entity for entity in world.entities() if world.has(entity, Mass))
+        world.component(first, Velocity).linear = (speed, speed)
+        world.step()
+        assert world.table(Transform)["position"].max() > 1e7

@@ -164,7 +164,7 @@ def _list_leaver(
     box = leaver.box
     from_x, to_x = _cell((box[0] - around) / cell), _cell((box[2] + around) / cell)
     from_y, to_y = _cell((box[1] - around) / cell), _cell((box[3] + around) / cell)
-    if (to_x - from_x + 1) * (to_y - from_y + 1) > _MAX_CELLS:
+    if float(to_x - from_x + 1) * float(to_y - from_y + 1) > _MAX_CELLS:
         return False
     for ix in range(from_x, to_x + 1):
         for iy in range(from_y, to_y + 1):
