@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, fused, inlined
 from physicslab.kernels.records import Couples, Pairs
 
-__all__ = ["find_pairs"]
+__all__ = ["cell_at", "find_pairs"]
 
 
 _COMPANY_LIMIT = 32
@@ -80,7 +80,7 @@ def _take(search: Search, found: int, i: int, j: int) -> int:
 
 
 @inlined
-def _cell(x: float) -> int:
+def cell_at(x: float) -> int:
     """Return the number of a cell; what is not finite, or too far out for one, is in the last."""
     return math.floor(x) if abs(x) < _CELL_LIMIT else int(_CELL_LIMIT)
 
@@ -131,8 +131,8 @@ def _place(
             larges[large_count] = i
             large_count += 1
             continue
-        ix = _cell(half_per_cell * (boxes[i, 0] + boxes[i, 2]))
-        iy = _cell(half_per_cell * (boxes[i, 1] + boxes[i, 3]))
+        ix = cell_at(half_per_cell * (boxes[i, 0] + boxes[i, 2]))
+        iy = cell_at(half_per_cell * (boxes[i, 1] + boxes[i, 3]))
         if smalls == 0:
             low_x, high_x, low_y, high_y = ix, ix, iy, iy
         low_x, high_x, low_y, high_y = min(low_x, ix), max(high_x, ix), min(low_y, iy), max(high_y, iy)
@@ -229,8 +229,8 @@ def _pair_large(
     boxes, body = search.boxes, grid.body
     for k in range(count):
         i = larges[k]
-        from_x, to_x = _cell(boxes[i, 0] / cell - 0.5), _cell(boxes[i, 2] / cell + 0.5)
-        from_y, to_y = _cell(boxes[i, 1] / cell - 0.5), _cell(boxes[i, 3] / cell + 0.5)
+        from_x, to_x = cell_at(boxes[i, 0] / cell - 0.5), cell_at(boxes[i, 2] / cell + 0.5)
+        from_y, to_y = cell_at(boxes[i, 1] / cell - 0.5), cell_at(boxes[i, 3] / cell + 0.5)
         from_x, to_x = max(from_x, cells.low_x), min(to_x, cells.high_x)
         from_y, to_y = max(from_y, cells.low_y), min(to_y, cells.high_y)
         if from_x > to_x or from_y > to_y:

@@ -13,13 +13,12 @@ import numpy as np
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, fused, inlined, kernel
 from physicslab.kernels.arguments import Motion, MotionTuple, Near, NearTuple, Sizes, SizesTuple, named_near
 from physicslab.kernels.broad.fat_boxes import fatten, left, usual_speed
+from physicslab.kernels.broad.grid import cell_at
 from physicslab.kernels.broad.near_pairs import beside, distance_to_activate, make_blank
 from physicslab.kernels.near_counts import PROXIMITY, RECORDED, SCALAR, UNORDERED
 
 __all__ = ["add_pairs", "index_bodies"]
 
-_CELL_LIMIT = 1e15
-"""Number of the farthest cell: beyond it, float64 does not resolve neighbouring cells."""
 _BODIES, _RECORDS = 20, 8
 """All pairs are listed again when one in so many bodies has left, and one more for so many records: to find
 the new pairs of a body takes as long as to list so many again."""
@@ -43,12 +42,6 @@ class Index(NamedTuple):
     smalls: int
     bodies: int
     cell: float
-
-
-@inlined
-def _cell(x: float) -> int:
-    """Return the number of a cell; what is not finite, or too far out for one, is in the last."""
-    return math.floor(x) if abs(x) < _CELL_LIMIT else int(_CELL_LIMIT)
 
 
 @inlined
@@ -78,8 +71,8 @@ def index_bodies(
     smalls = 0
     for i in range(n):
         if kind[i] != 0 and max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1]) <= cell:
-            cells[i, 0] = _cell(0.5 * (boxes[i, 0] + boxes[i, 2]) / cell)
-            cells[i, 1] = _cell(0.5 * (boxes[i, 1] + boxes[i, 3]) / cell)
+            cells[i, 0] = cell_at(0.5 * (boxes[i, 0] + boxes[i, 2]) / cell)
+            cells[i, 1] = cell_at(0.5 * (boxes[i, 1] + boxes[i, 3]) / cell)
             where[i] = _bucket(cells[i, 0], cells[i, 1], mask)
             first[where[i] + 1] += 1
             smalls += 1
@@ -162,8 +155,8 @@ def _list_leaver(
     first, body, home_x, home_y, smalls, count, cell = index
     mask, around = len(first) - 2, 0.5 * cell + growth
     box = leaver.box
-    from_x, to_x = _cell((box[0] - around) / cell), _cell((box[2] + around) / cell)
-    from_y, to_y = _cell((box[1] - around) / cell), _cell((box[3] + around) / cell)
+    from_x, to_x = cell_at((box[0] - around) / cell), cell_at((box[2] + around) / cell)
+    from_y, to_y = cell_at((box[1] - around) / cell), cell_at((box[3] + around) / cell)
     if float(to_x - from_x + 1) * float(to_y - from_y + 1) > _MAX_CELLS:
         return False
     for ix in range(from_x, to_x + 1):
