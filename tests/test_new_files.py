@@ -9,12 +9,12 @@ from pathlib import Path
 import pygame
 import pytest
 from desk import Desk, bits, empty_world
+from physicslab.view.controls.menus import MENUS
 
 from physicslab.desktop.rescue import save_last_good
 from physicslab.files.new_scene import file_stem
 from physicslab.files.replace import create_file
 from physicslab.files.scene import load_scene, save_scene
-from physicslab.view.controls.menus import MENUS
 
 AT_ONCE = """
 import sys, time

@@ -14,8 +14,8 @@ from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
-from physicslab.view.controls.toolbar import Toolbar
 from physicslab.view.window.window import Window
+from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
 
 __all__ = ["Sandbox"]
@@ -41,8 +41,8 @@ class Sandbox:
     ----------
     world : World
         The world that is shown.
-    toolbar : Toolbar
-        The buttons over it.
+    interface : Interface
+        The panels around it.
     """
 
     def __init__(
@@ -59,10 +59,10 @@ class Sandbox:
         self._autosave = autosave
         self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
-        self.toolbar = Toolbar(window)
-        hud = HudSystem(window, self.toolbar)
-        window.room = hud.room
-        self._systems = InputSystem(window, self.toolbar), RenderSystem(window), hud
+        self.interface = Interface(window)
+        window.room = self.interface.room
+        hud = HudSystem(window, self.interface)
+        self._systems = InputSystem(window, self.interface), RenderSystem(window), hud
         self.show(world)
         if autosave is not None:
             autosave.finish(world)
@@ -77,7 +77,8 @@ class Sandbox:
         window.spring_tool.cancel()
         window.overlays.forget()
         window.sparks.clear()
-        window.error, window.menu, window.next_world = "", "", None
+        window.selection.clear()
+        window.error, window.next_world = "", None
         window.go_home(world)
 
     def frame(self, elapsed: float) -> None:

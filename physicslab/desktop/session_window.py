@@ -14,6 +14,7 @@ from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.scene import load_scene
 from physicslab.kernels import working_ns
+from physicslab.scenes import SCENES
 from physicslab.view.canvas.display import Display, ask_to_leave
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.window import Window
@@ -38,6 +39,7 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     world = load_scene(scene)
     display.title = _title(world)
     window = Window(display.canvas, config)
+    window.source = Path(scene) if scene not in SCENES else scene
     session, abandoned = _begin_session(window)
     autosave = None if session is None else Autosave(session.path)
     window.recovery = Recovery(abandoned, None if session is None else session.path)

@@ -25,6 +25,7 @@ __all__ = ["Progress", "Warmup", "is_warm", "load_all", "mark_warm", "name_of", 
 _WORKERS_LIMIT = 4
 _FIRST = (
     "raster",
+    "triangles",
     "motion",
     "energy",
     "fat_boxes",

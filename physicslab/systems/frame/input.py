@@ -14,14 +14,11 @@ from physicslab.view.controls.spawning import spawn_box
 from physicslab.view.controls.tools import TOOLS, Tool
 
 if TYPE_CHECKING:
-    from physicslab.view.controls.toolbar import Toolbar
     from physicslab.view.window.window import Window
+    from physicslab.view.workbench.interface import Interface
     from physicslab.world import World
 
 __all__ = ["InputSystem"]
-
-_MOUSE_EVENTS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL)
-"""What is offered to the toolbar first."""
 
 _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
 """With these keys held, another key is meant for the desktop: Alt+Tab is no slow motion."""
@@ -37,13 +34,13 @@ class InputSystem(System):
     ----------
     window : Window
         Where the cursor is, and what is held.
-    toolbar : Toolbar
-        What lies over the world; clicks on it are its own.
+    interface : Interface
+        The panels around the world; clicks on them, and keys for their fields, are their own.
     """
 
-    def __init__(self, window: Window, toolbar: Toolbar) -> None:
+    def __init__(self, window: Window, interface: Interface) -> None:
         self._window = window
-        self._toolbar = toolbar
+        self._interface = interface
         self._panning = 0  # the button that drags the picture
         self._tool: Tool | None = None  # what the left button was pressed with
         self._handlers: dict[int, Callable[[World, pygame.Event], None]] = {
@@ -64,19 +61,26 @@ class InputSystem(System):
         """Do what the events since the last frame call for."""
         window = self._window
         window.now += elapsed
+        self._do_deeds(world)
         for event in pygame.event.get():
+            taken = self._interface.take(event)
             handler = self._handlers.get(event.type)
-            if handler is None:
-                continue
-            if event.type in _MOUSE_EVENTS and self._toolbar.take(world, event):
+            if taken:
                 window.pointer = getattr(event, "pos", window.pointer)
-            else:
+            elif handler is not None:
                 handler(world, event)
+        window.selection.follow(world)
         window.follow_size(world)
         window.trails.follow(world)
         window.hand.move(window.place, window.now)
         window.hand.lead(world, window.coming(world), window.pace.paused)
-        self._toolbar.follow(world, elapsed)
+
+    def _do_deeds(self, world: World) -> None:
+        """Do what panels were clicked for."""
+        window = self._window
+        deeds, window.deeds = window.deeds, []
+        for deed in deeds:
+            deed(world, window)
 
     def _key(self, world: World, event: pygame.Event) -> None:
         mod = getattr(event, "mod", 0)
@@ -92,11 +96,7 @@ class InputSystem(System):
 
     def _press(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
-        if (
-            self._window.help or self._window.error_study.shown
-        ):  # nothing is to happen behind what lies over all
-            self._window.help = self._window.error_study.shown = False
-            return
+        self._window.adding = bool(pygame.key.get_mods() & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL))
         if event.button == pygame.BUTTON_LEFT:
             self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from physicslab.systems.system import Stage, System, at
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
+from physicslab.view.overlay.selection_marks import draw_selection
 from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.panels.panels import text_size
 from physicslab.view.picture.painting import draw_world
@@ -50,5 +51,6 @@ class RenderSystem(System):
         if overlays.arrows:
             draw_vectors(world, overlays, camera, theme, canvas)
         if overlays.impulses:
-            draw_impulses(world, overlays, camera, theme, canvas, text_size(canvas) - 2)
+            draw_impulses(world, overlays, camera, theme, canvas, text_size(canvas, window.text_scale) - 2)
+        draw_selection(world, window.selection.entities, camera, theme, canvas)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)

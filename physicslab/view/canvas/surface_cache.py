@@ -76,11 +76,11 @@ class SurfaceCache:
 
 
 def _load_font(size: int, bold: bool) -> pygame.font.Font:
-    """Return a font by its nominal size [px]: Noto Sans, which comes with pygame_gui, or pygame's own."""
-    package = importlib.util.find_spec("pygame_gui")
+    """Return a font by its nominal size [px]: Roboto, which panels have too, or pygame's own."""
+    package = importlib.util.find_spec("imgui_bundle")
     if package is not None and package.submodule_search_locations:
-        name = "NotoSans-Bold.ttf" if bold else "NotoSans-Regular.ttf"
-        path = Path(package.submodule_search_locations[0]) / "data" / name
+        name = "Roboto-Bold.ttf" if bold else "Roboto-Regular.ttf"
+        path = Path(package.submodule_search_locations[0]) / "assets" / "fonts" / "Roboto" / name
         if path.is_file():
             return pygame.font.Font(path, size)
     return pygame.font.Font(None, round(1.4 * size))

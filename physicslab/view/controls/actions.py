@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
+from physicslab.components import Held, Name, Shape, Spring, Transform
 from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.tools import HAND, Tool
 from physicslab.view.panels.laws import has_gravity
@@ -13,15 +16,17 @@ from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "choose_tool", "clear", "close", "enlarge", "faster", "fit", "go_home", "leave",
-    "next_theme", "reduce", "slower", "step",
+    "choose_tool", "clear", "close", "duplicate_selected", "enlarge", "faster", "fit", "go_home",
+    "larger_text", "leave", "next_theme", "reduce", "slower", "smaller_text", "step",
     "toggle_arrows", "toggle_figures", "toggle_gravity", "toggle_grid", "toggle_help", "toggle_impulses",
-    "toggle_menu", "toggle_pause", "toggle_planets", "toggle_slow_motion", "toggle_trails",
+    "toggle_pause", "toggle_planets", "toggle_slow_motion", "toggle_trails",
     "zoom", "zoom_in", "zoom_out",
 ]  # fmt: skip
 
 _ZOOM_STEP = 3.0
 """How many notches of the wheel a key or a button zooms by."""
+_TEXT_SCALES = (0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0)
+"""The sizes of text there are, as shares of the usual."""
 _NO_GRAVITY = "This world was made without GravitySystem: no law of gravity acts in it"
 
 
@@ -30,11 +35,6 @@ def choose_tool(window: Window, tool: Tool) -> None:
     window.spring_tool.cancel()
     window.tool = tool.name
     window.notify(tool.usage, 5.0)
-
-
-def toggle_menu(window: Window, name: str) -> None:
-    """Open a menu, or close it."""
-    window.menu = "" if window.menu == name else name
 
 
 def toggle_pause(world: World, window: Window) -> None:
@@ -141,6 +141,23 @@ def reduce(world: World, window: Window) -> None:
     window.camera.zoom(1.15**-_ZOOM_STEP, window.middle)
 
 
+def larger_text(world: World, window: Window) -> None:
+    """Make all text larger."""
+    scale_text(window, 1)
+
+
+def smaller_text(world: World, window: Window) -> None:
+    """Make all text smaller."""
+    scale_text(window, -1)
+
+
+def scale_text(window: Window, steps: int) -> None:
+    """Change the size of all text by some steps."""
+    nearest = min(range(len(_TEXT_SCALES)), key=lambda n: abs(_TEXT_SCALES[n] - window.text_scale))
+    window.text_scale = _TEXT_SCALES[min(max(nearest + steps, 0), len(_TEXT_SCALES) - 1)]
+    window.notify(f"Text: {100 * window.text_scale:.0f} %")
+
+
 def next_theme(world: World, window: Window) -> None:
     """Show everything in the colours of the next theme."""
     window.theme = THEMES[(THEMES.index(window.theme) + 1) % len(THEMES)]
@@ -148,7 +165,7 @@ def next_theme(world: World, window: Window) -> None:
 
 
 def toggle_figures(world: World, window: Window) -> None:
-    """Show the figures and costs, or leave all of the window to the world."""
+    """Show the panel at the right, or leave its room to the world."""
     window.figures = not window.figures
 
 
@@ -173,13 +190,13 @@ def toggle_help(world: World, window: Window) -> None:
 
 
 def leave(world: World, window: Window) -> None:
-    """Leave the help, the plot, the menu or the tool if there is one, else the window."""
+    """Leave the help, the plot, what is selected or the tool if there is one, else the window."""
     if window.help:
         window.help = False
     elif window.error_study.shown:
         window.error_study.shown = False
-    elif window.menu:
-        window.menu = ""
+    elif window.selection.entities:
+        window.selection.clear()
     elif window.tool != HAND.name:
         choose_tool(window, HAND)
     else:
@@ -189,3 +206,28 @@ def leave(world: World, window: Window) -> None:
 def close(world: World, window: Window) -> None:
     """Close the window."""
     window.closing = True
+
+
+def duplicate_selected(world: World, window: Window) -> None:
+    """Put a copy of each body that is selected beside it, and select the copies."""
+    copies = []
+    for entity in window.selection.entities:
+        if not world.has(entity, Transform):
+            continue
+        held = [part for part in world.components(entity) if not isinstance(part, (Name, Held, Spring))]
+        parts = [type(part)(**part.given()) for part in held]
+        copies.append(world.spawn(*parts))
+        world.synchronise()
+        moved = world.component(copies[-1], Transform)
+        moved.position = moved.position + Vector2(_width(world, entity), 0.0)
+    if copies:
+        window.selection.entities = tuple(copies)
+        announce_edit(world)
+
+
+def _width(world: World, entity: int) -> float:
+    """Return how far beside a body its copy is put [m]."""
+    if not world.has(entity, Shape):
+        return 0.5
+    shape = world.component(entity, Shape)
+    return 1.1 * (2.0 * shape.radius if shape.kind == "circle" else math.hypot(shape.width, shape.height))

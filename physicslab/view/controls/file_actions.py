@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from physicslab.ecs.fields import InvalidValue
@@ -12,7 +13,10 @@ from physicslab.view.controls.scene_files import new_scene_paths, newest_scene
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["open_scene", "reopen", "request_screenshot", "save", "study_error"]
+__all__ = ["Deed", "open_scene", "reopen", "request_screenshot", "restart", "save", "study_error"]
+
+type Deed = Callable[[World, Window], None]
+"""What a click is to do."""
 
 
 def save(world: World, window: Window) -> None:
@@ -48,9 +52,20 @@ def open_scene(window: Window, source: str | Path) -> None:
         window.notify(f"Not opened: {error}", 8.0, failed=True)
         return
     window.next_world = opened
+    window.source = source
     if isinstance(source, Path):
         window.scene_file = source
     window.notify(f"Opened {printable(str(source)) if isinstance(source, Path) else opened.title}")
+
+
+def restart(world: World, window: Window) -> None:
+    """Open the scene that is shown once more, as it was at its start."""
+    if window.source is None:
+        window.notify("This scene has no start to go back to: it was not opened from a file", failed=True)
+        return
+    open_scene(window, window.source)
+    if window.next_world is not None:
+        window.notify("Started again")
 
 
 def request_screenshot(world: World, window: Window) -> None:

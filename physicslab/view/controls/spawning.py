@@ -135,7 +135,7 @@ CIRCLE = Spawn("circle", "Circle", "on empty space for a circle", spawn_circle)
 SPAWNS = (
     CIRCLE,
     Spawn("box", "Box", "on empty space for a box", spawn_box),
-    Spawn("block", "Fixed plank", "where its middle shall be", spawn_block),
+    Spawn("block", "Plank", "where its middle shall be", spawn_block),
     Spawn("pendulum", "Pendulum", "where it shall hang from", spawn_pendulum),
     Spawn("chain", "Chain", "where it shall hang from", spawn_chain),
     Spawn("stack", "Stack", "where its foot shall be", spawn_stack),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from physicslab.view.controls.picking import body_at
@@ -12,7 +12,8 @@ from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "HAND", "PAN", "REMOVE", "SPAWN_TOOLS", "SPRING", "TOOLS", "Tool", "begin_spring", "end_spring", "remove",
+    "HAND", "MORE_TOOLS", "PALETTE", "PAN", "REMOVE", "SELECT", "SPAWN_TOOLS", "SPRING", "TOOLS", "Tool",
+    "begin_spring", "end_spring", "remove_selected",
 ]  # fmt: skip
 
 type Deed = Callable[[World, Window], None]
@@ -51,15 +52,47 @@ def let_go(world: World, window: Window) -> None:
     window.hand.release(world, window.place, window.now, window.pace.paused)
 
 
+def take_hold(world: World, window: Window) -> bool:
+    """Take hold of the body under the cursor, and select it; return whether there is one."""
+    entity = body_at(world, window.camera, window.pointer)
+    if entity is None:
+        return False
+    window.selection.take(entity, add=window.adding)
+    if not window.hand.take(world, entity, window.place, window.now) and not window.pace.paused:
+        window.notify(f"{world.label(entity)} stays where it is: it is fixed")
+    return True
+
+
+def select(world: World, window: Window) -> None:
+    """Select and take hold of the body under the cursor; where there is none, select nothing."""
+    if not take_hold(world, window) and not window.adding:
+        window.selection.clear()
+
+
 def remove(world: World, window: Window) -> None:
     """Remove the body under the cursor; its springs go with it."""
     entity = body_at(world, window.camera, window.pointer)
     if entity is None:
-        window.notify("Nothing to remove: put the cursor on a body")
+        window.notify("Nothing to remove: put the cursor on a body, or select one")
         return
-    if window.hand.entity == entity:
-        window.hand.drop(world)
-    world.remove(entity)
+    remove_entities(world, window, (entity,))
+
+
+def remove_selected(world: World, window: Window) -> None:
+    """Remove what is selected; where nothing is, the body under the cursor."""
+    if window.selection.entities:
+        remove_entities(world, window, window.selection.entities)
+    else:
+        remove(world, window)
+
+
+def remove_entities(world: World, window: Window, entities: Sequence[int]) -> None:
+    """Remove entities; the springs that end at them go with them."""
+    for entity in entities:
+        if window.hand.entity == entity:
+            window.hand.drop(world)
+        world.remove(entity)
+    window.selection.follow(world)
     announce_edit(world)
 
 
@@ -90,11 +123,9 @@ def spawning(spawn: Spawn) -> Tool:
     """Return the tool that takes hold of bodies, and spawns where there is none."""
 
     def press(world: World, window: Window) -> None:
-        entity = body_at(world, window.camera, window.pointer)
-        if entity is None:
+        if not take_hold(world, window):
+            window.selection.clear()
             spawn.spawn(world, window)
-        elif not window.hand.take(world, entity, window.place, window.now):
-            window.notify(f"{world.label(entity)} is static: it stays where it is")
 
     usage = f"{spawn.title}: click {spawn.place}. Bodies can still be dragged."
     return Tool(spawn.name, spawn.title, usage, press, let_go)
@@ -105,7 +136,15 @@ HAND = spawning(CIRCLE)
 SPAWN_TOOLS = (HAND, *(spawning(spawn) for spawn in SPAWNS[1:]))
 """A tool for each thing there is to spawn."""
 SPRING = Tool("spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring)
-REMOVE = Tool("remove", "Remove", "Remove: click a body; its springs go with it.", remove, _nothing)
-PAN = Tool("pan", "Move the view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True)
-TOOLS = {tool.name: tool for tool in (*SPAWN_TOOLS, SPRING, REMOVE, PAN)}
+REMOVE = Tool("remove", "Erase", "Erase: click a body; its springs go with it.", remove, _nothing)
+SELECT = Tool(
+    "select", "Select", "Select: click a body to see its numbers; drag to move or throw it.", select, let_go
+)
+PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True)
+_IN_PALETTE = ("circle", "box", "block", "pendulum", "chain")
+PALETTE = (SELECT, *(tool for tool in SPAWN_TOOLS if tool.name in _IN_PALETTE), SPRING, REMOVE, PAN)
+"""The tools that are in sight, in their order."""
+MORE_TOOLS = tuple(tool for tool in SPAWN_TOOLS if tool.name not in _IN_PALETTE)
+"""Those behind one more button."""
+TOOLS = {tool.name: tool for tool in (*PALETTE, *MORE_TOOLS)}
 """Every tool, by the name that ``Window.tool`` holds."""

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.panels.panels import broken, draw_pill
 
-__all__ = ["DroppedTime", "Message", "draw_banners", "draw_messages", "height_of", "lay_out_messages"]
+__all__ = ["DroppedTime", "Message", "draw_banners", "draw_messages", "lay_out_messages"]
 
-_MESSAGE_WIDTH = 0.56
-"""How wide a message may be, as a share of the window: the scale bar stands beside it."""
+_MESSAGE_WIDTH = 0.7
+"""How wide a message may be, as a share of what is left for the world: the scale bar stands beside it."""
 _MIN_DROPPED = 0.005
 """Less time [s], dropped within a few seconds, cannot be noticed."""
 _DROP_SHOWN = 3.0
@@ -65,28 +65,25 @@ class Message:
     height: int
 
 
-def lay_out_messages(words: Iterable[tuple[str, Colour]], size: int, canvas: Canvas) -> list[Message]:
-    """Break messages into lines of a height [px]; those without words are left out."""
+def lay_out_messages(
+    words: Iterable[tuple[str, Colour]], size: int, room: int, canvas: Canvas
+) -> list[Message]:
+    """Break messages into lines of a height [px] for a room so wide; those without words are left out."""
     messages: list[Message] = []
     for message, colour in words:
         style = TextStyle(size, colour, bold=True)
-        lines = broken(message, round(_MESSAGE_WIDTH * canvas.size[0]), canvas, style)
+        lines = broken(message, round(_MESSAGE_WIDTH * room), canvas, style)
         if lines:
             height = canvas.text_size("Ag", style)[1] * len(lines) + round(0.55 * size)
             messages.append(Message(lines, colour, height))
     return messages
 
 
-def height_of(messages: Sequence[Message], size: int) -> int:
-    """Return how much room messages take above the controls hint [px]."""
-    return sum(message.height + size // 2 for message in messages)
-
-
 def draw_messages(
-    messages: Iterable[Message], bottom: int, size: int, canvas: Canvas, theme: Theme
+    messages: Iterable[Message], middle: int, bottom: int, size: int, canvas: Canvas, theme: Theme
 ) -> list[Rect]:
-    """Draw messages in the middle above ``bottom``, the first lowest, and return where they are [px]."""
-    middle, bottom = canvas.size[0] // 2, bottom - size // 2
+    """Draw messages around ``middle`` above ``bottom``, the first lowest, and return where they are [px]."""
+    bottom -= size // 2
     taken: list[Rect] = []
     for message in messages:
         top = bottom - message.height

@@ -37,6 +37,8 @@ class WorldFigures:
         The exact solution since the last edit, where there is one.
     error : float
         How far the body that is furthest off is from that [m].
+    frame_rate : float
+        Frames per second of late.
     """
 
     bodies: int
@@ -49,16 +51,17 @@ class WorldFigures:
     momentum: Momentum
     known: ReferenceSolution | None
     error: float
+    frame_rate: float = 0.0
 
 
-def measure_world(world: World, watch: EnergyWatch) -> WorldFigures:
+def measure_world(world: World, watch: EnergyWatch, frame_rate: float = 0.0) -> WorldFigures:
     """Measure a world as it is now."""
     drift = watch.sample(world)
     contacts, known = world.contacts, watch.known
     return WorldFigures(
         len(body_rows(world)), world.sleep.count, contacts.candidate_pairs, contacts.count,
         drift.latest, drift, watch.since, measure_momentum(world),
-        known, known.error(world) if known is not None else 0.0,
+        known, known.error(world) if known is not None else 0.0, frame_rate,
     )  # fmt: skip
 
 

@@ -59,10 +59,10 @@ class Panel:
         canvas.layer(name, self.rect, (self, theme), lambda surface: self.draw(surface, theme))
 
 
-def text_size(canvas: Canvas) -> int:
-    """Return the height of text [px]: larger in a larger window."""
+def text_size(canvas: Canvas, scale: float = 1.0) -> int:
+    """Return the height of text [px]: larger in a larger window, times a scale that was chosen."""
     width, height = canvas.size
-    return min(max(round(min(height / 48, width / 68)), 12), 20)
+    return round(min(max(min(height / 48, width / 80), 12), 20) * scale)
 
 
 def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str]:

@@ -3,40 +3,24 @@
 from __future__ import annotations
 
 from physicslab.diagnostics.energy import energy_changers, summation
-from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity
 from physicslab.view.panels.figures import FrameMeter, WorldFigures
-from physicslab.view.panels.laws import gravity_in_words
 from physicslab.view.panels.panels import Line
 from physicslab.world import World
 
-__all__ = ["cost_lines", "figure_lines", "left_out_lines", "method_lines"]
-
-_MAX_TITLE = 80
-"""Letters of a title that are shown."""
+__all__ = ["cost_lines", "left_out_lines", "measure_lines", "method_lines"]
 
 
-def figure_lines(world: World, figures: WorldFigures, frame_rate: float) -> list[Line]:
-    """Return what there is, how it moves, and what should not change."""
+def measure_lines(world: World, figures: WorldFigures) -> list[Line]:
+    """Return how it moves, and what should not change."""
     return [
-        Line(shortened(world.title, _MAX_TITLE) or "PhysicsLab", kind="heading"),
-        Line("Frame rate", f"{frame_rate:.0f} FPS"),
-        Line("Time", f"{world.time:.2f} s"),
-        Line("Bodies", _bodies(figures)),
-        Line("Candidate pairs", f"{figures.candidate_pairs}"),
-        Line("Contacts", f"{figures.contacts}"),
         *_energy_lines(world, figures),
         *_error_lines(figures),
         Line("Total momentum", quantity(figures.momentum.linear.magnitude, "kg m/s")),
         Line("as a vector", vector_quantity(figures.momentum.linear, "kg m/s"), "detail"),
         Line("Angular momentum", quantity(figures.momentum.angular, "kg m²/s")),
-        Line("Gravity", gravity_in_words(world)),
         *(Line(remark, kind="remark") for remark in [summation(world)] if remark),
     ]
-
-
-def _bodies(figures: WorldFigures) -> str:
-    return f"{figures.bodies}, {figures.asleep} asleep" if figures.asleep else f"{figures.bodies}"
 
 
 def _energy_lines(world: World, figures: WorldFigures) -> list[Line]:

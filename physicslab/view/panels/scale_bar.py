@@ -10,19 +10,16 @@ from physicslab.view.canvas.quantities import length_of
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.picture.backdrop import grid_spacing
 
-__all__ = ["draw_scale_bar", "scale_bar_height"]
+__all__ = ["draw_scale_bar"]
 
 
-def scale_bar_height(size: int, canvas: Canvas, theme: Theme) -> int:
-    """Return how high the bar's panel is, for text of a given height [px]."""
-    return canvas.text_size("0", TextStyle(size, theme.text))[1] + size + round(0.7 * size) // 2
-
-
-def draw_scale_bar(camera: Camera, bottom: int, size: int, canvas: Canvas, theme: Theme) -> Rect:
-    """Draw a bar as long as a square of the grid is wide, in the corner at the right, and return where [px].
+def draw_scale_bar(camera: Camera, right: int, bottom: int, size: int, canvas: Canvas, theme: Theme) -> Rect:
+    """Draw a bar as long as a square of the grid is wide, in a corner at the right, and return where [px].
 
     Parameters
     ----------
+    right : int
+        Where the corner is [px from the left].
     bottom : int
         Where it ends [px from the top].
     size : int
@@ -35,8 +32,8 @@ def draw_scale_bar(camera: Camera, bottom: int, size: int, canvas: Canvas, theme
     width = canvas.text_size(words, style)[0]
     pad, tick = round(0.7 * size), 4.0
     panel_width = round(max(bar, width)) + 2 * pad
-    panel_height = scale_bar_height(size, canvas, theme)
-    left, top = canvas.size[0] - round(0.8 * size) - panel_width, bottom - panel_height
+    panel_height = canvas.text_size(words, style)[1] + size + round(0.7 * size) // 2
+    left, top = right - round(0.8 * size) - panel_width, bottom - panel_height
     rect = (left, top, panel_width, panel_height)
     canvas.panel(rect, theme.panel, theme.outline, theme.panel_opacity)
     middle = left + panel_width // 2

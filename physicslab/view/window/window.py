@@ -18,11 +18,18 @@ from physicslab.view.picture.trails import TrailSwitch
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.recovery import Recovery
+from physicslab.view.window.selection import Selection
 from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
 
-__all__ = ["Window"]
+__all__ = ["LEVELS", "Window"]
 
+LEVELS = {
+    "Explore": "The world first, few figures",
+    "Measure": "Energies, momenta and what they do",
+    "Engineer": "Methods, systems and what they cost",
+}
+"""How much the panel at the right shows, with what each level is for."""
 _AROUND = 0.04
 """Room left around the world, as a share of what the panels leave."""
 
@@ -68,8 +75,18 @@ class Window:
         Whether all keys are shown, the grid, and the panels of figures and costs.
     tool : str
         What the left mouse button does: the name of a tool of :mod:`physicslab.view.controls.tools`.
-    menu : str
-        Which menu is open; empty where none is.
+    level : str
+        How much is shown: one of ``LEVELS``.
+    text_scale : float
+        How much larger than usual text is.
+    adding : bool
+        Whether a click adds to what is selected: Shift or Ctrl is held.
+    selection : Selection
+        Which bodies are selected.
+    deeds : list of callables
+        What panels were clicked for; it is done when the next frame begins.
+    source : str or path, optional
+        The built-in scene or the file that is shown; restarting opens it again.
     room : callable
         Returns which part of the canvas is left for the world [px].
     spring_tool : SpringTool
@@ -106,7 +123,12 @@ class Window:
         self.help = False
         self.grid = self.figures = True
         self.tool = "circle"
-        self.menu = ""
+        self.level = "Explore"
+        self.text_scale = 1.0
+        self.adding = False
+        self.selection = Selection()
+        self.deeds: list[Callable[[World, Window], None]] = []
+        self.source: str | Path | None = None
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
         self.error_study = ErrorStudy()
         self.spring_tool = SpringTool()

@@ -1,0 +1,1 @@
+"""Dear ImGui and ImPlot as the toolkit of panels, painted in software: no OpenGL is needed."""

@@ -1,0 +1,211 @@
+"""Dear ImGui in the window: its context, what it is told of the mouse, and what it draws."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+
+import pygame
+from imgui_bundle import ImVec2, imgui, implot
+
+from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.theme import Theme
+from physicslab.view.toolkit.events import feed
+from physicslab.view.toolkit.pictures import Pictures
+from physicslab.view.toolkit.style import Fonts, add_fonts, apply_theme
+
+__all__ = ["Toolkit"]
+
+_SETTLING = 3
+"""Frames that Dear ImGui takes to follow an event: sizes and hovering are those of the frame before."""
+_NOWHERE = -3.0e38
+"""Where the mouse is said to be while it is not for panels."""
+
+
+class Toolkit:
+    """A context of Dear ImGui: panels are built when something may have changed, and shown in every frame.
+
+    Attributes
+    ----------
+    covered : list of Rect
+        Where panels, menus and tips lie [px], as of the last frame that was built.
+    fonts : Fonts
+        Its letters.
+    built : int
+        How many times panels were built.
+    """
+
+    def __init__(self) -> None:
+        self._context = imgui.create_context()
+        imgui.set_current_context(self._context)
+        self._plots = implot.create_context()
+        io = imgui.get_io()
+        io.set_ini_filename("")
+        io.set_log_filename("")
+        flags = imgui.BackendFlags_
+        io.backend_flags |= flags.renderer_has_textures | flags.renderer_has_vtx_offset
+        io.config_debug_highlight_id_conflicts = False
+        self.fonts: Fonts = add_fonts()
+        self.covered: list[Rect] = []
+        self.built = 0
+        self._pictures = Pictures()
+        self._look: tuple[Theme, float] | None = None
+        self._elapsed = 0.0
+        self._unsettled = _SETTLING
+        self._pointer = (_NOWHERE, _NOWHERE)
+        self._pressed_on: dict[int, bool] = {}  # whether each button that is held went down on a panel
+        weakref.finalize(self, _end, self._context, self._plots, self._pictures)
+
+    def _enter(self) -> None:
+        imgui.set_current_context(self._context)
+        implot.set_current_context(self._plots)
+
+    @property
+    def typing(self) -> bool:
+        """Whether keys go to a field of a panel."""
+        self._enter()
+        return bool(imgui.get_io().want_text_input)
+
+    @property
+    def dragging(self) -> bool:
+        """Whether a mouse button is held that went down on a panel."""
+        return any(self._pressed_on.values())
+
+    def covers(self, place: tuple[float, float]) -> bool:
+        """Whether a panel lies at a place of the screen [px]."""
+        x, y = place
+        return any(left <= x < left + w and top <= y < top + h for left, top, w, h in self.covered)
+
+    def take(self, event: pygame.Event) -> bool:
+        """Let panels have an event first; return whether the world is not to see it.
+
+        A button that goes down on a panel belongs to it until it is let go, and so it is with the world.
+        """
+        taken = self._is_for_panels(event)
+        self._unsettled = _SETTLING
+        self._enter()
+        io = imgui.get_io()
+        if taken or event.type not in (
+            pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL,
+        ):  # fmt: skip
+            feed(io, event)
+        elif event.type == pygame.MOUSEBUTTONDOWN:
+            imgui.set_window_focus()  # what was written in a field is taken over
+            io.add_mouse_pos_event(_NOWHERE, _NOWHERE)
+        elif event.type == pygame.MOUSEMOTION:
+            io.add_mouse_pos_event(_NOWHERE, _NOWHERE)
+        return taken
+
+    def _is_for_panels(self, event: pygame.Event) -> bool:
+        match event.type:
+            case pygame.MOUSEBUTTONDOWN:
+                on_panel = self.covers(event.pos) or self._has_popup()
+                self._pressed_on[event.button] = on_panel
+                return on_panel
+            case pygame.MOUSEBUTTONUP:
+                return self._pressed_on.pop(event.button, False)
+            case pygame.MOUSEMOTION:
+                if self._pressed_on:
+                    return self.dragging
+                return self.covers(event.pos)
+            case pygame.MOUSEWHEEL:
+                return self.covers(self._pointer)
+            case pygame.KEYDOWN | pygame.KEYUP | pygame.TEXTINPUT:
+                return self.typing
+        return False
+
+    def follow_pointer(self, place: tuple[float, float]) -> None:
+        """Note where the cursor is [px]: events of the wheel do not say so."""
+        self._pointer = place
+
+    def _has_popup(self) -> bool:
+        """Whether a menu is open: a click beside it closes it, and does nothing else."""
+        self._enter()
+        flags = imgui.PopupFlags_
+        return bool(imgui.is_popup_open("", flags.any_popup_id | flags.any_popup_level))
+
+    def wake(self) -> None:
+        """Have panels built in the next frames: something changed."""
+        self._unsettled = _SETTLING
+
+    def refresh(self) -> None:
+        """Have panels built in the next frame: figures are others, and nothing is elsewhere."""
+        self._unsettled = max(self._unsettled, 1)
+
+    def frame(
+        self, size: tuple[int, int], theme: Theme, text_size: float, elapsed: float, build: Callable[[], None]
+    ) -> bool:
+        """Build panels if something may have changed since; return whether they were built.
+
+        Parameters
+        ----------
+        size : tuple of two ints
+            Width and height of the window [px].
+        text_size : float
+            Height of text [px].
+        elapsed : float
+            Time [s] since the last frame.
+        build : callable
+            Calls Dear ImGui for each panel.
+        """
+        self._elapsed += elapsed
+        if self._look != (theme, text_size):
+            self._unsettled = _SETTLING
+        if self._unsettled <= 0:
+            return False
+        self._unsettled -= 1
+        self._enter()
+        if self._look != (theme, text_size):
+            self._look = (theme, text_size)
+            apply_theme(theme, text_size)
+        io = imgui.get_io()
+        io.display_size = ImVec2(*map(float, size))
+        io.delta_time = max(self._elapsed, 1e-4)
+        self._elapsed = 0.0
+        imgui.new_frame()
+        try:
+            build()
+        finally:
+            imgui.render()
+        self.built += 1
+        self._pictures.take(imgui.get_draw_data())
+        self.covered = _covered()
+        if io.want_text_input or imgui.is_any_item_active():
+            self._unsettled = max(self._unsettled, 1)  # the mark in a field blinks, a key repeats
+        return True
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Show panels as they were built last."""
+        self._pictures.show(surface)
+
+    @property
+    def painted(self) -> int:
+        """How many pictures of panels were painted."""
+        return self._pictures.painted
+
+
+def _covered() -> list[Rect]:
+    """Return where panels lie that take the mouse, from the back to the front."""
+    rects: list[Rect] = []
+    for window in imgui.get_current_context().windows:
+        inert = window.flags & imgui.WindowFlags_.no_mouse_inputs
+        if (
+            window.active
+            and not window.hidden
+            and not inert
+            and not window.flags & imgui.WindowFlags_.child_window
+        ):
+            rects.append(
+                (round(window.pos.x), round(window.pos.y), round(window.size.x), round(window.size.y))
+            )
+    return rects
+
+
+def _end(context: imgui.internal.Context, plots: implot.internal.Context, pictures: Pictures) -> None:
+    imgui.set_current_context(context)
+    for texture in imgui.get_platform_io().textures:
+        texture.set_tex_id(0)
+        texture.set_status(imgui.ImTextureStatus.destroyed)
+    pictures.forget()
+    implot.destroy_context(plots)
+    imgui.destroy_context(context)

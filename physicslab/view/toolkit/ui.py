@@ -1,0 +1,290 @@
+"""What panels are made of: buttons, rows, bars and menus, each found again by its words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from imgui_bundle import ImVec2, imgui
+
+from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.theme import Colour, Theme
+from physicslab.view.toolkit.style import Fonts, packed
+
+__all__ = ["Ui"]
+
+_FLAGS = imgui.WindowFlags_
+_FIXED = (
+    _FLAGS.no_title_bar | _FLAGS.no_resize | _FLAGS.no_move | _FLAGS.no_collapse | _FLAGS.no_saved_settings
+    | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav
+)  # fmt: skip
+_FLOATING = _FLAGS.no_collapse | _FLAGS.no_saved_settings | _FLAGS.no_nav | _FLAGS.always_auto_resize
+_TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
+
+
+class Ui:
+    """The widgets of one frame. What is drawn is noted: where it is, by its words, and all that is written.
+
+    Parameters
+    ----------
+    fonts : Fonts
+        The letters.
+    theme : Theme
+        The colours; the toolkit has them too.
+
+    Attributes
+    ----------
+    places : dict of str to Rect
+        Where each button, field and line of a menu is [px], by its words.
+    words : list of str
+        All that is written, in its order.
+    rows : dict of str to str
+        The value beside each label.
+    """
+
+    def __init__(self, fonts: Fonts, theme: Theme) -> None:
+        self.fonts, self.theme = fonts, theme
+        self.places: dict[str, Rect] = {}
+        self.words: list[str] = []
+        self.rows: dict[str, str] = {}
+
+    def begin(self, theme: Theme) -> None:
+        """Forget the frame before."""
+        self.theme = theme
+        self.places, self.words, self.rows = {}, [], {}
+
+    @property
+    def size(self) -> float:
+        """Height of the text [px]."""
+        return float(imgui.get_font_size())
+
+    # ---- panels --------------------------------------------------------------------------------------------
+
+    @contextmanager
+    def panel(self, name: str, rect: Rect, *, padded: bool = True) -> Iterator[None]:
+        """Begin a panel that stays where it is put."""
+        left, top, width, height = rect
+        imgui.set_next_window_pos(ImVec2(left, top))
+        imgui.set_next_window_size(ImVec2(max(width, 1), max(height, 1)))
+        imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+        if not padded:
+            imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(6.0, 6.0))
+        imgui.begin(name, None, _FIXED)
+        try:
+            yield
+        finally:
+            imgui.end()
+            imgui.pop_style_var(1 if padded else 2)
+
+    @contextmanager
+    def floating(self, title: str, middle: tuple[float, float]) -> Iterator[list[bool]]:
+        """Begin a window with a title that can be moved; its list holds whether it stays open."""
+        imgui.set_next_window_pos(ImVec2(*middle), imgui.Cond_.appearing, ImVec2(0.5, 0.5))
+        shown, stays = imgui.begin(title, True, _FLOATING)
+        self.words.append(title)
+        open_still = [bool(stays)]
+        try:
+            if shown:
+                yield open_still
+            else:
+                yield open_still
+        finally:
+            imgui.end()
+
+    # ---- words ---------------------------------------------------------------------------------------------
+
+    def text(self, words: str, colour: Colour | None = None, *, wrapped: bool = False) -> None:
+        """Write words in a colour of the theme, broken to the panel's width if asked for."""
+        self.words.append(words)
+        imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))
+        if wrapped:
+            imgui.push_text_wrap_pos(0.0)
+        imgui.text_unformatted(words)
+        if wrapped:
+            imgui.pop_text_wrap_pos()
+        imgui.pop_style_color()
+
+    def faint(self, words: str, *, wrapped: bool = True) -> None:
+        """Write words that matter less."""
+        self.text(words, self.theme.faint, wrapped=wrapped)
+
+    def heading(self, words: str) -> None:
+        """Write a title."""
+        self.words.append(words)
+        imgui.push_font(self.fonts.bold, self.size * 1.06)
+        imgui.push_style_color(imgui.Col_.text, packed(self.theme.heading))
+        imgui.push_text_wrap_pos(0.0)
+        imgui.text_unformatted(words)
+        imgui.pop_text_wrap_pos()
+        imgui.pop_style_color()
+        imgui.pop_font()
+
+    def gap(self, share: float = 0.4) -> None:
+        """Leave some room, in heights of the text."""
+        imgui.dummy(ImVec2(1.0, share * self.size))
+
+    def rule(self) -> None:
+        """Draw a thin line across."""
+        imgui.separator()
+
+    def row(self, label: str, value: str, tip: str = "", *, lesser: bool = False) -> None:
+        """Write a label and its value, the value at the right."""
+        self.rows.setdefault(label, value)
+        colour = self.theme.faint
+        if lesser:
+            imgui.indent(0.8 * self.size)
+        self.text(label, colour)
+        if lesser:
+            imgui.unindent(0.8 * self.size)
+        self.tip(tip)
+        imgui.same_line()
+        room = imgui.get_content_region_avail().x - imgui.calc_text_size(value).x
+        if room < 0:
+            imgui.new_line()
+            room = imgui.get_content_region_avail().x - imgui.calc_text_size(value).x
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(room, 0.0))
+        self.text(value, colour if lesser else None)
+
+    def bar(self, label: str, value: str, share: float, colour: Colour) -> None:
+        """Write a label and its value over a bar of some length (0 to 1)."""
+        self.row(label, value)
+        width, height = imgui.get_content_region_avail().x, round(0.4 * self.size)
+        corner = imgui.get_cursor_screen_pos()
+        paper = imgui.get_window_draw_list()
+        paper.add_rect_filled(
+            corner, ImVec2(corner.x + width, corner.y + height), packed(self.theme.key), 0.5 * height
+        )
+        share = min(max(share, 0.0), 1.0)
+        if share * width >= 1.0:
+            paper.add_rect_filled(
+                corner, ImVec2(corner.x + max(share * width, height), corner.y + height), packed(colour),
+                0.5 * height,
+            )  # fmt: skip
+        imgui.dummy(ImVec2(width, height))
+
+    def tip(self, words: str) -> None:
+        """Show words beside the cursor while it rests on what was drawn last."""
+        if words and imgui.is_item_hovered(_TIP_FLAGS):
+            self.words.append(words)
+            if imgui.begin_tooltip():
+                imgui.push_text_wrap_pos(22 * self.size)
+                imgui.text_unformatted(words)
+                imgui.pop_text_wrap_pos()
+                imgui.end_tooltip()
+
+    # ---- what is clicked -----------------------------------------------------------------------------------
+
+    def note(self, label: str) -> None:
+        """Note where the widget is that was drawn last."""
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        self.places.setdefault(
+            label, (round(low.x), round(low.y), round(high.x - low.x), round(high.y - low.y))
+        )
+
+    def button(
+        self, label: str, tip: str = "", *, shown: str | None = None, on: bool = False,
+        size: tuple[float, float] = (0.0, 0.0), enabled: bool = True,
+    ) -> bool:  # fmt: skip
+        """Draw a button, and return whether it was clicked.
+
+        Parameters
+        ----------
+        label : str
+            What it is found by.
+        shown : str, optional
+            What is written on it, where that is not the label.
+        on : bool
+            Whether it is marked as what there is now.
+        """
+        words = label if shown is None else shown
+        self.words.append(words)
+        if on:
+            imgui.push_style_color(imgui.Col_.button, packed(self.theme.accent))
+            imgui.push_style_color(imgui.Col_.button_hovered, packed(self.theme.accent, 0.9))
+            imgui.push_style_color(imgui.Col_.text, packed(self.theme.background))
+        if not enabled:
+            imgui.begin_disabled()
+        clicked = imgui.button(f"{words}##{label}", ImVec2(*size))
+        self.note(label)
+        if not enabled:
+            imgui.end_disabled()
+        if on:
+            imgui.pop_style_color(3)
+        self.tip(tip)
+        return bool(clicked)
+
+    def item(
+        self, label: str, keys: str = "", *, on: bool = False, enabled: bool = True, tip: str = ""
+    ) -> bool:
+        """Draw a line of the menu that is open, and return whether it was chosen."""
+        self.words.append(label)
+        chosen, _ = imgui.menu_item(label, keys, on, enabled)
+        self.note(label)
+        self.tip(tip)
+        return bool(chosen)
+
+    @contextmanager
+    def menu(self, label: str) -> Iterator[bool]:
+        """Begin a menu; what is yielded says whether it is open."""
+        self.words.append(label)
+        shown = bool(imgui.begin_menu(label))
+        self.note(label)
+        try:
+            yield shown
+        finally:
+            if shown:
+                imgui.end_menu()
+
+    def checkbox(self, label: str, on: bool, tip: str = "") -> bool:
+        """Draw a box to tick, and return whether it was clicked."""
+        self.words.append(label)
+        changed, _ = imgui.checkbox(label, on)
+        self.note(label)
+        self.tip(tip)
+        return bool(changed)
+
+    def choice(
+        self, label: str, chosen: str, choices: Sequence[str], tip: str = "", width: float = -1.0
+    ) -> str:
+        """Draw a list that unfolds, and return what is chosen in it."""
+        self.words.append(chosen)
+        imgui.set_next_item_width(width)
+        shown = imgui.begin_combo(f"##{label}", chosen)
+        self.note(label)
+        self.tip(tip if not shown else "")
+        if shown:
+            for name in choices:
+                self.words.append(name)
+                clicked, _ = imgui.selectable(name, name == chosen)
+                self.note(f"{label}: {name}")
+                if clicked:
+                    chosen = name
+            imgui.end_combo()
+        return chosen
+
+    def slider(
+        self, label: str, value: float, low: float, high: float, shown: str, width: float = -1.0
+    ) -> float | None:
+        """Draw a slider with words on it, and return the new value if it was moved."""
+        self.words.append(shown)
+        imgui.set_next_item_width(width)
+        moved, new = imgui.slider_float(f"##{label}", value, low, high, shown.replace("%", "%%"))
+        self.note(label)
+        return float(new) if moved else None
+
+    def field(
+        self, label: str, text: str, width: float = -1.0, *, wrong: bool = False
+    ) -> tuple[str, bool, bool]:
+        """Draw a field for text; return its text, whether it is edited, and whether an edit has ended."""
+        self.words.append(text)
+        if wrong:
+            imgui.push_style_color(imgui.Col_.border, packed(self.theme.error))
+            imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.5)
+        imgui.set_next_item_width(width)
+        flags = imgui.InputTextFlags_
+        _, text = imgui.input_text(f"##{label}", text, flags.auto_select_all)
+        self.note(label)
+        if wrong:
+            imgui.pop_style_var()
+            imgui.pop_style_color()
+        return text, bool(imgui.is_item_active()), bool(imgui.is_item_deactivated_after_edit())

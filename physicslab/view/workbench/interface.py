@@ -1,0 +1,170 @@
+"""The panels around the world: menus, tools, transport, and what is selected or the world in figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pygame
+
+from physicslab.view.canvas.canvas import Canvas, Rect
+from physicslab.view.panels.figures import WorldFigures
+from physicslab.view.panels.panels import Line, text_size
+from physicslab.view.toolkit.toolkit import Toolkit
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.window import Window
+from physicslab.view.workbench.error_plot import build_error_plot
+from physicslab.view.workbench.help_panel import build_help
+from physicslab.view.workbench.inspector import Inspector
+from physicslab.view.workbench.layout import Layout
+from physicslab.view.workbench.menu_bar import build_menu_bar
+from physicslab.view.workbench.palette import build_palette
+from physicslab.view.workbench.recovery_panel import build_recovery
+from physicslab.view.workbench.transport import build_transport
+from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
+from physicslab.world import World
+
+__all__ = ["Interface"]
+
+_PERIOD = 0.2
+"""Time [s] after which panels are built again where nothing was done: faster digits cannot be read."""
+_BUTTONS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
+
+
+class Interface:
+    """The panels of a window. They change nothing: what a click is to do is put on ``Window.deeds``.
+
+    Parameters
+    ----------
+    window : Window
+        What is shown and what is on.
+
+    Attributes
+    ----------
+    ui : Ui
+        What was built last: where each widget is, and all that is written.
+    toolkit : Toolkit
+        What builds and paints them.
+    """
+
+    def __init__(self, window: Window) -> None:
+        self._window = window
+        self.toolkit = Toolkit()
+        self.ui = Ui(self.toolkit.fonts, window.theme)
+        self._inspector = Inspector()
+        self._next = 0.0
+        self._seen: tuple[object, ...] = ()
+
+    @property
+    def text(self) -> int:
+        """Height of the text [px]."""
+        return text_size(self._window.canvas, self._window.text_scale)
+
+    @property
+    def layout(self) -> Layout:
+        """Where everything is."""
+        return Layout.of(self._window.canvas.size, self.text, side=self._window.figures)
+
+    def room(self) -> Rect:
+        """Return what is left for the world [px]."""
+        return self.layout.room
+
+    def take(self, event: pygame.Event) -> bool:
+        """Let panels have an event first; return whether the world is not to see it."""
+        if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
+            self.toolkit.follow_pointer(event.pos)
+        return self.toolkit.take(event)
+
+    def build(
+        self,
+        world: World,
+        figures: WorldFigures,
+        details: Sequence[Line],
+        measures: Sequence[Line],
+        elapsed: float,
+    ) -> None:
+        """Build panels where something may have changed since they were built last.
+
+        Parameters
+        ----------
+        figures : WorldFigures
+            What was measured of the world.
+        details, measures : sequence of Line
+            What engineers see beside, and those who measure.
+        elapsed : float
+            Time [s] since the last frame.
+        """
+        window = self._window
+        seen = self._state(world)
+        if seen != self._seen or window.now >= self._next:
+            if seen != self._seen:
+                self.toolkit.wake()
+            else:
+                self.toolkit.refresh()
+            self._seen, self._next = seen, window.now + _PERIOD
+
+        def build() -> None:
+            self.ui.begin(window.theme)
+            self._build(world, figures, details, measures)
+
+        self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build)
+
+    def _state(self, world: World) -> tuple[object, ...]:
+        """Return what panels show beside figures."""
+        window, pace = self._window, self._window.pace
+        shown = window.help, window.error_study.shown, window.recovery.offered, window.figures, window.level
+        time = pace.paused, pace.speed, world.time if pace.paused else None
+        return (
+            world,
+            window.tool,
+            window.selection.entities,
+            world.motion_edits,
+            window.canvas.size,
+            shown,
+            time,
+        )
+
+    def _build(
+        self, world: World, figures: WorldFigures, details: Sequence[Line], measures: Sequence[Line]
+    ) -> None:
+        ui, window, layout = self.ui, self._window, self.layout
+        build_menu_bar(ui, world, window)
+        build_palette(ui, layout.palette, window)
+        build_transport(ui, layout.transport, world, window)
+        if window.figures:
+            with ui.panel("side", layout.side):
+                build_levels(ui, window)
+                if window.selection.entities:
+                    self._inspector.build(ui, world, window)
+                else:
+                    build_world(ui, world, figures, window)
+                if window.level != "Explore":
+                    ui.gap(0.3)
+                    ui.rule()
+                    build_figures(ui, measures if window.level == "Measure" else [*measures, *details])
+                ui.gap(0.3)
+                ui.rule()
+                self._build_counts(ui, figures)
+        if window.recovery.offered:
+            build_recovery(ui, window)
+        if window.error_study.shown:
+            build_error_plot(ui, window)
+        if window.help:
+            build_help(ui, window)
+
+    def _build_counts(self, ui: Ui, figures: WorldFigures) -> None:
+        """Write the numbers that say how much there is to do."""
+        ui.row(
+            "Bodies", f"{figures.bodies}, {figures.asleep} asleep" if figures.asleep else f"{figures.bodies}"
+        )
+        ui.row("Contacts", f"{figures.contacts}", "Pairs that touch", lesser=False)
+        ui.row("Candidate pairs", f"{figures.candidate_pairs}", "Pairs that are near each other")
+        ui.row("Frame rate", f"{figures.frame_rate:.0f} FPS")
+
+    def draw(self, canvas: Canvas) -> None:
+        """Show panels as they were built last."""
+        canvas.paint(self.toolkit.draw)
+
+    @property
+    def covered(self) -> list[Rect]:
+        """Where panels lie [px]."""
+        return self.toolkit.covered

@@ -1,0 +1,80 @@
+"""The menus at the top: all that a key does can be found there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from imgui_bundle import imgui
+
+from physicslab.ecs.text import printable
+from physicslab.scenes import SCENES
+from physicslab.view.canvas.drawable_text import shortened
+from physicslab.view.controls import file_actions
+from physicslab.view.controls.controls import CONTROLS
+from physicslab.view.controls.scene_files import scene_files
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.window import Window
+from physicslab.world import World
+
+__all__ = ["build_menu_bar"]
+
+_MENUS = {"File": ("file", "quit"), "Edit": ("edit",), "World": ("laws",), "View": ("show", "view", "window"),
+          "Help": ("help",)}  # fmt: skip
+"""Which groups of controls each menu shows."""
+_MAX_TITLE = 60
+
+
+def build_menu_bar(ui: Ui, world: World, window: Window) -> None:
+    """Build the menus, and the title of the scene at the right."""
+    if not imgui.begin_main_menu_bar():
+        return
+    for name, groups in _MENUS.items():
+        with ui.menu(name) as shown:
+            if shown:
+                _build_controls(ui, groups, world, window)
+        if name == "File":
+            with ui.menu("Scenes") as shown:
+                if shown:
+                    _build_scenes(ui, world, window)
+    title = shortened(printable(world.title or world.name or "A scene"), _MAX_TITLE)
+    room = imgui.get_content_region_avail().x - imgui.calc_text_size(title).x
+    if room > 0:
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + room)
+        ui.faint(title, wrapped=False)
+    imgui.end_main_menu_bar()
+
+
+def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Window) -> None:
+    for n, group in enumerate(groups):
+        if n:
+            ui.rule()
+        for control in CONTROLS:
+            if control.group == group and ui.item(
+                control.title, control.label, on=control.on(world, window), tip=control.tip
+            ):
+                window.deeds.append(control.pressed)
+
+
+def _build_scenes(ui: Ui, world: World, window: Window) -> None:
+    """Build a line for each scene, built-in or in the working directory."""
+    for name, scene in SCENES.items():
+        if ui.item(scene.title, on=world.title == scene.title, tip=scene.description):
+            window.deeds.append(_opening(name))
+    try:
+        files = scene_files(Path.cwd())
+    except OSError as error:
+        ui.faint(f"Files could not be listed: {error}")
+        return
+    if files:
+        ui.rule()
+        ui.faint("Files in the working directory")
+    for path in files:
+        if ui.item(printable(path.name)):
+            window.deeds.append(_opening(path))
+
+
+def _opening(source: str | Path) -> file_actions.Deed:
+    def deed(world: World, window: Window) -> None:
+        file_actions.open_scene(window, source)
+
+    return deed

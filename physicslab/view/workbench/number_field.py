@@ -1,0 +1,124 @@
+"""Fields for numbers: typed with units, or changed by dragging their label."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import pygame
+from imgui_bundle import ImVec2, imgui
+
+from physicslab.ecs.fields import Field, InvalidValue
+from physicslab.ecs.quantity_text import InvalidText, evaluate
+from physicslab.view.toolkit.style import packed
+from physicslab.view.toolkit.ui import Ui
+
+__all__ = ["NumberFields", "shown_number"]
+
+_DRAG = 0.005
+"""Share of its size by which a number changes a pixel; of numbers below one, share of one."""
+_FINER, _COARSER = 0.1, 10.0
+"""What Shift and Ctrl make of that."""
+
+type Commit = Callable[[float], None]
+
+
+def shown_number(value: float, figures: int = 6) -> str:
+    """Return a number as a field shows it: so many figures, and no more than it has.
+
+    >>> shown_number(0.1 + 0.2), shown_number(-0.0), shown_number(1234567.0), shown_number(2.0)
+    ('0.3', '0', '1.23457e+06', '2')
+    """
+    return f"{value + 0.0:.{figures}g}"
+
+
+@dataclass(slots=True)
+class _Draft:
+    """What is being written in a field, and why it was refused."""
+
+    text: str
+    refusal: str = ""
+
+
+class NumberFields:
+    """The fields of a panel; what is half written in one is kept from frame to frame."""
+
+    def __init__(self) -> None:
+        self._drafts: dict[str, _Draft] = {}
+        self._dragged: tuple[str, float] | None = None
+
+    def clear(self) -> None:
+        """Forget what was half written."""
+        self._drafts.clear()
+
+    def build(self, ui: Ui, key: str, value: float, spec: Field, width: float, commit: Commit) -> str:
+        """Build one field, and return why what was written in it is refused; empty while it is not.
+
+        ``commit`` is called with a number that the field may hold, once Enter or Tab is pressed, or the field
+        is left.
+        """
+        draft = self._drafts.get(key)
+        written = draft.text if draft else shown_number(value, 4 if spec.kind == "vector" else 6)
+        text, active, left = ui.field(key, written, width, wrong=bool(draft and draft.refusal))
+        escaped = active and imgui.is_key_pressed(imgui.Key.escape)
+        if left and not escaped:
+            self._take(key, text, spec, commit)
+        elif active and draft is None:
+            self._drafts[key] = _Draft(text)
+        elif active and draft is not None:
+            draft.text = text
+        elif draft is not None and not draft.refusal:
+            del self._drafts[key]
+        draft = self._drafts.get(key)
+        return draft.refusal if draft else ""
+
+    def _take(self, key: str, text: str, spec: Field, commit: Commit) -> None:
+        """Hand a number over, or keep the text with the reason why it is none."""
+        try:
+            value = evaluate(text, spec.unit)
+            spec.check((value, 0.0) if spec.kind == "vector" else value)
+            commit(value)
+        except InvalidText as error:
+            self._drafts[key] = _Draft(text, str(error))
+        except InvalidValue as error:
+            self._drafts[key] = _Draft(text, f"must be {error.allowed}")
+        else:
+            self._drafts.pop(key, None)
+
+    def label(
+        self, ui: Ui, key: str, words: str, width: float, value: float | None, tip: str, commit: Commit
+    ) -> None:
+        """Build a label; dragging it to the side changes its number, Shift finer, Ctrl coarser."""
+        corner = imgui.get_cursor_screen_pos()
+        imgui.invisible_button(f"drag {key}", ImVec2(width, imgui.get_frame_height()))
+        ui.note(f"label {key}")
+        ui.words.append(words)
+        drawn = (
+            ui.theme.accent
+            if value is not None and (imgui.is_item_hovered() or imgui.is_item_active())
+            else ui.theme.faint
+        )
+        place = ImVec2(corner.x, corner.y + 0.5 * (imgui.get_frame_height() - imgui.get_font_size()))
+        imgui.get_window_draw_list().add_text(place, packed(drawn), words)
+        if value is None:
+            ui.tip(tip)
+            return
+        if imgui.is_item_active() and imgui.is_mouse_dragging(0, 2.0):
+            if self._dragged is None or self._dragged[0] != key:
+                self._dragged = key, value
+            held = pygame.key.get_mods()
+            factor = _FINER if held & pygame.KMOD_SHIFT else _COARSER if held & pygame.KMOD_CTRL else 1.0
+            moved = imgui.get_mouse_drag_delta(0, 2.0).x
+            self._commit(self._dragged[1] + moved * factor * _DRAG * max(abs(self._dragged[1]), 1.0), commit)
+        elif self._dragged is not None and self._dragged[0] == key:
+            self._dragged = None
+        else:
+            ui.tip(f"{tip}\nDrag to change; Shift: finer, Ctrl: coarser" if tip else "")
+
+    @staticmethod
+    def _commit(value: float, commit: Commit) -> None:
+        """Hand over what a drag gives, to six figures; where the field cannot hold it, nothing happens."""
+        try:
+            commit(float(f"{value:.6g}"))
+        except InvalidValue:
+            return

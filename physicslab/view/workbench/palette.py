@@ -1,0 +1,50 @@
+"""The tools at the left: what the mouse does in the world."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, imgui
+
+from physicslab.view.canvas.canvas import Rect
+from physicslab.view.controls import actions
+from physicslab.view.controls.icons import ICONS
+from physicslab.view.controls.tools import MORE_TOOLS, PALETTE, Tool
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.window import Window
+from physicslab.world import World
+
+__all__ = ["build_palette"]
+
+
+def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
+    """Build a button for each tool, with its icon and its name; the tool in hand is marked."""
+    with ui.panel("palette", rect, padded=False):
+        imgui.push_style_var(imgui.StyleVar_.button_text_align, ImVec2(0.0, 0.5))
+        width, height = imgui.get_content_region_avail().x, 1.9 * ui.size
+        for tool in PALETTE:
+            if ui.button(
+                tool.title, tool.usage, shown=_words(tool), on=window.tool == tool.name, size=(width, height)
+            ):
+                _take_up(tool, window)
+        hidden = next((tool for tool in MORE_TOOLS if tool.name == window.tool), None)
+        words = f"{ICONS['more']}  More" if hidden is None else _words(hidden)
+        if ui.button(
+            "More", "More to put into the world", shown=words, on=hidden is not None, size=(width, height)
+        ):
+            imgui.open_popup("more tools")
+        if imgui.begin_popup("more tools"):
+            for tool in MORE_TOOLS:
+                if ui.item(tool.title, on=window.tool == tool.name, tip=tool.usage):
+                    _take_up(tool, window)
+            imgui.end_popup()
+        imgui.pop_style_var()
+
+
+def _words(tool: Tool) -> str:
+    return f"{ICONS[tool.name]}  {tool.title}"
+
+
+def _take_up(tool: Tool, window: Window) -> None:
+    def deed(world: World, window: Window) -> None:
+        actions.choose_tool(window, tool)
+
+    window.deeds.append(deed)
