@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pygame
@@ -99,10 +100,8 @@ class Pictures:
         box = _extent(vertices, clips, data)
         if box is None:
             return None
-        if not paint_triangles.compiled:
-            compile_kernels((paint_triangles,))
-            if not paint_triangles.compiled:  # interpreted it would take seconds: the world is shown without
-                return None
+        if not _can_paint():
+            return None
         left, top, right, bottom = box
         surface = pygame.Surface((right - left, bottom - top), pygame.SRCALPHA, 32, _MASKS)
         pixels = np.frombuffer(surface.get_buffer(), np.uint32).reshape(
@@ -125,6 +124,14 @@ class Pictures:
         self.painted += 1
         self._pictures[name] = picture = _Picture(content, surface, (left, top), self._frame)
         return picture
+
+
+def _can_paint() -> bool:
+    """Whether the painter is compiled; interpreted it would take seconds: the world is shown without panels."""
+    painter: Any = paint_triangles
+    if not painter.compiled:
+        compile_kernels((painter,))
+    return bool(painter.compiled)
 
 
 def _arrays(commands: imgui.ImDrawList) -> tuple[NDArray[np.float32], NDArray[np.uint32], bytes]:
