@@ -127,7 +127,7 @@ class Pictures:
 
 
 def _can_paint() -> bool:
-    """Whether the painter is compiled; interpreted it would take seconds: the world is shown without panels."""
+    """Whether the painter is compiled; interpreted it would take seconds a frame."""
     painter: Any = paint_triangles
     if not painter.compiled:
         compile_kernels((painter,))
