@@ -9,7 +9,8 @@ from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
-    "GRAVITY_MODES", "SOFTENING_LAWS", "PhysicsConfig", "SimulationConfig", "WindowConfig", "field_names",
+    "GRAVITY_MODES", "SOFTENING_LAWS", "PhysicsConfig", "SimulationConfig", "WindowConfig", "checked_box",
+    "field_names",
 ]  # fmt: skip
 
 GRAVITY_MODES = ("linear", "planet", "none")
@@ -93,23 +94,25 @@ class PhysicsConfig:
     def __post_init__(self) -> None:
         _settle(self)
         if self.bounds is not None:
-            object.__setattr__(self, "bounds", _box(self.section, "bounds", self.bounds))
+            object.__setattr__(self, "bounds", checked_box(self.section, "bounds", self.bounds))
 
 
-def _box(owner: str, name: str, value: Any) -> tuple[float, ...]:
+def checked_box(owner: str, name: str, value: Any) -> tuple[float, float, float, float]:
+    """Return a rectangle xmin, ymin, xmax, ymax [m], or raise :class:`InvalidValue`."""
     corner = Field(name, "vector", limit=COORDINATE_LIMIT, owner=owner)
     try:
         xmin, ymin, xmax, ymax = value
-        box = (*corner.check((xmin, ymin)), *corner.check((xmax, ymax)))
+        (xmin, ymin), (xmax, ymax) = corner.check((xmin, ymin)), corner.check((xmax, ymax))
+        ordered = xmin < xmax and ymin < ymax
     except (TypeError, ValueError):
-        box = ()
-    if not box or not (box[0] < box[2] and box[1] < box[3]):
+        ordered = False
+    if not ordered:
         words = (
             "null or four finite numbers [xmin, ymin, xmax, ymax] m with xmin < xmax and ymin < ymax, "
             f"at most {COORDINATE_LIMIT:g} each"
         )
         raise InvalidValue(owner, name, value, words)
-    return box
+    return xmin, ymin, xmax, ymax
 
 
 @dataclass(frozen=True, slots=True)

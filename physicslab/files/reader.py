@@ -10,7 +10,7 @@ import esper
 from physicslab.contacts.islands import restore_rests
 from physicslab.contacts.memory import restore_contacts
 from physicslab.ecs.component import Component, InvalidValue
-from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig, field_names
+from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig, checked_box, field_names
 from physicslab.ecs.fields import Field
 from physicslab.files.checks import (
     SceneError,
@@ -27,6 +27,7 @@ from physicslab.files.remainders import check_remainders
 from physicslab.integrators import INTEGRATORS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.state.remainders import Remainders
+from physicslab.state.state import View
 from physicslab.stepping.plan import MAX_STEPS
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
@@ -42,7 +43,7 @@ TITLE_LIMIT = 200
 """Characters that its title may have: it stands over the window, and on a line of the menu."""
 
 _KEYS = (
-    "format", "name", "title", "description", "time", "physics", "simulation", "entities", "contacts",
+    "format", "name", "title", "description", "view", "time", "physics", "simulation", "entities", "contacts",
     "rests", "solver", "remainders",
 )  # fmt: skip
 
@@ -55,6 +56,8 @@ class SceneDraft:
     ----------
     name, title, description : str
         What the scene is called and about.
+    view : View, optional
+        What a window shows of it at first.
     time : float
         Where its clock stands [s].
     physics, simulation : PhysicsConfig, SimulationConfig
@@ -75,6 +78,7 @@ class SceneDraft:
     name: str
     title: str
     description: str
+    view: View | None
     time: float
     physics: PhysicsConfig
     simulation: SimulationConfig
@@ -114,7 +118,7 @@ def read_scene(document: object, source: str = "scene") -> World:
     before = esper.current_world
     world = World(*standard_systems(), physics=draft.physics, simulation=draft.simulation)
     world.name, world.title, world.description = draft.name, draft.title, draft.description
-    world.time = draft.time
+    world.view, world.time = draft.view, draft.time
     for number, (id_, components) in enumerate(draft.entities, start=1):
         entity = world.spawn(*components, name=id_)
         assert entity == number, "a new world numbers its entities from 1"
@@ -151,6 +155,7 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
         name=checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
         title=checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
         description=checked_text(scene.get("description", ""), f"{source}: description", lines=True),
+        view=_view(scene.get("view"), source),
         time=_time(scene.get("time", 0.0), f"{source}: time"),
         physics=_config(PhysicsConfig, scene.get("physics", {}), source),
         simulation=simulation,
@@ -160,6 +165,16 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
         remainders=check_remainders(scene.get("remainders", []), entities, ids, source),
         solver=_solver(scene.get("solver", {}), simulation, f"{source}: solver"),
     )
+
+
+def _view(value: object, source: str) -> View | None:
+    """Return what a window shows of the scene at first [m]."""
+    if value is None:
+        return None
+    try:
+        return checked_box("scene", "view", value)
+    except InvalidValue as error:
+        raise refusal(f"{source}: view", value, error.allowed) from None
 
 
 _SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, owner="solver")

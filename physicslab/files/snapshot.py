@@ -46,6 +46,8 @@ class WorldSnapshot:
         What was chosen for the motion as it once was, where it would not be chosen now.
     texts : dict of str to str
         Name, title and description of the world.
+    view : View, optional
+        What a window shows of it at first.
     time : float
         Time of the world [s].
     """
@@ -60,6 +62,7 @@ class WorldSnapshot:
         self.names = {entity: name for entity, name in named if entity in living}
         self.texts = {key: getattr(world, key) for key in ("name", "title", "description")}
         self.time, self.physics, self.simulation = world.time, world.physics, world.simulation
+        self.view = world.view
         self.shaped = set(world.batch(Shape).entities.tolist())
         self.contacts: Contacts = copied(world.contacts)
         self.rests = export_rests(world)

@@ -65,6 +65,8 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
     document: dict[str, Any] = {"format": FORMAT} | {
         key: text for key, text in snapshot.texts.items() if text
     }
+    if snapshot.view is not None:
+        document["view"] = list(snapshot.view)
     if snapshot.time:
         document["time"] = snapshot.time
     document["physics"] = _settings(snapshot.physics)

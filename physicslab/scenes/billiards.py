@@ -27,6 +27,7 @@ BILLIARDS = Scene(
     title="The break",
     description="A cue ball runs into a rack of fifteen, seen from above: where does its momentum go?",
     fill=_fill,
+    view=(-5.1, -2.6, 5.1, 2.6),
     physics=PhysicsConfig(
         gravity_mode="none",
         bounds=(-5.0, -2.5, 5.0, 2.5),

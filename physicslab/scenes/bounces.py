@@ -18,4 +18,5 @@ BOUNCES = Scene(
     title="Five restitutions",
     description="Five balls fall from one height; each bounce reaches e squared of the height before.",
     fill=_fill,
+    view=(-7.0, -1.0, 7.0, 5.2),
 )

@@ -22,4 +22,5 @@ DOMINOES = Scene(
     title="Twenty dominoes",
     description="A push on the first brings down the last: a wave that takes its energy from their height.",
     fill=_fill,
+    view=(-7.0, -1.0, 8.0, 2.5),
 )

@@ -17,4 +17,5 @@ DROP = Scene(
     title="A ball on a floor",
     description="A ball keeps 0.8 of its approach speed at every bounce; friction sets it rolling.",
     fill=_fill,
+    view=(-5.0, -1.0, 5.0, 4.8),
 )

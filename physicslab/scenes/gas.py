@@ -19,5 +19,6 @@ GAS = Scene(
     title="A gas of two thousand discs",
     description="Elastic, frictionless discs fill 17 % of a box; their kinetic energy should stay the same.",
     fill=_fill,
+    view=(-12.2, -7.7, 12.2, 7.7),
     physics=PhysicsConfig(gravity_mode="none", bounds=_WALLS, bounds_restitution=1.0, bounds_friction=0.0),
 )

@@ -25,6 +25,7 @@ NEWTONS_CRADLE = Scene(
     title="Newton's cradle",
     description="One ball goes in and one comes out: momentum and energy together leave no other way.",
     fill=_fill,
+    view=(-3.2, 0.4, 3.2, 4.2),
     # The strings are springs of 224 rad/s, which eight substeps follow closely.
     simulation=SimulationConfig(substeps=8),
 )

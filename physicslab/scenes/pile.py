@@ -17,4 +17,5 @@ PILE = Scene(
     title="A thousand discs",
     description="A thousand discs of 0.2 m fall into a container and come to rest.",
     fill=_fill,
+    view=(-6.5, -1.0, 6.5, 8.0),
 )

@@ -19,5 +19,6 @@ PYRAMID = Scene(
     title="A pyramid of 465 boxes",
     description="Thirty rows of boxes of 1 m, a measure for contact solvers: they should not sink or spread.",
     fill=_fill,
+    view=(-20.0, -1.2, 20.0, 30.5),
     physics=PhysicsConfig(gravity=Vector2(0.0, -10.0)),
 )

@@ -31,5 +31,6 @@ SANDBOX = Scene(
     title="Sandbox",
     description="A floor, a ramp, a pile of boxes and a pendulum to play with.",
     fill=_fill,
+    view=(-5.9, -0.5, 5.9, 5.9),
     physics=PhysicsConfig(bounds=(-5.8, -0.4, 5.8, 5.8)),
 )

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.state.state import View
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
@@ -22,6 +23,8 @@ class Scene:
         For the command line, for a heading, and one line on what there is to see.
     fill : callable
         Spawns everything in the world that it is given.
+    view : tuple of four floats
+        What a window shows of it: xmin, ymin, xmax, ymax [m], with room for its first 10 s of motion.
     physics, simulation : PhysicsConfig, SimulationConfig
         The laws, and how they are stepped.
     """
@@ -30,6 +33,7 @@ class Scene:
     title: str
     description: str
     fill: Callable[[World], None]
+    view: View
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     simulation: SimulationConfig = field(default_factory=SimulationConfig)
 
@@ -37,5 +41,6 @@ class Scene:
         """Return a new world of this scene, the same each time."""
         world = World(*standard_systems(), physics=self.physics, simulation=self.simulation)
         world.name, world.title, world.description = self.name, self.title, self.description
+        world.view = self.view
         self.fill(world)
         return world

@@ -28,4 +28,5 @@ SLOPE = Scene(
     title="Friction on a slope",
     description="Four blocks on a slope of 20 degrees: those with a friction below tan 20 = 0.364 slide.",
     fill=_fill,
+    view=(-7.8, -3.4, 7.8, 3.4),
 )

@@ -25,5 +25,6 @@ SOLAR_SYSTEM = Scene(
     title="A star and five planets",
     description="The squares of the periods go like the cubes of the distances: Kepler's third law.",
     fill=_fill,
+    view=(-3.5, -3.3, 2.5, 3.5),
     physics=PhysicsConfig(gravity_mode="planet"),
 )

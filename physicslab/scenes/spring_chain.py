@@ -16,4 +16,5 @@ SPRING_CHAIN = Scene(
     title="A chain of springs",
     description="Twenty balls on springs sag like a hanging chain; waves run along it and die out.",
     fill=_fill,
+    view=(-4.2, 0.2, 4.2, 3.6),
 )

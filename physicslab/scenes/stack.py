@@ -17,4 +17,5 @@ STACK = Scene(
     title="A tower of ten boxes",
     description="Ten boxes of 1 m and 1 kg on top of each other; they should stand.",
     fill=_fill,
+    view=(-7.0, -1.0, 7.0, 10.4),
 )

@@ -18,5 +18,6 @@ TWO_PLANETS = Scene(
     title="Two planets",
     description="Two planets on ellipses about their centre of mass; their total momentum stays zero.",
     fill=_fill,
+    view=(-2.2, -2.2, 3.8, 2.2),
     physics=PhysicsConfig(gravity_mode="planet"),
 )

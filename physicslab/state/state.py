@@ -24,7 +24,10 @@ from physicslab.state.contacts import Contacts
 from physicslab.state.remainders import NO_REMAINDERS, Remainders
 from physicslab.state.sleep import Sleep
 
-__all__ = ["State"]
+__all__ = ["State", "View"]
+
+type View = tuple[float, float, float, float]
+"""What a window shows of a world at first: xmin, ymin, xmax, ymax [m]."""
 
 _numbers = itertools.count(1)
 
@@ -36,6 +39,8 @@ class State:
     ----------
     name, title, description : str
         Of the scene.
+    view : View, optional
+        What a window shows of it at first; all of it where there is none.
     time : float
         The clock [s]. Within a step it is that of the state which a force or a stage sees.
     steps : int
@@ -90,6 +95,7 @@ class State:
         self._physics = physics or PhysicsConfig()
         self._simulation = simulation or SimulationConfig()
         self.name, self.title, self.description = "", "", ""
+        self.view: View | None = None
         self.time, self.steps, self.revision, self.motion_edits = 0.0, 0, 0, 0
         self.substeps, self.step_divisions = self._simulation.substeps, 1
         self.force_evaluations = self.collisions = 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Spring, Transform
+from physicslab.components import Mass, Spring, Transform
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look, Points
 from physicslab.view.canvas.theme import Theme
@@ -25,6 +25,10 @@ _MIN_COIL = 26.0
 """Length [px] below which a spring is a plain line."""
 _MAX_COILS = 500
 """Number of springs above which each is a plain line."""
+_SAG = 0.005
+"""Share of its length that the weight of a body stretches a spring by which is drawn as a string."""
+_EARTH = 9.81
+"""What a weight is here, whatever gravity is on [m/s^2]."""
 _PIN = 4.0
 """Radius of a pin [px]."""
 
@@ -44,7 +48,9 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
     seen = _on_screen(start, end, camera.size)
     start, end, rest, fixed = start[seen], end[seen], rest[seen], (b == 0)[seen]
     length = np.hypot(*(end - start).T)
-    plain = (length < _MIN_COIL) if len(rows) <= _MAX_COILS else np.ones(len(length), np.bool_)
+    plain = (length < _MIN_COIL) | _looks_rigid(world, rows, np.where(a == 0, own, a), b)[seen]
+    if len(rows) > _MAX_COILS:
+        plain[:] = True
     if plain.any():
         canvas.lines(start[plain], end[plain], theme.spring, 1.6)
     if not plain.all():
@@ -55,6 +61,18 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
         count = len(pins)
         look = Look.plain(theme.pin, theme.pin, count)
         canvas.discs(pins, np.full(count, _PIN), np.zeros(count), look)
+
+
+def _looks_rigid(
+    world: World, rows: NDArray[np.int64], a: NDArray[np.int64], b: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Whether each spring is so stiff that the weight of what it holds hardly stretches it: a rod or a string."""
+    spring, mass, lookup = world.table(Spring), world.table(Mass), world.entity_index.lookup
+    held = np.maximum(mass["mass"][lookup[a]], mass["mass"][lookup[b]] * (b != 0))
+    with np.errstate(over="ignore"):
+        weight = _EARTH * held
+        rigid: NDArray[np.bool_] = weight < _SAG * spring["stiffness"][rows] * spring["rest_length"][rows]
+    return rigid
 
 
 def coil(start: Points, end: Points, rest: NDArray[np.float64]) -> Points:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas, Rect
 from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.overlay.overlays import Overlays
@@ -137,7 +137,7 @@ class Window:
         self.notice_failed = False
         self.recovery = Recovery()
         self._notice, self._notice_until = "", 0.0
-        self._shown: tuple[Vector2, float, float] | None = None
+        self._shown: tuple[Vector2, float, float, Extent | None] | None = None
 
     @property
     def middle(self) -> tuple[float, float]:
@@ -171,21 +171,24 @@ class Window:
             return
         self.camera.resize(self.canvas.size)
         if self._shown is not None and self._shown[:2] == (self.camera.centre, self.camera.scale):
-            self._show(world, self._shown[2])
+            self._show(world, *self._shown[2:])
 
     def go_home(self, world: World) -> None:
-        """Show the world as at the start: at the usual scale where all of it fits, else smaller."""
-        self._show(world, self.config.pixels_per_metre)
+        """Show the world as at the start: what its scene says is to be seen, or else all of it.
+
+        Of a scene that does not say it is shown at the usual scale where it fits, else smaller.
+        """
+        self._show(world, float("inf") if world.view else self.config.pixels_per_metre, world.view)
 
     def fit(self, world: World) -> None:
         """Show all of the world, as large as it goes."""
         self._show(world, float("inf"))
 
-    def _show(self, world: World, largest_scale: float) -> None:
-        extent, room = extent_of(world), self.room()
+    def _show(self, world: World, largest_scale: float, view: Extent | None = None) -> None:
+        extent, room = view or extent_of(world), self.room()
         if extent is None:
             self.camera.look_at((0.0, 0.0, 0.0, 0.0), self.config.pixels_per_metre, room)
         else:
             scale = min(self.camera.fitting_scale(extent, room, _AROUND), largest_scale)
             self.camera.look_at(extent, scale, room)
-        self._shown = (self.camera.centre, self.camera.scale, largest_scale)
+        self._shown = (self.camera.centre, self.camera.scale, largest_scale, view)
