@@ -80,6 +80,7 @@ class Sandbox:
         window.selection.clear()
         window.error, window.next_world = "", None
         window.go_home(world)
+        window.unchanged = world.motion_edits
 
     def frame(self, elapsed: float) -> None:
         """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last."""
@@ -93,6 +94,17 @@ class Sandbox:
         self.world.frame(Stage.HUD, elapsed)
         if self._autosave is not None:
             self._keep(self._autosave)
+
+    def is_still(self) -> bool:
+        """Whether the next frame would show what this one does, unless the user does something."""
+        window = self.window
+        busy = (
+            window.error_study.running
+            or window.next_world is not None
+            or bool(window.deeds)
+            or window.closing
+        )
+        return not (busy or window.is_moving(self.world) or self.interface.toolkit.unsettled)
 
     def _keep(self, autosave: Autosave) -> None:
         """Let the state be saved where that is due; say once where it cannot be."""

@@ -200,7 +200,7 @@ def leave(world: World, window: Window) -> None:
     elif window.tool != HAND.name:
         choose_tool(window, HAND)
     else:
-        close(world, window)
+        window.ask_to_close(world)
 
 
 def close(world: World, window: Window) -> None:

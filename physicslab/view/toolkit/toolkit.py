@@ -124,6 +124,11 @@ class Toolkit:
         flags = imgui.PopupFlags_
         return bool(imgui.is_popup_open("", flags.any_popup_id | flags.any_popup_level))
 
+    @property
+    def unsettled(self) -> bool:
+        """Whether panels are to be built in the next frame whatever happens."""
+        return self._unsettled > 0
+
     def wake(self) -> None:
         """Have panels built in the next frames: something changed."""
         self._unsettled = _SETTLING
