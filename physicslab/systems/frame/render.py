@@ -5,6 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from physicslab.systems.system import Stage, System, at
+from physicslab.view.controls.picking import body_at
+from physicslab.view.controls.placing import refused_place
+from physicslab.view.controls.tools import TOOLS
+from physicslab.view.overlay.ghost import draw_ghost
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.selection_marks import draw_selection
@@ -53,4 +57,23 @@ class RenderSystem(System):
         if overlays.impulses:
             draw_impulses(world, overlays, camera, theme, canvas, text_size(canvas, window.text_scale) - 2)
         draw_selection(world, window.selection.entities, camera, theme, canvas)
+        self._draw_ghost(world)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
+
+    def _draw_ghost(self, world: World) -> None:
+        """Show at the cursor what a click would make, in the colour of errors where there is no room."""
+        window, spawn = self._window, TOOLS[self._window.tool].spawn
+        left, top, width, height = window.room()
+        x, y = window.pointer
+        inside = left <= x < left + width and top <= y < top + height
+        idle = window.hand.entity is None and not window.pointer_on_panel and window.has_pointed
+        if (
+            spawn is None
+            or not inside
+            or not idle
+            or body_at(world, window.camera, window.pointer) is not None
+        ):
+            return
+        ghost, theme = spawn.outlines(window), window.theme
+        colour = theme.error if refused_place(world, ghost) else theme.accent
+        draw_ghost(ghost.place, ghost.half, ghost.radius, ghost.angle, colour, window.camera, window.canvas)

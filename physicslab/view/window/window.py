@@ -63,6 +63,8 @@ class Window:
         Time [s] that the window has been open; it runs while the world is paused.
     pointer : tuple of two floats
         Where the cursor is [px].
+    pointer_on_panel, has_pointed : bool
+        Whether the cursor is on a panel, and whether it was ever moved.
     gravity_before : str
         The mode that gravity goes back to after planet mode.
     spawned : int
@@ -119,6 +121,7 @@ class Window:
         self.trails = TrailSwitch()
         self.now = 0.0
         self.pointer: tuple[float, float] = (0.5 * canvas.size[0], 0.5 * canvas.size[1])
+        self.pointer_on_panel = self.has_pointed = False
         self.gravity_before = "linear"
         self.spawned = 0
         self.wants_screenshot = False
