@@ -8,6 +8,7 @@ from physicslab.systems.system import Stage, System, at
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.placing import refused_place
 from physicslab.view.controls.tools import TOOLS
+from physicslab.view.overlay.free_body import draw_free_body
 from physicslab.view.overlay.ghost import draw_ghost
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
@@ -55,10 +56,21 @@ class RenderSystem(System):
         if overlays.arrows:
             draw_vectors(world, overlays, camera, theme, canvas)
         if overlays.impulses:
-            draw_impulses(world, overlays, camera, theme, canvas, text_size(canvas, window.text_scale) - 2)
+            self._draw_impulses(world)
         draw_selection(world, window.selection.entities, camera, theme, canvas)
+        if overlays.arrows and len(window.selection.entities) == 1:
+            size = text_size(canvas, window.text_scale) - 1
+            draw_free_body(world, window.selection.entities[0], overlays, camera, theme, canvas, size)
         self._draw_ghost(world)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
+
+    def _draw_impulses(self, world: World) -> None:
+        """Draw impulses; resting contacts have numbers where they are selected or under the cursor."""
+        window = self._window
+        hovered = None if window.pointer_on_panel else body_at(world, window.camera, window.pointer)
+        written = {*window.selection.entities, *(() if hovered is None else (hovered,))}
+        size = text_size(window.canvas, window.text_scale) - 2
+        draw_impulses(world, window.overlays, written, window.camera, window.theme, window.canvas, size)
 
     def _draw_ghost(self, world: World) -> None:
         """Show at the cursor what a click would make, in the colour of errors where there is no room."""

@@ -12,9 +12,6 @@ from physicslab.view.canvas.theme import Colour, Theme, mixed
 
 __all__ = ["Fonts", "add_fonts", "apply_theme", "packed"]
 
-_ICON_RANGE = (0xF000, 0xF8FF)
-"""Where the letters are that show icons."""
-
 
 @dataclass(frozen=True, slots=True)
 class Fonts:
@@ -35,6 +32,9 @@ def add_fonts() -> Fonts:
 def _font(folder: Path, weight: str) -> imgui.ImFont:
     atlas = imgui.get_io().fonts
     font = atlas.add_font_from_file_ttf(str(folder / "Roboto" / f"Roboto-{weight}.ttf"), 16.0)
+    raised = imgui.ImFontConfig()
+    raised.merge_mode = True  # for raised figures, which Roboto has in part
+    atlas.add_font_from_file_ttf(str(folder / "Inconsolata-Medium.ttf"), 16.0, raised)
     icons = imgui.ImFontConfig()
     icons.merge_mode = True
     icons.glyph_min_advance_x = 16.0
