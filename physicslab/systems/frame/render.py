@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from physicslab.systems.system import Stage, System, at
 from physicslab.view.controls.picking import body_at
-from physicslab.view.controls.placing import refused_place
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.overlay.free_body import draw_free_body
 from physicslab.view.overlay.ghost import draw_ghost
@@ -16,6 +15,7 @@ from physicslab.view.overlay.selection_marks import draw_selection
 from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.panels.panels import text_size
 from physicslab.view.picture.painting import draw_world
+from physicslab.view.window.placing import refused_place
 
 if TYPE_CHECKING:
     from physicslab.state.state import State

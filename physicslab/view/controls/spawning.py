@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import binary, box, chain, circle, container, pendulum, pile, pyramid, stack
-from physicslab.view.controls.placing import Outlines, outlines_of, refused_place
 from physicslab.view.window.edits import announce_edit
+from physicslab.view.window.placing import Outlines, outlines_of, refused_place
 from physicslab.view.window.window import Window
 from physicslab.world import World
 

@@ -90,6 +90,7 @@ def apply_theme(theme: Theme, size: float) -> None:
     ):  # fmt: skip
         style.set_color_(kind, _vector(colour, opacity))
     plot, colours = implot.get_style(), implot.Col_
+    plot.fit_padding = ImVec2(0.0, 0.08)  # or a line that stays at its largest lies under the frame
     for name, colour, opacity in (
         (colours.frame_bg, theme.panel, 0.0), (colours.plot_bg, theme.background, 1.0),
         (colours.plot_border, theme.outline, 1.0), (colours.legend_bg, theme.panel, 0.85),

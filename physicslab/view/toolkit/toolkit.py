@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
+from typing import Any
 
 import pygame
 from imgui_bundle import ImVec2, imgui, implot
@@ -20,6 +21,10 @@ _SETTLING = 3
 """Frames that Dear ImGui takes to follow an event: sizes and hovering are those of the frame before."""
 _NOWHERE = -3.0e38
 """Where the mouse is said to be while it is not for panels."""
+
+
+_entered: list[Any] = []
+"""The contexts of Dear ImGui and ImPlot that are current."""
 
 
 class Toolkit:
@@ -39,6 +44,7 @@ class Toolkit:
         self._context = imgui.create_context()
         imgui.set_current_context(self._context)
         self._plots = implot.create_context()
+        self._enter()
         io = imgui.get_io()
         io.set_ini_filename("")
         io.set_log_filename("")
@@ -57,6 +63,7 @@ class Toolkit:
         weakref.finalize(self, _end, self._context, self._plots, self._pictures)
 
     def _enter(self) -> None:
+        _entered[:] = [self._context, self._plots]
         imgui.set_current_context(self._context)
         implot.set_current_context(self._plots)
 
@@ -214,3 +221,6 @@ def _end(context: imgui.internal.Context, plots: implot.internal.Context, pictur
     pictures.forget()
     implot.destroy_context(plots)
     imgui.destroy_context(context)
+    if _entered and _entered[0] is not context:  # another window may be in the middle of a frame
+        imgui.set_current_context(_entered[0])
+        implot.set_current_context(_entered[1])

@@ -15,6 +15,7 @@ from physicslab.view.panels.error_study import ErrorStudy
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
+from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.recovery import Recovery
@@ -87,6 +88,8 @@ class Window:
         Whether a click adds to what is selected: Shift or Ctrl is held.
     selection : Selection
         Which bodies are selected.
+    graphs : list of Graph
+        What is plotted.
     deeds : list of callables
         What panels were clicked for; it is done when the next frame begins.
     source : str or path, optional
@@ -134,6 +137,7 @@ class Window:
         self.text_scale = 1.0
         self.adding = False
         self.selection = Selection()
+        self.graphs: list[Graph] = []
         self.deeds: list[Callable[[World, Window], None]] = []
         self.source: str | Path | None = None
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
@@ -172,6 +176,11 @@ class Window:
         """Show a message for a while; ``failed`` marks what could not be done."""
         self.notice_failed = failed
         self._notice, self._notice_until = words, self.now + seconds
+
+    def plot(self, title: str, entity: int | None, names: tuple[str, ...]) -> None:
+        """Plot quantities of the world or of a body, in a graph of their own."""
+        number = 1 + max((graph.number for graph in self.graphs), default=0)
+        self.graphs.append(Graph(number, title, entity, {name: Series() for name in names}))
 
     def ask_to_close(self, world: World) -> None:
         """Close the window; where there are unsaved edits, only if it was asked for twice within a while."""

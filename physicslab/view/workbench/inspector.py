@@ -14,7 +14,7 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, vector_quantity
-from physicslab.view.controls.actions import duplicate_selected
+from physicslab.view.controls.actions import duplicate_selected, plot_selected
 from physicslab.view.controls.tools import remove_selected
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.edits import announce_edit, set_field
@@ -208,6 +208,9 @@ class Inspector:
         imgui.same_line()
         if ui.button("Delete", "Remove what is selected (Del)"):
             window.deeds.append(remove_selected)
+        imgui.same_line()
+        if ui.button("Plot", "Its speed and place against time"):
+            window.deeds.append(plot_selected)
         imgui.same_line()
         if ui.button("Done", "Select nothing (Esc)"):
             window.deeds.append(lambda _, window: window.selection.clear())

@@ -13,12 +13,14 @@ from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
+from physicslab.view.workbench.graph_panel import build_graphs
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.inspector import Inspector
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
 from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recovery_panel import build_recovery
+from physicslab.view.workbench.settings_panel import SettingsPanel
 from physicslab.view.workbench.transport import build_transport
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
 from physicslab.world import World
@@ -51,6 +53,7 @@ class Interface:
         self.toolkit = Toolkit()
         self.ui = Ui(self.toolkit.fonts, window.theme)
         self._inspector = Inspector()
+        self._settings = SettingsPanel()
         self._next = 0.0
         self._seen: tuple[object, ...] = ()
 
@@ -111,7 +114,14 @@ class Interface:
     def _state(self, world: World) -> tuple[object, ...]:
         """Return what panels show beside figures."""
         window, pace = self._window, self._window.pace
-        shown = window.help, window.error_study.shown, window.recovery.offered, window.figures, window.level
+        shown = (
+            window.help,
+            window.error_study.shown,
+            window.recovery.offered,
+            window.figures,
+            window.level,
+            len(window.graphs),
+        )
         time = pace.paused, pace.speed, world.time if pace.paused else None
         return (
             world,
@@ -137,6 +147,8 @@ class Interface:
                     self._inspector.build(ui, world, window)
                 else:
                     build_world(ui, world, figures, window)
+                    if window.level == "Engineer":
+                        self._settings.build(ui, world, window)
                 if window.level != "Explore":
                     ui.gap(0.3)
                     ui.rule()
@@ -144,6 +156,8 @@ class Interface:
                 ui.gap(0.3)
                 ui.rule()
                 self._build_counts(ui, figures)
+        if window.graphs:
+            build_graphs(ui, window)
         if window.recovery.offered:
             build_recovery(ui, window)
         if window.error_study.shown:

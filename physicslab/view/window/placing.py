@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Transform
+from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
-__all__ = ["Outlines", "outlines_of", "refused_place"]
+__all__ = ["Outlines", "free_way", "outlines_of", "refused_place"]
 
 type Numbers = NDArray[np.float64]
 
 _ALLOWED = 1e-3
 """Overlap [m] that is no obstacle: what is put down on a floor by eye."""
+_STRIDE, _MAX_STRIDES, _HALVINGS = 0.1, 64, 10
+"""A way is looked at every so many metres, at so many places at most, and then more closely."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +54,11 @@ class Outlines:
         return np.stack((across, up), axis=1)
 
 
-def outlines_of(world: World) -> Outlines:
-    """Return the outlines of all shapes of a world."""
+def outlines_of(world: World, rows: NDArray[np.int64] | None = None) -> Outlines:
+    """Return the outlines of all shapes of a world, or of those in some rows."""
     world.synchronise()
-    rows = world.batch(Transform, Shape).rows
+    if rows is None:
+        rows = world.batch(Transform, Shape).rows
     transform, shape = world.table(Transform), world.table(Shape)
     box = shape["kind"][rows] == BOX
     half = 0.5 * np.stack((shape["width"][rows], shape["height"][rows]), axis=1) * box[:, None]
@@ -75,6 +80,49 @@ def refused_place(world: World, outlines: Outlines) -> str:
             if _overlap(outlines, n, others, int(other)) > _ALLOWED:
                 return "there is no room here"
     return ""
+
+
+def free_way(world: World, entity: int, way: Vector2) -> Vector2:
+    """Return the part of a way [m] that leads a body no deeper into what cannot move: it slides along it."""
+    row = world.entity_index.row_of[entity]
+    shaped = world.batch(Transform, Shape).rows
+    walls = outlines_of(world, shaped[~world.table(Velocity).present[shaped]])
+    own = outlines_of(world, np.array([row], np.int64))
+    if not len(walls.place) or not world.has(entity, Shape):
+        return way
+    allowed = max(_deepest(own, walls), _ALLOWED)
+
+    def is_free(part: Vector2) -> bool:
+        return _deepest(own.moved(part), walls) <= allowed
+
+    gone = _as_far(is_free, Vector2(), way)
+    for rest in (Vector2(way.x - gone.x, 0.0), Vector2(0.0, way.y - gone.y)):
+        gone = _as_far(is_free, gone, rest)
+    return gone
+
+
+def _as_far(is_free: Callable[[Vector2], bool], start: Vector2, way: Vector2) -> Vector2:
+    """Return how far something comes from a free start along a way."""
+    steps = min(max(math.ceil(way.magnitude / _STRIDE), 1), _MAX_STRIDES)
+    free, blocked = 0.0, None
+    for n in range(1, steps + 1):
+        if not is_free(start + way * (n / steps)):
+            blocked = n / steps
+            break
+        free = n / steps
+    for _ in range(_HALVINGS if blocked is not None else 0):
+        middle = 0.5 * (free + (blocked or 0.0))
+        if is_free(start + way * middle):
+            free = middle
+        else:
+            blocked = middle
+    return start + way * free
+
+
+def _deepest(one: Outlines, others: Outlines) -> float:
+    """Return by how much the first shape of ``one`` overlaps any of the others [m]; at least 0."""
+    near = np.flatnonzero((np.abs(others.place - one.place[0]) < others.reach + one.reach[0]).all(axis=1))
+    return max((_overlap(one, 0, others, int(other)) for other in near), default=0.0)
 
 
 def _overlap(one: Outlines, n: int, two: Outlines, m: int) -> float:
