@@ -94,12 +94,8 @@ class RenderSystem(System):
         left, top, width, height = window.room()
         x, y = window.pointer
         inside = left <= x < left + width and top <= y < top + height
-        idle = (
-            window.hand.entity is None
-            and window.handles.dragged is None
-            and not window.pointer_on_panel
-            and window.has_pointed
-        )
+        free = window.hand.entity is None and window.handles.dragged is None
+        idle = free and not window.pointer_on_panel and window.has_pointed
         if (
             spawn is None
             or not inside

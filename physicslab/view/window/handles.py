@@ -1,4 +1,4 @@
-"""The handles of what is selected: its size, its angle and its velocity, to be dragged while time stands still."""
+"""The handles of what is selected: size, angle and velocity, to be dragged while time stands still."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ class Handles:
 
 
 def arrow_of(world: World, entity: int, camera: Camera) -> Vector2:
-    """Return from where to where the arrow of a body's velocity leads [m]: longer than that by what is caught."""
+    """Return how far the handle of a body's velocity is from its middle [m]: at rest far enough to be caught."""
     velocity = world.component(entity, Velocity).linear
     speed, resting = velocity.magnitude, _MIN_ARROW / camera.scale
     if speed == 0.0:
