@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui, implot
 
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.toolkit.events import feed
+from physicslab.view.toolkit.events import AWAY, feed
 from physicslab.view.toolkit.pictures import Pictures
 from physicslab.view.toolkit.style import Fonts, add_fonts, apply_theme
 
@@ -18,6 +18,10 @@ __all__ = ["Toolkit"]
 
 _SETTLING = 3
 """Frames that Dear ImGui takes to follow an event: sizes and hovering are those of the frame before."""
+_ONLY_WHERE_TAKEN = (
+    pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL, pygame.KEYDOWN,
+)  # fmt: skip
+"""Events that Dear ImGui gets only where they are for panels: Tab would go to the first field."""
 _NOWHERE = -3.0e38
 """Where the mouse is said to be while it is not for panels."""
 
@@ -85,9 +89,9 @@ class Toolkit:
         self._unsettled = _SETTLING
         self._enter()
         io = imgui.get_io()
-        if taken or event.type not in (
-            pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL,
-        ):  # fmt: skip
+        if event.type == pygame.KEYDOWN and taken and not io.want_text_input:
+            imgui.internal.close_popup_to_level(0, True)
+        elif taken or event.type not in _ONLY_WHERE_TAKEN:
             feed(io, event)
         elif event.type == pygame.MOUSEBUTTONDOWN:
             imgui.set_window_focus()  # what was written in a field is taken over
@@ -110,8 +114,12 @@ class Toolkit:
                 return self.covers(event.pos)
             case pygame.MOUSEWHEEL:
                 return self.covers(self._pointer)
+            case pygame.KEYDOWN if event.key == pygame.K_ESCAPE:
+                return self.typing or self._has_popup()
             case pygame.KEYDOWN | pygame.KEYUP | pygame.TEXTINPUT:
                 return self.typing
+            case _ if event.type in AWAY:
+                self._pressed_on.clear()
         return False
 
     def follow_pointer(self, place: tuple[float, float]) -> None:
@@ -202,6 +210,8 @@ def _covered() -> list[Rect]:
 
 
 def _end(context: imgui.internal.Context, plots: implot.internal.Context, pictures: Pictures) -> None:
+    """End a context; memory may be cleared at any time, as while another builds its panels."""
+    before, plots_before = imgui.get_current_context(), implot.get_current_context()
     imgui.set_current_context(context)
     for texture in imgui.get_platform_io().textures:
         texture.set_tex_id(0)
@@ -209,3 +219,7 @@ def _end(context: imgui.internal.Context, plots: implot.internal.Context, pictur
     pictures.forget()
     implot.destroy_context(plots)
     imgui.destroy_context(context)
+    if before is not None and before is not context:
+        imgui.set_current_context(before)
+    if plots_before is not None and plots_before is not plots:
+        implot.set_current_context(plots_before)

@@ -16,7 +16,7 @@ __all__ = ["Ui"]
 _FLAGS = imgui.WindowFlags_
 _FIXED = (
     _FLAGS.no_title_bar | _FLAGS.no_resize | _FLAGS.no_move | _FLAGS.no_collapse | _FLAGS.no_saved_settings
-    | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav
+    | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav_focus
 )  # fmt: skip
 _FLOATING = _FLAGS.no_collapse | _FLAGS.no_saved_settings | _FLAGS.no_nav | _FLAGS.always_auto_resize
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
@@ -272,10 +272,8 @@ class Ui:
         self.note(label)
         return float(new) if moved else None
 
-    def field(
-        self, label: str, text: str, width: float = -1.0, *, wrong: bool = False
-    ) -> tuple[str, bool, bool]:
-        """Draw a field for text; return its text, whether it is edited, and whether an edit has ended."""
+    def field(self, label: str, text: str, width: float = -1.0, *, wrong: bool = False) -> tuple[str, bool]:
+        """Draw a field for text, and return its text and whether it is edited."""
         self.words.append(text)
         if wrong:
             imgui.push_style_color(imgui.Col_.border, packed(self.theme.error))
@@ -287,4 +285,4 @@ class Ui:
         if wrong:
             imgui.pop_style_var()
             imgui.pop_style_color()
-        return text, bool(imgui.is_item_active()), bool(imgui.is_item_deactivated_after_edit())
+        return text, bool(imgui.is_item_active())

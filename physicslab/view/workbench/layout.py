@@ -35,6 +35,12 @@ class Layout:
         """All that is not left for the world [px]."""
         return self.menu, self.palette, self.transport, self.side
 
+    @property
+    def visible(self) -> Rect:
+        """The part of the world's room that the panel at the right does not lie over [px]."""
+        left, top, width, height = self.room
+        return left, top, max(min(width, self.side[0] - left), 1), height
+
     @classmethod
     def of(cls, size: tuple[int, int], text: int, *, side: bool) -> Layout:
         """Lay a window out for text of a height [px], with or without the panel at the right."""
