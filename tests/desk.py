@@ -18,6 +18,7 @@ from physicslab.world import World
 
 FRAME = 1.0 / 60.0
 BUTTONS = {"left": 1, "middle": 2, "right": 3}
+MENUS = ("File", "Scenes", "Edit", "World", "View", "Help")
 SETTLED = 4
 """Frames after which panels show what an event has done, and its deed is done."""
 
@@ -163,8 +164,25 @@ def click_at(desk: Desk, place: Place, button: str = "left") -> None:
     button_up(desk, place, button)
 
 
+def bring_into_sight(desk: Desk, label: str) -> None:
+    """Turn the wheel over the panel at the right until a widget of it is in sight."""
+    left, top, width, height = desk.sandbox.interface.layout.side
+    if label in MENUS or desk.sandbox.interface.toolkit._has_popup():
+        return
+    for _ in range(200):
+        x, y, across, down = desk.ui.places[label]
+        if x < left or (y >= top and y + down <= top + height):
+            return
+        point(desk, (left + width - 2, top + height // 2))
+        turn = 0.5 if y < top else -0.5
+        pygame.event.post(pygame.Event(pygame.MOUSEWHEEL, x=0, y=0, precise_x=0.0, precise_y=turn))
+        desk.frames(SETTLED)
+    raise AssertionError(f"{label} cannot be scrolled into sight")
+
+
 def click(desk: Desk, label: str, button: str = "left") -> None:
-    """Click a widget of a panel, found by its words."""
+    """Click a widget of a panel, found by its words; the panel is scrolled where that is needed."""
+    bring_into_sight(desk, label)
     click_at(desk, middle_of(desk, label), button)
 
 

@@ -78,16 +78,22 @@ class Ui:
 
     @contextmanager
     def floating(self, title: str, middle: tuple[float, float]) -> Iterator[list[bool]]:
-        """Begin a window with a title that can be moved; its list holds whether it stays open."""
+        """Begin a window with a title that can be moved, within the display; what is yielded holds whether
+        it stays open.
+        """
+        room = imgui.get_io().display_size
         imgui.set_next_window_pos(ImVec2(*middle), imgui.Cond_.appearing, ImVec2(0.5, 0.5))
-        shown, stays = imgui.begin(title, True, _FLOATING)
+        imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
+        _, stays = imgui.begin(title, True, _FLOATING)
+        place, size = imgui.get_window_pos(), imgui.get_window_size()
+        within = ImVec2(
+            max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0)
+        )
+        if (within.x, within.y) != (place.x, place.y):
+            imgui.set_window_pos(within)
         self.words.append(title)
-        open_still = [bool(stays)]
         try:
-            if shown:
-                yield open_still
-            else:
-                yield open_still
+            yield [bool(stays)]
         finally:
             imgui.end()
 
