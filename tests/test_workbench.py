@@ -7,7 +7,19 @@ from pathlib import Path
 import pygame
 import pytest
 from desk import (
-    MENUS, SETTLED, Desk, button_down, button_up, choose, click, click_at, empty_world, middle_of, point, sized, tap,
+    MENUS,
+    SETTLED,
+    Desk,
+    button_down,
+    button_up,
+    choose,
+    click,
+    click_at,
+    empty_world,
+    middle_of,
+    point,
+    sized,
+    tap,
     write,
 )  # fmt: skip
 from written import watch
@@ -46,7 +58,9 @@ def title_of(label: str) -> str:
 def do(desk: Desk, label: str) -> None:
     """Do by a menu what a key does."""
     group = next(control.group for control in CONTROLS if control.label == label)
-    menu = {"file": "File", "quit": "File", "edit": "Edit", "laws": "World", "help": "Help"}.get(group, "View")
+    menu = {"file": "File", "quit": "File", "edit": "Edit", "laws": "World", "help": "Help"}.get(
+        group, "View"
+    )
     choose(desk, menu, title_of(label))
 
 
@@ -62,7 +76,7 @@ def rects(desk: Desk) -> dict[str, pygame.Rect]:
     return {label: pygame.Rect(rect) for label, rect in desk.ui.places.items()}
 
 
-# ---- all can be reached ----------------------------------------------------------------------------------------
+# ---- all can be reached ----------------------------------------------------------------------------------
 
 
 def test_every_control_with_an_action_can_be_reached_by_the_mouse(
@@ -74,9 +88,7 @@ def test_every_control_with_an_action_can_be_reached_by_the_mouse(
         closed = desk.ui.places
         click(desk, menu)
         places = desk.ui.places
-        lines = [
-            control for control in CONTROLS if places.get(control.title) != closed.get(control.title)
-        ]
+        lines = [control for control in CONTROLS if places.get(control.title) != closed.get(control.title)]
         click(desk, menu)
         for control in lines:
             choose(desk, menu, control.title)
@@ -230,7 +242,7 @@ def test_f2_and_its_line_go_round_the_themes(desk: Desk) -> None:
     assert seen == [*THEMES, *THEMES]
 
 
-# ---- nothing is in the way -------------------------------------------------------------------------------------
+# ---- nothing is in the way -------------------------------------------------------------------------------
 
 
 def shown(level: str, size: tuple[int, int], scale: float) -> Desk:
@@ -355,7 +367,7 @@ def test_panels_follow_the_size_of_the_window() -> None:
     assert all(rect.right <= 800 and rect.bottom <= 600 for rect in rects(desk).values())
 
 
-# ---- whose event it is -----------------------------------------------------------------------------------------
+# ---- whose event it is -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("button", ["left", "middle", "right"])
@@ -460,7 +472,7 @@ def test_tab_is_slow_motion_after_a_click_on_a_panel(desk: Desk) -> None:
     assert desk.window.pace.slow_motion and not desk.sandbox.interface.toolkit.typing
 
 
-# ---- menus and scenes ------------------------------------------------------------------------------------------
+# ---- menus and scenes ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("opener", [*MENUS, "More", "Speed", "Gravity"])
@@ -546,7 +558,7 @@ def test_more_files_than_fit_are_reached_by_the_wheel(
     assert desk.window.scene_file == tmp_path / last
 
 
-# ---- tools -----------------------------------------------------------------------------------------------------
+# ---- tools -----------------------------------------------------------------------------------------------
 
 
 def test_the_pan_tool_moves_the_view_and_spawns_nothing(desk: Desk) -> None:
@@ -608,7 +620,7 @@ def test_the_tool_in_hand_is_marked(desk: Desk) -> None:
     assert any(MORE_TOOLS[0].title in words for words in desk.ui.words), "it is named where More was"
 
 
-# ---- selection -------------------------------------------------------------------------------------------------
+# ---- selection -------------------------------------------------------------------------------------------
 
 
 def with_shift(desk: Desk, x: float, y: float) -> None:
@@ -664,7 +676,7 @@ def test_a_selection_does_not_outlive_its_world(desk: Desk) -> None:
     assert desk.window.selection.entities == ()
 
 
-# ---- the offer after a crash -----------------------------------------------------------------------------------
+# ---- the offer after a crash -----------------------------------------------------------------------------
 
 
 def offer(folder: Path) -> Recovery:
@@ -704,7 +716,7 @@ def test_a_click_beside_the_offer_leaves_it(desk: Desk, tmp_path: Path) -> None:
     desk.window.recovery.leave()
 
 
-# ---- idle ------------------------------------------------------------------------------------------------------
+# ---- idle ------------------------------------------------------------------------------------------------
 
 
 def test_panels_of_an_idle_window_are_built_a_few_times_a_second(

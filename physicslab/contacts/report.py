@@ -12,7 +12,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.state.contacts import Contacts
 from physicslab.state.state import State
 
-__all__ = ["Contact", "ContactPoint", "contact_between", "list_contacts", "ordered_records"]
+__all__ = ["Contact", "ContactPoint", "contact_between", "contacts_of", "list_contacts", "ordered_records"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +80,17 @@ class Contact:
 def list_contacts(state: State) -> tuple[Contact, ...]:
     """Return every contact and every pair with an impact of the last step, in the order of entities."""
     return tuple(_describe(state, p) for p in _reported(state.contacts))
+
+
+def contacts_of(state: State, entity: int) -> tuple[Contact, ...]:
+    """Return every contact of one entity, in the order of entities."""
+    contacts = state.contacts
+    near = contacts.manifolds
+    return tuple(
+        _describe(state, p)
+        for p in _reported(contacts)
+        if entity in (int(near[p]["entity_a"]), int(near[p]["entity_b"]))
+    )
 
 
 def contact_between(state: State, a: int, b: int) -> Contact | None:

@@ -14,6 +14,7 @@ from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
+from physicslab.view.window.graphs import Graph
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
@@ -59,6 +60,7 @@ class Sandbox:
         self._autosave = autosave
         self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
+        self._titles = "", ""
         self.interface = Interface(window)
         window.room = self.interface.room
         hud = HudSystem(window, self.interface)
@@ -70,6 +72,7 @@ class Sandbox:
     def show(self, world: World) -> None:
         """Show a world in place of the one that was shown, with nothing held and nothing begun."""
         self.world = world
+        titles, self._titles = self._titles, (world.name, world.title)
         if self._shown is not None:
             self._shown(world)
         world.install(*self._systems)
@@ -78,8 +81,11 @@ class Sandbox:
         window.overlays.forget()
         window.sparks.clear()
         window.selection.clear()
+        window.graphs = [graph for graph in window.graphs if _goes_on(graph, titles, self._titles)]
         window.error, window.next_world = "", None
         window.go_home(world)
+        world.synchronise()  # what was done to make it is no edit
+        window.unchanged = world.motion_edits
 
     def frame(self, elapsed: float) -> None:
         """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last."""
@@ -93,6 +99,17 @@ class Sandbox:
         self.world.frame(Stage.HUD, elapsed)
         if self._autosave is not None:
             self._keep(self._autosave)
+
+    def is_still(self) -> bool:
+        """Whether the next frame would show what this one does, unless the user does something."""
+        window = self.window
+        busy = (
+            window.error_study.running
+            or window.next_world is not None
+            or bool(window.deeds)
+            or window.closing
+        )
+        return not (busy or window.is_moving(self.world) or self.interface.toolkit.unsettled)
 
     def _keep(self, autosave: Autosave) -> None:
         """Let the state be saved where that is due; say once where it cannot be."""
@@ -131,3 +148,9 @@ class Sandbox:
             return f"The last good state is shown; it could not be saved: {error}."
         self._rescued = self.world, self.world.time
         return f"The last good state is shown, and saved as {path.name}."
+
+
+def _goes_on(graph: Graph, before: tuple[str, str], now: tuple[str, str]) -> bool:
+    """Whether a graph stays where another world is shown: it does if that is the same scene once more."""
+    graph.restart()
+    return before == now

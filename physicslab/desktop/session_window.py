@@ -22,6 +22,8 @@ from physicslab.world import World
 
 __all__ = ["run_window"]
 
+_STILL = 0.5
+"""Time [s] between two frames where nothing moves and nothing is done: a laptop lives on its battery."""
 _TITLE_LIMIT = 200
 """Characters of the window's title that come from the scene."""
 
@@ -65,9 +67,14 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     if session is not None and termination.signal:
         session.release()
     elif autosave is not None and session is not None:
-        # The user closed the window: only then, for an error or a signal leaves the state to the next start.
-        autosave.stop()
-        session.end()
+        # The user closed the window. What was edited and not saved is offered at the next start, as after an
+        # error or a signal; the rest can be had again.
+        if sandbox is not None and window.has_unsaved(sandbox.world):
+            autosave.save(sandbox.world)
+            session.release()
+        else:
+            autosave.stop()
+            session.end()
     return termination.status
 
 
@@ -98,6 +105,8 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
             window.wants_screenshot = False
             _keep_screenshot(display, window)
         elapsed = display.show()
+        if compiling.finished and sandbox.is_still():
+            display.rest(_STILL)
 
 
 def _title(world: World) -> str:

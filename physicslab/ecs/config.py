@@ -9,8 +9,8 @@ from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
-    "GRAVITY_MODES", "SOFTENING_LAWS", "PhysicsConfig", "SimulationConfig", "WindowConfig", "checked_box",
-    "field_names",
+    "COLLISIONS", "CONTACTS", "GRAVITY_MODES", "INTEGRATORS", "SOFTENING_LAWS", "PhysicsConfig",
+    "SimulationConfig", "WindowConfig", "checked_box", "field_names",
 ]  # fmt: skip
 
 GRAVITY_MODES = ("linear", "planet", "none")

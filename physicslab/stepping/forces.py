@@ -2,20 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.state.state import State
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import ForceSystem, Stage
 
-__all__ = ["add_up_forces", "fastest_rate"]
+__all__ = ["add_up_forces", "fastest_rate", "forces_by_system"]
 
 
 def add_up_forces(state: State, schedule: Schedule) -> None:
     """Set ``bodies.force`` and ``.torque`` to the present forces, without changing the state of motion."""
-    acting = [s for s in schedule.systems if isinstance(s, AccelerateSystem)] + list(schedule.forces)
-    for system in acting:
+    _add_up(state, schedule, schedule.forces)
+
+
+def forces_by_system(state: State, schedule: Schedule) -> dict[str, NDArray[np.float64]]:
+    """Return the present force on each row (n, 2) [N], by the name of the system that it comes from.
+
+    Nothing else is changed: ``bodies.force`` and ``.torque`` are as before.
+    """
+    bodies, found = state.bodies, {}
+    force, torque = bodies.force.copy(), bodies.torque.copy()
+    for system in schedule.forces:
+        _add_up(state, schedule, (system,))
+        found[system.name] = bodies.force.copy()
+    bodies.force[:], bodies.torque[:] = force, torque
+    return found
+
+
+def _add_up(state: State, schedule: Schedule, forces: Iterable[ForceSystem]) -> None:
+    """Let some forces add to the columns, which are set to zero first."""
+    for system in (*(s for s in schedule.systems if isinstance(s, AccelerateSystem)), *forces):
         state.compile(system.kernels_for(state))
         getattr(system, system.marked()[Stage.FORCE])(state, 0.0)
     state.force_evaluations -= state.has_forces  # not an evaluation of the method

@@ -70,6 +70,8 @@ class InputSystem(System):
                 window.pointer = getattr(event, "pos", window.pointer)
             elif handler is not None:
                 handler(world, event)
+            if event.type == pygame.MOUSEMOTION:
+                window.pointer_on_panel, window.has_pointed = taken, True
         window.selection.follow(world)
         window.follow_size(world)
         window.trails.follow(world)

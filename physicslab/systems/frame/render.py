@@ -5,12 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from physicslab.systems.system import Stage, System, at
+from physicslab.view.controls.picking import body_at
+from physicslab.view.controls.tools import TOOLS
+from physicslab.view.overlay.free_body import draw_free_body
+from physicslab.view.overlay.ghost import draw_ghost
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.selection_marks import draw_selection
 from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.panels.panels import text_size
 from physicslab.view.picture.painting import draw_world
+from physicslab.view.window.placing import refused_place
 
 if TYPE_CHECKING:
     from physicslab.state.state import State
@@ -51,6 +56,36 @@ class RenderSystem(System):
         if overlays.arrows:
             draw_vectors(world, overlays, camera, theme, canvas)
         if overlays.impulses:
-            draw_impulses(world, overlays, camera, theme, canvas, text_size(canvas, window.text_scale) - 2)
+            self._draw_impulses(world)
         draw_selection(world, window.selection.entities, camera, theme, canvas)
+        if overlays.arrows and len(window.selection.entities) == 1:
+            size = text_size(canvas, window.text_scale) - 1
+            draw_free_body(world, window.selection.entities[0], overlays, camera, theme, canvas, size)
+        self._draw_ghost(world)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
+
+    def _draw_impulses(self, world: World) -> None:
+        """Draw impulses; resting contacts have numbers where they are selected or under the cursor."""
+        window = self._window
+        hovered = None if window.pointer_on_panel else body_at(world, window.camera, window.pointer)
+        written = {*window.selection.entities, *(() if hovered is None else (hovered,))}
+        size = text_size(window.canvas, window.text_scale) - 2
+        draw_impulses(world, window.overlays, written, window.camera, window.theme, window.canvas, size)
+
+    def _draw_ghost(self, world: World) -> None:
+        """Show at the cursor what a click would make, in the colour of errors where there is no room."""
+        window, spawn = self._window, TOOLS[self._window.tool].spawn
+        left, top, width, height = window.room()
+        x, y = window.pointer
+        inside = left <= x < left + width and top <= y < top + height
+        idle = window.hand.entity is None and not window.pointer_on_panel and window.has_pointed
+        if (
+            spawn is None
+            or not inside
+            or not idle
+            or body_at(world, window.camera, window.pointer) is not None
+        ):
+            return
+        ghost, theme = spawn.outlines(window), window.theme
+        colour = theme.error if refused_place(world, ghost) else theme.accent
+        draw_ghost(ghost.place, ghost.half, ghost.radius, ghost.angle, colour, window.camera, window.canvas)

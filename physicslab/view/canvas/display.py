@@ -103,6 +103,13 @@ class Display:
         before, self._last = self._last, time.perf_counter()
         return self._last - before
 
+    def rest(self, longest: float) -> None:
+        """Wait for the next event, at most so many seconds [s]; what was waited is no time of a frame."""
+        deadline = time.perf_counter() + longest
+        while time.perf_counter() < deadline and not pygame.event.peek(pump=True):
+            time.sleep(self._period)
+        self._last = self._next = time.perf_counter()
+
     def save_screenshot(self, directory: Path) -> Path:
         """Write a PNG of the window and return its path; raise ``OSError`` if that cannot be done."""
         name = datetime.now().strftime("physicslab-%Y%m%d-%H%M%S")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 from collections import OrderedDict
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +17,10 @@ from physicslab.view.canvas.theme import NOTHING, Colour
 
 __all__ = ["SurfaceCache"]
 
+_RAISED = re.compile("([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
+_PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_RAISED_SIZE = 0.72
+"""Height of raised figures, as a share of the line's."""
 _MAX_SURFACES = 512
 _MAX_SIZES = 4096
 
@@ -47,7 +52,9 @@ class SurfaceCache:
         if size is None:
             if len(self._sizes) >= _MAX_SIZES:
                 self._sizes.clear()
-            size = self._sizes[key] = self._font(style).size(drawable(words))
+            pieces = [self._font(style_of).size(piece) for piece, style_of in _pieces(drawable(words), style)]
+            size = sum(width for width, _ in pieces), max((height for _, height in pieces), default=0)
+            self._sizes[key] = size
         return size
 
     def _render(self, words: str, style: TextStyle) -> pygame.Surface:
@@ -55,7 +62,16 @@ class SurfaceCache:
             clear = pygame.Surface((1, 1), pygame.SRCALPHA, 32)
             clear.fill(NOTHING)
             return clear
-        return self._font(style).render(drawable(words), True, style.colour)
+        pieces = _pieces(drawable(words), style)
+        if len(pieces) == 1 and pieces[0][1] is style:
+            return self._font(style).render(pieces[0][0], True, style.colour)
+        line = pygame.Surface(self.text_size(words, style), pygame.SRCALPHA, 32)
+        left = 0
+        for piece, style_of in pieces:
+            part = self._font(style_of).render(piece, True, style.colour)
+            line.blit(part, (left, 0))
+            left += part.get_width()
+        return line
 
     def _kept(self, key: tuple[object, ...], make: Callable[[], pygame.Surface]) -> pygame.Surface:
         surface = self._surfaces.get(key)
@@ -73,6 +89,15 @@ class SurfaceCache:
             pygame.font.init()  # without a window nothing else has done so
             self._fonts[key] = _load_font(*key)
         return self._fonts[key]
+
+
+def _pieces(words: str, style: TextStyle) -> list[tuple[str, TextStyle]]:
+    """Return the pieces of a line with their styles: raised figures, which fonts lack, are small ones."""
+    if _RAISED.search(words) is None:
+        return [(words, style)]
+    small = TextStyle(max(round(_RAISED_SIZE * style.size), 6), style.colour, style.bold)
+    parts = [part for part in _RAISED.split(words) if part]
+    return [(part.translate(_PLAIN), small) if _RAISED.match(part) else (part, style) for part in parts]
 
 
 def _load_font(size: int, bold: bool) -> pygame.font.Font:

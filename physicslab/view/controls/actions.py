@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from physicslab.components import Held, Name, Shape, Spring, Transform
+from physicslab.components import Held, Name, Shape, Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.theme import THEMES
@@ -16,11 +16,35 @@ from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "choose_tool", "clear", "close", "duplicate_selected", "enlarge", "faster", "fit", "go_home",
-    "larger_text", "leave", "next_theme", "reduce", "slower", "smaller_text", "step",
-    "toggle_arrows", "toggle_figures", "toggle_gravity", "toggle_grid", "toggle_help", "toggle_impulses",
-    "toggle_pause", "toggle_planets", "toggle_slow_motion", "toggle_trails",
-    "zoom", "zoom_in", "zoom_out",
+    "choose_tool",
+    "clear",
+    "close",
+    "duplicate_selected",
+    "enlarge",
+    "faster",
+    "fit",
+    "go_home",
+    "larger_text",
+    "leave",
+    "next_theme",
+    "plot_selected",
+    "reduce",
+    "slower",
+    "smaller_text",
+    "step",
+    "toggle_arrows",
+    "toggle_figures",
+    "toggle_gravity",
+    "toggle_grid",
+    "toggle_help",
+    "toggle_impulses",
+    "toggle_pause",
+    "toggle_planets",
+    "toggle_slow_motion",
+    "toggle_trails",
+    "zoom",
+    "zoom_in",
+    "zoom_out",
 ]  # fmt: skip
 
 _ZOOM_STEP = 3.0
@@ -200,12 +224,22 @@ def leave(world: World, window: Window) -> None:
     elif window.tool != HAND.name:
         choose_tool(window, HAND)
     else:
-        close(world, window)
+        window.ask_to_close(world)
 
 
 def close(world: World, window: Window) -> None:
     """Close the window."""
     window.closing = True
+
+
+def plot_selected(world: World, window: Window) -> None:
+    """Plot the motion of what is selected; where nothing is, the energies of the world."""
+    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+    for entity in bodies:
+        moves = world.has(entity, Velocity)
+        window.plot(f"Motion of {world.label(entity)}", entity, ("x", "y", "speed") if moves else ("x", "y"))
+    if not bodies:
+        window.plot("Energies", None, ("kinetic energy", "potential energy", "total energy"))
 
 
 def duplicate_selected(world: World, window: Window) -> None:

@@ -126,6 +126,8 @@ CONTROLS: tuple[Control, ...] = (
             state=lambda world, _: bool(world.table(Trail).handles), tip="Trails behind moving bodies"),
     Control("E", "impulses", "e", actions.toggle_impulses, group="show",
             state=lambda _, window: window.overlays.impulses, tip="Impulses at contacts, with numbers"),
+    Control("M", "graph", "m", actions.plot_selected, minor=True, group="show",
+            tip="A graph against time: of what is selected, or of the energies"),
     Control("I", "panel at the right", "i", actions.toggle_figures, minor=True, group="show",
             state=lambda _, window: window.figures, tip="What is selected, or the world in figures"),
     Control("H", "grid", "h", actions.toggle_grid, minor=True, group="show",

@@ -27,6 +27,7 @@ def save(world: World, window: Window) -> None:
         window.notify(f"The scene could not be saved: {error}", 6.0, failed=True)
     else:
         window.scene_file = path
+        window.unchanged = world.motion_edits
         window.notify(f"Saved {printable(str(path))}")
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from physicslab.files.new_scene import file_stem
 
-__all__ = ["new_scene_paths", "newest_scene", "scene_files"]
+__all__ = ["new_paths", "new_scene_paths", "newest_scene", "scene_files"]
 
 _MARK = b"physicslab-scene/"
 """What the format of a scene file begins with."""
@@ -20,8 +20,12 @@ def new_scene_paths(directory: Path, name: str) -> Iterator[Path]:
 
     A number at the end of the name is taken for one that was given here.
     """
-    stem = file_stem(re.sub(r"-\d+$", "", name))
-    return (directory / f"{stem}-{number}.json" for number in itertools.count(1))
+    return new_paths(directory, file_stem(re.sub(r"-\d+$", "", name)), ".json")
+
+
+def new_paths(directory: Path, stem: str, ending: str) -> Iterator[Path]:
+    """Yield paths of a stem, numbered from 1."""
+    return (directory / f"{stem}-{number}{ending}" for number in itertools.count(1))
 
 
 def scene_files(directory: Path) -> list[Path]:

@@ -11,10 +11,11 @@ from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import binary, box, chain, circle, container, pendulum, pile, pyramid, stack
 from physicslab.view.window.edits import announce_edit
+from physicslab.view.window.placing import Outlines, outlines_of, refused_place
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["CIRCLE", "SPAWNS", "Spawn", "spawn_box", "spawn_circle", "spawn_pendulum"]
+__all__ = ["CIRCLE", "SPAWNS", "Spawn", "spawn_box", "spawn_pendulum"]
 
 _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
 _SIZES = ((0.5, 0.5), (0.8, 0.4), (0.4, 0.7), (0.6, 0.6), (1.0, 0.3))
@@ -22,91 +23,55 @@ _SIZES = ((0.5, 0.5), (0.8, 0.4), (0.4, 0.7), (0.6, 0.6), (1.0, 0.3))
 _DENSITY = 5.0
 """Mass of what is spawned per area [kg/m^2]."""
 _RESTITUTION = 0.4
+_ORIGIN = Vector2(0.0, 0.0)
+
+type Make = Callable[[World, Vector2, int], None]
+"""Makes something at a place of a world [m]; the number says which of several kinds it is."""
 
 
-def _next_size[T](window: Window, sizes: tuple[T, ...]) -> T:
-    window.spawned += 1
-    return sizes[window.spawned % len(sizes)]
+def _circle(world: World, place: Vector2, turn: int) -> None:
+    radius = _RADII[turn % len(_RADII)]
+    circle(world, place, radius=radius, mass=_DENSITY * math.pi * radius * radius, restitution=_RESTITUTION)
 
 
-def _announced(spawn: Callable[[World, Window], None]) -> Callable[[World, Window], None]:
-    """Let a way to spawn something announce that the world was edited."""
-
-    @functools.wraps(spawn)
-    def announcing(world: World, window: Window) -> None:
-        spawn(world, window)
-        announce_edit(world)
-
-    return announcing
-
-
-@_announced
-def spawn_circle(world: World, window: Window) -> None:
-    """Make a circle at the cursor."""
-    radius = _next_size(window, _RADII)
-    mass = _DENSITY * math.pi * radius * radius
-    circle(world, window.place, radius=radius, mass=mass, restitution=_RESTITUTION)
-
-
-@_announced
-def spawn_box(world: World, window: Window) -> None:
-    """Make a rectangle at the cursor."""
-    width, height = _next_size(window, _SIZES)
+def _box(world: World, place: Vector2, turn: int) -> None:
+    width, height = _SIZES[turn % len(_SIZES)]
     mass = _DENSITY * width * height
-    box(world, window.place, width=width, height=height, mass=mass, restitution=_RESTITUTION)
+    box(world, place, width=width, height=height, mass=mass, restitution=_RESTITUTION)
 
 
-@_announced
-def spawn_block(world: World, window: Window) -> None:
-    """Make a rectangle at the cursor that stays where it is."""
-    box(world, window.place, width=2.0, height=0.2, static=True, friction=0.6, restitution=_RESTITUTION)
+def _plank(world: World, place: Vector2, turn: int) -> None:
+    box(world, place, width=2.0, height=0.2, static=True, friction=0.6, restitution=_RESTITUTION)
 
 
-@_announced
-def spawn_pendulum(world: World, window: Window) -> None:
-    """Hang a pendulum from the cursor."""
-    window.spawned += 1
-    pendulum(world, window.place, length=1.5, angle=0.7)
+def _pendulum(world: World, place: Vector2, turn: int) -> None:
+    pendulum(world, place, length=1.5, angle=0.7)
 
 
-@_announced
-def spawn_chain(world: World, window: Window) -> None:
-    """Hang a chain from the cursor."""
-    chain(world, 8, window.place, window.place + Vector2(1.2, -1.2))
+def _chain(world: World, place: Vector2, turn: int) -> None:
+    chain(world, 8, place, place + Vector2(1.2, -1.2))
 
 
-@_announced
-def spawn_stack(world: World, window: Window) -> None:
-    """Put a stack of boxes on the cursor."""
-    stack(world, 5, window.place, width=0.5, height=0.4, mass=_DENSITY * 0.2)
+def _stack(world: World, place: Vector2, turn: int) -> None:
+    stack(world, 5, place, width=0.5, height=0.4, mass=_DENSITY * 0.2)
 
 
-@_announced
-def spawn_pyramid(world: World, window: Window) -> None:
-    """Put a pyramid of boxes on the cursor."""
-    pyramid(world, 5, window.place, size=0.4, gap=0.04, mass=_DENSITY * 0.16)
+def _pyramid(world: World, place: Vector2, turn: int) -> None:
+    pyramid(world, 5, place, size=0.4, gap=0.04, mass=_DENSITY * 0.16)
 
 
-@_announced
-def spawn_heap(world: World, window: Window) -> None:
-    """Pour discs out above the cursor."""
-    pile(world, 24, window.place, columns=6, radius=0.12, density=_DENSITY)
+def _heap(world: World, place: Vector2, turn: int) -> None:
+    pile(world, 24, place, columns=6, radius=0.12, density=_DENSITY)
 
 
-@_announced
-def spawn_pit(world: World, window: Window) -> None:
-    """Build a floor and two walls around the cursor."""
-    container(world, window.place, width=2.4, height=1.2, thickness=0.15)
+def _pit(world: World, place: Vector2, turn: int) -> None:
+    container(world, place, width=2.4, height=1.2, thickness=0.15)
 
 
-@_announced
-def spawn_binary(world: World, window: Window) -> None:
-    """Let two planets circle each other about the cursor."""
+def _binary(world: World, place: Vector2, turn: int) -> None:
     for planet in binary(world, (20.0, 10.0), separation=1.6):
         transform = world.component(planet, Transform)
-        transform.position = transform.position + window.place
-    if world.physics.gravity_mode != "planet":
-        window.notify("These two circle each other in planet mode: O turns it on", 5.0)
+        transform.position = transform.position + place
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,27 +86,58 @@ class Spawn:
         What it is called.
     place : str
         What the click means, in words that follow "click".
-    spawn : callable
-        Makes it at the cursor.
+    make : callable
+        Makes it at a place.
+    remark : str
+        What to say where gravity does not act between bodies.
     """
 
     name: str
     title: str
     place: str
-    spawn: Callable[[World, Window], None]
+    make: Make
+    remark: str = ""
+
+    def outlines(self, window: Window) -> Outlines:
+        """Return what would be made at the cursor: the ghost that is shown there."""
+        return _outlines(self.make, window.spawned + 1).moved(window.place)
+
+    def spawn(self, world: World, window: Window) -> None:
+        """Make it at the cursor; where it would overlap, say so instead."""
+        refused = refused_place(world, self.outlines(window))
+        if refused:
+            window.notify(f"{self.title}: {refused}")
+            return
+        window.spawned += 1
+        self.make(world, window.place, window.spawned)
+        announce_edit(world)
+        if self.remark and world.physics.gravity_mode != "planet":
+            window.notify(self.remark, 5.0)
 
 
-CIRCLE = Spawn("circle", "Circle", "on empty space for a circle", spawn_circle)
+@functools.lru_cache(maxsize=32)
+def _outlines(make: Make, turn: int) -> Outlines:
+    """Return the outlines of what would be made at the origin: it is made in a world of its own."""
+    scratch = World()
+    make(scratch, _ORIGIN, turn)
+    return outlines_of(scratch)
+
+
+CIRCLE = Spawn("circle", "Circle", "on empty space for a circle", _circle)
+_BOX = Spawn("box", "Box", "on empty space for a box", _box)
+_PENDULUM = Spawn("pendulum", "Pendulum", "where it shall hang from", _pendulum)
 SPAWNS = (
     CIRCLE,
-    Spawn("box", "Box", "on empty space for a box", spawn_box),
-    Spawn("block", "Plank", "where its middle shall be", spawn_block),
-    Spawn("pendulum", "Pendulum", "where it shall hang from", spawn_pendulum),
-    Spawn("chain", "Chain", "where it shall hang from", spawn_chain),
-    Spawn("stack", "Stack", "where its foot shall be", spawn_stack),
-    Spawn("pyramid", "Pyramid", "where its foot shall be", spawn_pyramid),
-    Spawn("heap", "Heap of discs", "where it shall fall", spawn_heap),
-    Spawn("pit", "Open box", "where the middle of its floor shall be", spawn_pit),
-    Spawn("binary", "Two planets", "where they shall circle each other", spawn_binary),
-)
+    _BOX,
+    Spawn("block", "Plank", "where its middle shall be", _plank),
+    _PENDULUM,
+    Spawn("chain", "Chain", "where it shall hang from", _chain),
+    Spawn("stack", "Stack", "where its foot shall be", _stack),
+    Spawn("pyramid", "Pyramid", "where its foot shall be", _pyramid),
+    Spawn("heap", "Heap of discs", "where it shall fall", _heap),
+    Spawn("pit", "Open box", "where the middle of its floor shall be", _pit),
+    Spawn("binary", "Two planets", "where they shall circle each other", _binary,
+          "These two circle each other in planet mode: O turns it on"),
+)  # fmt: skip
 """All there is to spawn, in the order of the chooser."""
+spawn_box, spawn_pendulum = _BOX.spawn, _PENDULUM.spawn

@@ -33,6 +33,8 @@ class Tool:
         What happens.
     pans : bool
         Whether dragging moves the picture.
+    spawn : Spawn, optional
+        What a click on empty space makes.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Tool:
     press: Deed
     release: Deed
     pans: bool = False
+    spawn: Spawn | None = None
 
 
 def _nothing(world: World, window: Window) -> None:
@@ -128,7 +131,7 @@ def spawning(spawn: Spawn) -> Tool:
             spawn.spawn(world, window)
 
     usage = f"{spawn.title}: click {spawn.place}. Bodies can still be dragged."
-    return Tool(spawn.name, spawn.title, usage, press, let_go)
+    return Tool(spawn.name, spawn.title, usage, press, let_go, spawn=spawn)
 
 
 HAND = spawning(CIRCLE)

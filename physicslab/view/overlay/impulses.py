@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,9 +34,14 @@ _ROUNDING = 1e-9
 
 
 def draw_impulses(
-    world: World, overlays: Overlays, camera: Camera, theme: Theme, canvas: Canvas, text_size: int
-) -> None:
-    """Draw the impulses of the impacts of the last second, and of what rests, with cones and numbers."""
+    world: World, overlays: Overlays, written: Collection[int], camera: Camera, theme: Theme, canvas: Canvas,
+    text_size: int,
+) -> None:  # fmt: skip
+    """Draw the impulses of the impacts of the last second, and of what rests, with cones and numbers.
+
+    Of what rests only contacts of the bodies in ``written`` have their numbers beside them: a heap would be
+    hidden under them.
+    """
     impacts = overlays.impacts.recent(world.time)
     impacts = impacts[np.argsort(impacts["time"], kind="stable")]  # the newest on top
     resting = _without(resting_of(world), impacts, overlays.impacts.same_place)
@@ -46,9 +51,11 @@ def draw_impulses(
     overlays.rest.follow(resting["normal"], overlays.reach, world.time)
     _draw_impulses_of(resting, overlays.rest, REST_WIDTH, 0.9, camera, theme, canvas)
     _draw_impulses_of(impacts, overlays.impact, IMPACT_WIDTH, fresh, camera, theme, canvas)
+    ends = np.array(sorted(written), np.int64)
+    of_written = resting[np.isin(resting["a"], ends) | np.isin(resting["b"], ends)]
     candidates = [
         *_strongest(impacts, fresh, overlays.impact, True, camera),
-        *_strongest(resting, np.ones(len(resting)), overlays.rest, False, camera),
+        *_strongest(of_written, np.ones(len(of_written)), overlays.rest, False, camera),
     ]
     candidates.sort(key=lambda one: -one.weight * (_KEEP_RATIO if overlays.labels.known(one.key) else 1.0))
     chosen = [one for one in candidates if not _under(one.at, overlays.covered)][:LABELLED]

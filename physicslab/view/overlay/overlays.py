@@ -33,6 +33,10 @@ class Overlays:
         The wanted length of the strongest arrow [m], chosen when an overlay is turned on.
     velocity, force, impact, rest : Gauge
         The scales: of velocities, forces, impulses of impacts, and impulses that hold bodies apart.
+    body_force : Gauge
+        The scale of the forces on what is selected.
+    force_labels : Labels
+        Where their names stand.
     impacts : RecentImpacts
         The impacts of the last second.
     labels : Labels
@@ -46,6 +50,7 @@ class Overlays:
         self.reach = 1.0
         self.velocity, self.force = Gauge("m/s"), Gauge("N")
         self.impact, self.rest = Gauge("N s"), Gauge("N s")
+        self.body_force, self.force_labels = Gauge("N"), Labels()
         self.impacts = RecentImpacts()
         self.labels = Labels()
         self.covered: list[Rect] = []
@@ -69,6 +74,7 @@ class Overlays:
         """Forget impacts and the places of labels: they belong to what was shown before."""
         self.impacts.clear()
         self.labels.clear()
+        self.force_labels.clear()
 
     def _measure(self, world: World, camera: Camera) -> None:
         shape = world.table(Shape)

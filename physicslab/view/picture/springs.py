@@ -66,7 +66,7 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
 def _looks_rigid(
     world: World, rows: NDArray[np.int64], a: NDArray[np.int64], b: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
-    """Whether each spring is so stiff that the weight of what it holds hardly stretches it: a rod or a string."""
+    """Whether each spring is so stiff that the weight of what it holds hardly stretches it."""
     spring, mass, lookup = world.table(Spring), world.table(Mass), world.entity_index.lookup
     held = np.maximum(mass["mass"][lookup[a]], mass["mass"][lookup[b]] * (b != 0))
     with np.errstate(over="ignore"):

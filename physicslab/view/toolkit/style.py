@@ -12,9 +12,6 @@ from physicslab.view.canvas.theme import Colour, Theme, mixed
 
 __all__ = ["Fonts", "add_fonts", "apply_theme", "bar_height", "packed"]
 
-_ICON_RANGE = (0xF000, 0xF8FF)
-"""Where the letters are that show icons."""
-
 
 @dataclass(frozen=True, slots=True)
 class Fonts:
@@ -35,6 +32,9 @@ def add_fonts() -> Fonts:
 def _font(folder: Path, weight: str) -> imgui.ImFont:
     atlas = imgui.get_io().fonts
     font = atlas.add_font_from_file_ttf(str(folder / "Roboto" / f"Roboto-{weight}.ttf"), 16.0)
+    raised = imgui.ImFontConfig()
+    raised.merge_mode = True  # for raised figures, which Roboto has in part
+    atlas.add_font_from_file_ttf(str(folder / "Inconsolata-Medium.ttf"), 16.0, raised)
     icons = imgui.ImFontConfig()
     icons.merge_mode = True
     icons.glyph_min_advance_x = 16.0
@@ -99,6 +99,7 @@ def apply_theme(theme: Theme, size: float) -> None:
     ):  # fmt: skip
         style.set_color_(kind, _vector(colour, opacity))
     plot, colours = implot.get_style(), implot.Col_
+    plot.fit_padding = ImVec2(0.0, 0.08)  # or a line that stays at its largest lies under the frame
     for name, colour, opacity in (
         (colours.frame_bg, theme.panel, 0.0), (colours.plot_bg, theme.background, 1.0),
         (colours.plot_border, theme.outline, 1.0), (colours.legend_bg, theme.panel, 0.85),

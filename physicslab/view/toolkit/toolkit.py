@@ -43,6 +43,7 @@ class Toolkit:
         self._context = imgui.create_context()
         imgui.set_current_context(self._context)
         self._plots = implot.create_context()
+        self._enter()
         io = imgui.get_io()
         io.set_ini_filename("")
         io.set_log_filename("")
@@ -131,6 +132,11 @@ class Toolkit:
         self._enter()
         flags = imgui.PopupFlags_
         return bool(imgui.is_popup_open("", flags.any_popup_id | flags.any_popup_level))
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether panels are to be built in the next frame whatever happens."""
+        return self._unsettled > 0
 
     def wake(self) -> None:
         """Have panels built in the next frames: something changed."""

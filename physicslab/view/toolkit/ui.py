@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.toolkit.style import Fonts, packed
 
@@ -86,9 +87,7 @@ class Ui:
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
         _, stays = imgui.begin(title, True, _FLOATING)
         place, size = imgui.get_window_pos(), imgui.get_window_size()
-        within = ImVec2(
-            max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0)
-        )
+        within = ImVec2(max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0))
         if (within.x, within.y) != (place.x, place.y):
             imgui.set_window_pos(within)
         self.words.append(title)
@@ -101,6 +100,7 @@ class Ui:
 
     def text(self, words: str, colour: Colour | None = None, *, wrapped: bool = False) -> None:
         """Write words in a colour of the theme, broken to the panel's width if asked for."""
+        words = drawable(words)
         self.words.append(words)
         imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))
         if wrapped:
@@ -116,6 +116,7 @@ class Ui:
 
     def heading(self, words: str) -> None:
         """Write a title."""
+        words = drawable(words)
         self.words.append(words)
         imgui.push_font(self.fonts.bold, self.size * 1.06)
         imgui.push_style_color(imgui.Col_.text, packed(self.theme.heading))
@@ -135,6 +136,7 @@ class Ui:
 
     def row(self, label: str, value: str, tip: str = "", *, lesser: bool = False) -> None:
         """Write a label and its value, the value at the right."""
+        label, value = drawable(label), drawable(value)
         self.rows.setdefault(label, value)
         colour = self.theme.faint
         if lesser:
@@ -170,6 +172,7 @@ class Ui:
 
     def tip(self, words: str) -> None:
         """Show words beside the cursor while it rests on what was drawn last."""
+        words = drawable(words)
         if words and imgui.is_item_hovered(_TIP_FLAGS):
             self.words.append(words)
             if imgui.begin_tooltip():
@@ -223,6 +226,7 @@ class Ui:
         self, label: str, keys: str = "", *, on: bool = False, enabled: bool = True, tip: str = ""
     ) -> bool:
         """Draw a line of the menu that is open, and return whether it was chosen."""
+        label = drawable(label)
         self.words.append(label)
         chosen, _ = imgui.menu_item(label, keys, on, enabled)
         self.note(label)

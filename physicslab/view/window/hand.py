@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass
 
-from physicslab.components import Held, Transform, Velocity
+from physicslab.components import Held, Mass, Shape, Transform, Velocity
+from physicslab.contacts.report import contacts_of
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.view.window.edits import announce_edit
+from physicslab.view.window.placing import free_way
 from physicslab.world import World
 
 __all__ = ["Hand"]
 
+_PRESSED = 0.04
+"""How deep what is held may be pressed into others, as a share of half its size."""
+_WEIGHTS, _EARTH = 20.0, 9.81
+"""The hand is as strong as so many times the weight of what it holds, on the Earth [m/s^2]."""
+_COMING_OUT = 0.3
+"""Share of what is deeper than that by which it comes out again in a frame."""
 _MIN_THROW_TIME = 0.03
 """Time [s] over which a speed can be measured at all; a shorter pull is no throw."""
 
@@ -21,6 +30,54 @@ _MIN_THROW_TIME = 0.03
 class _Sample:
     time: float
     place: Vector2
+
+
+def _within(world: World, entity: int, gap: Vector2) -> Vector2:
+    """Return the part of a way [m] that does not lead a body beyond the walls of the world."""
+    bounds = world.physics.bounds
+    if bounds is None:
+        return gap
+    transform, reach = world.component(entity, Transform), _reach(world, entity)
+    xmin, ymin, xmax, ymax = bounds
+    place = transform.position + gap
+    x = min(max(place.x, xmin + reach.x), max(xmax - reach.x, xmin + reach.x))
+    y = min(max(place.y, ymin + reach.y), max(ymax - reach.y, ymin + reach.y))
+    return Vector2(x, y) - transform.position
+
+
+def _reach(world: World, entity: int) -> Vector2:
+    """Return half of the width and height that a body takes up along the axes of the world [m]."""
+    if not world.has(entity, Shape):
+        return Vector2()
+    shape, angle = world.component(entity, Shape), world.component(entity, Transform).angle
+    if shape.kind == "circle":
+        return Vector2(shape.radius, shape.radius)
+    c, s = abs(math.cos(angle)), abs(math.sin(angle))
+    return 0.5 * Vector2(c * shape.width + s * shape.height, s * shape.width + c * shape.height)
+
+
+def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vector2:
+    """Return the velocity [m/s] of the hand where what it holds is pressed against something.
+
+    A body in the hand is infinitely heavy, and would press others through a floor. Where contacts push back
+    harder than the hand is strong, or it overlaps by more than contacts allow, it goes no further, and comes
+    out again.
+    """
+    velocity, size = wanted, max(*_reach(world, entity), 1e-9)
+    for contact in contacts_of(world, entity):
+        into = contact.normal if contact.a == entity else -contact.normal
+        too_deep = contact.depth - _PRESSED * size
+        too_strong = sum(point.normal_force for point in contact.points) > _strength(world, entity)
+        if too_deep <= 0.0 and not too_strong:
+            continue
+        back = _COMING_OUT * max(too_deep, _PRESSED * size if too_strong else 0.0) / coming
+        velocity = velocity - into * max(velocity.dot(into) + back, 0.0)
+    return velocity
+
+
+def _strength(world: World, entity: int) -> float:
+    """Return how hard the hand can press with a body [N]."""
+    return _WEIGHTS * _EARTH * world.component(entity, Mass).mass if world.has(entity, Mass) else math.inf
 
 
 class Hand:
@@ -94,6 +151,9 @@ class Hand:
         velocity = world.component(self.entity, Velocity)
         grip = world.component(self.entity, Held).grip.rotated(transform.angle)
         gap = self._path[-1].place - transform.position - grip
+        if coming > 0.0:
+            gap = _yielding(world, self.entity, gap / coming, coming) * coming
+        gap = free_way(world, self.entity, _within(world, self.entity, gap))
         velocity.angular = 0.0
         if coming > 0.0:
             velocity.linear = gap / coming

@@ -53,8 +53,8 @@ class Recovery:
         try:
             saved = time.localtime(self._left[0].path.stat().st_mtime)
         except (IndexError, OSError):
-            return "The last session ended without closing"
-        return f"The last session ended without closing; saved {time.strftime('%d %b %H:%M', saved)}"
+            return "Your last session is kept"
+        return f"Your last session is kept, as of {time.strftime('%d %b %H:%M', saved)}"
 
     def restore(self) -> World:
         """Return the world of the session on offer.

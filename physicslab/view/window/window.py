@@ -15,6 +15,7 @@ from physicslab.view.panels.error_study import ErrorStudy
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
+from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.recovery import Recovery
@@ -24,6 +25,8 @@ from physicslab.world import World
 
 __all__ = ["LEVELS", "Window"]
 
+_PATIENCE = 3.0
+"""How long [s] after Esc a second one closes the window though there are unsaved edits."""
 LEVELS = {
     "Explore": "The world first, few figures",
     "Measure": "Energies, momenta and what they do",
@@ -61,6 +64,8 @@ class Window:
         Time [s] that the window has been open; it runs while the world is paused.
     pointer : tuple of two floats
         Where the cursor is [px].
+    pointer_on_panel, has_pointed : bool
+        Whether the cursor is on a panel, and whether it was ever moved.
     gravity_before : str
         The mode that gravity goes back to after planet mode.
     spawned : int
@@ -83,6 +88,8 @@ class Window:
         Whether a click adds to what is selected: Shift or Ctrl is held.
     selection : Selection
         Which bodies are selected.
+    graphs : list of Graph
+        What is plotted.
     deeds : list of callables
         What panels were clicked for; it is done when the next frame begins.
     source : str or path, optional
@@ -95,6 +102,8 @@ class Window:
         Error against run time of the scene, measured when its key is pressed.
     scene_file : path, optional
         The scene file that was last saved or opened.
+    unchanged : int
+        How often the world had been edited when it was opened or saved last.
     next_world : World, optional
         The world that is to be shown in place of the present one from the next frame on.
     notice_failed : bool
@@ -115,6 +124,7 @@ class Window:
         self.trails = TrailSwitch()
         self.now = 0.0
         self.pointer: tuple[float, float] = (0.5 * canvas.size[0], 0.5 * canvas.size[1])
+        self.pointer_on_panel = self.has_pointed = False
         self.gravity_before = "linear"
         self.spawned = 0
         self.wants_screenshot = False
@@ -127,16 +137,19 @@ class Window:
         self.text_scale = 1.0
         self.adding = False
         self.selection = Selection()
+        self.graphs: list[Graph] = []
         self.deeds: list[Callable[[World, Window], None]] = []
         self.source: str | Path | None = None
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
         self.error_study = ErrorStudy()
         self.spring_tool = SpringTool()
         self.scene_file: Path | None = None
+        self.unchanged = 0
         self.next_world: World | None = None
         self.notice_failed = False
         self.recovery = Recovery()
         self._notice, self._notice_until = "", 0.0
+        self._may_close_until = 0.0
         self._shown: tuple[Vector2, float, float, Extent | None] | None = None
 
     @property
@@ -155,15 +168,43 @@ class Window:
         """The message that is shown for a few seconds; empty when there is none."""
         return self._notice if self.now < self._notice_until else ""
 
+    def has_unsaved(self, world: World) -> bool:
+        """Whether the world was edited since it was opened or saved."""
+        return world.motion_edits != self.unchanged
+
     def notify(self, words: str, seconds: float = 3.0, *, failed: bool = False) -> None:
         """Show a message for a while; ``failed`` marks what could not be done."""
         self.notice_failed = failed
         self._notice, self._notice_until = words, self.now + seconds
 
+    def plot(self, title: str, entity: int | None, names: tuple[str, ...]) -> None:
+        """Plot quantities of the world or of a body, in a graph of their own."""
+        number = 1 + max((graph.number for graph in self.graphs), default=0)
+        self.graphs.append(Graph(number, title, entity, {name: Series() for name in names}))
+
+    def ask_to_close(self, world: World) -> None:
+        """Close the window; where there are unsaved edits, only if it was asked for twice within a while."""
+        if not self.has_unsaved(world) or self.now < self._may_close_until:
+            self.closing = True
+            return
+        self._may_close_until = self.now + _PATIENCE
+        self.notify(
+            "Esc again closes the window; what is in it is kept and offered at the next start", _PATIENCE
+        )
+
     def coming(self, world: World) -> float:
         """Return the time [s] that is about to be simulated in this frame."""
         dt = world.simulation.dt
         return self.pace.due(dt) * dt * self.pace.shortening
+
+    def is_moving(self, world: World) -> bool:
+        """Whether something in the picture changes by itself: time runs, a body is held, words will go."""
+        waits = self.pace.due(world.simulation.dt) == 0
+        return (
+            not (self.pace.paused and waits)
+            or self.hand.entity is not None
+            or bool(self.notice or len(self.sparks))
+        )
 
     def follow_size(self, world: World) -> None:
         """Let the camera follow the size of the canvas; an untouched view still shows all of the world."""

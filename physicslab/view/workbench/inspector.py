@@ -9,11 +9,12 @@ import numpy as np
 from imgui_bundle import imgui
 
 from physicslab.components import Drag, Held, Mass, Material, Name, Shape, Spring, Trail, Transform, Velocity
+from physicslab.diagnostics.free_body import forces_on, net_force
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, vector_quantity
-from physicslab.view.controls.actions import duplicate_selected
+from physicslab.view.controls.actions import duplicate_selected, plot_selected
 from physicslab.view.controls.tools import remove_selected
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.edits import announce_edit, set_field
@@ -57,6 +58,8 @@ class Inspector:
             self._build_component(ui, world, window, kind)
         if len(chosen) == 1:
             self._build_now(ui, world, first)
+            if window.level != "Explore" or window.overlays.arrows:
+                self._build_forces(ui, world, first)
             self._build_optional(ui, world, window, first)
         self._build_buttons(ui, window)
 
@@ -182,6 +185,21 @@ class Inspector:
         if spin and np.isfinite(spin):
             ui.row("of turning", quantity(spin, "J"), lesser=True)
 
+    @staticmethod
+    def _build_forces(ui: Ui, world: World, entity: int) -> None:
+        """Write the forces on it, and their sum: what a free-body diagram shows (V draws it)."""
+        forces = forces_on(world, entity)
+        if not forces:
+            return
+        ui.gap(0.2)
+        ui.rule()
+        ui.faint("Forces on it")
+        for one in forces:
+            ui.row(one.name.capitalize(), quantity(one.force.magnitude, "N"), vector_quantity(one.force, "N"))
+        total, largest = net_force(forces), max(one.force.magnitude for one in forces)
+        net = total.magnitude if total.magnitude > 1e-9 * largest else 0.0
+        ui.row("Sum", quantity(net, "N"), vector_quantity(total, "N"))
+
     def _build_optional(self, ui: Ui, world: World, window: Window, entity: int) -> None:
         """Build a box to tick for each component that the body may have or not."""
         if world.has(entity, Spring) and not world.has(entity, Transform):
@@ -200,6 +218,9 @@ class Inspector:
         imgui.same_line()
         if ui.button("Delete", "Remove what is selected (Del)"):
             window.deeds.append(remove_selected)
+        imgui.same_line()
+        if ui.button("Plot", "Its speed and place against time"):
+            window.deeds.append(plot_selected)
         imgui.same_line()
         if ui.button("Done", "Select nothing (Esc)"):
             window.deeds.append(lambda _, window: window.selection.clear())

@@ -13,12 +13,14 @@ from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
+from physicslab.view.workbench.graph_panel import build_graphs
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.inspector import Inspector
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
 from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recovery_panel import build_recovery
+from physicslab.view.workbench.settings_panel import SettingsPanel
 from physicslab.view.workbench.transport import build_transport
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
 from physicslab.world import World
@@ -51,6 +53,7 @@ class Interface:
         self.toolkit = Toolkit()
         self.ui = Ui(self.toolkit.fonts, window.theme)
         self._inspector = Inspector()
+        self._settings = SettingsPanel()
         self._next = 0.0
         self._offer_height = 0  # of the offer to restore a session [px]
         self._seen: tuple[object, ...] = ()
@@ -84,8 +87,10 @@ class Interface:
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self.toolkit.follow_pointer(event.pos)
         taken = self.toolkit.take(event)
-        if event.type == pygame.MOUSEBUTTONDOWN and not taken and (refusal := self._inspector.finish()):
-            self._window.notify(refusal, 6.0, failed=True)
+        if event.type == pygame.MOUSEBUTTONDOWN and not taken:
+            refusal = self._inspector.finish() or self._settings.finish()
+            if refusal:
+                self._window.notify(refusal, 6.0, failed=True)
         return taken
 
     def build(
@@ -125,7 +130,14 @@ class Interface:
     def _state(self, world: World) -> tuple[object, ...]:
         """Return what panels show beside figures."""
         window, pace = self._window, self._window.pace
-        shown = window.help, window.error_study.shown, window.recovery.offered, window.figures, window.level
+        shown = (
+            window.help,
+            window.error_study.shown,
+            window.recovery.offered,
+            window.figures,
+            window.level,
+            len(window.graphs),
+        )
         time = pace.paused, pace.speed, world.time if pace.paused else None
         return (
             world,
@@ -151,6 +163,8 @@ class Interface:
                     self._inspector.build(ui, world, window)
                 else:
                     build_world(ui, world, figures, window)
+                    if window.level == "Engineer":
+                        self._settings.build(ui, world, window)
                 if window.level != "Explore":
                     ui.gap(0.3)
                     ui.rule()
@@ -158,6 +172,8 @@ class Interface:
                 ui.gap(0.3)
                 ui.rule()
                 self._build_counts(ui, figures)
+        if window.graphs:
+            build_graphs(ui, window)
         if window.recovery.offered:
             self._offer_height = build_recovery(ui, window, layout.visible)
         if window.error_study.shown:

@@ -66,12 +66,14 @@ class NumberFields:
     def build(self, ui: Ui, key: str, value: float, spec: Field, width: float, commit: Commit) -> str:
         """Build one field, and return why what was written in it is refused; empty while it is not.
 
-        ``commit`` is called with a number that the field may hold, once Enter or Tab is pressed, or the field
-        is left.
+        ``commit`` is called once Enter or Tab is pressed, or the field is left; it raises
+        :class:`InvalidValue` for a number that the field cannot hold.
         """
         draft = self._drafts.get(key)
         shown = shown_number(value, 4 if spec.kind == "vector" else 6)
-        text, active = ui.field(key, draft.text if draft else shown, width, wrong=bool(draft and draft.refusal))
+        text, active = ui.field(
+            key, draft.text if draft else shown, width, wrong=bool(draft and draft.refusal)
+        )
         if active:
             self._drafts[key] = _Draft(text, draft.refusal if draft else "")
             self._edited = _Target(key, shown, spec, commit)
@@ -90,9 +92,7 @@ class NumberFields:
         if edited is None or draft is None or draft.text == edited.shown:
             return ""  # the number may have more figures than the field shows
         try:
-            value = evaluate(draft.text, edited.spec.unit)
-            edited.spec.check((value, 0.0) if edited.spec.kind == "vector" else value)
-            edited.commit(value)
+            edited.commit(evaluate(draft.text, edited.spec.unit))
         except InvalidText as error:
             draft.refusal = str(error)
         except InvalidValue as error:
