@@ -1,4 +1,4 @@
-"""A sandbox at which a test sits like a user: it sends SDL's events and lets frames go by."""
+"""A sandbox that tests use as users do: they send SDL's events and let frames go by."""
 
 from __future__ import annotations
 
@@ -12,11 +12,15 @@ from physicslab.ecs.vector import Vector2
 from physicslab.systems.standard import standard_systems
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
 FRAME = 1.0 / 60.0
 BUTTONS = {"left": 1, "middle": 2, "right": 3}
+MENUS = ("File", "Scenes", "Edit", "World", "View", "Help")
+SETTLED = 4
+"""Frames after which panels show what an event has done, and its deed is done."""
 
 
 def empty_world(**physics: object) -> World:
@@ -54,6 +58,11 @@ class Desk:
     def world(self) -> World:
         """The world that is shown."""
         return self.sandbox.world
+
+    @property
+    def ui(self) -> Ui:
+        """The panels as they were built last."""
+        return self.sandbox.interface.ui
 
     def pixel(self, x: float, y: float) -> tuple[int, int]:
         """Return the pixel that shows a point of the world [m]."""
@@ -109,3 +118,105 @@ class Desk:
                 self.frames()
         self.release(x, y)
         return Vector2(x, y)
+
+
+type Place = tuple[int, int]
+
+
+def sized(size: tuple[int, int], world: World | None = None, text_scale: float = 1.0) -> Desk:
+    """Return a desk with a window of a size [px], drawn in software, with its panels built."""
+    pygame.display.init()
+    pygame.display.set_mode((64, 64))
+    desk = Desk(empty_world() if world is None else world, PygameCanvas(pygame.Surface(size, 0, 32)))
+    desk.window.text_scale = text_scale
+    desk.frames(SETTLED)
+    return desk
+
+
+def middle_of(desk: Desk, label: str) -> Place:
+    """Return the middle of a widget [px], found by its words."""
+    left, top, width, height = desk.ui.places[label]
+    return left + width // 2, top + height // 2
+
+
+def point(desk: Desk, place: Place, held: tuple[int, int, int] = (0, 0, 0)) -> None:
+    """Move the cursor to a pixel, and let panels follow."""
+    pygame.event.post(pygame.Event(pygame.MOUSEMOTION, pos=place, rel=(0, 0), buttons=held, touch=False))
+    desk.frames(2)
+
+
+def button_down(desk: Desk, place: Place, button: str = "left") -> None:
+    """Press a mouse button at a pixel."""
+    pygame.event.post(pygame.Event(pygame.MOUSEBUTTONDOWN, button=BUTTONS[button], pos=place, touch=False))
+    desk.frames(2)
+
+
+def button_up(desk: Desk, place: Place, button: str = "left") -> None:
+    """Let a mouse button go at a pixel, and let panels follow."""
+    pygame.event.post(pygame.Event(pygame.MOUSEBUTTONUP, button=BUTTONS[button], pos=place, touch=False))
+    desk.frames(SETTLED)
+
+
+def click_at(desk: Desk, place: Place, button: str = "left") -> None:
+    """Move the cursor to a pixel, press and let go."""
+    point(desk, place)
+    button_down(desk, place, button)
+    button_up(desk, place, button)
+
+
+def bring_into_sight(desk: Desk, label: str) -> None:
+    """Turn the wheel over the panel at the right until a widget of it is in sight."""
+    left, top, width, height = desk.sandbox.interface.layout.side
+    if label in MENUS or desk.sandbox.interface.toolkit._has_popup():
+        return
+    for _ in range(200):
+        x, y, across, down = desk.ui.places[label]
+        if x < left or (y >= top and y + down <= top + height):
+            return
+        point(desk, (left + width - 2, top + height // 2))
+        turn = 0.5 if y < top else -0.5
+        pygame.event.post(pygame.Event(pygame.MOUSEWHEEL, x=0, y=0, precise_x=0.0, precise_y=turn))
+        desk.frames(SETTLED)
+    raise AssertionError(f"{label} cannot be scrolled into sight")
+
+
+def click(desk: Desk, label: str, button: str = "left") -> None:
+    """Click a widget of a panel, found by its words; the panel is scrolled where that is needed."""
+    bring_into_sight(desk, label)
+    click_at(desk, middle_of(desk, label), button)
+
+
+def choose(desk: Desk, menu: str, *lines: str) -> None:
+    """Open a menu or a list, and click a line of it."""
+    for label in (menu, *lines):
+        click(desk, label)
+
+
+def tap(desk: Desk, name: str, mod: int = 0) -> None:
+    """Press a key and let it go, by its name in SDL."""
+    code = pygame.key.key_code(name)
+    for kind in (pygame.KEYDOWN, pygame.KEYUP):
+        pygame.event.post(pygame.Event(kind, key=code, mod=mod, unicode="", scancode=0))
+        desk.frames()
+    desk.frames(SETTLED)
+
+
+def write(desk: Desk, text: str) -> None:
+    """Type a text, key by key, with the text that each key enters."""
+    for letter in text:
+        try:
+            code = pygame.key.key_code(letter)
+        except ValueError:
+            code = pygame.K_UNKNOWN
+        pygame.event.post(pygame.Event(pygame.KEYDOWN, key=code, mod=0, unicode=letter, scancode=0))
+        pygame.event.post(pygame.Event(pygame.TEXTINPUT, text=letter))
+        pygame.event.post(pygame.Event(pygame.KEYUP, key=code, mod=0, unicode=letter, scancode=0))
+        desk.frames()
+    desk.frames(2)
+
+
+def fill(desk: Desk, label: str, text: str, end: str = "return") -> None:
+    """Click into a field, write a text over what is there, and press a key."""
+    click(desk, label)
+    write(desk, text)
+    tap(desk, end)

@@ -125,7 +125,7 @@ class HudSystem(System):
     def _draw_over_world(self, world: World) -> list[Rect]:
         """Draw banners, advice, messages, scale and legend, none over another; return where they are."""
         window, size = self._window, self._text_size
-        canvas, theme, room = window.canvas, window.theme, self._interface.room()
+        canvas, theme, room = window.canvas, window.theme, self._interface.visible
         left, top, width, height = room
         middle, bottom, margin = left + width // 2, top + height, round(0.6 * size)
         taken = draw_banners(self._banners(world), middle, top + margin, size, canvas, theme)

@@ -64,6 +64,7 @@ class InputSystem(System):
         self._do_deeds(world)
         for event in pygame.event.get():
             taken = self._interface.take(event)
+            self._do_deeds(world)  # what was written in a field is done before the click beside it
             handler = self._handlers.get(event.type)
             if taken:
                 window.pointer = getattr(event, "pos", window.pointer)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pygame
 from imgui_bundle import imgui
 
-__all__ = ["feed"]
+__all__ = ["AWAY", "feed"]
 
 _BUTTONS = {pygame.BUTTON_LEFT: 0, pygame.BUTTON_RIGHT: 1, pygame.BUTTON_MIDDLE: 2}
 _KEYS = {
@@ -24,7 +24,8 @@ _HELD = (
     (pygame.KMOD_SHIFT, imgui.Key.mod_shift),
     (pygame.KMOD_ALT, imgui.Key.mod_alt),
 )
-_AWAY = (pygame.WINDOWFOCUSLOST, pygame.WINDOWMINIMIZED, pygame.WINDOWHIDDEN)
+AWAY = (pygame.WINDOWFOCUSLOST, pygame.WINDOWMINIMIZED, pygame.WINDOWHIDDEN)
+"""Events after which no button counts as held."""
 
 
 def feed(io: imgui.IO, event: pygame.Event) -> None:
@@ -46,5 +47,5 @@ def feed(io: imgui.IO, event: pygame.Event) -> None:
                 io.add_key_event(_KEYS[event.key], event.type == pygame.KEYDOWN)
         case pygame.TEXTINPUT:
             io.add_input_characters_utf8(event.text)
-        case _ if event.type in _AWAY:
+        case _ if event.type in AWAY:
             io.add_focus_event(False)

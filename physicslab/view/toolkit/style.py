@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from physicslab.view.canvas.theme import Colour, Theme, mixed
 
-__all__ = ["Fonts", "add_fonts", "apply_theme", "packed"]
+__all__ = ["Fonts", "add_fonts", "apply_theme", "bar_height", "packed"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +54,15 @@ def _vector(colour: Colour, opacity: float = 1.0) -> ImVec4:
     return ImVec4(red / 255, green / 255, blue / 255, opacity)
 
 
+def bar_height(text: int) -> int:
+    """Return how high buttons and the menu bar are [px], for text of a height [px]."""
+    return text + 2 * _padding(text)
+
+
+def _padding(text: float) -> int:
+    return round(0.25 * text)
+
+
 def apply_theme(theme: Theme, size: float) -> None:
     """Give panels and plots the colours of a theme, and room in proportion to their text, so many px high."""
     style, unit, kinds = imgui.get_style(), size / 16.0, imgui.Col_
@@ -61,7 +70,7 @@ def apply_theme(theme: Theme, size: float) -> None:
     style.window_rounding, style.child_rounding, style.popup_rounding = 8 * unit, 8 * unit, 6 * unit
     style.frame_rounding = style.grab_rounding = style.tab_rounding = 5 * unit
     style.window_border_size = style.popup_border_size = 1.0
-    style.frame_padding = ImVec2(round(8 * unit), round(4 * unit))
+    style.frame_padding = ImVec2(round(8 * unit), _padding(size))
     style.item_spacing = ImVec2(round(8 * unit), round(6 * unit))
     style.item_inner_spacing = ImVec2(round(6 * unit), round(4 * unit))
     style.window_padding = ImVec2(round(12 * unit), round(10 * unit))

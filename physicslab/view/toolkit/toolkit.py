@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from typing import Any
 
 import pygame
 from imgui_bundle import ImVec2, imgui, implot
 
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.toolkit.events import feed
+from physicslab.view.toolkit.events import AWAY, feed
 from physicslab.view.toolkit.pictures import Pictures
 from physicslab.view.toolkit.style import Fonts, add_fonts, apply_theme
 
@@ -19,12 +18,12 @@ __all__ = ["Toolkit"]
 
 _SETTLING = 3
 """Frames that Dear ImGui takes to follow an event: sizes and hovering are those of the frame before."""
+_ONLY_WHERE_TAKEN = (
+    pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL, pygame.KEYDOWN,
+)  # fmt: skip
+"""Events that Dear ImGui gets only where they are for panels: Tab would go to the first field."""
 _NOWHERE = -3.0e38
 """Where the mouse is said to be while it is not for panels."""
-
-
-_entered: list[Any] = []
-"""The contexts of Dear ImGui and ImPlot that are current."""
 
 
 class Toolkit:
@@ -63,7 +62,6 @@ class Toolkit:
         weakref.finalize(self, _end, self._context, self._plots, self._pictures)
 
     def _enter(self) -> None:
-        _entered[:] = [self._context, self._plots]
         imgui.set_current_context(self._context)
         implot.set_current_context(self._plots)
 
@@ -92,9 +90,9 @@ class Toolkit:
         self._unsettled = _SETTLING
         self._enter()
         io = imgui.get_io()
-        if taken or event.type not in (
-            pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL,
-        ):  # fmt: skip
+        if event.type == pygame.KEYDOWN and taken and not io.want_text_input:
+            imgui.internal.close_popup_to_level(0, True)
+        elif taken or event.type not in _ONLY_WHERE_TAKEN:
             feed(io, event)
         elif event.type == pygame.MOUSEBUTTONDOWN:
             imgui.set_window_focus()  # what was written in a field is taken over
@@ -117,8 +115,12 @@ class Toolkit:
                 return self.covers(event.pos)
             case pygame.MOUSEWHEEL:
                 return self.covers(self._pointer)
+            case pygame.KEYDOWN if event.key == pygame.K_ESCAPE:
+                return self.typing or self._has_popup()
             case pygame.KEYDOWN | pygame.KEYUP | pygame.TEXTINPUT:
                 return self.typing
+            case _ if event.type in AWAY:
+                self._pressed_on.clear()
         return False
 
     def follow_pointer(self, place: tuple[float, float]) -> None:
@@ -214,6 +216,8 @@ def _covered() -> list[Rect]:
 
 
 def _end(context: imgui.internal.Context, plots: implot.internal.Context, pictures: Pictures) -> None:
+    """End a context; memory may be cleared at any time, as while another builds its panels."""
+    before, plots_before = imgui.get_current_context(), implot.get_current_context()
     imgui.set_current_context(context)
     for texture in imgui.get_platform_io().textures:
         texture.set_tex_id(0)
@@ -221,6 +225,7 @@ def _end(context: imgui.internal.Context, plots: implot.internal.Context, pictur
     pictures.forget()
     implot.destroy_context(plots)
     imgui.destroy_context(context)
-    if _entered and _entered[0] is not context:  # another window may be in the middle of a frame
-        imgui.set_current_context(_entered[0])
-        implot.set_current_context(_entered[1])
+    if before is not None and before is not context:
+        imgui.set_current_context(before)
+    if plots_before is not None and plots_before is not plots:
+        implot.set_current_context(plots_before)

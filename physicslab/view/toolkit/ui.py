@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.toolkit.style import Fonts, packed
 
@@ -16,7 +17,7 @@ __all__ = ["Ui"]
 _FLAGS = imgui.WindowFlags_
 _FIXED = (
     _FLAGS.no_title_bar | _FLAGS.no_resize | _FLAGS.no_move | _FLAGS.no_collapse | _FLAGS.no_saved_settings
-    | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav
+    | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav_focus
 )  # fmt: skip
 _FLOATING = _FLAGS.no_collapse | _FLAGS.no_saved_settings | _FLAGS.no_nav | _FLAGS.always_auto_resize
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
@@ -78,16 +79,20 @@ class Ui:
 
     @contextmanager
     def floating(self, title: str, middle: tuple[float, float]) -> Iterator[list[bool]]:
-        """Begin a window with a title that can be moved; its list holds whether it stays open."""
+        """Begin a window with a title that can be moved, within the display; what is yielded holds whether
+        it stays open.
+        """
+        room = imgui.get_io().display_size
         imgui.set_next_window_pos(ImVec2(*middle), imgui.Cond_.appearing, ImVec2(0.5, 0.5))
-        shown, stays = imgui.begin(title, True, _FLOATING)
+        imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
+        _, stays = imgui.begin(title, True, _FLOATING)
+        place, size = imgui.get_window_pos(), imgui.get_window_size()
+        within = ImVec2(max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0))
+        if (within.x, within.y) != (place.x, place.y):
+            imgui.set_window_pos(within)
         self.words.append(title)
-        open_still = [bool(stays)]
         try:
-            if shown:
-                yield open_still
-            else:
-                yield open_still
+            yield [bool(stays)]
         finally:
             imgui.end()
 
@@ -95,6 +100,7 @@ class Ui:
 
     def text(self, words: str, colour: Colour | None = None, *, wrapped: bool = False) -> None:
         """Write words in a colour of the theme, broken to the panel's width if asked for."""
+        words = drawable(words)
         self.words.append(words)
         imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))
         if wrapped:
@@ -110,6 +116,7 @@ class Ui:
 
     def heading(self, words: str) -> None:
         """Write a title."""
+        words = drawable(words)
         self.words.append(words)
         imgui.push_font(self.fonts.bold, self.size * 1.06)
         imgui.push_style_color(imgui.Col_.text, packed(self.theme.heading))
@@ -129,6 +136,7 @@ class Ui:
 
     def row(self, label: str, value: str, tip: str = "", *, lesser: bool = False) -> None:
         """Write a label and its value, the value at the right."""
+        label, value = drawable(label), drawable(value)
         self.rows.setdefault(label, value)
         colour = self.theme.faint
         if lesser:
@@ -164,6 +172,7 @@ class Ui:
 
     def tip(self, words: str) -> None:
         """Show words beside the cursor while it rests on what was drawn last."""
+        words = drawable(words)
         if words and imgui.is_item_hovered(_TIP_FLAGS):
             self.words.append(words)
             if imgui.begin_tooltip():
@@ -217,6 +226,7 @@ class Ui:
         self, label: str, keys: str = "", *, on: bool = False, enabled: bool = True, tip: str = ""
     ) -> bool:
         """Draw a line of the menu that is open, and return whether it was chosen."""
+        label = drawable(label)
         self.words.append(label)
         chosen, _ = imgui.menu_item(label, keys, on, enabled)
         self.note(label)
@@ -272,10 +282,8 @@ class Ui:
         self.note(label)
         return float(new) if moved else None
 
-    def field(
-        self, label: str, text: str, width: float = -1.0, *, wrong: bool = False
-    ) -> tuple[str, bool, bool]:
-        """Draw a field for text; return its text, whether it is edited, and whether an edit has ended."""
+    def field(self, label: str, text: str, width: float = -1.0, *, wrong: bool = False) -> tuple[str, bool]:
+        """Draw a field for text, and return its text and whether it is edited."""
         self.words.append(text)
         if wrong:
             imgui.push_style_color(imgui.Col_.border, packed(self.theme.error))
@@ -287,4 +295,4 @@ class Ui:
         if wrong:
             imgui.pop_style_var()
             imgui.pop_style_color()
-        return text, bool(imgui.is_item_active()), bool(imgui.is_item_deactivated_after_edit())
+        return text, bool(imgui.is_item_active())

@@ -63,6 +63,10 @@ class Inspector:
             self._build_optional(ui, world, window, first)
         self._build_buttons(ui, window)
 
+    def finish(self) -> str:
+        """Take over what is half written in a field, and return why it is refused; empty where it is not."""
+        return self._numbers.finish()
+
     # ---- fields --------------------------------------------------------------------------------------------
 
     def _build_component(self, ui: Ui, world: World, window: Window, kind: type[Component]) -> None:
@@ -88,6 +92,8 @@ class Inspector:
 
         def commit(new: float) -> None:
             spec.check(new)
+            held = world.component(window.selection.entities[-1], kind)
+            kind(**(held.given() | {spec.name: new}))  # some fields depend on others: a radius is above 0
             self._set(window, kind, spec, new)
 
         width = imgui.get_content_region_avail().x
@@ -130,16 +136,20 @@ class Inspector:
 
     @staticmethod
     def _set(window: Window, kind: type[Component], spec: Field, value: object) -> None:
+        entities = window.selection.entities
+
         def deed(world: World, window: Window) -> None:
-            for entity in window.selection.entities:
+            for entity in entities:
                 _try(window, lambda entity=entity: set_field(world, entity, kind, spec.name, value))
 
         window.deeds.append(deed)
 
     @staticmethod
     def _set_part(window: Window, kind: type[Component], spec: Field, axis: int, new: float) -> None:
+        entities = window.selection.entities
+
         def deed(world: World, window: Window) -> None:
-            for entity in window.selection.entities:
+            for entity in entities:
                 vector = getattr(world.component(entity, kind), spec.name)
                 parts = (new, vector.y) if axis == 0 else (vector.x, new)
                 _try(window, lambda e=entity, p=parts: set_field(world, e, kind, spec.name, Vector2(*p)))
@@ -272,7 +282,7 @@ def _unit_width(spec: Field) -> float:
 
 
 def _ignore(value: float) -> None:
-    """Take a number that nobody is to have."""
+    """Drop a number: the label of a vector cannot be dragged."""
 
 
 _ORDER: dict[type[Component], int] = {

@@ -55,6 +55,7 @@ class Interface:
         self._inspector = Inspector()
         self._settings = SettingsPanel()
         self._next = 0.0
+        self._offer_height = 0  # of the offer to restore a session [px]
         self._seen: tuple[object, ...] = ()
 
     @property
@@ -71,11 +72,26 @@ class Interface:
         """Return what is left for the world [px]."""
         return self.layout.room
 
+    @property
+    def visible(self) -> Rect:
+        """Where words can be drawn over the world: no panel covers it [px]."""
+        left, top, width, height = self.layout.visible
+        taken = min(self._offer_height, height - 1) if self._window.recovery.offered else 0
+        return left, top + taken, width, height - taken
+
     def take(self, event: pygame.Event) -> bool:
-        """Let panels have an event first; return whether the world is not to see it."""
+        """Let panels have an event first; return whether the world is not to see it.
+
+        A press in the world takes over what is half written in a field, before it selects anything else.
+        """
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self.toolkit.follow_pointer(event.pos)
-        return self.toolkit.take(event)
+        taken = self.toolkit.take(event)
+        if event.type == pygame.MOUSEBUTTONDOWN and not taken:
+            refusal = self._inspector.finish() or self._settings.finish()
+            if refusal:
+                self._window.notify(refusal, 6.0, failed=True)
+        return taken
 
     def build(
         self,
@@ -159,7 +175,7 @@ class Interface:
         if window.graphs:
             build_graphs(ui, window)
         if window.recovery.offered:
-            build_recovery(ui, window)
+            self._offer_height = build_recovery(ui, window, layout.visible)
         if window.error_study.shown:
             build_error_plot(ui, window)
         if window.help:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from physicslab.view.canvas.canvas import Rect
+from physicslab.view.toolkit.style import bar_height
 
 __all__ = ["Layout"]
 
-_PALETTE, _SIDE, _TRANSPORT, _MENU = 6.9, 16.8, 3.0, 1.65
-"""Widths of the palette and the side panel, heights of the transport and the menus, in text heights."""
+_PALETTE, _SIDE, _TRANSPORT = 6.9, 16.8, 3.0
+"""Widths of the palette and the side panel, height of the transport, in heights of the text."""
 _MIN_WORLD = 0.34
 """Share of the window's width that is always left to the world: the side panel lies over it if it must."""
 
@@ -35,11 +36,17 @@ class Layout:
         """All that is not left for the world [px]."""
         return self.menu, self.palette, self.transport, self.side
 
+    @property
+    def visible(self) -> Rect:
+        """The part of the world's room that the panel at the right does not lie over [px]."""
+        left, top, width, height = self.room
+        return left, top, max(min(width, self.side[0] - left), 1), height
+
     @classmethod
     def of(cls, size: tuple[int, int], text: int, *, side: bool) -> Layout:
         """Lay a window out for text of a height [px], with or without the panel at the right."""
         width, height = size
-        top, foot, left = round(_MENU * text), round(_TRANSPORT * text), round(_PALETTE * text)
+        top, foot, left = bar_height(text), round(_TRANSPORT * text), round(_PALETTE * text)
         right = round(_SIDE * text) if side else 0
         middle = max(height - top - foot, 1)
         room_width = width - left - right

@@ -40,50 +40,67 @@ class _Draft:
     refusal: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class _Target:
+    """The field that is being written in: what it showed, and where its number goes."""
+
+    key: str
+    shown: str
+    spec: Field
+    commit: Commit
+
+
 class NumberFields:
     """The fields of a panel; what is half written in one is kept from frame to frame."""
 
     def __init__(self) -> None:
         self._drafts: dict[str, _Draft] = {}
+        self._edited: _Target | None = None
         self._dragged: tuple[str, float] | None = None
 
     def clear(self) -> None:
         """Forget what was half written."""
         self._drafts.clear()
+        self._edited = self._dragged = None
 
     def build(self, ui: Ui, key: str, value: float, spec: Field, width: float, commit: Commit) -> str:
         """Build one field, and return why what was written in it is refused; empty while it is not.
 
-        ``commit`` is called with a number that the field may hold, once Enter or Tab is pressed, or the field
-        is left.
+        ``commit`` is called once Enter or Tab is pressed, or the field is left; it raises
+        :class:`InvalidValue` for a number that the field cannot hold.
         """
         draft = self._drafts.get(key)
-        written = draft.text if draft else shown_number(value, 4 if spec.kind == "vector" else 6)
-        text, active, left = ui.field(key, written, width, wrong=bool(draft and draft.refusal))
-        escaped = active and imgui.is_key_pressed(imgui.Key.escape)
-        if left and not escaped:
-            self._take(key, text, spec, commit)
-        elif active and draft is None:
-            self._drafts[key] = _Draft(text)
-        elif active and draft is not None:
-            draft.text = text
-        elif draft is not None and not draft.refusal:
-            del self._drafts[key]
+        shown = shown_number(value, 4 if spec.kind == "vector" else 6)
+        text, active = ui.field(
+            key, draft.text if draft else shown, width, wrong=bool(draft and draft.refusal)
+        )
+        if active:
+            self._drafts[key] = _Draft(text, draft.refusal if draft else "")
+            self._edited = _Target(key, shown, spec, commit)
+        elif self._edited is not None and self._edited.key == key:
+            if imgui.is_key_pressed(imgui.Key.escape):
+                self._edited = None
+                self._drafts.pop(key, None)
+            self.finish()
         draft = self._drafts.get(key)
         return draft.refusal if draft else ""
 
-    def _take(self, key: str, text: str, spec: Field, commit: Commit) -> None:
-        """Hand a number over, or keep the text with the reason why it is none."""
+    def finish(self) -> str:
+        """Take over what is half written, and return why it is refused; empty where it is not."""
+        edited, self._edited = self._edited, None
+        draft = self._drafts.pop(edited.key, None) if edited is not None else None
+        if edited is None or draft is None or draft.text == edited.shown:
+            return ""  # the number may have more figures than the field shows
         try:
-            value = evaluate(text, spec.unit)
-            spec.check((value, 0.0) if spec.kind == "vector" else value)
-            commit(value)
+            edited.commit(evaluate(draft.text, edited.spec.unit))
         except InvalidText as error:
-            self._drafts[key] = _Draft(text, str(error))
+            draft.refusal = str(error)
         except InvalidValue as error:
-            self._drafts[key] = _Draft(text, f"must be {error.allowed}")
+            draft.refusal = f"must be {error.allowed}"
         else:
-            self._drafts.pop(key, None)
+            return ""
+        self._drafts[edited.key] = draft
+        return draft.refusal
 
     def label(
         self, ui: Ui, key: str, words: str, width: float, value: float | None, tip: str, commit: Commit

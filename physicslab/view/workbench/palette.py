@@ -19,7 +19,9 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
     """Build a button for each tool, with its icon and its name; the tool in hand is marked."""
     with ui.panel("palette", rect, padded=False):
         imgui.push_style_var(imgui.StyleVar_.button_text_align, ImVec2(0.0, 0.5))
-        width, height = imgui.get_content_region_avail().x, 1.9 * ui.size
+        room, gap = imgui.get_content_region_avail(), imgui.get_style().item_spacing.y
+        width, buttons = room.x, len(PALETTE) + 1
+        height = min(1.9 * ui.size, max((room.y - (buttons - 1) * gap) // buttons, 1.1 * ui.size))
         for tool in PALETTE:
             if ui.button(
                 tool.title, tool.usage, shown=_words(tool), on=window.tool == tool.name, size=(width, height)

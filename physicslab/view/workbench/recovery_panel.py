@@ -4,23 +4,42 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
+from physicslab.view.canvas.canvas import Rect
 from physicslab.view.controls.recovery_actions import discard_session, restore_session
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 
 __all__ = ["build_recovery"]
 
+_OFFERS = {"Restore it": restore_session, "Discard": discard_session}
+_PAD = 6
+"""Room around the words [px]."""
 
-def build_recovery(ui: Ui, window: Window) -> None:
-    """Build a line of words and two buttons at the top of the world; keys stay with the scene that runs."""
-    left, top, width, _ = window.room()
-    height = round(2.6 * ui.size)
-    with ui.panel("recovery", (left, top, width, height), padded=False):
-        imgui.align_text_to_frame_padding()
-        ui.text(f"  {window.recovery.words}", ui.theme.notice)
-        imgui.same_line()
-        if ui.button("Restore it"):
-            window.deeds.append(restore_session)
-        imgui.same_line()
-        if ui.button("Discard"):
-            window.deeds.append(discard_session)
+
+def build_recovery(ui: Ui, window: Window, free: Rect) -> int:
+    """Build words and two buttons at the top of what is free, and return how high they are [px].
+
+    They stand in one line where that is wide enough. Keys stay with the scene that runs.
+    """
+    left, top, width, _ = free
+    style, words = imgui.get_style(), window.recovery.words
+    room = width - 2 * _PAD
+    gap, line = style.item_spacing, imgui.get_frame_height()
+    buttons = [imgui.calc_text_size(label).x + 2 * style.frame_padding.x for label in _OFFERS]
+    in_line = imgui.calc_text_size(words).x + sum(buttons) + len(buttons) * gap.x <= room
+    beside = sum(buttons) + gap.x <= room
+    if in_line:
+        height = line
+    else:
+        rows = 1 if beside else len(buttons)
+        height = imgui.calc_text_size(words, wrap_width=room).y + rows * (line + gap.y)
+    with ui.panel("recovery", (left, top, width, round(height) + 2 * _PAD), padded=False):
+        if in_line:
+            imgui.align_text_to_frame_padding()
+        ui.text(words, ui.theme.notice, wrapped=not in_line)
+        for n, (label, deed) in enumerate(_OFFERS.items()):
+            if in_line or (beside and n):
+                imgui.same_line()
+            if ui.button(label):
+                window.deeds.append(deed)
+    return round(height) + 2 * _PAD

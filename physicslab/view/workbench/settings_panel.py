@@ -35,6 +35,10 @@ class SettingsPanel:
     def __init__(self) -> None:
         self._numbers = NumberFields()
 
+    def finish(self) -> str:
+        """Take over what is half written in a field, and return why it is refused; empty where it is not."""
+        return self._numbers.finish()
+
     def build(self, ui: Ui, world: World, window: Window) -> None:
         """Build them for the world as it is."""
         simulation, plan = world.simulation, world.plan
