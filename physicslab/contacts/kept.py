@@ -1,7 +1,8 @@
 """What the next step takes from the last ones, of contacts and of sleep, as copies of records and columns.
 
 A scene file keeps the same as rows of numbers (:mod:`physicslab.contacts.memory`, and ``export_rests`` of
-:mod:`physicslab.contacts.islands`). Here records are whole, so that what is read of contacts is right at once.
+:mod:`physicslab.contacts.islands`). Here records are whole, so that what is read of contacts is right at
+once.
 """
 
 from __future__ import annotations
@@ -149,7 +150,10 @@ class KeptSleep:
         return (*self.columns.values(), self.gone)
 
     def restore(self, state: State, rows: NDArray[np.int64]) -> None:
-        """Give them back to a state in which nothing sleeps; ``rows`` (rows then,) are those of now, or -1."""
+        """Give them back to a state in which nothing sleeps.
+
+        ``rows`` (rows then,) are those of now; -1 for what is blank.
+        """
         sleep = state.sleep
         there = rows >= 0
         for name, column in self.columns.items():

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from physicslab.contacts.kept import KeptContacts, KeptSleep, forget_sleep, shared
 from physicslab.ecs.component import Component
-from physicslab.ecs.context import create_numbered
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.context import create_numbered
 from physicslab.ecs.table import Table
 from physicslab.state.remainders import Remainders
 from physicslab.stepping.plan import StepPlan
@@ -60,7 +60,7 @@ class _Structure:
         index = world.entity_index
         others: dict[int, tuple[Any, ...]] = {}
         for entity in index.row_of:
-            parts = esper.components_for_entity(entity)
+            parts: tuple[Any, ...] = esper.components_for_entity(entity)
             plain = tuple(part for part in parts if not isinstance(part, Component))
             if plain:
                 others[entity] = plain
@@ -87,7 +87,8 @@ class _Structure:
                 made = [_blank(world.table(kind)) for kind in kinds[entity]]
                 create_numbered(entity, [*made, *others])
                 continue
-            for part in esper.components_for_entity(entity):
+            there: tuple[Any, ...] = esper.components_for_entity(entity)
+            for part in there:
                 kind = type(part)
                 if kind not in kinds[entity] and not any(part is other for other in others):
                     esper.remove_component(entity, kind)
@@ -119,7 +120,9 @@ class Keyframe:
         world.synchronise()
         same = last is not None and last._structure.is_that_of(world)
         with world.active():
-            self._structure = last._structure if last is not None and same else _Structure.of(world)
+            self._structure: _Structure = (
+                last._structure if last is not None and same else _Structure.of(world)
+            )
         tables = world.entity_index.tables
         known = last._columns if last is not None and same else {}
         self._columns: dict[type[Any], _Columns] = {
@@ -133,8 +136,9 @@ class Keyframe:
         self._forces: _Columns = shared(
             (world.bodies.force, world.bodies.torque), last._forces if last is not None else None
         )
-        self._contacts = KeptContacts.of(world.contacts, last._contacts if last is not None else None)
-        self._sleep = KeptSleep.of(world.sleep, last._sleep if last is not None else None)
+        before = (last._contacts, last._sleep) if last is not None else (None, None)
+        self._contacts: KeptContacts = KeptContacts.of(world.contacts, before[0])
+        self._sleep: KeptSleep = KeptSleep.of(world.sleep, before[1])
 
     def arrays(self) -> Iterator[_Array]:
         """Yield every array, for the memory that they take."""

@@ -1,8 +1,8 @@
 """The line of edits and runs that a world has gone along, as data.
 
-A line is a list of entries. An entry is an edit, or a run; a run is a list of pieces: steps of one length, and
-writes, the edits that a hand makes between steps. Every edit, write and step is one tick: a place in a line is
-the number of ticks before it.
+A line is a list of entries. An entry is an edit, or a run; a run is a list of pieces: steps of one length,
+and writes, the edits that a hand makes between steps. Every edit, write and step is one tick: a place in a
+line is the number of ticks before it.
 """
 
 from __future__ import annotations
