@@ -203,10 +203,10 @@ class History:
         world = self.world
         for _ in range(steps):
             h = world.simulation.dt if dt is None else float(dt)
-            began = time.perf_counter()
+            began = time.thread_time()
             with self._all_or_nothing():
                 world.step(h)
-            self._since += time.perf_counter() - began
+            self._since += time.thread_time() - began
             self._run().add_step(h, digest_of(world))
             self._advance()
             if self._since >= _RUNNING * self._cost and self._frames.takes(self._place):
@@ -421,10 +421,10 @@ class History:
             self._place += 1
 
     def _make_step_again(self, dt: float, target: int) -> None:
-        began = time.perf_counter()
+        began = time.thread_time()
         self.world.step(dt)
         self._place += 1
-        self._since += time.perf_counter() - began
+        self._since += time.thread_time() - began
         digest, known = digest_of(self.world), self._line.digest_before(self._place)
         if digest != known and self.difference is None:
             differ = tuple(name for name, a, b in zip(COLUMNS, digest, known, strict=True) if a != b)
@@ -439,9 +439,9 @@ class History:
 
     def _take(self) -> Keyframe:
         """Return a key frame of now."""
-        began = time.perf_counter()
+        began = time.thread_time()
         frame = Keyframe(self.world, self._last)
-        self._cost, self._since, self._last = time.perf_counter() - began, 0.0, frame
+        self._cost, self._since, self._last = time.thread_time() - began, 0.0, frame
         return frame
 
     def _follow_edit(self) -> None:
