@@ -9,18 +9,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Self
 
-import numpy as np
-
-from physicslab.components import Transform, Velocity
 from physicslab.history.commands import Command, Group, Spawn
+from physicslab.history.digest import differing, digest_of
 from physicslab.history.keyframe import Keyframe
 from physicslab.history.keyframes import Keyframes
-from physicslab.history.line import COLUMNS, Digest, Edit, Line, Run, Steps
-from physicslab.kernels.digest import digest_motion
-from physicslab.state.masses import quiet
+from physicslab.history.line import Edit, Line, Run, Steps
+from physicslab.history.recording import load, save
+from physicslab.history.replay import follow_edit
 from physicslab.world import World
 
-__all__ = ["Branch", "Difference", "History", "HistoryEntry", "digest_of"]
+__all__ = ["Branch", "Difference", "History", "HistoryEntry"]
 
 _RUNNING, _SEEKING = 40.0, 4.0
 """How many times as long as a key frame takes the steps between two take: in a run, and where steps are made
@@ -164,7 +162,7 @@ class History:
         with self._all_or_nothing():
             words = command.words(self.world)
             done = command.carry_out(self.world)
-            self._follow_edit()
+            follow_edit(self.world)
         self._cut()
         self._line.add(Edit(words, done))
         self._advance()
@@ -330,8 +328,6 @@ class History:
         OSError
             If the file cannot be written; one that was there before is as it was.
         """
-        from physicslab.history.recording import save
-
         self._mend()
         now = Keyframe(self.world)
         try:
@@ -349,8 +345,6 @@ class History:
         SceneError
             If the file cannot be read or is no recording.
         """
-        from physicslab.history.recording import load
-
         world, line = load(path)
         history = cls(world, budget)
         history._line, history._end = line, line.ticks
@@ -415,7 +409,7 @@ class History:
             command = piece.command if isinstance(piece, Edit) else piece
             command.carry_out(world)
             if isinstance(piece, Edit):
-                self._follow_edit()
+                follow_edit(self.world)
             else:
                 world.synchronise()
             self._place += 1
@@ -425,10 +419,9 @@ class History:
         self.world.step(dt)
         self._place += 1
         self._since += time.thread_time() - began
-        digest, known = digest_of(self.world), self._line.digest_before(self._place)
-        if digest != known and self.difference is None:
-            differ = tuple(name for name, a, b in zip(COLUMNS, digest, known, strict=True) if a != b)
-            self.difference = Difference(self.step_count, differ)
+        columns = differing(digest_of(self.world), self._line.digest_before(self._place))
+        if columns and self.difference is None:
+            self.difference = Difference(self.step_count, columns)
         if self._since >= _SEEKING * self._cost:
             self._leave_nearby(target)
 
@@ -443,11 +436,6 @@ class History:
         frame = Keyframe(self.world, self._last)
         self._cost, self._since, self._last = time.thread_time() - began, 0.0, frame
         return frame
-
-    def _follow_edit(self) -> None:
-        """Let the world follow an edit; what is measured of it begins again."""
-        self.world.edited()
-        self.world.synchronise()
 
     @contextmanager
     def _all_or_nothing(self) -> Iterator[None]:
@@ -465,19 +453,6 @@ class History:
             place = self._place
             self._restore(self._frames.before(place))
             self._go(place)
-
-
-@quiet
-def digest_of(world: World) -> Digest:
-    """Return 32 bits for each of the columns of motion: positions, angles, velocities, angular velocities.
-
-    They do not depend on how rows are numbered.
-    """
-    index, transform, velocity = world.entity_index, world.table(Transform), world.table(Velocity)
-    rows = slice(1, None) if len(index.row_of) + 1 == len(index) else np.flatnonzero(index.entities)
-    columns = (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
-    position, angle, linear, angular = (column[rows].reshape(-1).view(np.int64) for column in columns)
-    return digest_motion(position, angle, linear, angular)
 
 
 def _made(command: Command) -> Iterator[int]:

@@ -13,14 +13,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from physicslab.history.commands import Command
+from physicslab.history.digest import Digest
 
-__all__ = ["COLUMNS", "Digest", "Edit", "Line", "Run", "Steps"]
-
-type Digest = tuple[int, int, int, int]
-"""32 bits for each of the columns of motion after a step."""
-
-COLUMNS = ("Transform.position", "Transform.angle", "Velocity.linear", "Velocity.angular")
-"""These columns."""
+__all__ = ["Edit", "Line", "Run", "Steps"]
 
 
 @dataclass(slots=True)
@@ -88,6 +83,13 @@ class Run:
         self.seconds += dt
         self.digests.extend(digest)
 
+    def add_steps(self, dt: float, count: int) -> None:
+        """Add steps of which the digests are there already, or will be."""
+        self._begin(Steps(dt, count))
+        self.ticks += count
+        self.steps += count
+        self.seconds += count * dt
+
     def add_write(self, command: Command) -> None:
         """Add a write."""
         self._begin(command)
@@ -136,9 +138,7 @@ class Run:
         made = Run()
         for piece in self.between(0, ticks):
             if isinstance(piece, Steps):
-                made._begin(piece)
-                made.ticks, made.steps = made.ticks + piece.count, made.steps + piece.count
-                made.seconds += piece.count * piece.dt
+                made.add_steps(piece.dt, piece.count)
             else:
                 made.add_write(piece)
         made.digests = self.digests[: 4 * made.steps]
