@@ -324,7 +324,7 @@ def test_the_world_has_two_thirds_of_the_usual_window() -> None:
     assert desk.window.figures, "with the panel at the right"
     covered = np_covered(desk)
     assert 1.0 - covered >= 0.65
-    left, top, width, height = desk.sandbox.interface.room()
+    _left, _top, width, height = desk.sandbox.interface.room()
     assert width * height >= 0.65 * 1280 * 720
 
 
@@ -612,7 +612,7 @@ def test_the_tool_in_hand_is_marked(desk: Desk) -> None:
         point(desk, desk.pixel(0, 0))
         marked = []
         for other in PALETTE:
-            left, top, width, height = desk.ui.places[other.title]
+            left, top, width, _height = desk.ui.places[other.title]
             if surface.get_at((left + width - 5, top + 5))[:3] == accent:
                 marked.append(other)
         assert marked == [tool]

@@ -87,8 +87,9 @@ class InputSystem(System):
 
     def _key(self, world: World, event: pygame.Event) -> None:
         mod = getattr(event, "mod", 0)
-        ctrl = "ctrl+" if mod & pygame.KMOD_CTRL else ""
-        action = KEYS.get(ctrl + pygame.key.name(event.key).lower())
+        held = ("ctrl+" if mod & pygame.KMOD_CTRL else "") + ("shift+" if mod & pygame.KMOD_SHIFT else "")
+        name = pygame.key.name(event.key).lower()
+        action = KEYS.get(held + name) or KEYS.get(held.replace("shift+", "") + name)
         if action is not None and not mod & _OTHER_USE:
             action(world, self._window)
 
@@ -120,7 +121,7 @@ class InputSystem(System):
     def _release(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
         if event.button == pygame.BUTTON_LEFT:
-            self._window.handles.release()
+            self._window.handles.release(self._window.edits)
         if event.button == pygame.BUTTON_LEFT and self._tool is not None:
             self._tool.release(world, self._window)
             self._tool = None
@@ -131,7 +132,7 @@ class InputSystem(System):
         window = self._window
         if not event.buttons[0]:  # let go where no report came from, as over another window
             window.hand.drop(world)
-            window.handles.release()
+            window.handles.release(window.edits)
             if self._tool is not None:
                 window.spring_tool.cancel()
                 self._tool = None
@@ -143,7 +144,7 @@ class InputSystem(System):
         window.pointer = event.pos
         if window.handles.dragged is not None and window.handled is not None:
             snaps = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
-            window.handles.drag(world, window.handled, window.camera, window.place, snaps=snaps)
+            window.handles.drag(window.edits, window.handled, window.camera, window.place, snaps=snaps)
 
     def _wheel(self, world: World, event: pygame.Event) -> None:
         notches = getattr(event, "precise_y", event.y)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
-from physicslab.components import Held, Name, Shape, Spring, Transform, Velocity
+from physicslab.components import Held, Shape, Spring, Transform, Velocity
+from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.history import Command, Group, Remove, SetPhysics, Spawn
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.tools import HAND, Tool
 from physicslab.view.panels.laws import has_gravity
-from physicslab.view.window.edits import announce_edit
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -28,20 +28,20 @@ __all__ = [
     "leave",
     "next_theme",
     "plot_selected",
-    "reduce",
+    "redo", "reduce", "seek",
     "slower",
     "smaller_text",
-    "step",
+    "step", "step_back",
     "toggle_arrows",
     "toggle_figures",
     "toggle_gravity",
     "toggle_grid",
-    "toggle_help",
+    "toggle_help", "toggle_history",
     "toggle_impulses",
     "toggle_pause",
     "toggle_planets",
     "toggle_slow_motion",
-    "toggle_trails",
+    "toggle_trails", "undo",
     "zoom",
     "zoom_in",
     "zoom_out",
@@ -64,6 +64,7 @@ def choose_tool(window: Window, tool: Tool) -> None:
 def toggle_pause(world: World, window: Window) -> None:
     """Let time stand still, or go on."""
     window.pace.toggle_pause()
+    window.edits.history.divide()
     if not window.pace.paused:
         window.error = ""
 
@@ -92,8 +93,10 @@ def clear(world: World, window: Window) -> None:
     """Remove everything."""
     window.hand.drop(world)
     window.spring_tool.cancel()
-    world.clear()
-    announce_edit(world)
+    removed = [Remove(entity) for entity in world.entities()]
+    if removed:
+        window.edits.do(Group("cleared everything", removed))
+        window.notify("Cleared: Ctrl+Z brings it back")
     window.overlays.forget()
     window.sparks.clear()
     window.error = ""
@@ -105,11 +108,10 @@ def toggle_gravity(world: World, window: Window) -> None:
         window.notify(_NO_GRAVITY, failed=True)
         return
     if world.physics.gravity_mode == "linear" and world.physics.gravity:
-        world.physics = replace(world.physics, gravity_mode="none")
+        window.edits.do(SetPhysics({"gravity_mode": "none"}))
     else:
         gravity = world.physics.gravity or PhysicsConfig().gravity
-        world.physics = replace(world.physics, gravity_mode="linear", gravity=gravity)
-    announce_edit(world)
+        window.edits.do(SetPhysics({"gravity_mode": "linear", "gravity": gravity}))
 
 
 def toggle_planets(world: World, window: Window) -> None:
@@ -118,11 +120,10 @@ def toggle_planets(world: World, window: Window) -> None:
         window.notify(_NO_GRAVITY, failed=True)
         return
     if world.physics.gravity_mode == "planet":
-        world.physics = replace(world.physics, gravity_mode=window.gravity_before)
+        window.edits.do(SetPhysics({"gravity_mode": window.gravity_before}))
     else:
         window.gravity_before = world.physics.gravity_mode
-        world.physics = replace(world.physics, gravity_mode="planet")
-    announce_edit(world)
+        window.edits.do(SetPhysics({"gravity_mode": "planet"}))
 
 
 def toggle_arrows(world: World, window: Window) -> None:
@@ -208,6 +209,11 @@ def toggle_grid(world: World, window: Window) -> None:
     window.grid = not window.grid
 
 
+def toggle_history(world: World, window: Window) -> None:
+    """Show the list of edits and runs, or no longer."""
+    window.lists_history = not window.lists_history
+
+
 def toggle_help(world: World, window: Window) -> None:
     """Show all keys, or the world and its figures again."""
     window.help = not window.help
@@ -244,19 +250,54 @@ def plot_selected(world: World, window: Window) -> None:
 
 def duplicate_selected(world: World, window: Window) -> None:
     """Put a copy of each body that is selected beside it, and select the copies."""
-    copies = []
+    copies: list[Command] = []
     for entity in window.selection.entities:
         if not world.has(entity, Transform):
             continue
-        held = [part for part in world.components(entity) if not isinstance(part, (Name, Held, Spring))]
-        parts = [type(part)(**part.given()) for part in held]
-        copies.append(world.spawn(*parts))
-        world.synchronise()
-        moved = world.component(copies[-1], Transform)
-        moved.position = moved.position + Vector2(_width(world, entity), 0.0)
+        parts = [
+            type(part)(**part.given())
+            for part in world.components(entity)
+            if isinstance(part, Component) and not isinstance(part, Held | Spring)
+        ]
+        place = next(part for part in parts if isinstance(part, Transform))
+        place.position = place.position + Vector2(_width(world, entity), 0.0)
+        copies.append(Spawn(parts))
     if copies:
-        window.selection.entities = tuple(copies)
-        announce_edit(world)
+        made = window.edits.do(Group(f"duplicated {len(copies)}", copies))
+        window.selection.entities = made or window.selection.entities
+
+
+def undo(world: World, window: Window) -> None:
+    """Take back the last edit or run."""
+    window.hand.drop(world)
+    window.edits.take_back_shown()
+    words = window.edits.history.undo()
+    window.pace.paused = True
+    window.notify(f"Taken back: {words}" if words else "There is nothing to take back")
+
+
+def redo(world: World, window: Window) -> None:
+    """Put back what was taken back last."""
+    window.hand.drop(world)
+    window.edits.take_back_shown()
+    words = window.edits.history.redo()
+    window.pace.paused = True
+    window.notify(f"Put back: {words}" if words else "There is nothing to put back")
+
+
+def seek(window: Window, step: int) -> None:
+    """Go to the place after so many steps, and pause there; beyond the ends to the nearest."""
+    history = window.edits.history
+    window.hand.drop(history.world)
+    window.edits.take_back_shown()
+    first, last = history.steps_range
+    window.pace.paused = True
+    history.seek(min(max(step, first), last))
+
+
+def step_back(world: World, window: Window) -> None:
+    """Pause, and go back by one step."""
+    seek(window, window.edits.history.step_count - 1)
 
 
 def _width(world: World, entity: int) -> float:

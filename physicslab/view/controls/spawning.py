@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from physicslab.components import Transform
+from physicslab.components import Spring, Transform
+from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
+from physicslab.history import Command, Group, Spawn
 from physicslab.prefabs import binary, box, chain, circle, container, pendulum, pile, pyramid, stack
-from physicslab.view.window.edits import announce_edit
 from physicslab.view.window.placing import Outlines, outlines_of, refused_place
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["CIRCLE", "SPAWNS", "Spawn", "spawn_box", "spawn_pendulum"]
+__all__ = ["CIRCLE", "SPAWNS", "Spawnable", "spawn_box", "spawn_pendulum"]
 
 _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
 _SIZES = ((0.5, 0.5), (0.8, 0.4), (0.4, 0.7), (0.6, 0.6), (1.0, 0.3))
@@ -75,7 +77,7 @@ def _binary(world: World, place: Vector2, turn: int) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Spawn:
+class Spawnable:
     """Something to put into the world.
 
     Attributes
@@ -109,10 +111,32 @@ class Spawn:
             window.notify(f"{self.title}: {refused}")
             return
         window.spawned += 1
-        self.make(world, window.place, window.spawned)
-        announce_edit(world)
+        made = _spawn_commands(self.make, window.spawned, window.place, window.edits.history.next_entity)
+        window.edits.do(Group(f"made: {self.title.lower()}", made))
         if self.remark and world.physics.gravity_mode != "planet":
             window.notify(self.remark, 5.0)
+
+
+def _spawn_commands(make: Make, turn: int, place: Vector2, first: int) -> list[Command]:
+    """Return the commands that make something at a place; ``first`` is the number of its first entity."""
+    scratch = World()
+    make(scratch, place, turn)
+    entities = scratch.entities()
+    number = {entity: first + n for n, entity in enumerate(entities)}
+    commands: list[Command] = []
+    for entity in entities:
+        parts = [copy.copy(part) for part in scratch.components(entity) if isinstance(part, Component)]
+        for part in parts:
+            if isinstance(part, Spring):
+                parts[parts.index(part)] = _renumbered(part, number)
+        commands.append(Spawn(parts))
+    return commands
+
+
+def _renumbered(spring: Spring, number: dict[int, int]) -> Spring:
+    """Return a spring between the same bodies under other numbers."""
+    ends = {end: None if getattr(spring, end) is None else number[getattr(spring, end)] for end in ("a", "b")}
+    return Spring(**{**spring.values(), **ends})
 
 
 @functools.lru_cache(maxsize=32)
@@ -123,20 +147,20 @@ def _outlines(make: Make, turn: int) -> Outlines:
     return outlines_of(scratch)
 
 
-CIRCLE = Spawn("circle", "Circle", "on empty space for a circle", _circle)
-_BOX = Spawn("box", "Box", "on empty space for a box", _box)
-_PENDULUM = Spawn("pendulum", "Pendulum", "where it shall hang from", _pendulum)
+CIRCLE = Spawnable("circle", "Circle", "on empty space for a circle", _circle)
+_BOX = Spawnable("box", "Box", "on empty space for a box", _box)
+_PENDULUM = Spawnable("pendulum", "Pendulum", "where it shall hang from", _pendulum)
 SPAWNS = (
     CIRCLE,
     _BOX,
-    Spawn("block", "Plank", "where its middle shall be", _plank),
+    Spawnable("block", "Plank", "where its middle shall be", _plank),
     _PENDULUM,
-    Spawn("chain", "Chain", "where it shall hang from", _chain),
-    Spawn("stack", "Stack", "where its foot shall be", _stack),
-    Spawn("pyramid", "Pyramid", "where its foot shall be", _pyramid),
-    Spawn("heap", "Heap of discs", "where it shall fall", _heap),
-    Spawn("pit", "Open box", "where the middle of its floor shall be", _pit),
-    Spawn("binary", "Two planets", "where they shall circle each other", _binary,
+    Spawnable("chain", "Chain", "where it shall hang from", _chain),
+    Spawnable("stack", "Stack", "where its foot shall be", _stack),
+    Spawnable("pyramid", "Pyramid", "where its foot shall be", _pyramid),
+    Spawnable("heap", "Heap of discs", "where it shall fall", _heap),
+    Spawnable("pit", "Open box", "where the middle of its floor shall be", _pit),
+    Spawnable("binary", "Two planets", "where they shall circle each other", _binary,
           "These two circle each other in planet mode: O turns it on"),
 )  # fmt: skip
 """All there is to spawn, in the order of the chooser."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from physicslab.history import Group, Remove, Spawn
 from physicslab.view.controls.picking import body_at
-from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawn
-from physicslab.view.window.edits import announce_edit
+from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawnable
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -33,7 +33,7 @@ class Tool:
         What happens.
     pans : bool
         Whether dragging moves the picture.
-    spawn : Spawn, optional
+    spawn : Spawnable, optional
         What a click on empty space makes.
     """
 
@@ -43,7 +43,7 @@ class Tool:
     press: Deed
     release: Deed
     pans: bool = False
-    spawn: Spawn | None = None
+    spawn: Spawnable | None = None
 
 
 def _nothing(world: World, window: Window) -> None:
@@ -94,9 +94,9 @@ def remove_entities(world: World, window: Window, entities: Sequence[int]) -> No
     for entity in entities:
         if window.hand.entity == entity:
             window.hand.drop(world)
-        world.remove(entity)
+    removed = [Remove(entity) for entity in entities]
+    window.edits.do(removed[0] if len(removed) == 1 else Group(f"removed {len(removed)} bodies", removed))
     window.selection.follow(world)
-    announce_edit(world)
 
 
 def begin_spring(world: World, window: Window) -> None:
@@ -115,14 +115,14 @@ def begin_spring(world: World, window: Window) -> None:
 def end_spring(world: World, window: Window) -> None:
     """End the spring at the body under the cursor, or at that point of the world."""
     target = body_at(world, window.camera, window.pointer)
-    refused = window.spring_tool.end(world, target, window.place)
-    if refused:
-        window.notify(refused)
+    made = window.spring_tool.end(world, target, window.place)
+    if isinstance(made, str):
+        window.notify(made)
     else:
-        announce_edit(world)
+        window.edits.do(Spawn([made]))
 
 
-def spawning(spawn: Spawn) -> Tool:
+def spawning(spawn: Spawnable) -> Tool:
     """Return the tool that takes hold of bodies, and spawns where there is none."""
 
     def press(world: World, window: Window) -> None:

@@ -15,6 +15,7 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
 from physicslab.view.workbench.graph_panel import build_graphs
 from physicslab.view.workbench.help_panel import build_help
+from physicslab.view.workbench.history_panel import build_history
 from physicslab.view.workbench.inspector import Inspector
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
@@ -133,6 +134,7 @@ class Interface:
         shown = (
             window.help,
             window.error_study.shown,
+            window.lists_history,
             window.recovery.offered,
             window.figures,
             window.level,
@@ -178,6 +180,8 @@ class Interface:
             self._offer_height = build_recovery(ui, window, layout.visible)
         if window.error_study.shown:
             build_error_plot(ui, window)
+        if window.lists_history:
+            build_history(ui, window)
         if window.help:
             build_help(ui, window)
 
