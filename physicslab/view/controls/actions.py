@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import copy
 import math
+from collections.abc import Callable, Sequence
 
 from physicslab.components import Held, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.history import Command, Group, Remove, SetPhysics, Spawn
+from physicslab.history import Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.tools import HAND, Tool
 from physicslab.view.panels.laws import has_gravity
@@ -26,9 +28,9 @@ __all__ = [
     "go_home",
     "larger_text",
     "leave",
-    "next_theme",
+    "next_theme", "nudger", "paste",
     "plot_selected",
-    "redo", "reduce", "seek",
+    "redo", "reduce", "seek", "select_all", "select_next",
     "slower",
     "smaller_text",
     "step", "step_back",
@@ -250,21 +252,82 @@ def plot_selected(world: World, window: Window) -> None:
 
 def duplicate_selected(world: World, window: Window) -> None:
     """Put a copy of each body that is selected beside it, and select the copies."""
+    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+    width = max((_width(world, entity) for entity in bodies), default=0.0)
+    _spawn_copies(window, [_parts(world, entity) for entity in bodies], Vector2(width, 0.0))
+
+
+def copy_selected(world: World, window: Window) -> None:
+    """Keep copies of what is selected, to be pasted."""
+    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+    window.copied = [_parts(world, entity) for entity in bodies]
+    window.notify(f"Copied: {len(bodies)}" if bodies else "Nothing is selected to be copied")
+
+
+def paste(world: World, window: Window) -> None:
+    """Put what was copied where the cursor is, and select it."""
+    if not window.copied:
+        window.notify("Nothing was copied")
+        return
+    places = [_place(parts) for parts in window.copied]
+    middle = sum(places, Vector2()) / len(places)
+    _spawn_copies(window, window.copied, window.place - middle)
+
+
+def _spawn_copies(window: Window, bodies: Sequence[Sequence[Component]], by: Vector2) -> None:
+    """Make copies of bodies elsewhere, as one edit, and select them."""
     copies: list[Command] = []
-    for entity in window.selection.entities:
-        if not world.has(entity, Transform):
-            continue
-        parts = [
-            type(part)(**part.given())
-            for part in world.components(entity)
-            if isinstance(part, Component) and not isinstance(part, Held | Spring)
-        ]
-        place = next(part for part in parts if isinstance(part, Transform))
-        place.position = place.position + Vector2(_width(world, entity), 0.0)
-        copies.append(Spawn(parts))
+    for parts in bodies:
+        moved = [copy.copy(part) for part in parts]
+        for part in moved:
+            if isinstance(part, Transform):
+                part.position = part.position + by
+        copies.append(Spawn(moved))
     if copies:
-        made = window.edits.do(Group(f"duplicated {len(copies)}", copies))
+        made = window.edits.do(Group(f"copied {len(copies)}", copies))
         window.selection.entities = made or window.selection.entities
+
+
+def _parts(world: World, entity: int) -> list[Component]:
+    """Return copies of the components of a body that a copy of it has."""
+    return [
+        type(part)(**part.given())
+        for part in world.components(entity)
+        if isinstance(part, Component) and not isinstance(part, Held | Spring)
+    ]
+
+
+def _place(parts: Sequence[Component]) -> Vector2:
+    return next(part.position for part in parts if isinstance(part, Transform))
+
+
+def select_all(world: World, window: Window) -> None:
+    """Select all bodies that can move."""
+    window.selection.entities = tuple(world.batch(Transform, Velocity).entities.tolist())
+
+
+def select_next(world: World, window: Window) -> None:
+    """Select the body after the one that is selected, in their order."""
+    bodies = sorted(world.batch(Transform).entities.tolist())
+    now = window.selection.entities[-1] if window.selection.entities else 0
+    if bodies:
+        window.selection.take(next((entity for entity in bodies if entity > now), bodies[0]))
+
+
+def nudger(across: int, up: int) -> Callable[[World, Window], None]:
+    """Return what moves all that is selected by so many pixels."""
+
+    def nudge(world: World, window: Window) -> None:
+        by = Vector2(across, up) / window.camera.scale
+        bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+        moves = [
+            SetField(entity, "Transform", "position", world.component(entity, Transform).position + by)
+            for entity in bodies
+        ]
+        if moves:
+            window.edits.do(Group(f"moved {len(moves)}", moves))
+
+    return nudge
 
 
 def undo(world: World, window: Window) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from physicslab.components import Transform, Velocity
 from physicslab.history import Group, Remove, Spawn
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawnable
@@ -67,9 +68,28 @@ def take_hold(world: World, window: Window) -> bool:
 
 
 def select(world: World, window: Window) -> None:
-    """Select and take hold of the body under the cursor; where there is none, select nothing."""
-    if not take_hold(world, window) and not window.adding:
+    """Select and take hold of the body under the cursor; where there is none, begin a rectangle."""
+    if take_hold(world, window):
+        return
+    if not window.adding:
         window.selection.clear()
+    window.band = window.place
+
+
+def end_select(world: World, window: Window) -> None:
+    """Let go of what is held, or select all bodies whose middles are in the rectangle."""
+    let_go(world, window)
+    begin, window.band = window.band, None
+    if begin is None:
+        return
+    low = min(begin.x, window.place.x), min(begin.y, window.place.y)
+    high = max(begin.x, window.place.x), max(begin.y, window.place.y)
+    batch = world.batch(Transform, Velocity)
+    place = world.table(Transform)["position"][batch.rows]
+    inside = ((place >= low) & (place <= high)).all(axis=1)
+    for entity in batch.entities[inside].tolist():
+        if entity not in window.selection.entities:
+            window.selection.take(entity, add=True)
 
 
 def remove(world: World, window: Window) -> None:
@@ -141,7 +161,11 @@ SPAWN_TOOLS = (HAND, *(spawning(spawn) for spawn in SPAWNS[1:]))
 SPRING = Tool("spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring)
 REMOVE = Tool("remove", "Erase", "Erase: click a body; its springs go with it.", remove, _nothing)
 SELECT = Tool(
-    "select", "Select", "Select: click a body to see its numbers; drag to move or throw it.", select, let_go
+    "select",
+    "Select",
+    "Select: click a body to see its numbers; drag to move or throw it.",
+    select,
+    end_select,
 )
 PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True)
 _IN_PALETTE = ("circle", "box", "block", "pendulum", "chain")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import History
@@ -97,6 +98,10 @@ class Window:
         How the world that is shown is changed.
     handles : Handles
         Those of what is selected.
+    copied : list
+        The components of each body that was copied.
+    band : Vector2, optional
+        Where the rectangle begins that is being drawn around bodies [m].
     graphs : list of Graph
         What is plotted.
     deeds : list of callables
@@ -148,6 +153,8 @@ class Window:
         self.selection = Selection()
         self.handles = Handles()
         self.edits: Edits
+        self.copied: list[list[Component]] = []
+        self.band: Vector2 | None = None
         self.graphs: list[Graph] = []
         self.deeds: list[Callable[[World, Window], None]] = []
         self.source: str | Path | None = None
