@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from physicslab.diagnostics.warnings import ModelWarning, find_warnings
 from physicslab.systems.system import Stage, System, at
 from physicslab.view.overlay.edge_arrows import draw_edge_arrows
+from physicslab.view.overlay.selection_marks import draw_selection
+from physicslab.view.panels.axis_numbers import draw_axis_numbers
 from physicslab.view.panels.banners import DroppedTime, draw_banners, draw_messages, lay_out_messages
 from physicslab.view.panels.figures import EnergyWatch, FrameMeter, WorldFigures, measure_world
 from physicslab.view.panels.laws import has_gravity
@@ -122,6 +124,15 @@ class HudSystem(System):
             banners.append((f"The computer is too slow: {dropped:.1f} s were skipped", theme.slow))
         return banners
 
+    def _draw_advice(self, world: World, middle: int, top: int, width: int) -> Rect | None:
+        """Write what is not to be trusted, and put a ring around each body that is spoken of."""
+        window, size = self._window, self._text_size
+        canvas, theme = window.canvas, window.theme
+        bodies = [entity for one in self._advice if (entity := _named(world, one.entity)) is not None]
+        draw_selection(world, bodies, window.camera, theme, canvas, colour=theme.warning)
+        plainly = window.level == "Explore"
+        return draw_advice(self._advice, middle, top, width, size, canvas, theme, plainly=plainly)
+
     # ---- drawing -------------------------------------------------------------------------------------------
 
     def _draw_over_world(self, world: World) -> list[Rect]:
@@ -130,9 +141,11 @@ class HudSystem(System):
         canvas, theme, room = window.canvas, window.theme, self._interface.visible
         left, top, width, height = room
         middle, bottom, margin = left + width // 2, top + height, round(0.6 * size)
+        if window.grid:
+            draw_axis_numbers(window.camera, room, size, canvas, theme)
         taken = draw_banners(self._banners(world), middle, top + margin, size, canvas, theme)
         below = taken[-1][1] + taken[-1][3] + margin if taken else top + margin
-        advice = draw_advice(self._advice, middle, below, width - 2 * margin, size, canvas, theme)
+        advice = self._draw_advice(world, middle, below, width - 2 * margin)
         taken += [advice] if advice is not None else []
         legend = legend_of(window.overlays, round(_LEGEND_WIDTH * size), size, canvas, theme)
         if legend is not None:
@@ -148,3 +161,11 @@ class HudSystem(System):
         taken += draw_messages(messages, middle, bottom, size, canvas, theme)
         draw_edge_arrows(world, window.camera, [*taken, *self._interface.layout.panels], size, canvas, theme)
         return taken
+
+
+def _named(world: World, label: str | None) -> int | None:
+    """Return the entity that a warning speaks of, if it speaks of one that is there."""
+    for entity in world.entities() if label else ():
+        if world.label(entity) == label:
+            return entity
+    return None

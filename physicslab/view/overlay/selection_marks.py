@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from physicslab.components import Shape, Transform
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas
-from physicslab.view.canvas.theme import Theme
+from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.picture.bodies import POINT_RADIUS
 from physicslab.world import World
 
@@ -25,13 +25,18 @@ _WIDTH = 2.0
 
 
 def draw_selection(
-    world: World, entities: Sequence[int], camera: Camera, theme: Theme, canvas: Canvas
+    world: World,
+    entities: Sequence[int],
+    camera: Camera,
+    theme: Theme,
+    canvas: Canvas,
+    colour: Colour | None = None,
 ) -> None:
-    """Draw a line around each of these entities that has a place."""
+    """Draw a line around each of these entities that has a place, in a colour or that of what is selected."""
     for entity in entities:
         if world.has(entity, Transform):
             corners = camera.project(_outline(world, entity, _GAP / camera.scale))
-            canvas.lines(corners, np.roll(corners, -1, axis=0), theme.accent, _WIDTH)
+            canvas.lines(corners, np.roll(corners, -1, axis=0), colour or theme.accent, _WIDTH)
 
 
 def draw_band(

@@ -18,18 +18,25 @@ _MAX_WIDTH = 60
 
 
 def draw_advice(
-    advice: Sequence[ModelWarning], middle: int, top: int, room: int, size: int, canvas: Canvas, theme: Theme
-) -> Rect | None:
+    advice: Sequence[ModelWarning], middle: int, top: int, room: int, size: int, canvas: Canvas, theme: Theme,
+    *, plainly: bool = False,
+) -> Rect | None:  # fmt: skip
     """Write what is not to be trusted, around ``middle`` and no wider than ``room`` px; return where [px].
 
-    The worst comes first. Without a warning nothing is drawn.
+    The worst comes first, and ``plainly`` alone, without figures. Without a warning nothing is drawn.
     """
     if not advice:
         return None
     ordered = sorted(advice, key=lambda one: one.excess, reverse=True)
     small = max(size - 1, 10)
     width = min(room, _MAX_WIDTH * size) - 3 * size
-    lines = ["! ADVICE: not to be trusted"]
+    if plainly:
+        worst = ordered[0]
+        words = f"! {worst.entity or 'This scene'}: {worst.what}. More under Engineer."
+        style = TextStyle(small, theme.warning, bold=True)
+        lines = broken(words, max(width, 4 * size), canvas, style)
+        return draw_pill(lines, middle, top, small, theme.warning, canvas, theme)
+    lines = ["! Not to be trusted"]
     for one in ordered[:_MAX_SHOWN]:
         pieces = broken(str(one), max(width, 4 * size), canvas, TextStyle(small, theme.warning, bold=True))
         lines += [f"- {pieces[0]}", *pieces[1:]]
