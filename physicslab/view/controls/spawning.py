@@ -14,6 +14,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
 from physicslab.prefabs import binary, box, chain, circle, container, pendulum, pile, pyramid, stack
 from physicslab.view.window.placing import Outlines, outlines_of, refused_place
+from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -27,50 +28,56 @@ _DENSITY = 5.0
 _RESTITUTION = 0.4
 _ORIGIN = Vector2(0.0, 0.0)
 
-type Make = Callable[[World, Vector2, int], None]
+type Make = Callable[[World, Vector2, int, Recipe], None]
 """Makes something at a place of a world [m]; the number says which of several kinds it is."""
 
 
-def _circle(world: World, place: Vector2, turn: int) -> None:
-    radius = _RADII[turn % len(_RADII)]
-    circle(world, place, radius=radius, mass=_DENSITY * math.pi * radius * radius, restitution=_RESTITUTION)
+def _circle(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
+    radius = recipe.size or _RADII[turn % len(_RADII)]
+    mass = recipe.density * math.pi * radius * radius
+    circle(world, place, radius=radius, mass=mass, restitution=recipe.restitution, friction=recipe.friction)
 
 
-def _box(world: World, place: Vector2, turn: int) -> None:
+def _box(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     width, height = _SIZES[turn % len(_SIZES)]
-    mass = _DENSITY * width * height
-    box(world, place, width=width, height=height, mass=mass, restitution=_RESTITUTION)
+    if recipe.size:
+        width, height = 2.0 * recipe.size, 2.0 * recipe.size
+    mass = recipe.density * width * height
+    box(
+        world, place, width=width, height=height, mass=mass,
+        restitution=recipe.restitution, friction=recipe.friction,
+    )  # fmt: skip
 
 
-def _plank(world: World, place: Vector2, turn: int) -> None:
+def _plank(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     box(world, place, width=2.0, height=0.2, static=True, friction=0.6, restitution=_RESTITUTION)
 
 
-def _pendulum(world: World, place: Vector2, turn: int) -> None:
+def _pendulum(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     pendulum(world, place, length=1.5, angle=0.7)
 
 
-def _chain(world: World, place: Vector2, turn: int) -> None:
+def _chain(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     chain(world, 8, place, place + Vector2(1.2, -1.2))
 
 
-def _stack(world: World, place: Vector2, turn: int) -> None:
+def _stack(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     stack(world, 5, place, width=0.5, height=0.4, mass=_DENSITY * 0.2)
 
 
-def _pyramid(world: World, place: Vector2, turn: int) -> None:
+def _pyramid(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     pyramid(world, 5, place, size=0.4, gap=0.04, mass=_DENSITY * 0.16)
 
 
-def _heap(world: World, place: Vector2, turn: int) -> None:
+def _heap(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     pile(world, 24, place, columns=6, radius=0.12, density=_DENSITY)
 
 
-def _pit(world: World, place: Vector2, turn: int) -> None:
+def _pit(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     container(world, place, width=2.4, height=1.2, thickness=0.15)
 
 
-def _binary(world: World, place: Vector2, turn: int) -> None:
+def _binary(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     for planet in binary(world, (20.0, 10.0), separation=1.6):
         transform = world.component(planet, Transform)
         transform.position = transform.position + place
@@ -102,7 +109,7 @@ class Spawnable:
 
     def outlines(self, window: Window) -> Outlines:
         """Return what would be made at the cursor: the ghost that is shown there."""
-        return _outlines(self.make, window.spawned + 1).moved(window.place)
+        return _outlines(self.make, window.spawned + 1, window.recipe).moved(window.place)
 
     def spawn(self, world: World, window: Window) -> None:
         """Make it at the cursor; where it would overlap, say so instead."""
@@ -111,16 +118,16 @@ class Spawnable:
             window.notify(f"{self.title}: {refused}")
             return
         window.spawned += 1
-        made = _spawn_commands(self.make, window.spawned, window.place, window.edits.history.next_entity)
+        made = _spawn_commands(self.make, window, window.edits.history.next_entity)
         window.edits.do(Group(f"made: {self.title.lower()}", made))
         if self.remark and world.physics.gravity_mode != "planet":
             window.notify(self.remark, 5.0)
 
 
-def _spawn_commands(make: Make, turn: int, place: Vector2, first: int) -> list[Command]:
-    """Return the commands that make something at a place; ``first`` is the number of its first entity."""
+def _spawn_commands(make: Make, window: Window, first: int) -> list[Command]:
+    """Return the commands that make something at the cursor; ``first`` is the number of its first entity."""
     scratch = World()
-    make(scratch, place, turn)
+    make(scratch, window.place, window.spawned, window.recipe)
     entities = scratch.entities()
     number = {entity: first + n for n, entity in enumerate(entities)}
     commands: list[Command] = []
@@ -140,10 +147,10 @@ def _renumbered(spring: Spring, number: dict[int, int]) -> Spring:
 
 
 @functools.lru_cache(maxsize=32)
-def _outlines(make: Make, turn: int) -> Outlines:
+def _outlines(make: Make, turn: int, recipe: Recipe) -> Outlines:
     """Return the outlines of what would be made at the origin: it is made in a world of its own."""
     scratch = World()
-    make(scratch, _ORIGIN, turn)
+    make(scratch, _ORIGIN, turn, recipe)
     return outlines_of(scratch)
 
 

@@ -16,6 +16,8 @@ __all__ = ["draw_axis_numbers"]
 
 _EVERY = 2
 """Of so many lines of the grid one has its number."""
+_BAR = 7.0
+"""Room for the scale bar at the right, in heights of the text."""
 _MAX_LINES = 400
 """Of a picture with more lines than that, which would be a speck, none has."""
 
@@ -29,7 +31,7 @@ def draw_axis_numbers(camera: Camera, room: Rect, size: int, canvas: Canvas, the
     text_height = canvas.text_size("0", style)[1]
     for x in _multiples(low.x, high.x, step):
         place = round(camera.to_screen(Vector2(x, camera.centre.y))[0])
-        if left + size < place < left + width - size:
+        if left + size < place < left + width - _BAR * size:
             canvas.text(_words(x, step), (place + 3, top + height - text_height - 2), style)
     for y in _multiples(low.y, high.y, step):
         place = round(camera.to_screen(Vector2(camera.centre.x, y))[1])

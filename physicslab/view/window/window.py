@@ -22,6 +22,7 @@ from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.pace import Pace
+from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.selection import Selection
 from physicslab.view.window.spring_tool import SpringTool
@@ -98,6 +99,8 @@ class Window:
         How the world that is shown is changed.
     handles : Handles
         Those of what is selected.
+    recipe : Recipe
+        What the next body is like.
     copied : list
         The components of each body that was copied.
     band : Vector2, optional
@@ -153,6 +156,7 @@ class Window:
         self.selection = Selection()
         self.handles = Handles()
         self.edits: Edits
+        self.recipe = Recipe()
         self.copied: list[list[Component]] = []
         self.band: Vector2 | None = None
         self.graphs: list[Graph] = []
