@@ -69,7 +69,14 @@ def _is_upright(vertices: Vertices, colours: Colours, a: int, b: int, c: int, d:
     )
     colour = colours[a, 4]
     alike = colours[b, 4] == colour and colours[c, 4] == colour and colours[d, 4] == colour
-    return bool(placed and alike)
+    # The texture lies along the axes, too: that of a line lies across it.
+    laid = (
+        vertices[a, 3] == vertices[b, 3]
+        and vertices[b, 2] == vertices[c, 2]
+        and vertices[c, 3] == vertices[d, 3]
+        and vertices[d, 2] == vertices[a, 2]
+    )
+    return bool(placed and alike and laid)
 
 
 @inlined
