@@ -322,13 +322,12 @@ def test_every_widget_is_hit_where_it_is_drawn(size: tuple[int, int]) -> None:
 def test_the_world_has_two_thirds_of_the_usual_window() -> None:
     desk = sized((1280, 720))
     assert desk.window.figures, "with the panel at the right"
-    covered = np_covered(desk)
-    assert 1.0 - covered >= 0.65
-    left, top, width, height = desk.sandbox.interface.room()
+    assert 1.0 - covered_share(desk) >= 0.65
+    *_, width, height = desk.sandbox.interface.room()
     assert width * height >= 0.65 * 1280 * 720
 
 
-def np_covered(desk: Desk) -> float:
+def covered_share(desk: Desk) -> float:
     """Return which share of the window panels cover, pixel by pixel."""
     width, height = desk.window.canvas.size
     mask = pygame.mask.Mask((width, height))
@@ -612,7 +611,7 @@ def test_the_tool_in_hand_is_marked(desk: Desk) -> None:
         point(desk, desk.pixel(0, 0))
         marked = []
         for other in PALETTE:
-            left, top, width, height = desk.ui.places[other.title]
+            left, top, width, _ = desk.ui.places[other.title]
             if surface.get_at((left + width - 5, top + 5))[:3] == accent:
                 marked.append(other)
         assert marked == [tool]
@@ -695,7 +694,7 @@ def test_the_offer_lies_over_no_words(size: tuple[int, int], scale: float, tmp_p
     desk.window.pace.paused = True
     desk.frames(3 * SETTLED)
     left, top, width, height = desk.sandbox.interface.visible
-    assert any("ended without closing" in words for words in desk.ui.words)
+    assert desk.window.recovery.words in desk.ui.words
     for label in ("Restore it", "Discard"):
         rect = rects(desk)[label]
         assert rect.bottom <= top and left <= rect.left and rect.right <= left + width
