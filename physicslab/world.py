@@ -219,6 +219,11 @@ class World(State):
         """Go on with what was chosen before this world was saved (:attr:`StepPlan.kept`), where possible."""
         self.plan, self.steppers = resume(self, self.schedule, (collisions, method, steps))
 
+    def adopt(self, plan: StepPlan) -> None:
+        """Go on by a plan of an earlier moment, with steppers that keep nothing of the steps made since."""
+        with self.active():
+            self.plan, self.steppers = remake(self, self.schedule, plan)
+
     def edited(self) -> None:
         """Note that columns or components were changed from outside: measurements over time begin again."""
         self.revision += 1

@@ -14,7 +14,7 @@ from physicslab.state.state import State
 
 __all__ = [
     "all_asleep", "check_edits", "export_rests", "fall_asleep", "follow_rows", "keep_places", "restore_rests",
-    "wake", "wake_all",
+    "set_inactive", "wake", "wake_all",
 ]  # fmt: skip
 
 type _Marks = NDArray[np.bool_]
@@ -78,7 +78,7 @@ def wake(state: State, marked: _Marks) -> _Marks:
     sleep.count = int(np.count_nonzero(sleep.asleep))
     touches = (count > 0) & (a >= 0) & (b >= 0) & (woken[a] | woken[b])
     state.contacts.rescale(touches, _impulse_dt(state), state.contacts.impulse_dt)
-    _set_inactive(state)
+    set_inactive(state)
     return woken
 
 
@@ -96,7 +96,7 @@ def fall_asleep(state: State, falling: _Marks) -> None:
     contacts.release(sleep.asleep)
     _begin(state)
     contacts.rescale((count > 0) & (falling[a] | falling[b]), contacts.impulse_dt, _impulse_dt(state))
-    _set_inactive(state)
+    set_inactive(state)
 
 
 def _begin(state: State) -> None:
@@ -120,7 +120,7 @@ def wake_all(state: State) -> None:
     sleep.asleep[:] = False
     sleep.rest[:] = sleep.slowest[:] = 0.0
     sleep.count, sleep.unverified = 0, False
-    _set_inactive(state)
+    set_inactive(state)
 
 
 def all_asleep(state: State) -> bool:
@@ -151,7 +151,7 @@ def _figures(state: State) -> NDArray[np.float64]:
     return figures
 
 
-def _set_inactive(state: State) -> None:
+def set_inactive(state: State) -> None:
     """Update bodies and contacts by which bodies sleep now."""
     state.bodies.set_inactive(state.sleep.asleep)
     _set_contacts_inactive(state)
@@ -205,7 +205,7 @@ def restore_rests(state: State, rows: Sequence[Sequence[Any]]) -> None:
     sleep.count = int(np.count_nonzero(sleep.asleep))
     sleep.unverified = sleep.count > 0
     _begin(state)
-    _set_inactive(state)
+    set_inactive(state)
 
 
 def _touching(state: State) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:

@@ -1,13 +1,16 @@
-"""esper's contexts: which of them plain esper calls speak of, and in which thread."""
+"""esper's contexts: which is active and in which thread, and the numbers of its entities."""
 
 from __future__ import annotations
 
+import itertools
 import threading
+from collections.abc import Iterable
 from types import TracebackType
+from typing import Any
 
 import esper
 
-__all__ = ["Active", "switch"]
+__all__ = ["Active", "create_numbered", "next_number", "switch"]
 
 _OTHER_THREAD = (
     "another thread is working with a world: esper's context is one for the whole process, so worlds must be "
@@ -75,3 +78,29 @@ def switch(context: str) -> None:
         esper.switch_world(context)
     finally:
         _turn.release()
+
+
+def next_number() -> int:
+    """Return the number that the next entity of the active context gets."""
+    number = next(esper._entity_count)
+    esper._entity_count = itertools.count(number)
+    return number
+
+
+def create_numbered(number: int, components: Iterable[Any]) -> int:
+    """Make an entity of the active context with a number of choice, as one that was removed had it.
+
+    Entities made later get higher numbers than any there has been.
+
+    Raises
+    ------
+    ValueError
+        If an entity has the number, or it is below 1.
+    """
+    if number < 1 or number in esper._entities:
+        raise ValueError(f"entity {number}: must be a number from 1 on that no entity has")
+    following = max(next_number(), number + 1)
+    esper._entity_count = itertools.count(number)
+    esper.create_entity(*components)
+    esper._entity_count = itertools.count(following)
+    return number

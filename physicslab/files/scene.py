@@ -19,7 +19,10 @@ from physicslab.files.writer import write_scene
 from physicslab.scenes import SCENES
 from physicslab.world import World
 
-__all__ = ["SceneError", "load_scene", "read_scene", "save_scene", "scene_bytes", "write_scene"]
+__all__ = [
+    "SceneError", "load_scene", "parse_json", "read_bytes", "read_scene", "save_scene", "scene_bytes",
+    "write_scene",
+]  # fmt: skip
 
 FILE_LIMIT = 100 * 2**20
 """Bytes that a scene file may have."""
@@ -57,7 +60,7 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> World:
         return SCENES[name_or_path].build()
     source = printable(os.fspath(name_or_path))
     with _uncollected():
-        return read_scene(_parse(_read_text(name_or_path, source), source), source)
+        return read_scene(parse_json(_read_text(name_or_path, source), source), source)
 
 
 def save_scene(world: World, path: str | os.PathLike[str]) -> None:
@@ -112,7 +115,7 @@ def _uncollected() -> Iterator[None]:
 
 def _read_text(path: str | os.PathLike[str], source: str) -> str:
     try:
-        return _read_bytes(path, source).decode("utf-8-sig")
+        return read_bytes(path, source).decode("utf-8-sig")
     except FileNotFoundError as error:
         names = ", ".join(SCENES)
         likely = suggestion(os.fspath(path), SCENES)
@@ -131,7 +134,7 @@ def _read_text(path: str | os.PathLike[str], source: str) -> str:
         raise SceneError(f"{source}: is no file name: {error}") from error
 
 
-def _read_bytes(path: str | os.PathLike[str], source: str) -> bytes:
+def read_bytes(path: str | os.PathLike[str], source: str) -> bytes:
     """Read a plain file, and never more of it than the limit: what is opened may grow, or have no end."""
     # Without O_NONBLOCK, opening a pipe without a writer would wait for ever.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -146,7 +149,8 @@ def _read_bytes(path: str | os.PathLike[str], source: str) -> bytes:
     return content
 
 
-def _parse(text: str, source: str) -> object:
+def parse_json(text: str, source: str) -> object:
+    """Return what a JSON text holds; one that is none, or holds more than a scene may, is a SceneError."""
     # Counted before it is parsed: every one becomes a Python object, many times its size in the file.
     brackets = text.count("{") + text.count("[")
     if brackets > BRACKET_LIMIT:

@@ -14,7 +14,7 @@ from physicslab.components.name import why_no_id
 from physicslab.ecs.batch import Batch
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.ecs.context import Active, switch
+from physicslab.ecs.context import Active, create_numbered, next_number, switch
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Table
 from physicslab.kernels import compile_kernels, seconds_waited
@@ -139,10 +139,16 @@ class State:
 
     # ---- entities and components ---------------------------------------------------------------------------
 
-    def spawn(self, *components: Any, name: str | None = None) -> int:
+    def spawn(self, *components: Any, name: str | None = None, entity: int | None = None) -> int:
         """Make an entity of these components and return its number.
 
-        Systems see it from the next step on. ``name`` is its id in scene files and reports.
+        Systems see it from the next step on. ``name`` is its id in scene files and reports. ``entity`` is the
+        number that it gets, so that one that was removed can be put back; by default one that is new.
+
+        Raises
+        ------
+        ValueError
+            If an entity has the number, or it is below 1.
         """
         if name is not None:
             components = (*components, Name(name))
@@ -153,7 +159,15 @@ class State:
         with self.active():
             for component in components:
                 self._check_name(component)
+            if entity is not None:
+                return create_numbered(entity, components)
             return esper.create_entity(*components)
+
+    @property
+    def next_entity(self) -> int:
+        """The number that the next new entity gets."""
+        with self.active():
+            return next_number()
 
     def remove(self, entity: int) -> None:
         """Remove an entity with all its components; handles on them keep their last values."""

@@ -186,6 +186,21 @@ def _put_last(touching: Rows, found: int, held: int, count: int) -> int:
 
 
 @inlined
+def _has_few_rows(entities: Rows) -> bool:
+    """Whether a world has at most :data:`_ROWS_FOUND_AGAIN` rows, blank ones left out: they change no bits.
+
+    At most half of all rows are blank.
+    """
+    rows = len(entities)
+    if rows <= _ROWS_FOUND_AGAIN or rows > 2 * _ROWS_FOUND_AGAIN + 1:
+        return rows <= _ROWS_FOUND_AGAIN
+    filled = 1  # row 0 is the world
+    for i in range(rows):
+        filled += 1 if entities[i] > 0 else 0
+    return filled <= _ROWS_FOUND_AGAIN
+
+
+@inlined
 def find_contacts(
     near: Near, count: int, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
     bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
@@ -203,7 +218,7 @@ def find_contacts(
     found, held = 0, count
     # The arms of kept points are those of the pose in which they were found.
     tolerance = 1.0 if first else TOLERANCE_WITHIN_STEP
-    if len(motion.angle) <= _ROWS_FOUND_AGAIN:
+    if _has_few_rows(near.entities):
         tolerance = _ROUNDING
     for number in range(count):
         p = near.scalar[number]

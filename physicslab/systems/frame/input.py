@@ -101,6 +101,8 @@ class InputSystem(System):
         self._window.pointer = event.pos
         self._window.adding = bool(pygame.key.get_mods() & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL))
         if event.button == pygame.BUTTON_LEFT:
+            if self._takes_handle(world, event.pos):
+                return
             self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)
         elif event.button == pygame.BUTTON_RIGHT:
@@ -108,8 +110,17 @@ class InputSystem(System):
         if event.button == pygame.BUTTON_MIDDLE or (self._tool is not None and self._tool.pans):
             self._panning = event.button
 
+    def _takes_handle(self, world: World, pixel: tuple[float, float]) -> bool:
+        """Take the handle of what is selected that lies under the cursor; return whether there is one."""
+        window = self._window
+        return window.handled is not None and window.handles.press(
+            world, window.handled, window.camera, pixel
+        )
+
     def _release(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
+        if event.button == pygame.BUTTON_LEFT:
+            self._window.handles.release()
         if event.button == pygame.BUTTON_LEFT and self._tool is not None:
             self._tool.release(world, self._window)
             self._tool = None
@@ -120,6 +131,7 @@ class InputSystem(System):
         window = self._window
         if not event.buttons[0]:  # let go where no report came from, as over another window
             window.hand.drop(world)
+            window.handles.release()
             if self._tool is not None:
                 window.spring_tool.cancel()
                 self._tool = None
@@ -129,6 +141,9 @@ class InputSystem(System):
             dx, dy = event.pos[0] - window.pointer[0], event.pos[1] - window.pointer[1]
             window.camera.pan(dx, dy)
         window.pointer = event.pos
+        if window.handles.dragged is not None and window.handled is not None:
+            snaps = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
+            window.handles.drag(world, window.handled, window.camera, window.place, snaps=snaps)
 
     def _wheel(self, world: World, event: pygame.Event) -> None:
         notches = getattr(event, "precise_y", event.y)

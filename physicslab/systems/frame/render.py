@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from physicslab.components import Transform
 from physicslab.systems.system import Stage, System, at
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.overlay.free_body import draw_free_body
 from physicslab.view.overlay.ghost import draw_ghost
+from physicslab.view.overlay.handle_marks import draw_handles, draw_reading
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.selection_marks import draw_selection
@@ -61,6 +63,7 @@ class RenderSystem(System):
         if overlays.arrows and len(window.selection.entities) == 1:
             size = text_size(canvas, window.text_scale) - 1
             draw_free_body(world, window.selection.entities[0], overlays, camera, theme, canvas, size)
+        self._draw_handles(world)
         self._draw_ghost(world)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
 
@@ -72,13 +75,27 @@ class RenderSystem(System):
         size = text_size(window.canvas, window.text_scale) - 2
         draw_impulses(world, window.overlays, written, window.camera, window.theme, window.canvas, size)
 
+    def _draw_handles(self, world: World) -> None:
+        """Draw the handles of what is selected while time stands still, and the number that one has given."""
+        window, entity = self._window, self._window.handled
+        if entity is None or not world.has(entity, Transform):
+            return
+        camera, theme, canvas = window.camera, window.theme, window.canvas
+        middle = camera.to_screen(world.component(entity, Transform).position)
+        places = [(one.kind, camera.to_screen(one.place)) for one in window.handles.of(world, entity, camera)]
+        draw_handles(middle, places, theme, canvas)
+        if window.handles.words:
+            size = text_size(canvas, window.text_scale)
+            draw_reading(window.handles.words, window.pointer, size, theme, canvas)
+
     def _draw_ghost(self, world: World) -> None:
         """Show at the cursor what a click would make, in the colour of errors where there is no room."""
         window, spawn = self._window, TOOLS[self._window.tool].spawn
         left, top, width, height = window.room()
         x, y = window.pointer
         inside = left <= x < left + width and top <= y < top + height
-        idle = window.hand.entity is None and not window.pointer_on_panel and window.has_pointed
+        free = window.hand.entity is None and window.handles.dragged is None
+        idle = free and not window.pointer_on_panel and window.has_pointed
         if (
             spawn is None
             or not inside

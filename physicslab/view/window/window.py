@@ -17,6 +17,7 @@ from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
 from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
+from physicslab.view.window.handles import Handles
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.selection import Selection
@@ -88,6 +89,8 @@ class Window:
         Whether a click adds to what is selected: Shift or Ctrl is held.
     selection : Selection
         Which bodies are selected.
+    handles : Handles
+        Those of what is selected.
     graphs : list of Graph
         What is plotted.
     deeds : list of callables
@@ -137,6 +140,7 @@ class Window:
         self.text_scale = 1.0
         self.adding = False
         self.selection = Selection()
+        self.handles = Handles()
         self.graphs: list[Graph] = []
         self.deeds: list[Callable[[World, Window], None]] = []
         self.source: str | Path | None = None
@@ -181,6 +185,12 @@ class Window:
         """Plot quantities of the world or of a body, in a graph of their own."""
         number = 1 + max((graph.number for graph in self.graphs), default=0)
         self.graphs.append(Graph(number, title, entity, {name: Series() for name in names}))
+
+    @property
+    def handled(self) -> int | None:
+        """The body whose handles are shown: the one that is selected, while time stands still."""
+        chosen = self.selection.entities
+        return chosen[0] if self.pace.paused and len(chosen) == 1 and self.hand.entity is None else None
 
     def ask_to_close(self, world: World) -> None:
         """Close the window; where there are unsaved edits, only if it was asked for twice within a while."""

@@ -1,0 +1,61 @@
+"""Play a recording without a window, and say where its bits first differ."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from typing import Any
+
+from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands.output import Output
+from physicslab.ecs.text import printable, shortened
+from physicslab.files.json_text import json_bytes
+from physicslab.history.recording import load
+from physicslab.history.replay import Played, play
+from physicslab.kernels.tiers import Tiers
+from physicslab.state.masses import Diverged
+from physicslab.stepping.small import is_small
+from physicslab.world import World
+
+__all__ = ["add_arguments", "execute"]
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Declare what the command takes."""
+    parser.add_argument("file", metavar="FILE", help="a recording, as the window or History.save writes it")
+    parser.add_argument("--json", metavar="FILE", help="write what came of it (- for stdout)")
+
+
+def execute(arguments: Namespace) -> int:
+    """Play the recording to its end; exit 1 where a column of a step has other bits than in the recording."""
+    label = shortened(printable(arguments.file), 200)
+    output = None if arguments.json is None else Output("--json", arguments.json)
+    if output is not None and output.is_same_as(arguments.file):
+        raise CommandError(f"--json {shortened(printable(arguments.json), 200)}: is the recording itself")
+    world, line = load(arguments.file)
+    first: Played | None = None
+    with Tiers(is_small(world)):
+        try:
+            for played in play(world, line, label):
+                if played.columns and first is None:
+                    first = played
+        except Diverged as error:
+            raise CommandError(f"{label}: {error}", FAILED) from error
+    if output is not None:
+        output.write(json_bytes(_report(world, line.steps, len(line.entries), first)))
+    if first is not None:
+        columns = " and ".join(first.columns)
+        where = f"step {first.step} of {line.steps}, t = {first.time:.9g} s"
+        raise CommandError(f"{label}: bits differ from {where} on, first in {columns}", FAILED)
+    if output is None or not output.to_stdout:
+        print(f"{label}: {line.steps} steps, t = {world.time:.9g} s, all bits as recorded")
+    return 0
+
+
+def _report(world: World, steps: int, entries: int, first: Played | None) -> dict[str, Any]:
+    report: dict[str, Any] = {
+        "format": "physicslab-replay/1", "entries": entries, "steps": steps, "time": world.time,
+        "same": first is None,
+    }  # fmt: skip
+    if first is not None:
+        report["first_difference"] = {"step": first.step, "time": first.time, "columns": list(first.columns)}
+    return report

@@ -1,0 +1,173 @@
+"""What the next step takes from the last ones, of contacts and of sleep, as copies of records and columns.
+
+A scene file keeps the same as rows of numbers (:mod:`physicslab.contacts.memory`, and ``export_rests`` of
+:mod:`physicslab.contacts.islands`). Here records are whole, so that what is read of contacts is right at
+once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.contacts.islands import set_inactive
+from physicslab.kernels import near_counts
+from physicslab.state.contacts import Contacts
+from physicslab.state.sleep import Sleep
+from physicslab.state.state import State
+
+__all__ = ["KeptContacts", "KeptSleep", "forget_sleep", "shared"]
+
+type _Array = NDArray[Any]
+
+_LISTED_AGAIN = (
+    near_counts.PROXIMITY, near_counts.SCALAR, near_counts.SLEEPING, near_counts.ACTIVE, near_counts.LEFT,
+    near_counts.WIDE_COUNT, near_counts.DISC_BLOCKS, near_counts.BOX_BLOCKS, near_counts.UNORDERED,
+)  # fmt: skip
+"""The counts that are found when pairs are listed."""
+_OF_ALL, _OF_SLEEPERS = ("rest", "slowest"), ("asleep", "forces", "kept", "known")
+
+
+def shared(columns: Iterable[_Array], known: Sequence[_Array] | None) -> tuple[_Array, ...]:
+    """Return copies of columns, or those of ``known`` that have the same bits in their place."""
+    if known is None:
+        return tuple(column.copy() for column in columns)
+    return tuple(
+        old if _same(column, old) else column.copy() for column, old in zip(columns, known, strict=True)
+    )
+
+
+def _same(one: _Array, other: _Array) -> bool:
+    if one.shape != other.shape or not one.flags.c_contiguous:
+        return False
+    word = np.uint64 if one.dtype.itemsize % 8 == 0 else np.uint8
+    return np.array_equal(one.reshape(-1).view(word), other.reshape(-1).view(word))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KeptContacts:
+    """The records of pairs that touch, or have had an impact in the last step, and which slots they have.
+
+    Attributes
+    ----------
+    manifolds, points : arrays of MANIFOLD (n,), POINT (2 n,)
+        In the order of entities.
+    colours : two int64 arrays (blocks,)
+        The colours of the blocks of wide contacts, of discs and of boxes.
+    counts : int64 array (COUNTED,)
+        Those of the world.
+    impulse_dt, substep_factor : float, int
+        The time [s] over which impulses act; how much finer the next step is.
+    """
+
+    manifolds: _Array
+    points: _Array
+    colours: tuple[_Array, ...]
+    counts: _Array
+    impulse_dt: float
+    substep_factor: int
+
+    @classmethod
+    def of(cls, contacts: Contacts, last: KeptContacts | None = None) -> KeptContacts:
+        """Return those of now; arrays that are the same in the ``last`` are shared with it."""
+        contacts.sync()
+        near = contacts.manifolds[: contacts.recorded]
+        # What no list of pairs would carry over from an older one has no contents.
+        kept = np.flatnonzero((near["count"] != 0) | (near["impact_count"] != 0) | (near["slot"] >= 0))
+        if len(kept) == len(near):
+            chosen = near, contacts.points[: 2 * len(near)]
+        else:
+            chosen = near[kept], contacts.points.reshape(-1, 2)[kept].reshape(-1)
+        held = contacts.restoring or contacts.wide.filled > 0
+        colours = [kind.colour if held else kind.colour[:0] for kind in contacts.wide.kinds]
+        arrays = (*chosen, *colours, contacts.counts)
+        found = shared(arrays, last.arrays() if last is not None else None)
+        return cls(found[0], found[1], found[2:4], found[4], contacts.impulse_dt, contacts.substep_factor)
+
+    def arrays(self) -> tuple[_Array, ...]:
+        """Return every array."""
+        return (self.manifolds, self.points, *self.colours, self.counts)
+
+    def restore(self, state: State) -> None:
+        """Give them back to a state whose bodies are those of then; its pairs are listed at the next step."""
+        contacts, index, n = state.contacts, state.entity_index, len(self.manifolds)
+        if len(contacts.manifolds) < n:
+            contacts.make_room(n + n // 4)
+        contacts.clear()
+        contacts.rotations[:] = np.nan
+        near = contacts.manifolds[:n]
+        near[:], contacts.points[: 2 * n] = self.manifolds, self.points
+        for name, other in (("a", "entity_a"), ("b", "entity_b")):
+            near[name] = np.maximum(index.rows_of(near[other]), 0)
+        contacts.counts[:] = self.counts
+        contacts.counts[list(_LISTED_AGAIN)] = 0
+        contacts.recorded = n
+        for constraints, colour in zip(contacts.wide.kinds, self.colours, strict=True):
+            constraints.make_room(len(colour))
+            constraints.colour[: len(colour)] = colour
+        contacts.restoring = bool((near["slot"] >= 0).any())
+        contacts.impulse_dt, contacts.substep_factor = self.impulse_dt, self.substep_factor
+        contacts.inactive = np.zeros(0, np.bool_)
+        contacts.stale = True
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KeptSleep:
+    """Which bodies sleep, how, and how long the others have rested.
+
+    Attributes
+    ----------
+    columns : dict of str to array (rows, ...)
+        Columns of :class:`physicslab.state.sleep.Sleep`; where nothing sleeps, those of rest alone.
+    gone : int64 array (n,)
+        The entities removed since the last check.
+    laws : tuple, optional
+        The configuration under which bodies fell asleep.
+    unverified : bool
+        Whether their support must still be checked.
+    """
+
+    columns: dict[str, _Array]
+    gone: _Array
+    laws: tuple[Any, Any] | None
+    unverified: bool
+
+    @classmethod
+    def of(cls, sleep: Sleep, last: KeptSleep | None = None) -> KeptSleep:
+        """Return those of now; arrays that are the same in the ``last`` are shared with it."""
+        names = _OF_ALL + (_OF_SLEEPERS if sleep.count else ())
+        alike = last is not None and tuple(last.columns) == names
+        known = list(last.columns.values()) if last is not None and alike else None
+        found = shared([getattr(sleep, name) for name in names], known)
+        return cls(dict(zip(names, found, strict=True)), sleep.gone, sleep.laws, sleep.unverified)
+
+    def arrays(self) -> tuple[_Array, ...]:
+        """Return every array."""
+        return (*self.columns.values(), self.gone)
+
+    def restore(self, state: State, rows: NDArray[np.int64]) -> None:
+        """Give them back to a state in which nothing sleeps.
+
+        ``rows`` (rows then,) are those of now; -1 for what is blank.
+        """
+        sleep = state.sleep
+        there = rows >= 0
+        for name, column in self.columns.items():
+            now = getattr(sleep, name)
+            now[:] = 0
+            now[rows[there]] = column[there]
+        sleep.gone, sleep.laws, sleep.unverified = self.gone, self.laws, self.unverified
+        sleep.count = int(np.count_nonzero(sleep.asleep))
+        if sleep.count:
+            set_inactive(state)
+
+
+def forget_sleep(sleep: Sleep) -> None:
+    """Let nothing sleep, and no body have rested."""
+    for name in _OF_ALL + _OF_SLEEPERS:
+        getattr(sleep, name)[:] = 0
+    sleep.count, sleep.unverified, sleep.gone = 0, False, sleep.gone[:0]

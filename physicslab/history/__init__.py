@@ -1,0 +1,24 @@
+"""The time machine: one history of edits and runs, taken back and gone through, to the bit.
+
+Every edit is a command (:mod:`physicslab.history.commands`), whichever tool makes it. The line of edits and
+runs is data (:mod:`physicslab.history.line`). Between key frames (:mod:`physicslab.history.keyframe`), steps
+are made again. A recording is a line in a file (:mod:`physicslab.history.recording`).
+"""
+
+from physicslab.history.commands import (
+    AddComponent,
+    Command,
+    Group,
+    Remove,
+    RemoveComponent,
+    SetField,
+    SetPhysics,
+    SetSimulation,
+    Spawn,
+)
+from physicslab.history.history import Branch, Difference, History, HistoryEntry
+
+__all__ = [
+    "AddComponent", "Branch", "Command", "Difference", "Group", "History", "HistoryEntry", "Remove",
+    "RemoveComponent", "SetField", "SetPhysics", "SetSimulation", "Spawn",
+]  # fmt: skip

@@ -1,0 +1,280 @@
+"""Edits as data: what can be done to a world by hand, and recorded, and done again."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Any, Protocol, runtime_checkable
+
+from physicslab.components import Name
+from physicslab.ecs.component import COMPONENTS, Component, Field
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.world import World
+
+__all__ = [
+    "AddComponent", "Command", "Group", "Remove", "RemoveComponent", "SetField", "SetPhysics",
+    "SetSimulation", "Spawn",
+]  # fmt: skip
+
+
+@runtime_checkable
+class Command(Protocol):
+    """An edit. It holds values and entity numbers and nothing of a world, so it can be carried out again."""
+
+    def words(self, world: World) -> str:
+        """Return what it does, in plain English; called before it is done."""
+
+    def carry_out(self, world: World) -> Command:
+        """Edit the world; return the command with which the same edit is made again.
+
+        Raises
+        ------
+        InvalidValue, KeyError, TypeError, ValueError
+            Where the world refuses it; a part of it may be done by then.
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class Spawn:
+    """Make an entity.
+
+    Parameters
+    ----------
+    components : sequence of Component
+        Its parts; they are copied, now and whenever the entity is made.
+    name : str, optional
+        Its id.
+    entity : int, optional
+        Its number, which no entity may have now; by default the next that there is
+        (:attr:`physicslab.history.History.next_entity`). Entities that a group spawns are numbered in
+        order, so that a spring of it can name the bodies at its ends.
+    """
+
+    components: Sequence[Component]
+    name: str | None = None
+    entity: int | None = None
+
+    def __post_init__(self) -> None:
+        for part in self.components:
+            if not isinstance(part, Component):
+                raise TypeError(f"Spawn takes components with columns, and a name; got {part!r}")
+        object.__setattr__(self, "components", tuple(map(copy.copy, self.components)))
+
+    def words(self, world: World) -> str:
+        """Return what it does, in plain English."""
+        kinds = {type(part).__name__: part for part in self.components}
+        shape, made = kinds.get("Shape"), next(iter(kinds), "entity").lower()
+        made = str(getattr(shape, "kind", made if "Transform" not in kinds else "point"))
+        return f"made {_with_article(made)}" + (f", {self.name}" if self.name else "")
+
+    def carry_out(self, world: World) -> Spawn:
+        """Make the entity; return the command with its number."""
+        parts = map(copy.copy, self.components)
+        return replace(self, entity=world.spawn(*parts, name=self.name, entity=self.entity))
+
+
+@dataclass(frozen=True, slots=True)
+class Remove:
+    """Remove an entity."""
+
+    entity: int
+
+    def words(self, world: World) -> str:
+        """Return what it does, in plain English."""
+        return f"removed {world.label(self.entity)}"
+
+    def carry_out(self, world: World) -> Remove:
+        """Remove the entity."""
+        world.remove(self.entity)
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class SetField:
+    """Give a field of an entity's component another value.
+
+    Parameters
+    ----------
+    entity : int
+        The entity.
+    component, field : str
+        The names of the component, as in scene files, and of its field.
+    value : number, pair of numbers, bool, str or None
+        As the field takes it, in its unit.
+    """
+
+    entity: int
+    component: str
+    field: str
+    value: Any
+
+    def words(self, world: World) -> str:
+        """Return what it does, in plain English."""
+        spec = _field(_kind(self.component), self.field)
+        unit = "" if spec.unit in ("", "1") else f" {spec.unit}"
+        return f"{self.field} of {world.label(self.entity)}: {shown_value(self.value)}{unit}"
+
+    def carry_out(self, world: World) -> SetField:
+        """Set the field."""
+        kind = _kind(self.component)
+        spec = _field(kind, self.field)
+        part = world.component(self.entity, kind)
+        setattr(part, self.field, self.value)
+        return self if spec.kind != "vector" else replace(self, value=getattr(part, self.field))
+
+
+@dataclass(frozen=True, slots=True)
+class AddComponent:
+    """Add a component to an entity, or a ``Name``, in place of the one of that type if it has one."""
+
+    entity: int
+    component: Component | Name
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.component, Component | Name):
+            raise TypeError(f"AddComponent takes a component with columns, or a Name; got {self.component!r}")
+        object.__setattr__(self, "component", copy.copy(self.component))
+
+    def words(self, world: World) -> str:
+        """Return what it does, in plain English."""
+        label = world.label(self.entity)
+        if isinstance(self.component, Name):
+            return f"named {label}: {self.component.id}"
+        return f"gave {label} {_with_article(type(self.component).__name__)}"
+
+    def carry_out(self, world: World) -> AddComponent:
+        """Add the component."""
+        world.add(self.entity, copy.copy(self.component))
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class RemoveComponent:
+    """Take a component from an entity, by its name; an entity without it is refused with ``KeyError``."""
+
+    entity: int
+    component: str
+
+    def words(self, world: World) -> str:
+        """Return what it does, in plain English."""
+        return f"took {self.component} from {world.label(self.entity)}"
+
+    def carry_out(self, world: World) -> RemoveComponent:
+        """Take the component."""
+        kind = _kind(self.component)
+        if world.discard(self.entity, kind) is None:
+            raise KeyError(f"{world.label(self.entity)} has no {self.component}")
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class SetPhysics:
+    """Change laws of the world: ``SetPhysics({"gravity": (0, -1.62)})``, by names of ``PhysicsConfig``."""
+
+    changes: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "changes", MappingProxyType(dict(self.changes)))
+
+    def words(self, world: World) -> str:
+        """Return what it does, in plain English."""
+        return _changed(PhysicsConfig, self.changes)
+
+    def carry_out(self, world: World) -> SetPhysics:
+        """Change the laws."""
+        world.physics = replace(world.physics, **self.changes)
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class SetSimulation:
+    """Change how the world is stepped: ``SetSimulation({"dt": 0.01})``, by names of ``SimulationConfig``."""
+
+    changes: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "changes", MappingProxyType(dict(self.changes)))
+
+    def words(self, world: World) -> str:
+        """Return what it does, in plain English."""
+        return _changed(SimulationConfig, self.changes)
+
+    def carry_out(self, world: World) -> SetSimulation:
+        """Change the settings."""
+        world.simulation = replace(world.simulation, **self.changes)
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Several commands that are one: all of them are done, or none.
+
+    Parameters
+    ----------
+    text : str
+        What they do together, in plain English.
+    commands : sequence of Command
+        In order.
+    """
+
+    text: str
+    commands: Sequence[Command] = field(default=())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "commands", tuple(self.commands))
+
+    def words(self, world: World) -> str:
+        """Return what they do."""
+        return self.text
+
+    def carry_out(self, world: World) -> Group:
+        """Carry out each of them."""
+        return replace(self, commands=tuple(part.carry_out(world) for part in self.commands))
+
+
+def _kind(name: str) -> Any:
+    """Return the component of a name."""
+    kind = Name if name == Name.__name__ else COMPONENTS.get(name)
+    if kind is None:
+        raise KeyError(f"there is no component {name!r}; there are {', '.join(COMPONENTS)}")
+    return kind
+
+
+def _field(kind: Any, name: str) -> Field:
+    """Return the description of a component's field."""
+    fields: Iterable[Field] = getattr(kind, "FIELDS", ())
+    found = next((spec for spec in fields if spec.name == name), None)
+    if found is None:
+        names = ", ".join(spec.name for spec in fields)
+        raise TypeError(f"{kind.__name__} has no field {name!r}; it has {names or 'none'}")
+    return found
+
+
+def _changed(config: type[PhysicsConfig] | type[SimulationConfig], changes: Mapping[str, Any]) -> str:
+    units = {spec.name: spec.unit for spec in config.FIELDS}
+    unit_of: Callable[[str], str] = lambda name: f" {units[name]}" if units.get(name, "1") != "1" else ""  # noqa: E731
+    return ", ".join(
+        f"{name.replace('_', ' ')}: {shown_value(value)}{unit_of(name)}" for name, value in changes.items()
+    )
+
+
+def shown_value(value: Any) -> str:
+    """Return a value as people read it.
+
+    >>> shown_value(0.1 + 0.2), shown_value((0, -9.81)), shown_value(None), shown_value(True)
+    ('0.3', '(0, -9.81)', 'as computed', 'yes')
+    """
+    if value is None:
+        return "as computed"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, Vector2 | tuple | list):
+        return f"({', '.join(map(shown_value, value))})"
+    return f"{value:.6g}" if isinstance(value, float | int) else str(value)
+
+
+def _with_article(noun: str) -> str:
+    return f"{'an' if noun[:1].lower() in 'aeiou' else 'a'} {noun}"

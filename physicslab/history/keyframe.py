@@ -1,0 +1,199 @@
+"""A world at one moment, as raw columns: what a scene file keeps, to go back to in place.
+
+What is kept of contacts, of sleep, of remainders and of what was chosen is what a scene file keeps, and the
+world goes on from it as it does from a file: pairs are listed again, contacts that had a slot get it again
+(:mod:`physicslab.contacts.near_pairs`). But records and columns are copied as they are, not written out as
+numbers, and entities keep theirs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import esper
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.contacts.kept import KeptContacts, KeptSleep, forget_sleep, shared
+from physicslab.ecs.component import Component
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.context import create_numbered
+from physicslab.ecs.table import Table
+from physicslab.state.remainders import Remainders
+from physicslab.stepping.plan import StepPlan
+from physicslab.world import World
+
+__all__ = ["Keyframe"]
+
+type _Array = NDArray[Any]
+type _Columns = tuple[_Array, ...]
+
+_COUNTS = ("time", "steps", "substeps", "step_divisions", "force_evaluations", "collisions")
+"""What else a world counts."""
+
+
+@dataclass(slots=True, eq=False)
+class _Structure:
+    """Which entities there are, in which rows, and of which components.
+
+    Attributes
+    ----------
+    revision : int
+        That of the entity index when the world last had it; nothing has come or gone while it is the same.
+    entities : int64 array (rows,)
+        The entity of each row, 0 for blank ones.
+    present : dict of component type to bool array (rows,)
+        Whose entity has it.
+    others : dict of int to tuple of objects
+        The components of each entity that have no columns, such as its name.
+    """
+
+    revision: int
+    entities: NDArray[np.int64]
+    present: dict[type[Any], NDArray[np.bool_]]
+    others: dict[int, tuple[Any, ...]]
+
+    @classmethod
+    def of(cls, world: World) -> _Structure:
+        index = world.entity_index
+        others: dict[int, tuple[Any, ...]] = {}
+        for entity in index.row_of:
+            parts: tuple[Any, ...] = esper.components_for_entity(entity)
+            plain = tuple(part for part in parts if not isinstance(part, Component))
+            if plain:
+                others[entity] = plain
+        present = {kind: table.present.copy() for kind, table in index.tables.items() if table.handles}
+        return cls(index.revision, index.entities.copy(), present, others)
+
+    def is_that_of(self, world: World) -> bool:
+        """Whether nothing came or went since, and rows are numbered alike."""
+        index = world.entity_index
+        return self.revision == index.revision and np.array_equal(self.entities, index.entities)
+
+    def restore(self, world: World) -> None:
+        """Make the same entities of the same components; what is there already stays as it is."""
+        wanted = {int(entity): list(self.others.get(int(entity), ())) for entity in self.entities if entity}
+        kinds: dict[int, set[type[Any]]] = {entity: set() for entity in wanted}
+        for kind, present in self.present.items():
+            for entity in self.entities[present].tolist():
+                kinds[entity].add(kind)
+        for entity in [entity for entity in esper.get_entities() if entity not in wanted]:
+            esper.delete_entity(entity, immediate=True)
+        living = set(esper.get_entities())
+        for entity, others in wanted.items():
+            if entity not in living:
+                made = [_blank(world.table(kind)) for kind in kinds[entity]]
+                create_numbered(entity, [*made, *others])
+                continue
+            there: tuple[Any, ...] = esper.components_for_entity(entity)
+            for part in there:
+                kind = type(part)
+                if kind not in kinds[entity] and not any(part is other for other in others):
+                    esper.remove_component(entity, kind)
+            for kind in kinds[entity]:
+                if not esper.has_component(entity, kind):
+                    esper.add_component(entity, _blank(world.table(kind)))
+            for other in others:
+                if esper.try_component(entity, type(other)) is not other:
+                    esper.add_component(entity, other)
+
+
+class Keyframe:
+    """All that a world needs to go on from one moment bit for bit, in copies that nothing changes.
+
+    Parameters
+    ----------
+    world : World
+        The world, between two steps.
+    last : Keyframe, optional
+        Arrays that are the same there are shared with it.
+    """
+
+    __slots__ = (
+        "_columns", "_contacts", "_counts", "_forces", "_laws", "_plan", "_rates", "_remainders", "_sleep",
+        "_structure",
+    )  # fmt: skip
+
+    def __init__(self, world: World, last: Keyframe | None = None) -> None:
+        world.synchronise()
+        same = last is not None and last._structure.is_that_of(world)
+        with world.active():
+            self._structure: _Structure = (
+                last._structure if last is not None and same else _Structure.of(world)
+            )
+        tables = world.entity_index.tables
+        known = last._columns if last is not None and same else {}
+        self._columns: dict[type[Any], _Columns] = {
+            kind: shared(tables[kind].columns, known.get(kind)) for kind in self._structure.present
+        }
+        self._counts = {name: getattr(world, name) for name in _COUNTS}
+        self._laws: tuple[PhysicsConfig, SimulationConfig] = world.physics, world.simulation
+        self._plan: StepPlan = world.plan
+        self._rates = dict(world.fastest_rates)
+        self._remainders: Remainders = world.remainders
+        self._forces: _Columns = shared(
+            (world.bodies.force, world.bodies.torque), last._forces if last is not None else None
+        )
+        before = (last._contacts, last._sleep) if last is not None else (None, None)
+        self._contacts: KeptContacts = KeptContacts.of(world.contacts, before[0])
+        self._sleep: KeptSleep = KeptSleep.of(world.sleep, before[1])
+
+    def arrays(self) -> Iterator[_Array]:
+        """Yield every array, for the memory that they take."""
+        yield self._structure.entities
+        yield from self._structure.present.values()
+        for columns in self._columns.values():
+            yield from columns
+        yield from self._forces
+        yield from self._contacts.arrays()
+        yield from self._sleep.arrays()
+        kept = self._remainders
+        yield from (kept.keys, kept.q, kept.v, kept.q_low, kept.v_low)
+
+    def restore(self, world: World) -> None:
+        """Put the world back to this moment, in place; every entity has the number that it had."""
+        world.edited()
+        structure, index = self._structure, world.entity_index
+        with world.active():
+            if index.synchronise():
+                world.stale = True
+            if index.revision != structure.revision:
+                structure.restore(world)
+                world.stale |= index.synchronise()
+                structure.revision = index.revision
+            rows = np.where(structure.entities > 0, index.rows_of(structure.entities), -1)
+            for kind, columns in self._columns.items():
+                for now, then in zip(world.table(kind).columns, columns, strict=True):
+                    _put(then, now, rows)
+            if (world.physics, world.simulation) != self._laws:
+                world.physics, world.simulation = self._laws
+            for name, value in self._counts.items():
+                setattr(world, name, value)
+            forget_sleep(world.sleep)
+            world.contacts.clear()
+            world.synchronise()
+            world.adopt(self._plan)
+        self._contacts.restore(world)
+        self._sleep.restore(world, rows)
+        for now, then in zip((world.bodies.force, world.bodies.torque), self._forces, strict=True):
+            _put(then, now, rows)
+        world.remainders = self._remainders
+        world.fastest_rates.update(self._rates)
+
+
+def _put(then: _Array, now: _Array, rows: NDArray[np.int64]) -> None:
+    """Write the rows of a column of ``then`` where they are now; -1 is for blank ones."""
+    if len(rows) == len(now) == len(then) and np.array_equal(rows[1:], np.arange(1, len(rows))):
+        now[1:] = then[1:]
+    else:
+        now[rows[rows > 0]] = then[rows > 0]
+
+
+def _blank(table: Table) -> Component:
+    """Return a component of no entity, whose values are all zero: its row is written later."""
+    made: Component = Component.__new__(table.component)
+    made._views = [[column.dtype.type(0).item()] * (column.ndim) for column in table.columns]
+    made._row = 0
+    return made

@@ -1,0 +1,71 @@
+"""A recording played step by step, each compared with what came of it once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from physicslab.ecs.component import InvalidValue
+from physicslab.files.checks import SceneError
+from physicslab.history.digest import differing, digest_of
+from physicslab.history.line import Edit, Line, Steps
+from physicslab.world import World
+
+__all__ = ["Played", "follow_edit", "play"]
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """A step that was made again.
+
+    Attributes
+    ----------
+    step : int
+        Its number, from 1.
+    time : float
+        The world's clock after it [s].
+    columns : tuple of str
+        The columns of motion whose bits are not those of then.
+    """
+
+    step: int
+    time: float
+    columns: tuple[str, ...]
+
+
+def follow_edit(world: World) -> None:
+    """Let a world follow an edit; what is measured of it begins again."""
+    world.edited()
+    world.synchronise()
+
+
+def play(world: World, line: Line, source: str) -> Iterator[Played]:
+    """Go along a line from its beginning, yielding after every step.
+
+    Raises
+    ------
+    SceneError
+        If the world refuses an edit, which it cannot have done when the recording was made.
+    Diverged
+        If a step cannot be made.
+    """
+    made = place = 0
+    for piece in line.between(0, line.ticks):
+        if isinstance(piece, Steps):
+            for _ in range(piece.count):
+                world.step(piece.dt)
+                made, place = made + 1, place + 1
+                yield Played(made, world.time, differing(digest_of(world), line.digest_before(place)))
+            continue
+        command = piece.command if isinstance(piece, Edit) else piece
+        try:
+            command.carry_out(world)
+            if isinstance(piece, Edit):
+                follow_edit(world)
+            else:
+                world.synchronise()
+        except (InvalidValue, KeyError, TypeError, ValueError, AttributeError) as error:
+            message = error.args[0] if isinstance(error, KeyError) else error
+            name = type(command).__name__
+            raise SceneError(f"{source}: after step {made}: {name} is refused: {message}") from error
+        place += 1

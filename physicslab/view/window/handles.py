@@ -1,0 +1,146 @@
+"""The handles of what is selected: size, angle and velocity, to be dragged while time stands still."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from physicslab.components import Shape, Transform, Velocity
+from physicslab.ecs.fields import InvalidValue
+from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.quantities import quantity
+from physicslab.view.window.edits import set_field
+from physicslab.world import World
+
+__all__ = ["Handle", "Handles"]
+
+type Kind = Literal["size", "angle", "velocity"]
+
+_CATCH = 9.0
+"""How near to a handle a press need be [px]."""
+_ABOVE = 26.0
+"""How far above a body the handle of its angle is [px]."""
+_VELOCITY = 3.0
+"""Speed that a metre of the arrow of the velocity stands for [m/s]."""
+_MIN_ARROW = 22.0
+"""Length of the arrow of a body at rest, so that it can be caught [px]."""
+_SNAP_ANGLE, _SNAP_SIZE = math.pi / 12.0, 0.1
+"""What angles [rad] and sizes [m] go in steps of while Shift is held."""
+_MIN_SIZE = 0.01
+"""The smallest size that a handle gives [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Handle:
+    """One handle: what it changes, and where it is [m]."""
+
+    kind: Kind
+    place: Vector2
+
+
+class Handles:
+    """The handles of one body, and the one that is being dragged.
+
+    Attributes
+    ----------
+    dragged : str, optional
+        What the handle in the hand changes.
+    words : str
+        The number that it has given, to stand beside the cursor.
+    """
+
+    def __init__(self) -> None:
+        self.dragged: Kind | None = None
+        self.words = ""
+
+    @staticmethod
+    def of(world: World, entity: int, camera: Camera) -> list[Handle]:
+        """Return the handles of a body."""
+        if not world.has(entity, Transform):
+            return []
+        transform = world.component(entity, Transform)
+        found = []
+        if world.has(entity, Shape):
+            corner = _corner(world, entity)
+            found.append(Handle("size", transform.position + corner.rotated(transform.angle)))
+            shape = world.component(entity, Shape)
+            up = (shape.radius or 0.5 * shape.height) + _ABOVE / camera.scale
+            found.append(Handle("angle", transform.position + Vector2(0.0, up).rotated(transform.angle)))
+        if world.has(entity, Velocity):
+            found.append(Handle("velocity", transform.position + arrow_of(world, entity, camera)))
+        return found
+
+    def press(self, world: World, entity: int, camera: Camera, pixel: tuple[float, float]) -> bool:
+        """Take the handle under the cursor; return whether there is one."""
+        for handle in reversed(self.of(world, entity, camera)):
+            x, y = camera.to_screen(handle.place)
+            if math.hypot(x - pixel[0], y - pixel[1]) <= _CATCH:
+                self.dragged, self.words = handle.kind, ""
+                return True
+        return False
+
+    def drag(self, world: World, entity: int, camera: Camera, place: Vector2, *, snaps: bool) -> None:
+        """Let the handle follow the cursor, which is at a point of the world [m]."""
+        if self.dragged is None or not world.has(entity, Transform):
+            self.dragged = None
+            return
+        transform = world.component(entity, Transform)
+        offset = place - transform.position
+        try:
+            if self.dragged == "velocity":
+                self._pull(world, entity, camera, offset)
+            elif self.dragged == "angle":
+                angle = offset.angle - 0.5 * math.pi
+                angle = round(angle / _SNAP_ANGLE) * _SNAP_ANGLE if snaps else angle
+                set_field(world, entity, Transform, "angle", angle)
+                self.words = f"{math.degrees(angle):.1f}°"
+            else:
+                self._resize(world, entity, offset.rotated(-transform.angle), snaps)
+        except InvalidValue as error:
+            self.words = f"must be {error.allowed}"
+
+    def release(self) -> None:
+        """Let go of the handle."""
+        self.dragged, self.words = None, ""
+
+    def _pull(self, world: World, entity: int, camera: Camera, offset: Vector2) -> None:
+        resting = _MIN_ARROW / camera.scale
+        length = offset.magnitude
+        velocity = offset * (_VELOCITY * (length - resting) / length) if length > resting else Vector2()
+        set_field(world, entity, Velocity, "linear", velocity)
+        self.words = quantity(velocity.magnitude, "m/s")
+
+    def _resize(self, world: World, entity: int, corner: Vector2, snaps: bool) -> None:
+        """Make a body as large as its corner says; what it weighs stays."""
+        shape = world.component(entity, Shape)
+        if shape.kind == "circle":
+            radius = _size(corner.magnitude, snaps)
+            set_field(world, entity, Shape, "radius", radius)
+            self.words = f"radius {quantity(radius, 'm')}"
+            return
+        width, height = _size(2.0 * abs(corner.x), snaps), _size(2.0 * abs(corner.y), snaps)
+        set_field(world, entity, Shape, "width", width)
+        set_field(world, entity, Shape, "height", height)
+        self.words = f"{width:.3g} m x {height:.3g} m"
+
+
+def arrow_of(world: World, entity: int, camera: Camera) -> Vector2:
+    """Return how far the handle of a body's velocity is from its middle [m]: at rest far enough to be caught."""
+    velocity = world.component(entity, Velocity).linear
+    speed, resting = velocity.magnitude, _MIN_ARROW / camera.scale
+    if speed == 0.0:
+        return Vector2(resting, 0.0)
+    return velocity * ((speed / _VELOCITY + resting) / speed)
+
+
+def _corner(world: World, entity: int) -> Vector2:
+    shape = world.component(entity, Shape)
+    if shape.kind == "circle":
+        return Vector2.from_angle(-0.25 * math.pi, shape.radius)
+    return Vector2(0.5 * shape.width, -0.5 * shape.height)
+
+
+def _size(length: float, snaps: bool) -> float:
+    return max(round(length / _SNAP_SIZE) * _SNAP_SIZE if snaps else length, _MIN_SIZE)
