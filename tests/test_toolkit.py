@@ -149,7 +149,7 @@ def test_an_error_while_panels_are_built_leaves_a_toolkit_that_works() -> None:
 @pytest.mark.parametrize("chosen", THEMES, ids=lambda theme: theme.name)
 @pytest.mark.parametrize("size", [12.0, 15.0, 24.0, 30.0])
 def test_letters_are_crisp_and_in_the_colours_of_the_theme(chosen: Theme, size: float) -> None:
-    """Upright strokes of letters reach the full colour of the text: no letter is stretched from another size."""
+    """Upright strokes reach the full colour of the text: no letter is stretched from another size."""
     toolkit = Toolkit()
     ui = Ui(toolkit.fonts, chosen)
 
@@ -164,7 +164,7 @@ def test_letters_are_crisp_and_in_the_colours_of_the_theme(chosen: Theme, size: 
     off, contrast = (np.abs(shown - np.array(c)).max(axis=2) for c in (chosen.text, chosen.panel))
     assert np.count_nonzero(off <= 24) > size, "strokes in full colour"
     rows = np.nonzero((contrast > 100).any(axis=0))[0]
-    assert 0.6 * size < rows[-1] - rows[0] + 1 < 0.9 * size, "capitals as high as asked for"
+    assert 0.54 * size < rows[-1] - rows[0] + 1 < 0.68 * size, "capitals as high as asked for"
 
 
 def test_panels_give_what_is_covered_from_back_to_front() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from physicslab.diagnostics.warnings import ModelWarning
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.panels.panels import broken, draw_pill
+from physicslab.view.panels.panels import broken, draw_pill, pill_height
 
 __all__ = ["draw_advice"]
 
@@ -18,11 +18,18 @@ _MAX_WIDTH = 60
 
 
 def draw_advice(
-    advice: Sequence[ModelWarning], middle: int, top: int, room: int, size: int, canvas: Canvas, theme: Theme
+    advice: Sequence[ModelWarning],
+    middle: int,
+    top: int,
+    bottom: int,
+    room: int,
+    size: int,
+    canvas: Canvas,
+    theme: Theme,
 ) -> Rect | None:
     """Write what is not to be trusted, around ``middle`` and no wider than ``room`` px; return where [px].
 
-    The worst comes first. Without a warning nothing is drawn.
+    The worst comes first. Without a warning, or room for it above ``bottom``, nothing is drawn.
     """
     if not advice:
         return None
@@ -35,4 +42,6 @@ def draw_advice(
         lines += [f"- {pieces[0]}", *pieces[1:]]
     if len(ordered) > _MAX_SHOWN:
         lines.append(f"and {len(ordered) - _MAX_SHOWN} more")
+    if top + pill_height(len(lines), small, canvas) > bottom:
+        return None
     return draw_pill(lines, middle, top, small, theme.warning, canvas, theme)

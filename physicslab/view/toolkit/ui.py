@@ -79,7 +79,7 @@ class Ui:
 
     @contextmanager
     def floating(self, title: str, middle: tuple[float, float]) -> Iterator[list[bool]]:
-        """Begin a window with a title that can be moved within the display; its list holds whether it stays."""
+        """Begin a window that can be moved within the display; its list holds whether it stays open."""
         room = imgui.get_io().display_size
         imgui.set_next_window_pos(ImVec2(*middle), imgui.Cond_.appearing, ImVec2(0.5, 0.5))
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
