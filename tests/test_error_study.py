@@ -138,9 +138,9 @@ def test_the_plot_lies_within_the_window_and_its_button_closes_it(
     screen, plot = pygame.Rect(0, 0, *size), pygame.Rect(desk.sandbox.interface.covered[-1])
     assert screen.contains(plot) and plot.width > 0.5 * size[0]
     click_at(desk, plot.center)
-    assert desk.window.error_study.shown
+    assert [desk.window.error_study.shown] == [True]
     click(desk, "Close")
-    assert not desk.window.error_study.shown
+    assert [desk.window.error_study.shown] == [False]
     assert len(desk.world.entities()) == bodies
 
 

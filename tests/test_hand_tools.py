@@ -148,7 +148,7 @@ def test_f1_shows_every_key_and_escape_leaves_the_help_alone(desk: Desk) -> None
         assert any(shown.startswith(control.label) for shown in words), control.label
     assert "Del, Backspace" in words
     tap(desk, "escape")
-    assert not desk.window.help and not desk.window.closing
+    assert [desk.window.help, desk.window.closing] == [False, False]
     tap(desk, "f1")
     tap(desk, "f1")
     assert not desk.window.help
@@ -160,6 +160,6 @@ def test_the_help_is_closed_by_its_corner_and_a_click_on_it_does_nothing_behind_
     tap(desk, "f1")
     left, top, width, height = desk.sandbox.interface.covered[-1]
     click_at(desk, (left + width // 2, top + height // 2))
-    assert desk.window.help and desk.world.entities() == []
+    assert [desk.window.help, *desk.world.entities()] == [True]
     click_at(desk, (left + width - 14, top + 14))
     assert not desk.window.help and desk.world.entities() == []

@@ -98,8 +98,9 @@ def test_every_number_as_python_writes_it_is_itself(value: float, unit: str) -> 
 
 
 def test_the_unit_of_every_field_is_known() -> None:
-    kinds = (*COMPONENTS.values(), PhysicsConfig, SimulationConfig)
-    units = {spec.unit for kind in kinds for spec in kind.FIELDS}
+    fields = [spec for kind in COMPONENTS.values() for spec in kind.FIELDS]
+    fields += [*PhysicsConfig.FIELDS, *SimulationConfig.FIELDS]
+    units = {spec.unit for spec in fields}
     assert len(units) > 8
     for unit in units - {"", "1"}:
         assert evaluate(f"3*({unit})", unit) == pytest.approx(3.0, rel=1e-15), unit

@@ -426,10 +426,10 @@ def test_the_hud_says_it_in_words() -> None:
     desk, canvas = recorded(world)
     frame(desk, canvas)
     words = [text["words"] for text in canvas.called("text")]
-    assert any(word.startswith("! ADVICE") for word in words) and any("light" in word for word in words)
+    assert any(word.startswith("! ") for word in words) and any("light" in word for word in words)
     world.clear()
     frame(desk, canvas)
-    assert not any(text["words"].startswith("! ADVICE") for text in canvas.called("text"))
+    assert not any(text["words"].startswith("! ") for text in canvas.called("text"))
 
 
 @pytest.mark.parametrize("size", [(1280, 720), (800, 600)])

@@ -6,9 +6,11 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from physicslab.components import Held
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.rescue import save_last_good
 from physicslab.files.scene import SceneError
+from physicslab.history import History, RemoveComponent
 from physicslab.state.masses import Diverged
 from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
@@ -42,6 +44,8 @@ class Sandbox:
     ----------
     world : World
         The world that is shown.
+    history : History
+        The edits and runs of it.
     interface : Interface
         The panels around it.
     """
@@ -77,6 +81,9 @@ class Sandbox:
             self._shown(world)
         world.install(*self._systems)
         window = self.window
+        world.synchronise()  # what was done to make it is no edit
+        self.history = History(world)
+        window.follow_history(self.history)
         window.spring_tool.cancel()
         window.overlays.forget()
         window.sparks.clear()
@@ -84,7 +91,6 @@ class Sandbox:
         window.graphs = [graph for graph in window.graphs if _goes_on(graph, titles, self._titles)]
         window.error, window.next_world = "", None
         window.go_home(world)
-        world.synchronise()  # what was done to make it is no edit
         window.unchanged = world.motion_edits
 
     def frame(self, elapsed: float) -> None:
@@ -125,18 +131,33 @@ class Sandbox:
         None is begun once they have taken as long as a frame may make up for: a world too heavy for the
         machine runs slowly, and the window stays awake.
         """
-        world, pace, dt = self.world, self.window.pace, self.world.simulation.dt
+        pace, dt = self.window.pace, self.world.simulation.dt
         deadline = self._clock() + pace.max_dt
         made, due = 0, pace.due(dt)
         try:
             while made < due and (made == 0 or self._clock() < deadline):
-                world.step(dt * pace.shortening)
+                self._step(dt * pace.shortening)
                 made += 1
         except Diverged as error:
             pace.halt()
             self.window.error = f"Stopped: {error}. {self._rescue()} R clears all."
         else:
             pace.done(made, dt)
+
+    def _step(self, dt: float) -> None:
+        """Make a step; in the past the one that was made there once."""
+        history = self.history
+        if history.step_count < history.steps_range[1]:
+            history.seek(history.step_count + 1)
+        else:
+            self._let_go_of_what_none_holds()
+            history.step(dt)
+
+    def _let_go_of_what_none_holds(self) -> None:
+        """Let a body go that was in the hand at the place in the past from which time goes on now."""
+        for entity in self.world.batch(Held).entities.tolist():
+            if entity != self.window.hand.entity and self.history.entries:
+                self.history.write(RemoveComponent(entity, Held.__name__))
 
     def _rescue(self) -> str:
         """Save the state before the step that failed, once, and return what to say of it."""

@@ -123,6 +123,7 @@ class SetField:
         spec = _field(kind, self.field)
         part = world.component(self.entity, kind)
         setattr(part, self.field, self.value)
+        part.validate()
         return self if spec.kind != "vector" else replace(self, value=getattr(part, self.field))
 
 

@@ -138,7 +138,7 @@ class History:
         self.difference: Difference | None = None
         self._line, self._branches = Line(), list[Branch]()
         self._place = self._end = 0
-        self._whole = True
+        self._whole, self._divided = True, False
         self._frames = Keyframes(budget)
         self._cost = self._since = 0.0
         self._last: Keyframe | None = None
@@ -209,6 +209,10 @@ class History:
             self._advance()
             if self._since >= _RUNNING * self._cost and self._frames.takes(self._place):
                 self._frames.add_along(self._place, self._take())
+
+    def divide(self) -> None:
+        """Let the next step or write begin another run: undo takes back what comes from now on by itself."""
+        self._divided = True
 
     # ---- going through -------------------------------------------------------------------------------------
 
@@ -356,8 +360,9 @@ class History:
         """Return the run that a step or a write at the present place extends."""
         self._cut()
         entries = self._line.entries
-        if not entries or not isinstance(entries[-1], Run):
+        if not entries or not isinstance(entries[-1], Run) or self._divided:
             self._line.add(Run())
+        self._divided = False
         run = entries[-1]
         assert isinstance(run, Run)
         return run

@@ -69,7 +69,14 @@ def _is_upright(vertices: Vertices, colours: Colours, a: int, b: int, c: int, d:
     )
     colour = colours[a, 4]
     alike = colours[b, 4] == colour and colours[c, 4] == colour and colours[d, 4] == colour
-    return bool(placed and alike)
+    # The texture lies along the axes, too: that of a line lies across it.
+    laid = (
+        vertices[a, 3] == vertices[b, 3]
+        and vertices[b, 2] == vertices[c, 2]
+        and vertices[c, 3] == vertices[d, 3]
+        and vertices[d, 2] == vertices[a, 2]
+    )
+    return bool(placed and alike and laid)
 
 
 @inlined
@@ -81,8 +88,9 @@ def _rectangle(
     red, green, blue, alpha = colour & 255, (colour >> 8) & 255, (colour >> 16) & 255, colour >> 24
     xa, ya, xc, yc = vertices[a, 0], vertices[a, 1], vertices[c, 0], vertices[c, 1]
     ua, va, uc, vc = vertices[a, 2], vertices[a, 3], vertices[c, 2], vertices[c, 3]
-    first, last = max(left, math.ceil(xa - 0.5)), min(right, math.ceil(xc - 0.5))
-    upper, lower = max(top, math.ceil(ya - 0.5)), min(bottom, math.ceil(yc - 0.5))
+    # Lines of plots have their corners in any order.
+    first, last = max(left, math.ceil(min(xa, xc) - 0.5)), min(right, math.ceil(max(xa, xc) - 0.5))
+    upper, lower = max(top, math.ceil(min(ya, yc) - 0.5)), min(bottom, math.ceil(max(ya, yc) - 0.5))
     plain = ua == uc and va == vc
     across = 0.0 if plain else (uc - ua) / (xc - xa)
     down = 0.0 if plain else (vc - va) / (yc - ya)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from physicslab.diagnostics.warnings import ModelWarning, find_warnings
 from physicslab.systems.system import Stage, System, at
 from physicslab.view.overlay.edge_arrows import draw_edge_arrows
+from physicslab.view.overlay.selection_marks import draw_selection
+from physicslab.view.panels.axis_numbers import draw_axis_numbers
 from physicslab.view.panels.banners import DroppedTime, draw_banners, draw_messages, lay_out_messages
 from physicslab.view.panels.figures import EnergyWatch, FrameMeter, WorldFigures, measure_world
 from physicslab.view.panels.laws import has_gravity
@@ -65,8 +67,10 @@ class HudSystem(System):
         self._meter.note(world, elapsed)
         self._watch.follow(world)
         self._refresh(world)
-        for graph in window.graphs:
-            graph.sample(world)
+        history = window.edits.history
+        if history.step_count == history.steps_range[1]:  # in the past nothing is to be recorded again
+            for graph in window.graphs:
+                graph.sample(world)
         if window.error_study.poll():
             self._announce(window.error_study.failure)
         taken = self._draw_over_world(world)
@@ -122,6 +126,15 @@ class HudSystem(System):
             banners.append((f"The computer is too slow: {dropped:.1f} s were skipped", theme.slow))
         return banners
 
+    def _draw_advice(self, world: World, middle: int, top: int, bottom: int, width: int) -> Rect | None:
+        """Write what is not to be trusted, and put a ring around each body that is spoken of."""
+        window, size = self._window, self._text_size
+        canvas, theme = window.canvas, window.theme
+        bodies = [entity for one in self._advice if (entity := _named(world, one.entity)) is not None]
+        draw_selection(world, bodies, window.camera, theme, canvas, colour=theme.warning)
+        plainly = window.level == "Explore"
+        return draw_advice(self._advice, middle, top, bottom, width, size, canvas, theme, plainly=plainly)
+
     # ---- drawing -------------------------------------------------------------------------------------------
 
     def _draw_over_world(self, world: World) -> list[Rect]:
@@ -133,13 +146,15 @@ class HudSystem(System):
         canvas, theme, room = window.canvas, window.theme, self._interface.visible
         left, top, width, height = room
         middle, margin = left + width // 2, round(0.6 * size)
+        if window.grid:
+            draw_axis_numbers(window.camera, room, size, canvas, theme)
         bar = draw_scale_bar(window.camera, left + width, top + height - margin, size, canvas, theme)
         taken = [bar, *self._draw_messages(bar)]
         bottom = min(rect[1] for rect in taken) - margin
         banners = self._banners(world)
         shown = draw_banners(banners, middle, top + margin, bottom, width - 2 * margin, size, canvas, theme)
         below = shown[-1][1] + shown[-1][3] + margin if shown else top + margin
-        advice = draw_advice(self._advice, middle, below, bottom, width - 2 * margin, size, canvas, theme)
+        advice = self._draw_advice(world, middle, below, bottom, width - 2 * margin)
         taken += [*shown, *([] if advice is None else [advice])]
         legend = legend_of(window.overlays, round(_LEGEND_WIDTH * size), size, canvas, theme)
         if legend is not None:
@@ -163,3 +178,11 @@ class HudSystem(System):
         if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):
             messages, bottom = lay_out_messages(words, size, width - size, canvas), bar[1]
         return draw_messages(messages, middle, top + size // 2, bottom, size, canvas, theme)
+
+
+def _named(world: World, label: str | None) -> int | None:
+    """Return the entity that a warning speaks of, if it speaks of one that is there."""
+    for entity in world.entities() if label else ():
+        if world.label(entity) == label:
+            return entity
+    return None

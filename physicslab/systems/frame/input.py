@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pygame
@@ -10,6 +11,7 @@ import pygame
 from physicslab.systems.system import Stage, System, at
 from physicslab.view.controls import actions
 from physicslab.view.controls.controls import KEYS, RELEASES
+from physicslab.view.controls.file_actions import open_scene
 from physicslab.view.controls.spawning import spawn_box
 from physicslab.view.controls.tools import TOOLS, Tool
 
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ["InputSystem"]
 
+_BY_PRINT = ("+", "-", ".", ",", "[", "]")
+"""Keys that go by what they print: on other keyboards they are elsewhere, or need AltGr."""
 _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
 """With these keys held, another key is meant for the desktop: Alt+Tab is no slow motion."""
 
@@ -50,6 +54,7 @@ class InputSystem(System):
             pygame.MOUSEBUTTONUP: self._release,
             pygame.MOUSEMOTION: self._motion,
             pygame.MOUSEWHEEL: self._wheel,
+            pygame.DROPFILE: self._drop,
             pygame.WINDOWFOCUSLOST: self._leave,
             pygame.WINDOWMINIMIZED: self._leave,
             pygame.WINDOWHIDDEN: self._leave,
@@ -87,10 +92,17 @@ class InputSystem(System):
 
     def _key(self, world: World, event: pygame.Event) -> None:
         mod = getattr(event, "mod", 0)
-        ctrl = "ctrl+" if mod & pygame.KMOD_CTRL else ""
-        action = KEYS.get(ctrl + pygame.key.name(event.key).lower())
-        if action is not None and not mod & _OTHER_USE:
+        held = ("ctrl+" if mod & pygame.KMOD_CTRL else "") + ("shift+" if mod & pygame.KMOD_SHIFT else "")
+        printed = getattr(event, "unicode", "")
+        name = printed if printed in _BY_PRINT else pygame.key.name(event.key).lower()
+        action = KEYS.get(held + name) or KEYS.get(held.replace("shift+", "") + name)
+        other_use = mod & _OTHER_USE and name not in _BY_PRINT
+        if action is not None and not other_use:
             action(world, self._window)
+
+    def _drop(self, world: World, event: pygame.Event) -> None:
+        """Open a scene file that was dropped on the window."""
+        open_scene(self._window, Path(event.file))
 
     def _key_up(self, world: World, event: pygame.Event) -> None:
         action = RELEASES.get(pygame.key.name(event.key).lower())
@@ -120,7 +132,7 @@ class InputSystem(System):
     def _release(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
         if event.button == pygame.BUTTON_LEFT:
-            self._window.handles.release()
+            self._window.handles.release(self._window.edits)
         if event.button == pygame.BUTTON_LEFT and self._tool is not None:
             self._tool.release(world, self._window)
             self._tool = None
@@ -131,7 +143,7 @@ class InputSystem(System):
         window = self._window
         if not event.buttons[0]:  # let go where no report came from, as over another window
             window.hand.drop(world)
-            window.handles.release()
+            window.handles.release(window.edits)
             if self._tool is not None:
                 window.spring_tool.cancel()
                 self._tool = None
@@ -143,7 +155,7 @@ class InputSystem(System):
         window.pointer = event.pos
         if window.handles.dragged is not None and window.handled is not None:
             snaps = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
-            window.handles.drag(world, window.handled, window.camera, window.place, snaps=snaps)
+            window.handles.drag(window.edits, window.handled, window.camera, window.place, snaps=snaps)
 
     def _wheel(self, world: World, event: pygame.Event) -> None:
         notches = getattr(event, "precise_y", event.y)

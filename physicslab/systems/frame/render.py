@@ -13,7 +13,7 @@ from physicslab.view.overlay.ghost import draw_ghost
 from physicslab.view.overlay.handle_marks import draw_handles, draw_reading
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
-from physicslab.view.overlay.selection_marks import draw_selection
+from physicslab.view.overlay.selection_marks import draw_band, draw_selection
 from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.panels.panels import text_size
 from physicslab.view.picture.painting import draw_world
@@ -63,6 +63,8 @@ class RenderSystem(System):
         if overlays.arrows and len(window.selection.entities) == 1:
             size = text_size(canvas, window.text_scale) - 1
             draw_free_body(world, window.selection.entities[0], overlays, camera, theme, canvas, size)
+        if window.band is not None:
+            draw_band(camera.to_screen(window.band), window.pointer, theme, canvas)
         self._draw_handles(world)
         self._draw_ghost(world)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import copy
 import math
-from dataclasses import replace
+from collections.abc import Callable, Sequence
 
-from physicslab.components import Held, Name, Shape, Spring, Transform, Velocity
+from physicslab.components import Held, Shape, Spring, Transform, Velocity
+from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.history import Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.tools import HAND, Tool
 from physicslab.view.panels.laws import has_gravity
-from physicslab.view.window.edits import announce_edit
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -26,22 +28,22 @@ __all__ = [
     "go_home",
     "larger_text",
     "leave",
-    "next_theme",
+    "next_theme", "nudger", "paste",
     "plot_selected",
-    "reduce",
+    "redo", "reduce", "seek", "select_all", "select_next",
     "slower",
     "smaller_text",
-    "step",
+    "step", "step_back",
     "toggle_arrows",
     "toggle_figures",
     "toggle_gravity",
     "toggle_grid",
-    "toggle_help",
+    "toggle_help", "toggle_history",
     "toggle_impulses",
     "toggle_pause",
     "toggle_planets",
     "toggle_slow_motion",
-    "toggle_trails",
+    "toggle_trails", "undo",
     "zoom",
     "zoom_in",
     "zoom_out",
@@ -64,6 +66,7 @@ def choose_tool(window: Window, tool: Tool) -> None:
 def toggle_pause(world: World, window: Window) -> None:
     """Let time stand still, or go on."""
     window.pace.toggle_pause()
+    window.edits.history.divide()
     if not window.pace.paused:
         window.error = ""
 
@@ -92,8 +95,10 @@ def clear(world: World, window: Window) -> None:
     """Remove everything."""
     window.hand.drop(world)
     window.spring_tool.cancel()
-    world.clear()
-    announce_edit(world)
+    removed = [Remove(entity) for entity in world.entities()]
+    if removed:
+        window.edits.do(Group("cleared everything", removed))
+        window.notify("Cleared: Ctrl+Z brings it back")
     window.overlays.forget()
     window.sparks.clear()
     window.error = ""
@@ -105,11 +110,10 @@ def toggle_gravity(world: World, window: Window) -> None:
         window.notify(_NO_GRAVITY, failed=True)
         return
     if world.physics.gravity_mode == "linear" and world.physics.gravity:
-        world.physics = replace(world.physics, gravity_mode="none")
+        window.edits.do(SetPhysics({"gravity_mode": "none"}))
     else:
         gravity = world.physics.gravity or PhysicsConfig().gravity
-        world.physics = replace(world.physics, gravity_mode="linear", gravity=gravity)
-    announce_edit(world)
+        window.edits.do(SetPhysics({"gravity_mode": "linear", "gravity": gravity}))
 
 
 def toggle_planets(world: World, window: Window) -> None:
@@ -118,11 +122,10 @@ def toggle_planets(world: World, window: Window) -> None:
         window.notify(_NO_GRAVITY, failed=True)
         return
     if world.physics.gravity_mode == "planet":
-        world.physics = replace(world.physics, gravity_mode=window.gravity_before)
+        window.edits.do(SetPhysics({"gravity_mode": window.gravity_before}))
     else:
         window.gravity_before = world.physics.gravity_mode
-        world.physics = replace(world.physics, gravity_mode="planet")
-    announce_edit(world)
+        window.edits.do(SetPhysics({"gravity_mode": "planet"}))
 
 
 def toggle_arrows(world: World, window: Window) -> None:
@@ -208,6 +211,11 @@ def toggle_grid(world: World, window: Window) -> None:
     window.grid = not window.grid
 
 
+def toggle_history(world: World, window: Window) -> None:
+    """Show the list of edits and runs, or no longer."""
+    window.lists_history = not window.lists_history
+
+
 def toggle_help(world: World, window: Window) -> None:
     """Show all keys, or the world and its figures again."""
     window.help = not window.help
@@ -244,19 +252,115 @@ def plot_selected(world: World, window: Window) -> None:
 
 def duplicate_selected(world: World, window: Window) -> None:
     """Put a copy of each body that is selected beside it, and select the copies."""
-    copies = []
-    for entity in window.selection.entities:
-        if not world.has(entity, Transform):
-            continue
-        held = [part for part in world.components(entity) if not isinstance(part, (Name, Held, Spring))]
-        parts = [type(part)(**part.given()) for part in held]
-        copies.append(world.spawn(*parts))
-        world.synchronise()
-        moved = world.component(copies[-1], Transform)
-        moved.position = moved.position + Vector2(_width(world, entity), 0.0)
+    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+    width = max((_width(world, entity) for entity in bodies), default=0.0)
+    _spawn_copies(window, [_parts(world, entity) for entity in bodies], Vector2(width, 0.0))
+
+
+def copy_selected(world: World, window: Window) -> None:
+    """Keep copies of what is selected, to be pasted."""
+    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+    window.copied = [_parts(world, entity) for entity in bodies]
+    window.notify(f"Copied: {len(bodies)}" if bodies else "Nothing is selected to be copied")
+
+
+def paste(world: World, window: Window) -> None:
+    """Put what was copied where the cursor is, and select it."""
+    if not window.copied:
+        window.notify("Nothing was copied")
+        return
+    places = [_place(parts) for parts in window.copied]
+    middle = sum(places, Vector2()) / len(places)
+    _spawn_copies(window, window.copied, window.place - middle)
+
+
+def _spawn_copies(window: Window, bodies: Sequence[Sequence[Component]], by: Vector2) -> None:
+    """Make copies of bodies elsewhere, as one edit, and select them."""
+    copies: list[Command] = []
+    for parts in bodies:
+        moved = [copy.copy(part) for part in parts]
+        for part in moved:
+            if isinstance(part, Transform):
+                part.position = part.position + by
+        copies.append(Spawn(moved))
     if copies:
-        window.selection.entities = tuple(copies)
-        announce_edit(world)
+        made = window.edits.do(Group(f"copied {len(copies)}", copies))
+        window.selection.entities = made or window.selection.entities
+
+
+def _parts(world: World, entity: int) -> list[Component]:
+    """Return copies of the components of a body that a copy of it has."""
+    return [
+        type(part)(**part.given())
+        for part in world.components(entity)
+        if isinstance(part, Component) and not isinstance(part, Held | Spring)
+    ]
+
+
+def _place(parts: Sequence[Component]) -> Vector2:
+    return next(part.position for part in parts if isinstance(part, Transform))
+
+
+def select_all(world: World, window: Window) -> None:
+    """Select all bodies that can move."""
+    window.selection.entities = tuple(world.batch(Transform, Velocity).entities.tolist())
+
+
+def select_next(world: World, window: Window) -> None:
+    """Select the body after the one that is selected, in their order."""
+    bodies = sorted(world.batch(Transform).entities.tolist())
+    now = window.selection.entities[-1] if window.selection.entities else 0
+    if bodies:
+        window.selection.take(next((entity for entity in bodies if entity > now), bodies[0]))
+
+
+def nudger(across: int, up: int) -> Callable[[World, Window], None]:
+    """Return what moves all that is selected by so many pixels."""
+
+    def nudge(world: World, window: Window) -> None:
+        by = Vector2(across, up) / window.camera.scale
+        bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+        moves = [
+            SetField(entity, "Transform", "position", world.component(entity, Transform).position + by)
+            for entity in bodies
+        ]
+        if moves:
+            window.edits.do(Group(f"moved {len(moves)}", moves))
+
+    return nudge
+
+
+def undo(world: World, window: Window) -> None:
+    """Take back the last edit or run."""
+    window.hand.drop(world)
+    window.edits.take_back_shown()
+    words = window.edits.history.undo()
+    window.pace.paused = True
+    window.notify(f"Taken back: {words}" if words else "There is nothing to take back")
+
+
+def redo(world: World, window: Window) -> None:
+    """Put back what was taken back last."""
+    window.hand.drop(world)
+    window.edits.take_back_shown()
+    words = window.edits.history.redo()
+    window.pace.paused = True
+    window.notify(f"Put back: {words}" if words else "There is nothing to put back")
+
+
+def seek(window: Window, step: int) -> None:
+    """Go to the place after so many steps, and pause there; beyond the ends to the nearest."""
+    history = window.edits.history
+    window.hand.drop(history.world)
+    window.edits.take_back_shown()
+    first, last = history.steps_range
+    window.pace.paused = True
+    history.seek(min(max(step, first), last))
+
+
+def step_back(world: World, window: Window) -> None:
+    """Pause, and go back by one step."""
+    seek(window, window.edits.history.step_count - 1)
 
 
 def _width(world: World, entity: int) -> float:

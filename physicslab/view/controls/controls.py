@@ -46,8 +46,8 @@ class Control:
         The key's name in SDL, after ``"ctrl+"`` where that is held too; empty for the mouse.
     action, release : callable, optional
         What is called when the key goes down, and when it goes up.
-    also : str
-        Another key that does the same.
+    also : tuple of str
+        Other keys that do the same.
     minor : bool
         Whether it is for those who look for it.
     group, tip : str
@@ -65,7 +65,7 @@ class Control:
     key: str = ""
     action: Action | None = None
     release: Action | None = None
-    also: str = ""
+    also: tuple[str, ...] = ()
     minor: bool = False
     group: str = ""
     tip: str = ""
@@ -100,20 +100,41 @@ CONTROLS: tuple[Control, ...] = (
     Control("P", "pendulum", "p", spawn_pendulum, tool=_PENDULUM, tip="New pendulums where you click"),
     Control("S", "spring: hold, drag", "s", begin_spring, end_spring, tool=SPRING,
             tip="Springs: drag from a body"),
-    Control("Del", "remove", "delete", remove_selected, also="backspace", group="edit",
+    Control("Del", "remove", "delete", remove_selected, also=("backspace",), group="edit",
             tip="Remove what is selected, or the body under the cursor"),
     Control("Ctrl+D", "duplicate", "ctrl+d", actions.duplicate_selected, minor=True, group="edit",
             tip="Another one beside each body that is selected"),
+    Control("Ctrl+Z", "undo", "ctrl+z", actions.undo, minor=True, group="edit",
+            tip="Take back the last edit or run"),
+    Control("Ctrl+Y", "redo", "ctrl+y", actions.redo, also=("ctrl+shift+z",), minor=True, group="edit",
+            tip="Put back what was taken back last"),
+    Control("U", "history", "u", actions.toggle_history, minor=True, group="edit",
+            state=lambda _, window: window.lists_history, tip="The list of all edits and runs"),
+    Control("Ctrl+C", "copy", "ctrl+c", actions.copy_selected, minor=True, group="edit",
+            tip="Keep a copy of what is selected"),
+    Control("Ctrl+V", "paste", "ctrl+v", actions.paste, minor=True, group="edit",
+            tip="Put what was copied where the cursor is"),
+    Control("Ctrl+A", "select all", "ctrl+a", actions.select_all, minor=True, group="edit",
+            tip="Select all bodies"),
+    Control("N", "next body", "n", actions.select_next, minor=True, group="edit",
+            tip="Select the next body"),
+    Control("Arrows", "move what is selected", "left", actions.nudger(-1, 0), minor=True,
+            tip="Move what is selected by a pixel"),
     Control("R", "clear all", "r", actions.clear, group="edit", tip="Remove everything"),
     Control("Space", "pause", "space", actions.toggle_pause, group="time",
             state=lambda _, window: window.pace.paused, tip="Pause or resume"),
-    Control(".", "one step", ".", actions.step, also=",", group="time", tip="Pause, and make one step"),
+    Control(".", "one step", ".", actions.step, also=(",", "[.]"), group="time",
+            tip="Pause, and make one step"),
+    Control("B", "one step back", "b", actions.step_back, minor=True, group="time",
+            tip="Pause, and go back by one step"),
     Control("Ctrl+R", "start again", "ctrl+r", file_actions.restart, minor=True, group="time",
             tip="Open this scene once more, as it was at its start"),
     Control("Tab", "slow motion", "tab", actions.toggle_slow_motion, group="time",
             state=lambda _, window: window.pace.slow_motion, tip="Slow motion: a quarter of the speed"),
-    Control("[", "half the speed", "[", actions.slower, minor=True, group="time", tip="Half the speed"),
-    Control("]", "twice the speed", "]", actions.faster, minor=True, group="time", tip="Twice the speed"),
+    Control("[", "half the speed", "[", actions.slower, also=("page down",), minor=True, group="time",
+            tip="Half the speed"),
+    Control("]", "twice the speed", "]", actions.faster, also=("page up",), minor=True, group="time",
+            tip="Twice the speed"),
     Control("G", "gravity", "g", actions.toggle_gravity, group="laws",
             state=lambda world, _: _gravity_is(world, "linear") and bool(world.physics.gravity),
             tip="Uniform gravity on or off"),
@@ -134,9 +155,11 @@ CONTROLS: tuple[Control, ...] = (
             state=lambda _, window: window.grid, tip="The grid"),
     Control("Middle", "pan", tool=PAN, tip="Move the view by dragging"),
     Control("Wheel", "zoom"),
-    Control("+", "zoom in", "=", actions.zoom_in, also="+", minor=True, group="view", click=actions.enlarge,
+    Control("+", "zoom in", "=", actions.zoom_in, also=("+", "[+]"), minor=True, group="view",
+            click=actions.enlarge,
             tip="Zoom in"),
-    Control("-", "zoom out", "-", actions.zoom_out, minor=True, group="view", click=actions.reduce,
+    Control("-", "zoom out", "-", actions.zoom_out, also=("[-]",), minor=True, group="view",
+            click=actions.reduce,
             tip="Zoom out"),
     Control("F", "fit", "f", actions.fit, group="view", tip="Fit everything into the window"),
     Control("Home", "first view", "home", actions.go_home, minor=True, group="view",
@@ -150,9 +173,11 @@ CONTROLS: tuple[Control, ...] = (
     Control("F5", "error against run time", "f5", file_actions.study_error, minor=True, group="file",
             state=lambda _, window: window.error_study.running,
             tip="Runs this scene by every method, and plots how far each is off and what it costs"),
-    Control("Ctrl++", "larger text", "ctrl+=", actions.larger_text, also="ctrl++", minor=True, group="window",
+    Control("Ctrl++", "larger text", "ctrl+=", actions.larger_text, also=("ctrl++", "ctrl+[+]"),
+            minor=True, group="window",
             tip="All text larger"),
-    Control("Ctrl+-", "smaller text", "ctrl+-", actions.smaller_text, minor=True, group="window",
+    Control("Ctrl+-", "smaller text", "ctrl+-", actions.smaller_text, also=("ctrl+[-]",), minor=True,
+            group="window",
             tip="All text smaller"),
     Control("F2", "other colours", "f2", actions.next_theme, minor=True, group="window",
             tip="Colours: dark, high contrast, projector"),
@@ -165,10 +190,11 @@ CONTROLS: tuple[Control, ...] = (
 KEYS: dict[str, Action] = {
     key: control.action
     for control in CONTROLS
-    for key in (control.key, control.also)
+    for key in (control.key, *control.also)
     if key and control.action is not None
 }
 """What each key does when it goes down, by its name in SDL."""
+KEYS |= {"right": actions.nudger(1, 0), "up": actions.nudger(0, 1), "down": actions.nudger(0, -1)}
 
 RELEASES: dict[str, Action] = {
     control.key: control.release for control in CONTROLS if control.release is not None

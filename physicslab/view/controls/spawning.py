@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from physicslab.components import Transform
+from physicslab.components import Spring, Transform
+from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
+from physicslab.history import Command, Group, Spawn
 from physicslab.prefabs import binary, box, chain, circle, container, pendulum, pile, pyramid, stack
-from physicslab.view.window.edits import announce_edit
 from physicslab.view.window.placing import Outlines, outlines_of, refused_place
+from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["CIRCLE", "SPAWNS", "Spawn", "spawn_box", "spawn_pendulum"]
+__all__ = ["CIRCLE", "SPAWNS", "Spawnable", "spawn_box", "spawn_pendulum"]
 
 _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
 _SIZES = ((0.5, 0.5), (0.8, 0.4), (0.4, 0.7), (0.6, 0.6), (1.0, 0.3))
@@ -25,57 +28,63 @@ _DENSITY = 5.0
 _RESTITUTION = 0.4
 _ORIGIN = Vector2(0.0, 0.0)
 
-type Make = Callable[[World, Vector2, int], None]
+type Make = Callable[[World, Vector2, int, Recipe], None]
 """Makes something at a place of a world [m]; the number says which of several kinds it is."""
 
 
-def _circle(world: World, place: Vector2, turn: int) -> None:
-    radius = _RADII[turn % len(_RADII)]
-    circle(world, place, radius=radius, mass=_DENSITY * math.pi * radius * radius, restitution=_RESTITUTION)
+def _circle(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
+    radius = recipe.size or _RADII[turn % len(_RADII)]
+    mass = recipe.density * math.pi * radius * radius
+    circle(world, place, radius=radius, mass=mass, restitution=recipe.restitution, friction=recipe.friction)
 
 
-def _box(world: World, place: Vector2, turn: int) -> None:
+def _box(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     width, height = _SIZES[turn % len(_SIZES)]
-    mass = _DENSITY * width * height
-    box(world, place, width=width, height=height, mass=mass, restitution=_RESTITUTION)
+    if recipe.size:
+        width, height = 2.0 * recipe.size, 2.0 * recipe.size
+    mass = recipe.density * width * height
+    box(
+        world, place, width=width, height=height, mass=mass,
+        restitution=recipe.restitution, friction=recipe.friction,
+    )  # fmt: skip
 
 
-def _plank(world: World, place: Vector2, turn: int) -> None:
+def _plank(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     box(world, place, width=2.0, height=0.2, static=True, friction=0.6, restitution=_RESTITUTION)
 
 
-def _pendulum(world: World, place: Vector2, turn: int) -> None:
+def _pendulum(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     pendulum(world, place, length=1.5, angle=0.7)
 
 
-def _chain(world: World, place: Vector2, turn: int) -> None:
+def _chain(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     chain(world, 8, place, place + Vector2(1.2, -1.2))
 
 
-def _stack(world: World, place: Vector2, turn: int) -> None:
+def _stack(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     stack(world, 5, place, width=0.5, height=0.4, mass=_DENSITY * 0.2)
 
 
-def _pyramid(world: World, place: Vector2, turn: int) -> None:
+def _pyramid(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     pyramid(world, 5, place, size=0.4, gap=0.04, mass=_DENSITY * 0.16)
 
 
-def _heap(world: World, place: Vector2, turn: int) -> None:
+def _heap(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     pile(world, 24, place, columns=6, radius=0.12, density=_DENSITY)
 
 
-def _pit(world: World, place: Vector2, turn: int) -> None:
+def _pit(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     container(world, place, width=2.4, height=1.2, thickness=0.15)
 
 
-def _binary(world: World, place: Vector2, turn: int) -> None:
+def _binary(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     for planet in binary(world, (20.0, 10.0), separation=1.6):
         transform = world.component(planet, Transform)
         transform.position = transform.position + place
 
 
 @dataclass(frozen=True, slots=True)
-class Spawn:
+class Spawnable:
     """Something to put into the world.
 
     Attributes
@@ -100,7 +109,7 @@ class Spawn:
 
     def outlines(self, window: Window) -> Outlines:
         """Return what would be made at the cursor: the ghost that is shown there."""
-        return _outlines(self.make, window.spawned + 1).moved(window.place)
+        return _outlines(self.make, window.spawned + 1, window.recipe).moved(window.place)
 
     def spawn(self, world: World, window: Window) -> None:
         """Make it at the cursor; where it would overlap, say so instead."""
@@ -109,34 +118,56 @@ class Spawn:
             window.notify(f"{self.title}: {refused}")
             return
         window.spawned += 1
-        self.make(world, window.place, window.spawned)
-        announce_edit(world)
+        made = _spawn_commands(self.make, window, window.edits.history.next_entity)
+        window.edits.do(Group(f"made: {self.title.lower()}", made))
         if self.remark and world.physics.gravity_mode != "planet":
             window.notify(self.remark, 5.0)
 
 
+def _spawn_commands(make: Make, window: Window, first: int) -> list[Command]:
+    """Return the commands that make something at the cursor; ``first`` is the number of its first entity."""
+    scratch = World()
+    make(scratch, window.place, window.spawned, window.recipe)
+    entities = scratch.entities()
+    number = {entity: first + n for n, entity in enumerate(entities)}
+    commands: list[Command] = []
+    for entity in entities:
+        parts = [copy.copy(part) for part in scratch.components(entity) if isinstance(part, Component)]
+        for part in parts:
+            if isinstance(part, Spring):
+                parts[parts.index(part)] = _renumbered(part, number)
+        commands.append(Spawn(parts))
+    return commands
+
+
+def _renumbered(spring: Spring, number: dict[int, int]) -> Spring:
+    """Return a spring between the same bodies under other numbers."""
+    ends = {end: None if getattr(spring, end) is None else number[getattr(spring, end)] for end in ("a", "b")}
+    return Spring(**{**spring.values(), **ends})
+
+
 @functools.lru_cache(maxsize=32)
-def _outlines(make: Make, turn: int) -> Outlines:
+def _outlines(make: Make, turn: int, recipe: Recipe) -> Outlines:
     """Return the outlines of what would be made at the origin: it is made in a world of its own."""
     scratch = World()
-    make(scratch, _ORIGIN, turn)
+    make(scratch, _ORIGIN, turn, recipe)
     return outlines_of(scratch)
 
 
-CIRCLE = Spawn("circle", "Circle", "on empty space for a circle", _circle)
-_BOX = Spawn("box", "Box", "on empty space for a box", _box)
-_PENDULUM = Spawn("pendulum", "Pendulum", "where it shall hang from", _pendulum)
+CIRCLE = Spawnable("circle", "Circle", "on empty space for a circle", _circle)
+_BOX = Spawnable("box", "Box", "on empty space for a box", _box)
+_PENDULUM = Spawnable("pendulum", "Pendulum", "where it shall hang from", _pendulum)
 SPAWNS = (
     CIRCLE,
     _BOX,
-    Spawn("block", "Plank", "where its middle shall be", _plank),
+    Spawnable("block", "Plank", "where its middle shall be", _plank),
     _PENDULUM,
-    Spawn("chain", "Chain", "where it shall hang from", _chain),
-    Spawn("stack", "Stack", "where its foot shall be", _stack),
-    Spawn("pyramid", "Pyramid", "where its foot shall be", _pyramid),
-    Spawn("heap", "Heap of discs", "where it shall fall", _heap),
-    Spawn("pit", "Open box", "where the middle of its floor shall be", _pit),
-    Spawn("binary", "Two planets", "where they shall circle each other", _binary,
+    Spawnable("chain", "Chain", "where it shall hang from", _chain),
+    Spawnable("stack", "Stack", "where its foot shall be", _stack),
+    Spawnable("pyramid", "Pyramid", "where its foot shall be", _pyramid),
+    Spawnable("heap", "Heap of discs", "where it shall fall", _heap),
+    Spawnable("pit", "Open box", "where the middle of its floor shall be", _pit),
+    Spawnable("binary", "Two planets", "where they shall circle each other", _binary,
           "These two circle each other in planet mode: O turns it on"),
 )  # fmt: skip
 """All there is to spawn, in the order of the chooser."""

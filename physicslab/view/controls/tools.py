@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from physicslab.components import Transform, Velocity
+from physicslab.history import Group, Remove, Spawn
 from physicslab.view.controls.picking import body_at
-from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawn
-from physicslab.view.window.edits import announce_edit
+from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawnable
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -33,7 +34,7 @@ class Tool:
         What happens.
     pans : bool
         Whether dragging moves the picture.
-    spawn : Spawn, optional
+    spawn : Spawnable, optional
         What a click on empty space makes.
     """
 
@@ -43,7 +44,7 @@ class Tool:
     press: Deed
     release: Deed
     pans: bool = False
-    spawn: Spawn | None = None
+    spawn: Spawnable | None = None
 
 
 def _nothing(world: World, window: Window) -> None:
@@ -67,9 +68,28 @@ def take_hold(world: World, window: Window) -> bool:
 
 
 def select(world: World, window: Window) -> None:
-    """Select and take hold of the body under the cursor; where there is none, select nothing."""
-    if not take_hold(world, window) and not window.adding:
+    """Select and take hold of the body under the cursor; where there is none, begin a rectangle."""
+    if take_hold(world, window):
+        return
+    if not window.adding:
         window.selection.clear()
+    window.band = window.place
+
+
+def end_select(world: World, window: Window) -> None:
+    """Let go of what is held, or select all bodies whose middles are in the rectangle."""
+    let_go(world, window)
+    begin, window.band = window.band, None
+    if begin is None:
+        return
+    low = min(begin.x, window.place.x), min(begin.y, window.place.y)
+    high = max(begin.x, window.place.x), max(begin.y, window.place.y)
+    batch = world.batch(Transform, Velocity)
+    place = world.table(Transform)["position"][batch.rows]
+    inside = ((place >= low) & (place <= high)).all(axis=1)
+    for entity in batch.entities[inside].tolist():
+        if entity not in window.selection.entities:
+            window.selection.take(entity, add=True)
 
 
 def remove(world: World, window: Window) -> None:
@@ -94,9 +114,9 @@ def remove_entities(world: World, window: Window, entities: Sequence[int]) -> No
     for entity in entities:
         if window.hand.entity == entity:
             window.hand.drop(world)
-        world.remove(entity)
+    removed = [Remove(entity) for entity in entities]
+    window.edits.do(removed[0] if len(removed) == 1 else Group(f"removed {len(removed)} bodies", removed))
     window.selection.follow(world)
-    announce_edit(world)
 
 
 def begin_spring(world: World, window: Window) -> None:
@@ -115,14 +135,14 @@ def begin_spring(world: World, window: Window) -> None:
 def end_spring(world: World, window: Window) -> None:
     """End the spring at the body under the cursor, or at that point of the world."""
     target = body_at(world, window.camera, window.pointer)
-    refused = window.spring_tool.end(world, target, window.place)
-    if refused:
-        window.notify(refused)
+    made = window.spring_tool.end(world, target, window.place)
+    if isinstance(made, str):
+        window.notify(made)
     else:
-        announce_edit(world)
+        window.edits.do(Spawn([made]))
 
 
-def spawning(spawn: Spawn) -> Tool:
+def spawning(spawn: Spawnable) -> Tool:
     """Return the tool that takes hold of bodies, and spawns where there is none."""
 
     def press(world: World, window: Window) -> None:
@@ -141,7 +161,11 @@ SPAWN_TOOLS = (HAND, *(spawning(spawn) for spawn in SPAWNS[1:]))
 SPRING = Tool("spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring)
 REMOVE = Tool("remove", "Erase", "Erase: click a body; its springs go with it.", remove, _nothing)
 SELECT = Tool(
-    "select", "Select", "Select: click a body to see its numbers; drag to move or throw it.", select, let_go
+    "select",
+    "Select",
+    "Select: click a body to see its numbers; drag to move or throw it.",
+    select,
+    end_select,
 )
 PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True)
 _IN_PALETTE = ("circle", "box", "block", "pendulum", "chain")

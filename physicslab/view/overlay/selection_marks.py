@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from physicslab.components import Shape, Transform
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas
-from physicslab.view.canvas.theme import Theme
+from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.picture.bodies import POINT_RADIUS
 from physicslab.world import World
 
-__all__ = ["draw_selection"]
+__all__ = ["draw_band", "draw_selection"]
 
 _GAP = 4.0
 """Between a body and the line around it [px]."""
@@ -25,13 +25,27 @@ _WIDTH = 2.0
 
 
 def draw_selection(
-    world: World, entities: Sequence[int], camera: Camera, theme: Theme, canvas: Canvas
+    world: World,
+    entities: Sequence[int],
+    camera: Camera,
+    theme: Theme,
+    canvas: Canvas,
+    colour: Colour | None = None,
 ) -> None:
-    """Draw a line around each of these entities that has a place."""
+    """Draw a line around each of these entities that has a place, in a colour or that of what is selected."""
     for entity in entities:
         if world.has(entity, Transform):
             corners = camera.project(_outline(world, entity, _GAP / camera.scale))
-            canvas.lines(corners, np.roll(corners, -1, axis=0), theme.accent, _WIDTH)
+            canvas.lines(corners, np.roll(corners, -1, axis=0), colour or theme.accent, _WIDTH)
+
+
+def draw_band(
+    corner: tuple[float, float], pointer: tuple[float, float], theme: Theme, canvas: Canvas
+) -> None:
+    """Draw the rectangle that is being drawn around bodies, from its corner to the cursor [px]."""
+    (x0, y0), (x1, y1) = corner, pointer
+    corners = np.array(((x0, y0), (x1, y0), (x1, y1), (x0, y1)), np.float64)
+    canvas.lines(corners, np.roll(corners, -1, axis=0), theme.accent, 1.0, 0.8)
 
 
 def _outline(world: World, entity: int, gap: float) -> NDArray[np.float64]:

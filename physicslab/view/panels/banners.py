@@ -80,7 +80,7 @@ class Message:
 def lay_out_messages(
     words: Iterable[tuple[str, Colour]], size: int, room: int, canvas: Canvas
 ) -> list[Message]:
-    """Break messages into lines of a height [px], no wider than ``room``; those without words are left out."""
+    """Break messages into lines of a height [px], no wider than ``room``; empty ones are left out."""
     messages: list[Message] = []
     for message, colour in words:
         style = TextStyle(size, colour, bold=True)

@@ -79,7 +79,7 @@ class Ui:
 
     @contextmanager
     def floating(self, title: str, middle: tuple[float, float]) -> Iterator[list[bool]]:
-        """Begin a window that can be moved within the display; its list holds whether it stays open."""
+        """Begin a window with a title, within the display; what is yielded holds whether it stays open."""
         room = imgui.get_io().display_size
         imgui.set_next_window_pos(ImVec2(*middle), imgui.Cond_.appearing, ImVec2(0.5, 0.5))
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
@@ -269,6 +269,15 @@ class Ui:
                     chosen = name
             imgui.end_combo()
         return chosen
+
+    def selectable(self, label: str, *, on: bool = False, faint: bool = False) -> bool:
+        """Draw a line that can be clicked, and return whether it was."""
+        self.words.append(label)
+        imgui.push_style_color(imgui.Col_.text, packed(self.theme.faint if faint else self.theme.text))
+        clicked, _ = imgui.selectable(label, on)
+        imgui.pop_style_color()
+        self.note(label)
+        return bool(clicked)
 
     def slider(
         self, label: str, value: float, low: float, high: float, shown: str, width: float = -1.0

@@ -1,44 +1,88 @@
-"""What every tool of the window does when it changes the world by hand."""
+"""How the window changes the world: by commands of one history, whichever tool makes them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from physicslab.components import Velocity
+from physicslab.ecs.component import Component
+from physicslab.ecs.fields import InvalidValue
+from physicslab.history import Command, Group, History, SetField
 from physicslab.world import World
 
-__all__ = ["announce_edit", "set_field"]
+__all__ = ["Edits"]
+
+type Shown = tuple[int, type[Component], str]
 
 
-def announce_edit(world: World) -> None:
-    """Note that the world was edited, so that what is measured of it begins again.
+class Edits:
+    """The edits of one world. While time stands still they can be shown before they are done.
 
-    The energy that an edit brings in or takes out is no error of the simulation. Every tool, key and button
-    that changes bodies, springs or laws calls this; what only changes the picture does not.
+    Parameters
+    ----------
+    history : History
+        Where edits and steps go.
+    refused : callable
+        Called with the reason where an edit is refused.
     """
-    world.edited()
 
+    def __init__(self, history: History, refused: Callable[[str], None]) -> None:
+        self.history = history
+        self._refused = refused
+        self._shown: dict[Shown, Any] = {}
 
-def set_field(world: World, entity: int, component: type[Any], name: str, value: object) -> None:
-    """Give a field of a component a value.
+    @property
+    def world(self) -> World:
+        """The world that is edited."""
+        return self.history.world
 
-    Raises
-    ------
-    InvalidValue
-        If the field cannot hold it; nothing is changed then.
-    """
-    held = world.component(entity, component)
-    before = getattr(held, name)
-    setattr(held, name, value)
-    try:
-        if hasattr(held, "validate"):
-            held.validate()
-    except ValueError:
-        setattr(held, name, before)
-        raise
-    announce_edit(world)
+    def do(self, command: Command) -> tuple[int, ...]:
+        """Carry out an edit and return the entities that it made; where it is refused, say why."""
+        self.take_back_shown()
+        try:
+            return self.history.do(command)
+        except (InvalidValue, KeyError, TypeError, ValueError) as error:
+            self._refused(str(error).strip("'\""))
+            return ()
 
+    def write(self, command: Command) -> None:
+        """Carry out what a hand does while time runs."""
+        self.take_back_shown()
+        self.history.write(command)
 
-def moves(world: World, entity: int) -> bool:
-    """Whether an entity is a body that can move."""
-    return world.has(entity, Velocity)
+    def show(self, entity: int, kind: type[Component], name: str, value: object) -> None:
+        """Give a field a value for now, as while something is dragged: :meth:`keep` makes an edit of it.
+
+        Raises
+        ------
+        InvalidValue
+            If the field cannot hold it.
+        """
+        part = self.world.component(entity, kind)
+        before = getattr(part, name)
+        try:
+            setattr(part, name, value)
+            part.validate()
+        except InvalidValue:
+            setattr(part, name, before)
+            raise
+        self._shown.setdefault((entity, kind, name), before)
+
+    def keep(self) -> None:
+        """Make one edit of all that was shown."""
+        changes = [
+            SetField(entity, kind.__name__, name, getattr(self.world.component(entity, kind), name))
+            for entity, kind, name in self._shown
+            if self.world.has(entity, kind)
+        ]
+        if changes:
+            self.take_back_shown()
+            one = changes[0]
+            self.do(one if len(changes) == 1 else Group(one.words(self.world), changes))
+
+    def take_back_shown(self) -> None:
+        """Give all fields the values that they had before they were shown with others."""
+        for (entity, kind, name), before in self._shown.items():
+            if self.world.has(entity, kind):
+                setattr(self.world.component(entity, kind), name, before)
+        self._shown.clear()

@@ -137,11 +137,9 @@ class Graph:
             self._last = -1.0
 
     def sample(self, world: World) -> None:
-        """Record what is shown, once for each time; a clock that went back begins another run."""
+        """Record what is shown, once for each time; what was recorded of later times is replaced."""
         if world.time == self._last:
             return
-        if world.time < self._last:
-            self.restart()
         self._last = world.time
         for quantity in self.quantities:
             if quantity.name in self.chosen:

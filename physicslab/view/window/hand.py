@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
 from physicslab.contacts.report import contacts_of
+from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.view.window.edits import announce_edit
+from physicslab.history import AddComponent, Command, RemoveComponent, SetField
 from physicslab.view.window.placing import free_way
 from physicslab.world import World
 
@@ -80,6 +83,11 @@ def _strength(world: World, entity: int) -> float:
     return _WEIGHTS * _EARTH * world.component(entity, Mass).mass if world.has(entity, Mass) else math.inf
 
 
+def _carry_out(world: World, command: Command) -> None:
+    """Carry out a command that no history records."""
+    command.carry_out(world)
+
+
 class Hand:
     """Holds one body at a time by the point where it was taken.
 
@@ -96,10 +104,13 @@ class Hand:
     ----------
     entity : int, optional
         The body that is held.
+    write : callable
+        Carries out a command of the hand.
     """
 
     def __init__(self, config: WindowConfig) -> None:
         self._config = config
+        self.write: Callable[[World, Command], None] = _carry_out
         self.entity: int | None = None
         self._before = (Vector2(), 0.0)
         self._was_moved_by_time = False
@@ -117,9 +128,10 @@ class Hand:
         grip = (place - transform.position).rotated(-transform.angle)
         self._before = velocity.linear, velocity.angular
         self._was_moved_by_time = False
-        velocity.linear, velocity.angular = Vector2(), 0.0
-        world.add(entity, Held(grip))
-        announce_edit(world)
+        self._set(world, entity, Velocity, "linear", Vector2())
+        self._set(world, entity, Velocity, "angular", 0.0)
+        self.write(world, AddComponent(entity, Held(grip)))
+        world.edited()
         self.entity = entity
         self._path = deque([_Sample(now, place)])
         return True
@@ -148,21 +160,20 @@ class Hand:
             self.entity = None  # it was removed, or taken out of the hand
             return
         transform = world.component(self.entity, Transform)
-        velocity = world.component(self.entity, Velocity)
         grip = world.component(self.entity, Held).grip.rotated(transform.angle)
         gap = self._path[-1].place - transform.position - grip
         if coming > 0.0:
             gap = _yielding(world, self.entity, gap / coming, coming) * coming
         gap = free_way(world, self.entity, _within(world, self.entity, gap))
-        velocity.angular = 0.0
+        self._set(world, self.entity, Velocity, "angular", 0.0)
         if coming > 0.0:
-            velocity.linear = gap / coming
+            self._set(world, self.entity, Velocity, "linear", gap / coming)
             self._was_moved_by_time = True
         elif paused:
-            velocity.linear = Vector2()
+            self._set(world, self.entity, Velocity, "linear", Vector2())
             if gap:
-                transform.position = transform.position + gap
-                announce_edit(world)
+                self._set(world, self.entity, Transform, "position", transform.position + gap)
+                world.edited()
 
     def release(self, world: World, place: Vector2, now: float, paused: bool) -> None:
         """Let go at a point of the world [m]: the body keeps the velocity that the hand had of late.
@@ -171,24 +182,29 @@ class Hand:
         """
         self.move(place, now)
         if self.entity is not None and world.has(self.entity, Held):
-            velocity = world.component(self.entity, Velocity)
-            if not paused:
-                velocity.linear = self._throw()
-            elif not self._was_moved_by_time:
-                velocity.linear, velocity.angular = self._before
+            linear, angular = self._throw(), 0.0
+            if paused:
+                linear, angular = (Vector2(), 0.0) if self._was_moved_by_time else self._before
+            self._set(world, self.entity, Velocity, "linear", linear)
+            self._set(world, self.entity, Velocity, "angular", angular)
         self._let_go(world)
 
     def drop(self, world: World) -> None:
         """Let go without a throw, as when the window is left: the body starts from rest."""
         if self.entity is not None and world.has(self.entity, Held):
-            world.component(self.entity, Velocity).linear = Vector2()
+            self._set(world, self.entity, Velocity, "linear", Vector2())
         self._let_go(world)
 
     def _let_go(self, world: World) -> None:
         if self.entity is not None and world.has(self.entity, Held):
-            world.discard(self.entity, Held)
-            announce_edit(world)
+            self.write(world, RemoveComponent(self.entity, Held.__name__))
+            world.edited()
         self.entity = None
+
+    def _set(self, world: World, entity: int, kind: type[Component], name: str, value: Any) -> None:
+        """Give a field another value; one that it has already is not written again."""
+        if getattr(world.component(entity, kind), name) != value:
+            self.write(world, SetField(entity, kind.__name__, name, value))
 
     def _throw(self) -> Vector2:
         """Return the mean velocity [m/s] over the last of the hand's path, no faster than allowed."""

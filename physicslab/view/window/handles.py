@@ -11,7 +11,7 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.window.edits import set_field
+from physicslab.view.window.edits import Edits
 from physicslab.world import World
 
 __all__ = ["Handle", "Handles"]
@@ -81,8 +81,9 @@ class Handles:
                 return True
         return False
 
-    def drag(self, world: World, entity: int, camera: Camera, place: Vector2, *, snaps: bool) -> None:
+    def drag(self, edits: Edits, entity: int, camera: Camera, place: Vector2, *, snaps: bool) -> None:
         """Let the handle follow the cursor, which is at a point of the world [m]."""
+        world = edits.world
         if self.dragged is None or not world.has(entity, Transform):
             self.dragged = None
             return
@@ -90,44 +91,46 @@ class Handles:
         offset = place - transform.position
         try:
             if self.dragged == "velocity":
-                self._pull(world, entity, camera, offset)
+                self._pull(edits, entity, camera, offset)
             elif self.dragged == "angle":
                 angle = offset.angle - 0.5 * math.pi
                 angle = round(angle / _SNAP_ANGLE) * _SNAP_ANGLE if snaps else angle
-                set_field(world, entity, Transform, "angle", angle)
+                edits.show(entity, Transform, "angle", angle)
                 self.words = f"{math.degrees(angle):.1f}°"
             else:
-                self._resize(world, entity, offset.rotated(-transform.angle), snaps)
+                self._resize(edits, entity, offset.rotated(-transform.angle), snaps)
         except InvalidValue as error:
             self.words = f"must be {error.allowed}"
 
-    def release(self) -> None:
-        """Let go of the handle."""
+    def release(self, edits: Edits) -> None:
+        """Let go of the handle: what it has changed becomes one edit."""
+        if self.dragged is not None:
+            edits.keep()
         self.dragged, self.words = None, ""
 
-    def _pull(self, world: World, entity: int, camera: Camera, offset: Vector2) -> None:
+    def _pull(self, edits: Edits, entity: int, camera: Camera, offset: Vector2) -> None:
         resting = _MIN_ARROW / camera.scale
         length = offset.magnitude
         velocity = offset * (_VELOCITY * (length - resting) / length) if length > resting else Vector2()
-        set_field(world, entity, Velocity, "linear", velocity)
+        edits.show(entity, Velocity, "linear", velocity)
         self.words = quantity(velocity.magnitude, "m/s")
 
-    def _resize(self, world: World, entity: int, corner: Vector2, snaps: bool) -> None:
+    def _resize(self, edits: Edits, entity: int, corner: Vector2, snaps: bool) -> None:
         """Make a body as large as its corner says; what it weighs stays."""
-        shape = world.component(entity, Shape)
+        shape = edits.world.component(entity, Shape)
         if shape.kind == "circle":
             radius = _size(corner.magnitude, snaps)
-            set_field(world, entity, Shape, "radius", radius)
+            edits.show(entity, Shape, "radius", radius)
             self.words = f"radius {quantity(radius, 'm')}"
             return
         width, height = _size(2.0 * abs(corner.x), snaps), _size(2.0 * abs(corner.y), snaps)
-        set_field(world, entity, Shape, "width", width)
-        set_field(world, entity, Shape, "height", height)
+        edits.show(entity, Shape, "width", width)
+        edits.show(entity, Shape, "height", height)
         self.words = f"{width:.3g} m x {height:.3g} m"
 
 
 def arrow_of(world: World, entity: int, camera: Camera) -> Vector2:
-    """Return how far the handle of a body's velocity is from its middle [m]: at rest far enough to be caught."""
+    """Return where the handle of a body's velocity is from its middle [m]: never too near to be caught."""
     velocity = world.component(entity, Velocity).linear
     speed, resting = velocity.magnitude, _MIN_ARROW / camera.scale
     if speed == 0.0:

@@ -45,8 +45,8 @@ class SpringTool:
         """Forget what was begun."""
         self.entity = None
 
-    def end(self, world: World, target: int | None, place: Vector2) -> str:
-        """Make the spring, as long at rest as it is now; return why not, or nothing if all is well.
+    def end(self, world: World, target: int | None, place: Vector2) -> Spring | str:
+        """Return the spring, as long at rest as it is now, or why there is none.
 
         Parameters
         ----------
@@ -65,14 +65,10 @@ class SpringTool:
         anchor = place if target is None else _local(world, target, place)
         end = place if target is None else _place(world, target, anchor)
         rate = 2.0 * math.pi * _FREQUENCY
-        world.spawn(
-            Spring(
-                a=entity, b=target, anchor_a=self._anchor, anchor_b=anchor,
-                rest_length=(end - start).magnitude,
-                stiffness=rate * rate / inverse, damping=2.0 * _DAMPING_RATIO * rate / inverse,
-            )
+        return Spring(
+            a=entity, b=target, anchor_a=self._anchor, anchor_b=anchor, rest_length=(end - start).magnitude,
+            stiffness=rate * rate / inverse, damping=2.0 * _DAMPING_RATIO * rate / inverse,
         )  # fmt: skip
-        return ""
 
     def draw(
         self, world: World, camera: Camera, pointer: tuple[float, float], theme: Theme, canvas: Canvas

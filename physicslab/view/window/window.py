@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.history import History
 from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas, Rect
 from physicslab.view.canvas.theme import DARK, Theme
@@ -15,10 +17,12 @@ from physicslab.view.panels.error_study import ErrorStudy
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
+from physicslab.view.window.edits import Edits
 from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.pace import Pace
+from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.selection import Selection
 from physicslab.view.window.spring_tool import SpringTool
@@ -79,6 +83,8 @@ class Window:
         Why the world stopped; empty while all is well.
     help, grid, figures : bool
         Whether all keys are shown, the grid, and the panels of figures and costs.
+    lists_history : bool
+        Whether the list of edits and runs is shown.
     tool : str
         What the left mouse button does: the name of a tool of :mod:`physicslab.view.controls.tools`.
     level : str
@@ -89,8 +95,16 @@ class Window:
         Whether a click adds to what is selected: Shift or Ctrl is held.
     selection : Selection
         Which bodies are selected.
+    edits : Edits
+        How the world that is shown is changed.
     handles : Handles
         Those of what is selected.
+    recipe : Recipe
+        What the next body is like.
+    copied : list
+        The components of each body that was copied.
+    band : Vector2, optional
+        Where the rectangle begins that is being drawn around bodies [m].
     graphs : list of Graph
         What is plotted.
     deeds : list of callables
@@ -133,7 +147,7 @@ class Window:
         self.wants_screenshot = False
         self.closing = False
         self.error = ""
-        self.help = False
+        self.help = self.lists_history = False
         self.grid = self.figures = True
         self.tool = "circle"
         self.level = "Explore"
@@ -141,6 +155,10 @@ class Window:
         self.adding = False
         self.selection = Selection()
         self.handles = Handles()
+        self.edits: Edits
+        self.recipe = Recipe()
+        self.copied: list[list[Component]] = []
+        self.band: Vector2 | None = None
         self.graphs: list[Graph] = []
         self.deeds: list[Callable[[World, Window], None]] = []
         self.source: str | Path | None = None
@@ -185,6 +203,11 @@ class Window:
         """Plot quantities of the world or of a body, in a graph of their own."""
         number = 1 + max((graph.number for graph in self.graphs), default=0)
         self.graphs.append(Graph(number, title, entity, {name: Series() for name in names}))
+
+    def follow_history(self, history: History) -> None:
+        """Let edits, and what the hand does, go to the history of the world that is shown."""
+        self.edits = Edits(history, lambda words: self.notify(words, 6.0, failed=True))
+        self.hand.write = lambda world, command: self.edits.write(command)
 
     @property
     def handled(self) -> int | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from physicslab.ecs.text import printable
@@ -46,7 +47,7 @@ def _build(ui: Ui, graph: Graph, number: int, window: Window) -> bool:
     ui.words.append(graph.title)
     if shown:
         _build_head(ui, graph, window)
-        _build_plot(ui, graph)
+        _build_plot(ui, graph, window.edits.world.time)
     imgui.end()
     return bool(stays)
 
@@ -70,7 +71,7 @@ def _build_head(ui: Ui, graph: Graph, window: Window) -> None:
         window.deeds.append(lambda world, window: _save(graph, world, window))
 
 
-def _build_plot(ui: Ui, graph: Graph) -> None:
+def _build_plot(ui: Ui, graph: Graph, now: float) -> None:
     units = {quantity.name: quantity.unit for quantity in graph.quantities}
     shown = list(dict.fromkeys(units[name] for name in graph.chosen))
     flags = implot.Flags_.no_title | implot.Flags_.no_menus
@@ -87,6 +88,7 @@ def _build_plot(ui: Ui, graph: Graph) -> None:
         if len(line.times):
             implot.plot_line(name, line.times, line.values, _look(colour, 1.0))
         ui.words.append(name)
+    implot.plot_inf_lines("##now", np.array([now]), _look(ui.theme.faint, 0.8))
     if implot.is_plot_hovered() and (imgui.get_io().mouse_wheel or imgui.is_mouse_dragging(0)):
         graph.follows = False
     implot.end_plot()

@@ -41,7 +41,8 @@ def build_help(ui: Ui, window: Window) -> None:
 
 
 def _keys(control: Control) -> str:
-    return f"{control.label}, {control.also.capitalize()}" if control.also else control.label
+    others = [key.capitalize() for key in control.also if key.isalpha()]
+    return ", ".join([control.label, *others])
 
 
 def _width(lines: Sequence[tuple[str, str]], columns: int) -> float:

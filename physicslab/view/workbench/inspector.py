@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from imgui_bundle import imgui
@@ -11,13 +11,13 @@ from imgui_bundle import imgui
 from physicslab.components import Drag, Held, Mass, Material, Name, Shape, Spring, Trail, Transform, Velocity
 from physicslab.diagnostics.free_body import forces_on, net_force
 from physicslab.ecs.component import Component
-from physicslab.ecs.fields import Field, InvalidValue
+from physicslab.ecs.fields import Field
 from physicslab.ecs.vector import Vector2
+from physicslab.history import AddComponent, Group, RemoveComponent, SetField
 from physicslab.view.canvas.quantities import quantity, vector_quantity
 from physicslab.view.controls.actions import duplicate_selected, plot_selected
 from physicslab.view.controls.tools import remove_selected
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.edits import announce_edit, set_field
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
@@ -136,23 +136,20 @@ class Inspector:
 
     @staticmethod
     def _set(window: Window, kind: type[Component], spec: Field, value: object) -> None:
-        entities = window.selection.entities
-
         def deed(world: World, window: Window) -> None:
-            for entity in entities:
-                _try(window, lambda entity=entity: set_field(world, entity, kind, spec.name, value))
+            _change(window, [SetField(e, kind.__name__, spec.name, value) for e in window.selection.entities])
 
         window.deeds.append(deed)
 
     @staticmethod
     def _set_part(window: Window, kind: type[Component], spec: Field, axis: int, new: float) -> None:
-        entities = window.selection.entities
-
         def deed(world: World, window: Window) -> None:
-            for entity in entities:
+            changes = []
+            for entity in window.selection.entities:
                 vector = getattr(world.component(entity, kind), spec.name)
                 parts = (new, vector.y) if axis == 0 else (vector.x, new)
-                _try(window, lambda e=entity, p=parts: set_field(world, e, kind, spec.name, Vector2(*p)))
+                changes.append(SetField(entity, kind.__name__, spec.name, Vector2(*parts)))
+            _change(window, changes)
 
         window.deeds.append(deed)
 
@@ -226,23 +223,19 @@ class Inspector:
             window.deeds.append(lambda _, window: window.selection.clear())
 
 
-def _switching(entity: int, kind: type[Component]) -> Any:
+def _switching(entity: int, kind: type[Component]) -> Callable[[World, Window], None]:
     def deed(world: World, window: Window) -> None:
-        if world.has(entity, kind):
-            world.discard(entity, kind)
-        else:
-            world.add(entity, kind())
-        announce_edit(world)
+        has = world.has(entity, kind)
+        window.edits.do(RemoveComponent(entity, kind.__name__) if has else AddComponent(entity, kind()))
 
     return deed
 
 
-def _try(window: Window, change: Any) -> None:
-    """Carry an edit out; where the value is refused, say so in one line."""
-    try:
-        change()
-    except (InvalidValue, KeyError) as error:
-        window.notify(str(error).strip("'\""), 6.0, failed=True)
+def _change(window: Window, changes: Sequence[SetField]) -> None:
+    """Make one edit of a change to each of what is selected."""
+    if changes:
+        one = changes[0]
+        window.edits.do(one if len(changes) == 1 else Group(one.words(window.edits.world), changes))
 
 
 def _title(world: World, entity: int) -> str:

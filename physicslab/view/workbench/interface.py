@@ -15,10 +15,12 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
 from physicslab.view.workbench.graph_panel import build_graphs
 from physicslab.view.workbench.help_panel import build_help
+from physicslab.view.workbench.history_panel import build_history
 from physicslab.view.workbench.inspector import Inspector
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
 from physicslab.view.workbench.palette import build_palette
+from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
 from physicslab.view.workbench.settings_panel import SettingsPanel
 from physicslab.view.workbench.transport import build_transport
@@ -29,6 +31,8 @@ __all__ = ["Interface"]
 
 _PERIOD = 0.2
 """Time [s] after which panels are built again where nothing was done: faster digits cannot be read."""
+_RECIPES = {"circle": "Circle", "box": "Box"}
+"""The tools that make bodies to a recipe."""
 _BUTTONS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 
 
@@ -54,6 +58,7 @@ class Interface:
         self.ui = Ui(self.toolkit.fonts, window.theme)
         self._inspector = Inspector()
         self._settings = SettingsPanel()
+        self._recipe = RecipePanel()
         self._next = 0.0
         self._offer_height = 0  # of the offer to restore a session [px]
         self._seen: tuple[object, ...] = ()
@@ -133,6 +138,7 @@ class Interface:
         shown = (
             window.help,
             window.error_study.shown,
+            window.lists_history,
             window.recovery.offered,
             window.figures,
             window.level,
@@ -163,6 +169,8 @@ class Interface:
                     self._inspector.build(ui, world, window)
                 else:
                     build_world(ui, world, figures, window)
+                    if window.tool in _RECIPES:
+                        self._recipe.build(ui, _RECIPES[window.tool], window)
                     if window.level == "Engineer":
                         self._settings.build(ui, world, window)
                 if window.level != "Explore":
@@ -178,6 +186,8 @@ class Interface:
             self._offer_height = build_recovery(ui, window, layout.visible)
         if window.error_study.shown:
             build_error_plot(ui, window)
+        if window.lists_history:
+            build_history(ui, window)
         if window.help:
             build_help(ui, window)
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
 
 from imgui_bundle import imgui
 
 from physicslab.ecs.config import COLLISIONS, CONTACTS, INTEGRATORS, PhysicsConfig, SimulationConfig
-from physicslab.ecs.fields import Field, InvalidValue
+from physicslab.ecs.fields import Field
+from physicslab.history import SetPhysics, SetSimulation
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.edits import announce_edit
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
@@ -99,16 +97,9 @@ def _changing(config: type[Config], name: str, value: object) -> Callable[[World
     """Return what changes one setting; where it is refused, nothing is changed, and the reason is shown."""
 
     def deed(world: World, window: Window) -> None:
-        change: Any = {name: value}
-        try:
-            if config is PhysicsConfig:
-                world.physics = replace(world.physics, **change)
-            else:
-                world.simulation = replace(world.simulation, **change)
-        except InvalidValue as error:
-            window.notify(str(error), 6.0, failed=True)
-            return
-        announce_edit(world)
+        window.edits.do(
+            SetPhysics({name: value}) if config is PhysicsConfig else SetSimulation({name: value})
+        )
 
     return deed
 

@@ -1,4 +1,4 @@
-"""Play, pause and step at the bottom, the clock, and how fast time runs."""
+"""The transport at the bottom: start again, step back, play, step, how fast time runs, and the time line."""
 
 from __future__ import annotations
 
@@ -15,45 +15,48 @@ from physicslab.world import World
 __all__ = ["build_transport"]
 
 _SPEEDS = {"4x": 4.0, "2x": 2.0, "1x": 1.0, "1/2x": 0.5, "1/4x": 0.25, "1/8x": 0.125, "1/16x": 0.0625}
-_HINT = "Drag a body to throw it  ·  Left: new circle  ·  Right: new box  ·  Space: pause  ·  F1: all keys"
+_HINT = "Drag: throw  ·  Left: circle  ·  Right: box  ·  Space: pause  ·  F1: keys"
+_HEIGHT, _NARROW, _WIDE = 1.9, 2.4, 5.2
+"""Height of the buttons, and their widths, in heights of the text."""
+_MIN_LINE = 12.0
+"""Width of the time line below which the hint makes room, in heights of the text."""
 
 
 def build_transport(ui: Ui, rect: Rect, world: World, window: Window) -> None:
-    """Build the row of buttons, the clock and the hint."""
+    """Build the row of buttons, the time line and the hint."""
     with ui.panel("transport", rect, padded=False):
-        pace, size = window.pace, ui.size
-        height = 1.9 * size
+        pace, size, icons = window.pace, ui.size, ICONS
+        height, narrow = _HEIGHT * size, _NARROW * size
         imgui.set_cursor_pos_y(max(0.5 * (rect[3] - height), 0.0))
         if ui.button(
-            "Restart", "Start this scene again (Ctrl+R)", shown=ICONS["restart"], size=(2.4 * size, height)
+            "Restart", "Start this scene again (Ctrl+R)", shown=icons["restart"], size=(narrow, height)
         ):
             window.deeds.append(file_actions.restart)
         imgui.same_line()
+        if ui.button(
+            "Step back", "Pause, and go back by one step (B)", shown=icons["back"], size=(narrow, height)
+        ):
+            window.deeds.append(actions.step_back)
+        imgui.same_line()
         label, icon = ("Play", "play") if pace.paused else ("Pause", "pause")
-        words = f"{ICONS[icon]}  {label}"
-        if ui.button(label, f"{label} (Space)", shown=words, on=True, size=(5.2 * size, height)):
+        words = f"{icons[icon]}  {label}"
+        if ui.button(label, f"{label} (Space)", shown=words, on=True, size=(_WIDE * size, height)):
             window.deeds.append(actions.toggle_pause)
         imgui.same_line()
-        if ui.button("Step", "Pause, and make one step (.)", shown=ICONS["step"], size=(2.4 * size, height)):
+        if ui.button("Step", "Pause, and make one step (.)", shown=icons["step"], size=(narrow, height)):
             window.deeds.append(actions.step)
         imgui.same_line()
+        imgui.push_style_var_y(imgui.StyleVar_.frame_padding, 0.5 * (height - imgui.get_font_size()))
         _build_speed(ui, pace, window)
         imgui.same_line()
-        imgui.align_text_to_frame_padding()
-        ui.text(f"{world.time:.2f} s")
-        room = imgui.get_content_region_avail().x
-        imgui.same_line(max(17.0 * size, 0.0) + 3.2 * size)
-        if imgui.get_content_region_avail().x > imgui.calc_text_size(_HINT).x and room > 0:
-            imgui.align_text_to_frame_padding()
-            ui.faint(_HINT, wrapped=False)
+        _build_line(ui, world, window)
+        imgui.pop_style_var()
 
 
 def _build_speed(ui: Ui, pace: Pace, window: Window) -> None:
     now = next((name for name, speed in _SPEEDS.items() if speed == pace.speed), f"{pace.speed:g}x")
-    imgui.push_style_var_y(imgui.StyleVar_.frame_padding, 0.5 * (1.9 * ui.size - imgui.get_font_size()))
     tip = "How fast time runs (Tab: a quarter; [ and ]: half and twice)"
     chosen = ui.choice("Speed", now, list(_SPEEDS), tip, width=4.6 * ui.size)
-    imgui.pop_style_var()
     if chosen != now:
         speed = _SPEEDS[chosen]
 
@@ -61,3 +64,23 @@ def _build_speed(ui: Ui, pace: Pace, window: Window) -> None:
             window.pace.choose(speed / window.pace.speed)
 
         window.deeds.append(deed)
+
+
+def _build_line(ui: Ui, world: World, window: Window) -> None:
+    """Build the line of the steps that were made, to be gone through by dragging, and the hint beside it."""
+    room, hint = imgui.get_content_region_avail().x, imgui.calc_text_size(_HINT).x + ui.size
+    is_hinted = room - hint > _MIN_LINE * ui.size
+    history = window.edits.history
+    first, last = history.steps_range
+    width = room - hint if is_hinted else room
+    place = ui.slider(
+        "Time line", float(history.step_count), float(first), float(max(last, first + 1)),
+        f"{world.time:.2f} s", width,
+    )  # fmt: skip
+    ui.tip("Drag to go back in time, and forward again; what is changed there begins another future")
+    if place is not None:
+        step = round(place)
+        window.deeds.append(lambda world, window: actions.seek(window, step))
+    if is_hinted:
+        imgui.same_line()
+        ui.faint(_HINT, wrapped=False)

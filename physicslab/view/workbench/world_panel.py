@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
 
 from imgui_bundle import imgui
 
 from physicslab.ecs.vector import Vector2
+from physicslab.history import SetPhysics
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.panels.figures import WorldFigures
 from physicslab.view.panels.laws import gravity_in_words, has_gravity
 from physicslab.view.panels.panels import Line
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.edits import announce_edit
 from physicslab.view.window.window import LEVELS, Window
 from physicslab.world import World
 
@@ -76,17 +75,15 @@ def _build_gravity(ui: Ui, world: World, window: Window) -> None:
     ui.faint(gravity_in_words(world))
 
 
-def _pulling(name: str):  # type: ignore[no-untyped-def]
+def _pulling(name: str) -> Callable[[World, Window], None]:
     def deed(world: World, window: Window) -> None:
         if name == "between bodies":
-            world.physics = replace(world.physics, gravity_mode="planet")
+            window.edits.do(SetPhysics({"gravity_mode": "planet"}))
         elif name == "none":
-            world.physics = replace(world.physics, gravity_mode="none")
+            window.edits.do(SetPhysics({"gravity_mode": "none"}))
         else:
-            world.physics = replace(
-                world.physics, gravity_mode="linear", gravity=Vector2(0.0, -_PLANETS[name])
-            )
-        announce_edit(world)
+            gravity = Vector2(0.0, -_PLANETS[name])
+            window.edits.do(SetPhysics({"gravity_mode": "linear", "gravity": gravity}))
 
     return deed
 

@@ -1,0 +1,61 @@
+"""What the next body is like that is made with the mouse."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from imgui_bundle import imgui
+
+from physicslab.ecs.fields import Field
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.recipe import Recipe
+from physicslab.view.window.window import Window
+from physicslab.view.workbench.number_field import NumberFields
+from physicslab.world import World
+
+__all__ = ["RecipePanel"]
+
+_LABELS = 0.42
+"""Share of the panel's width that labels take."""
+
+
+class RecipePanel:
+    """A row for each property of what is made next."""
+
+    def __init__(self) -> None:
+        self._numbers = NumberFields()
+
+    def build(self, ui: Ui, title: str, window: Window) -> None:
+        """Build them under a title."""
+        ui.gap(0.2)
+        ui.rule()
+        ui.heading(f"Next {title.lower()}")
+        for spec in Recipe.FIELDS:
+            self._build_row(ui, spec, window)
+
+    def _build_row(self, ui: Ui, spec: Field, window: Window) -> None:
+        def commit(new: float) -> None:
+            spec.check(new)
+            window.deeds.append(_changing(spec.name, new))
+
+        width, value = imgui.get_content_region_avail().x, getattr(window.recipe, spec.name)
+        key = f"new {spec.name}"
+        self._numbers.label(ui, key, spec.name.capitalize(), _LABELS * width, value, spec.meaning, commit)
+        imgui.same_line()
+        unit = "" if spec.unit == "1" else spec.unit.replace("^2", "²")
+        room = imgui.get_content_region_avail().x - imgui.calc_text_size(unit).x - (8.0 if unit else 0.0)
+        refusal = self._numbers.build(ui, key, value, spec, room, commit)
+        if unit:
+            imgui.same_line(0.0, 0.4 * ui.size)
+            ui.faint(unit, wrapped=False)
+        if refusal:
+            ui.text(refusal, ui.theme.error, wrapped=True)
+
+
+def _changing(name: str, value: float) -> Callable[[World, Window], None]:
+    def deed(world: World, window: Window) -> None:
+        change = {name: value}
+        window.recipe = replace(window.recipe, **change)
+
+    return deed
