@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.compiling import Compiling, Left
 from physicslab.desktop.garbage import loading
+from physicslab.desktop.preferences import load_preferences, save_preferences
 from physicslab.desktop.sandbox import Sandbox
 from physicslab.desktop.sessions import Session, session_folder
 from physicslab.desktop.termination import Termination
@@ -22,6 +24,7 @@ from physicslab.world import World
 
 __all__ = ["run_window"]
 
+_PREFERENCES = "preferences.json"
 _STILL = 0.5
 """Time [s] between two frames where nothing moves and nothing is done: a laptop lives on its battery."""
 _TITLE_LIMIT = 200
@@ -43,6 +46,8 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     window = Window(display.canvas, config)
     window.source = Path(scene) if scene not in SCENES else scene
     session, abandoned = _begin_session(window)
+    with suppress(OSError):
+        load_preferences(session_folder().with_name(_PREFERENCES), window)
     autosave = None if session is None else Autosave(session.path)
     window.recovery = Recovery(abandoned, None if session is None else session.path)
     sandbox: Sandbox | None = None
@@ -64,6 +69,8 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     finally:
         window.error_study.stop()
         window.recovery.leave()
+        with suppress(OSError):  # a window without preferences is the usual one
+            save_preferences(session_folder().with_name(_PREFERENCES), window)
     if session is not None and termination.signal:
         session.release()
     elif autosave is not None and session is not None:

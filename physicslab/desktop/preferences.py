@@ -1,0 +1,45 @@
+"""What the user chose of the window, from one start to the next: colours, size of text, level of detail."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from physicslab.files.replace import replace_file
+from physicslab.view.canvas.theme import THEMES
+from physicslab.view.window.window import LEVELS, Window
+
+__all__ = ["load_preferences", "save_preferences"]
+
+_MIN_SCALE, _MAX_SCALE = 0.5, 3.0
+"""The sizes of text that are taken from a file, as shares of the usual."""
+
+
+def load_preferences(path: Path, window: Window) -> None:
+    """Set a window up as it was left; what is not there, or is nothing that can be chosen, stays as usual."""
+    try:
+        found: Any = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError):
+        return
+    if not isinstance(found, dict):
+        return
+    window.theme = next((theme for theme in THEMES if theme.name == found.get("colours")), window.theme)
+    scale, level = found.get("text"), found.get("level")
+    if isinstance(scale, int | float) and _MIN_SCALE <= scale <= _MAX_SCALE:
+        window.text_scale = float(scale)
+    if isinstance(level, str) and level in LEVELS:
+        window.level = level
+
+
+def save_preferences(path: Path, window: Window) -> None:
+    """Keep what the user chose.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    chosen = {"colours": window.theme.name, "text": window.text_scale, "level": window.level}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    replace_file(path, (json.dumps(chosen, indent=1) + "\n").encode("utf-8"))
