@@ -170,7 +170,7 @@ def bring_into_sight(desk: Desk, label: str) -> None:
     if label in MENUS or desk.sandbox.interface.toolkit._has_popup():
         return
     for _ in range(200):
-        x, y, _across, down = desk.ui.places[label]
+        x, y, _, down = desk.ui.places[label]
         if x < left or (y >= top and y + down <= top + height):
             return
         point(desk, (left + width - 2, top + height // 2))

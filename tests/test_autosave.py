@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pygame
 import pytest
-from desk import FRAME, Desk, bits, empty_world
-from recording import RecordingCanvas
+from desk import FRAME, Desk, bits, click, empty_world
 
 from physicslab.components import Transform
 from physicslab.desktop.app import open_window
@@ -172,15 +171,6 @@ def crashed(folder: Path, scene: str) -> World:
     return world
 
 
-def click(desk: Desk, what: str) -> None:
-    left, top, width, height = desk.sandbox.toolbar.offers[what]
-    place = (left + width // 2, top + height // 2)
-    for kind in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
-        pygame.event.post(pygame.Event(kind, button=1, pos=place, touch=False))
-        desk.frames()
-    desk.frames(2)
-
-
 def test_restoring_opens_the_last_state(tmp_path: Path) -> None:
     lost = crashed(tmp_path, "stack")
     own = Session.begin(tmp_path)
@@ -193,7 +183,7 @@ def test_restoring_opens_the_last_state(tmp_path: Path) -> None:
     assert [desk.window.pace.paused] == [True], "keys stay with the scene"
     click(desk, "Restore it")
     assert desk.world.name == "stack" and bits(desk.world) == bits(lost) and desk.window.pace.paused
-    assert not desk.sandbox.toolbar.offers and desk.sandbox.toolbar.height < 60
+    assert not desk.window.recovery.offered and "Discard" not in desk.ui.places
     assert own.path.exists(), "it would be offered again after another crash"
     own.end()
     assert not list(tmp_path.iterdir())
@@ -208,10 +198,10 @@ def test_discarding_offers_the_one_before(tmp_path: Path) -> None:
     desk.window.recovery = Recovery(Session.abandoned(tmp_path))
     desk.frames(10)
     click(desk, "Discard")
-    assert list(desk.sandbox.toolbar.offers) == ["Restore it", "Discard"]
+    assert {"Restore it", "Discard"} <= set(desk.ui.places)
     assert len(list(tmp_path.glob("*.json"))) == 1
     click(desk, "Discard")
-    assert not desk.sandbox.toolbar.offers and not list(tmp_path.iterdir()) and desk.world is world
+    assert "Discard" not in desk.ui.places and not list(tmp_path.iterdir()) and desk.world is world
 
 
 def test_a_state_that_cannot_be_read_is_reported_and_kept(tmp_path: Path) -> None:
@@ -224,25 +214,6 @@ def test_a_state_that_cannot_be_read_is_reported_and_kept(tmp_path: Path) -> Non
     desk.frames(10)
     click(desk, "Restore it")
     assert "Not restored" in desk.window.notice and desk.world is world and path.exists()
-    desk.window.recovery.leave()
-
-
-@pytest.mark.parametrize("size", [(1280, 720), (800, 600), (640, 480)])
-def test_the_bar_lies_over_nothing(size: tuple[int, int], tmp_path: Path) -> None:
-    crashed(tmp_path, "stack")
-    canvas = RecordingCanvas(size)
-    desk = Desk(empty_world(), canvas)
-    desk.window.recovery = Recovery(Session.abandoned(tmp_path))
-    desk.frames(12)
-    canvas.calls.clear()
-    desk.frames()
-    toolbar = desk.sandbox.toolbar
-    (words,) = [t for t in canvas.called("text") if "ended without closing" in t["words"]]
-    for left, top, width, height in toolbar.offers.values():
-        assert left >= 0 and left + width <= size[0] and top + height <= toolbar.height
-        assert words["at"][0] + canvas.text_size(words["words"], words["style"])[0] < left
-    tops = [panel["rect"][1] for panel in canvas.called("panel")]
-    assert min(tops) >= toolbar.height
     desk.window.recovery.leave()
 
 

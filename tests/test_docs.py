@@ -22,7 +22,7 @@ NEW = {path for kind, path, _ in EXAMPLES if kind == "python"}
 CHANGES = [(name, text) for kind, name, text in EXAMPLES if kind == "diff" and name not in NEW]
 FOR_ALL = {
     "tests/test_integrate.py": "yoshida4", "tests/test_scenes.py": "balloons",
-    "tests/test_toolbar.py": "every_control", "tests/test_input.py": "table_of_controls",
+    "tests/test_workbench.py": "every_control", "tests/test_input.py": "table_of_controls",
     "tests/test_docs.py": "has_every_key or every_method_is_in", "README.md": "README",
 }  # fmt: skip
 """Tests that hold for every method, scene and control, and the words by which those of the examples go."""

@@ -3,11 +3,14 @@
 import json
 import sys
 import time
+from collections import Counter
 from pathlib import Path
+from typing import Any
 
-import numpy as np
+import pygame
 import pytest
-from desk import Desk, empty_world
+from desk import SETTLED, Desk, click, click_at, empty_world, sized
+from imgui_bundle import implot
 from recording import RecordingCanvas
 
 from physicslab.files.scene import load_scene
@@ -70,21 +73,30 @@ def measured(desk: Desk) -> None:
     assert not desk.window.error_study.running
 
 
-def test_the_key_measures_in_another_process_and_shows_the_plot(tmp_path: Path) -> None:
-    desk, canvas = desk_with(
-        tmp_path, f"pathlib.Path(report).write_text({json.dumps({'scenes': [FOUND]})!r})"
-    )
+def test_the_key_measures_in_another_process_and_shows_the_plot(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lines: dict[str, tuple[list[float], list[float]]] = {}
+    usual = implot.plot_line
+
+    def plotted(name: str, costs: Any, errors: Any, *given: Any) -> None:
+        lines[name] = list(costs), list(errors)
+        usual(name, costs, errors, *given)
+
+    monkeypatch.setattr(implot, "plot_line", plotted)
+    desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text({json.dumps({'scenes': [FOUND]})!r})")
     measured(desk)
-    canvas.calls.clear()
-    desk.frames()
-    assert {"Error against run time", "rk4", "auto: exact", "run time, ms", "error, m"} <= set(canvas.words)
-    assert "leapfrog" not in canvas.words
-    assert any("an estimate; distances after 5 s from the tightest method" in words for words in canvas.words)
-    joined = next(call for call in canvas.called("lines") if call["width"] == 1.5)
-    (slow, exact) = joined["start"][0], joined["end"][0]
-    assert slow[0] < exact[0] and slow[1] < exact[1]  # more work, less error: to the right and down
-    inside = (joined["start"] > 0) & (joined["start"] < (1280, 720))
-    assert np.all(inside)
+    desk.frames(SETTLED)
+    words = desk.ui.words
+    assert {"Error against run time", "rk4", "auto: exact"} <= set(words)
+    assert "leapfrog" not in words and "leapfrog" not in lines
+    assert any("an estimate; distances after 5 s from the tightest method" in shown for shown in words)
+    samples = desk.window.error_study.samples
+    assert {name: len(costs) for name, (costs, _) in lines.items()} == Counter(s.integrator for s in samples)
+    for name, (costs, errors) in lines.items():
+        assert costs == sorted(costs) and all(error > 0.0 for error in errors), "logarithms are drawn"
+        runs = {(s.cpu_ms, s.error) for s in samples if s.integrator == name}
+        assert all((cost, error) in runs or error < 1e-16 for cost, error in zip(costs, errors, strict=True))
     desk.key("escape")
     desk.frames()
     assert not desk.window.error_study.shown and not desk.window.closing
@@ -112,14 +124,23 @@ def test_pressing_again_stops_it_and_leaves_nothing_behind(tmp_path: Path) -> No
     assert "stopped" in desk.window.notice
 
 
-def test_a_click_closes_the_plot_and_makes_no_circle(tmp_path: Path) -> None:
-    desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text({json.dumps({'scenes': [FOUND]})!r})")
+@pytest.mark.parametrize("size", [(640, 480), (1280, 720)])
+def test_the_plot_lies_within_the_window_and_its_button_closes_it(
+    tmp_path: Path, size: tuple[int, int]
+) -> None:
+    desk = sized(size, text_scale=1.75)
+    deed = f"pathlib.Path(report).write_text({json.dumps({'scenes': [FOUND]})!r})"
+    desk.window.error_study = lab(tmp_path, deed)
+    pendulum(desk.world, (0, 0))
     measured(desk)
+    desk.frames(2 * SETTLED)
     bodies = len(desk.world.entities())
-    desk.press(2, 2)
-    desk.release(2, 2)
-    desk.frames(2)
-    assert not desk.window.error_study.shown
+    screen, plot = pygame.Rect(0, 0, *size), pygame.Rect(desk.sandbox.interface.covered[-1])
+    assert screen.contains(plot) and plot.width > 0.5 * size[0]
+    click_at(desk, plot.center)
+    assert [desk.window.error_study.shown] == [True]
+    click(desk, "Close")
+    assert [desk.window.error_study.shown] == [False]
     assert len(desk.world.entities()) == bodies
 
 

@@ -354,19 +354,18 @@ def test_the_hud_shows_what_there_is() -> None:
     box(world, (0, -0.5), width=10, height=1, static=True)
     circle(world, (-1, 0.25), radius=0.25, mass=2.0, velocity=(1, 0), angular_velocity=-4.0)
     circle(world, (2, 3))
-    desk, canvas = watched(world)
+    desk, _ = watched(world)
     desk.frames(20)
     desk.key("space")  # so that the figures are of now
-    last_frame(desk, canvas)
+    desk.frames(30)
     energy, momentum = measure_energy(world), measure_momentum(world)
     assert energy.kinetic == energy.kinetic_linear + energy.kinetic_angular and energy.kinetic_angular > 0.0
-    assert row(canvas, "Frame rate") == "60 FPS"
-    assert row(canvas, "Bodies") == "3"
-    assert row(canvas, "Candidate pairs") == str(world.contacts.candidate_pairs)
-    assert row(canvas, "Contacts") == str(world.contacts.count) == "1"
-    assert row(canvas, "Kinetic energy") == quantity(energy.kinetic, "J")
-    assert row(canvas, "Total momentum") == quantity(momentum.linear.magnitude, "kg m/s")
-    assert {"Left", "Right", "Space", "Tab", "Esc"} <= set(canvas.words)  # the hint
+    assert row(desk, "Frame rate") == "60 FPS"
+    assert row(desk, "Bodies") == "3"
+    assert row(desk, "Candidate pairs") == str(world.contacts.candidate_pairs)
+    assert row(desk, "Contacts") == str(world.contacts.count) == "1"
+    assert row(desk, "Kinetic energy") == quantity(energy.kinetic, "J")
+    assert row(desk, "Total momentum") == quantity(momentum.linear.magnitude, "kg m/s")
 
 
 @pytest.mark.parametrize(

@@ -64,7 +64,7 @@ def test_walls_stay_where_they_are_and_the_user_is_informed(desk: Desk) -> None:
     desk.press(0, 0)
     desk.frames()
     assert desk.world.entities() == [wall]
-    assert "floor is static" in desk.window.notice
+    assert "floor stays where it is" in desk.window.notice
 
 
 def test_full_stop_makes_single_steps(desk: Desk) -> None:

@@ -3,6 +3,7 @@
 import ast
 import dataclasses
 import itertools
+import re
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,9 @@ SEEN_BY = {
     "deuteranopes": [[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]],
     "tritanopes": [[1.256, -0.077, -0.179], [-0.078, 0.931, 0.148], [0.005, 0.691, 0.304]],
 }
+
+
+HASHED = re.compile(r"#[0-9a-fA-F]{3,8}$")
 
 
 def luminance(colour: Colour) -> float:
@@ -60,7 +64,7 @@ def test_no_colour_is_written_anywhere_else() -> None:
                 values = [part.value for part in node.elts if isinstance(part, ast.Constant)]
                 if len(values) == len(node.elts) and all(type(v) is int and 0 <= v <= 255 for v in values):
                     found.append(f"{source.name}:{node.lineno}")
-            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value.startswith("#"):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and HASHED.match(node.value):
                 found.append(f"{source.name}:{node.lineno}")
             if isinstance(node, ast.Attribute) and node.attr == "Color":
                 found.append(f"{source.name}:{node.lineno}")
@@ -108,4 +112,4 @@ def test_no_two_arrows_are_distinguished_by_colour_alone() -> None:
 def test_another_theme_is_one_record_away() -> None:
     light = dataclasses.replace(DARK, background=(250, 250, 250))
     assert isinstance(light, Theme)
-    assert light.fill((0, 0, 0)) == (175, 175, 175)
+    assert light.fill((0, 0, 0)) == (120, 120, 120)

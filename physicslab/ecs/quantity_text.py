@@ -6,6 +6,7 @@ import ast
 import math
 import operator
 import re
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -123,7 +124,8 @@ def _evaluated(text: str, shown: str) -> _Quantity:
     prepared = _SPACED.sub("*", _GLUED.sub(r"\1*", prepared)).replace("^", "**").replace("·", "*")
     prepared = re.sub(r"\b(\d+\.?\d*|\.\d+)\*[eE](?=[+-]?\d)", r"\1e", prepared)
     try:
-        tree = ast.parse(prepared, mode="eval")
+        with warnings.catch_warnings(action="ignore"):  # of strange literals, for programmers
+            tree = ast.parse(prepared, mode="eval")
         return _value(tree.body, shown)
     except (SyntaxError, RecursionError, MemoryError, ValueError) as error:
         if isinstance(error, InvalidText):

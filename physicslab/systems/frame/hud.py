@@ -30,6 +30,8 @@ __all__ = ["HudSystem"]
 
 _PERIODS = {"figures": 0.2, "costs": 0.2, "advice": 0.25}
 """Time [s] between two readings: figures that change faster cannot be read."""
+_MESSAGE_WIDTH = 0.7
+"""How wide a message beside the scale bar may be, as a share of what is left for the world."""
 _LEGEND_WIDTH = 19.5
 """Width of the legend, in heights of the text."""
 
@@ -124,43 +126,58 @@ class HudSystem(System):
             banners.append((f"The computer is too slow: {dropped:.1f} s were skipped", theme.slow))
         return banners
 
-    def _draw_advice(self, world: World, middle: int, top: int, width: int) -> Rect | None:
+    def _draw_advice(self, world: World, middle: int, top: int, bottom: int, width: int) -> Rect | None:
         """Write what is not to be trusted, and put a ring around each body that is spoken of."""
         window, size = self._window, self._text_size
         canvas, theme = window.canvas, window.theme
         bodies = [entity for one in self._advice if (entity := _named(world, one.entity)) is not None]
         draw_selection(world, bodies, window.camera, theme, canvas, colour=theme.warning)
         plainly = window.level == "Explore"
-        return draw_advice(self._advice, middle, top, width, size, canvas, theme, plainly=plainly)
+        return draw_advice(self._advice, middle, top, bottom, width, size, canvas, theme, plainly=plainly)
 
     # ---- drawing -------------------------------------------------------------------------------------------
 
     def _draw_over_world(self, world: World) -> list[Rect]:
-        """Draw banners, advice, messages, scale and legend, none over another; return where they are."""
+        """Draw banners, advice, messages, scale and legend, none over another; return where they are.
+
+        Where there is no room for all of them, messages come first, then banners, then advice.
+        """
         window, size = self._window, self._text_size
         canvas, theme, room = window.canvas, window.theme, self._interface.visible
         left, top, width, height = room
-        middle, bottom, margin = left + width // 2, top + height, round(0.6 * size)
+        middle, margin = left + width // 2, round(0.6 * size)
         if window.grid:
             draw_axis_numbers(window.camera, room, size, canvas, theme)
-        taken = draw_banners(self._banners(world), middle, top + margin, size, canvas, theme)
-        below = taken[-1][1] + taken[-1][3] + margin if taken else top + margin
-        advice = self._draw_advice(world, middle, below, width - 2 * margin)
-        taken += [advice] if advice is not None else []
+        bar = draw_scale_bar(window.camera, left + width, top + height - margin, size, canvas, theme)
+        taken = [bar, *self._draw_messages(bar)]
+        bottom = min(rect[1] for rect in taken) - margin
+        banners = self._banners(world)
+        shown = draw_banners(banners, middle, top + margin, bottom, width - 2 * margin, size, canvas, theme)
+        below = shown[-1][1] + shown[-1][3] + margin if shown else top + margin
+        advice = self._draw_advice(world, middle, below, bottom, width - 2 * margin)
+        taken += [*shown, *([] if advice is None else [advice])]
         legend = legend_of(window.overlays, round(_LEGEND_WIDTH * size), size, canvas, theme)
         if legend is not None:
             legend = legend.moved(left + margin, top + margin)
             legend.draw(canvas, theme)
             taken.append(legend.panel.rect)
-        taken.append(draw_scale_bar(window.camera, left + width, bottom - margin, size, canvas, theme))
+        draw_edge_arrows(world, window.camera, [*taken, *self._interface.layout.panels], size, canvas, theme)
+        return taken
+
+    def _draw_messages(self, bar: Rect) -> list[Rect]:
+        """Draw what went wrong or was just done, beside the scale bar or above it; return where."""
+        window, size = self._window, self._text_size
+        canvas, theme = window.canvas, window.theme
+        left, top, width, height = self._interface.visible
         words = (
             (window.error, theme.error),
             (window.notice, theme.error if window.notice_failed else theme.notice),
         )
-        messages = lay_out_messages(words, size, width, canvas)
-        taken += draw_messages(messages, middle, bottom, size, canvas, theme)
-        draw_edge_arrows(world, window.camera, [*taken, *self._interface.layout.panels], size, canvas, theme)
-        return taken
+        middle, bottom = left + width // 2, top + height
+        messages = lay_out_messages(words, size, round(_MESSAGE_WIDTH * width), canvas)
+        if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):
+            messages, bottom = lay_out_messages(words, size, width - size, canvas), bar[1]
+        return draw_messages(messages, middle, top + size // 2, bottom, size, canvas, theme)
 
 
 def _named(world: World, label: str | None) -> int | None:

@@ -98,8 +98,8 @@ class RenderSystem(System):
         left, top, width, height = window.room()
         x, y = window.pointer
         inside = left <= x < left + width and top <= y < top + height
-        free = window.hand.entity is None and window.handles.dragged is None
-        idle = free and not window.pointer_on_panel and window.has_pointed
+        held = window.hand.entity, window.handles.dragged, window.spring_tool.entity
+        idle = held == (None, None, None) and not window.pointer_on_panel and window.has_pointed
         if (
             spawn is None
             or not inside

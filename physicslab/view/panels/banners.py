@@ -7,12 +7,10 @@ from dataclasses import dataclass
 
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.theme import Colour, Theme
-from physicslab.view.panels.panels import broken, draw_pill
+from physicslab.view.panels.panels import broken, draw_pill, pill_height, pill_margin
 
 __all__ = ["DroppedTime", "Message", "draw_banners", "draw_messages", "lay_out_messages"]
 
-_MESSAGE_WIDTH = 0.7
-"""How wide a message may be, as a share of what is left for the world: the scale bar stands beside it."""
 _MIN_DROPPED = 0.005
 """Less time [s], dropped within a few seconds, cannot be noticed."""
 _DROP_SHOWN = 3.0
@@ -46,47 +44,67 @@ class DroppedTime:
 
 
 def draw_banners(
-    banners: Iterable[tuple[str, Colour]], middle: int, top: int, size: int, canvas: Canvas, theme: Theme
+    banners: Iterable[tuple[str, Colour]],
+    middle: int,
+    top: int,
+    bottom: int,
+    room: int,
+    size: int,
+    canvas: Canvas,
+    theme: Theme,
 ) -> list[Rect]:
-    """Draw banners in their colours below each other, from ``top`` on, and return where they are [px]."""
+    """Draw banners in their colours below each other, from ``top`` on, and return where they are [px].
+
+    Those wider than ``room`` are broken into lines; those that would reach below ``bottom`` are left out.
+    """
     taken: list[Rect] = []
     for words, colour in banners:
-        taken.append(draw_pill([words], middle, top, size + 2, colour, canvas, theme))
-        top += size // 2 + taken[-1][3]
+        style = TextStyle(size + 2, colour, bold=True)
+        lines = broken(words, max(room - pill_margin(size + 2), 1), canvas, style)
+        if top + pill_height(len(lines), size + 2, canvas) <= bottom:
+            taken.append(draw_pill(lines, middle, top, size + 2, colour, canvas, theme))
+            top += size // 2 + taken[-1][3]
     return taken
 
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """What went wrong or was just done: its lines, its colour, and how high it is [px]."""
+    """What went wrong or was just done: its lines, its colour, how wide it is and how high [px]."""
 
     lines: list[str]
     colour: Colour
+    width: int
     height: int
 
 
 def lay_out_messages(
     words: Iterable[tuple[str, Colour]], size: int, room: int, canvas: Canvas
 ) -> list[Message]:
-    """Break messages into lines of a height [px] for a room so wide; those without words are left out."""
+    """Break messages into lines of a height [px], no wider than ``room``; empty ones are left out."""
     messages: list[Message] = []
     for message, colour in words:
         style = TextStyle(size, colour, bold=True)
-        lines = broken(message, round(_MESSAGE_WIDTH * room), canvas, style)
+        lines = broken(message, max(room - pill_margin(size), 1), canvas, style)
         if lines:
-            height = canvas.text_size("Ag", style)[1] * len(lines) + round(0.55 * size)
-            messages.append(Message(lines, colour, height))
+            height = pill_height(len(lines), size, canvas)
+            width = max(canvas.text_size(line, style)[0] for line in lines) + pill_margin(size)
+            messages.append(Message(lines, colour, width, height))
     return messages
 
 
 def draw_messages(
-    messages: Iterable[Message], middle: int, bottom: int, size: int, canvas: Canvas, theme: Theme
+    messages: Iterable[Message], middle: int, top: int, bottom: int, size: int, canvas: Canvas, theme: Theme
 ) -> list[Rect]:
-    """Draw messages around ``middle`` above ``bottom``, the first lowest, and return where they are [px]."""
+    """Draw messages around ``middle`` above ``bottom``, the first lowest, and return where they are [px].
+
+    Further ones that would reach above ``top`` are left out.
+    """
     bottom -= size // 2
     taken: list[Rect] = []
     for message in messages:
-        top = bottom - message.height
-        taken.append(draw_pill(message.lines, middle, top, size, message.colour, canvas, theme))
-        bottom = top - size // 2
+        if taken and bottom - message.height < top:
+            continue
+        bottom -= message.height
+        taken.append(draw_pill(message.lines, middle, bottom, size, message.colour, canvas, theme))
+        bottom -= size // 2
     return taken

@@ -10,7 +10,7 @@ from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle, TextSurface
 from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
 from physicslab.view.canvas.theme import Colour, Theme
 
-__all__ = ["Line", "Panel", "broken", "draw_pill", "lay_out", "text_size"]
+__all__ = ["Line", "Panel", "broken", "draw_pill", "lay_out", "pill_height", "pill_margin", "text_size"]
 
 type Kind = Literal["heading", "figure", "detail", "remark", "gap"]
 
@@ -139,6 +139,16 @@ def lay_out(
     return Panel((left, top, width, y + pad - top), tuple(texts))
 
 
+def pill_margin(size: int) -> int:
+    """Return how much wider a box is than the words in it [px], for text of a height [px]."""
+    return 4 * round(0.55 * size)
+
+
+def pill_height(lines: int, size: int, canvas: Canvas) -> int:
+    """Return how high a box around so many lines is [px], for text of a height [px]."""
+    return canvas.text_size("Ag", TextStyle(size, (0, 0, 0), bold=True))[1] * lines + round(0.55 * size)
+
+
 def draw_pill(
     words: Sequence[str], middle: int, top: int, size: int, colour: Colour, canvas: Canvas, theme: Theme
 ) -> Rect:
@@ -147,7 +157,7 @@ def draw_pill(
     pad = round(0.55 * size)
     widths = [canvas.text_size(line, style)[0] for line in words]
     line_height = canvas.text_size("Ag", style)[1]
-    width, height = max(widths) + 4 * pad, line_height * len(words) + pad
+    width, height = max(widths) + pill_margin(size), line_height * len(words) + pad
     rect = (middle - width // 2, top, width, height)
     canvas.panel(rect, theme.panel, colour, 0.95)
     for n, line in enumerate(words):

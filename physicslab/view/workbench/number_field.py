@@ -75,6 +75,8 @@ class NumberFields:
             key, draft.text if draft else shown, width, wrong=bool(draft and draft.refusal)
         )
         if active:
+            if self._edited is not None and self._edited.key != key:
+                self.finish()  # Tab went on from there
             self._drafts[key] = _Draft(text, draft.refusal if draft else "")
             self._edited = _Target(key, shown, spec, commit)
         elif self._edited is not None and self._edited.key == key:

@@ -1,0 +1,370 @@
+"""The inspector: every field is written with units, refused where it is wrong, restored, dragged."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pygame
+import pytest
+from desk import (
+    SETTLED,
+    Desk,
+    bring_into_sight,
+    button_down,
+    button_up,
+    click,
+    click_at,
+    empty_world,
+    fill,
+    middle_of,
+    point,
+    tap,
+    write,
+)  # fmt: skip
+
+from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.ecs.component import Component
+from physicslab.ecs.vector import Vector2
+from physicslab.prefabs import box, circle
+from physicslab.view.canvas.quantities import quantity, vector_quantity
+
+WRITTEN: dict[str, tuple[str, float]] = {
+    "Transform.position.x": ("250 cm", 2.5),
+    "Transform.position.y": ("-1 ft", -0.3048),
+    "Transform.angle": ("30 deg", math.pi / 6),
+    "Velocity.linear.x": ("36 km/h", 10.0),
+    "Velocity.linear.y": ("-2,5", -2.5),
+    "Velocity.angular": ("60 rpm", 2 * math.pi),
+    "Mass.mass": ("1500 g", 1.5),
+    "Mass.inertia": ("2 kg m²", 2.0),
+    "Shape.radius": ("12 mm", 0.012),
+    "Shape.width": ("sqrt(4) m", 2.0),
+    "Shape.height": ("1 yd", 0.9144),
+    "Material.restitution": ("30 %", 0.3),
+    "Material.friction": ("1/4", 0.25),
+    "Drag.linear": ("2 g/s", 0.002),
+    "Drag.quadratic": ("3 kg/m", 3.0),
+    "Spring.anchor_a.x": ("1 cm", 0.01),
+    "Spring.anchor_a.y": ("-2 cm", -0.02),
+    "Spring.anchor_b.x": ("2 m", 2.0),
+    "Spring.anchor_b.y": ("3 m", 3.0),
+    "Spring.rest_length": ("2*pi/4 m", math.pi / 2),
+    "Spring.stiffness": ("2 kN/m", 2000.0),
+    "Spring.damping": ("5 N s/m", 5.0),
+    "Trail.length": ("2 min", 120.0),
+}
+"""What is written into each field, and the number in SI that it stands for."""
+OUT_OF_RANGE = {
+    "Transform.position.x": "1e301", "Mass.mass": "-1", "Mass.inertia": "0", "Shape.radius": "0",
+    "Shape.width": "0 m", "Shape.height": "-3", "Material.restitution": "1.01", "Material.friction": "-0.1",
+    "Drag.linear": "-1 kg/s", "Drag.quadratic": "-1", "Spring.anchor_a.x": "1e151",
+    "Spring.anchor_b.y": "-1e151", "Spring.rest_length": "-1 cm", "Spring.stiffness": "-5",
+    "Spring.damping": "-1", "Trail.length": "0 s",
+}  # fmt: skip
+KINDS: tuple[type[Component], ...] = (Transform, Velocity, Mass, Shape, Material, Drag, Spring, Trail)
+
+
+def all_fields() -> set[str]:
+    keys = set()
+    for kind in KINDS:
+        for spec in kind.FIELDS:
+            if spec.kind == "number":
+                keys.add(f"{kind.__name__}.{spec.name}")
+            elif spec.kind == "vector":
+                keys |= {f"{kind.__name__}.{spec.name}.{axis}" for axis in "xy"}
+    return keys
+
+
+def bench(key: str) -> tuple[Desk, int]:
+    """Return a desk with a body selected that has the field, while time stands still."""
+    world = empty_world(gravity_mode="none")
+    make = box if key in ("Shape.width", "Shape.height") else circle
+    body = make(world, (1.0, 0.5), mass=1.0)
+    for extra in (Drag(), Trail(), Spring(anchor_b=(1.0, 2.5))):
+        world.add(body, extra)
+    other = circle(world, (-2.0, -2.0), mass=3.0)
+    world.synchronise()
+    assert other != body
+    desk = Desk(world)
+    desk.key("space")
+    desk.window.tool = "select"
+    desk.window.selection.take(body)
+    desk.frames(SETTLED)
+    return desk, body
+
+
+def held(desk: Desk, entity: int, key: str) -> float:
+    """Return the number that a field holds."""
+    name, field, *axis = key.split(".")
+    kind = next(kind for kind in KINDS if kind.__name__ == name)
+    value: Any = getattr(desk.world.component(entity, kind), field)
+    return float(getattr(value, axis[0]) if axis else value)
+
+
+def state(desk: Desk) -> list[dict[str, Any]]:
+    world = desk.world
+    return [part.values() for entity in world.entities() for part in world.components(entity)]
+
+
+def field_text(desk: Desk, key: str) -> str:
+    """Return what a field shows: the words that are written after its label's own place in the panel."""
+    seen: dict[str, str] = {}
+    ui = desk.ui
+    usual = type(ui).field
+
+    def watched(self: Any, label: str, text: str, *given: Any, **named: Any) -> tuple[str, bool]:
+        seen[label] = text
+        return usual(self, label, text, *given, **named)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(type(ui), "field", watched)
+        desk.sandbox.interface.toolkit.wake()
+        desk.frames(2)
+    return seen[key]
+
+
+def test_every_field_is_in_the_table() -> None:
+    assert set(WRITTEN) == all_fields()
+
+
+@pytest.mark.parametrize("key", WRITTEN)
+@pytest.mark.parametrize("end", ["return", "tab", "beside"])
+def test_a_field_takes_a_number_with_a_unit(key: str, end: str) -> None:
+    desk, body = bench(key)
+    text, expected = WRITTEN[key]
+    edits, before = desk.world.motion_edits, state(desk)
+    click(desk, key)
+    write(desk, text)
+    assert state(desk) == before, "nothing is taken over while it is written"
+    if end == "beside":
+        click_at(desk, desk.pixel(-4.0, 3.0))
+    else:
+        tap(desk, end)
+    assert held(desk, body, key) == pytest.approx(expected, rel=1e-15)
+    assert desk.world.motion_edits > edits
+    after = state(desk)
+    assert sum(a != b for a, b in zip(before, after, strict=True)) <= (2 if "Shape" in key else 1)
+
+
+@pytest.mark.parametrize("key", WRITTEN)
+def test_what_is_no_number_has_another_unit_or_is_out_of_range_is_refused_at_the_field(key: str) -> None:
+    desk, _ = bench(key)
+    before, edits, shown = state(desk), desk.world.motion_edits, field_text(desk, key)
+    wrong = ["north", "1 +", "3 kg^7", "1/0"]
+    if key in OUT_OF_RANGE:
+        wrong.append(OUT_OF_RANGE[key])
+    bring_into_sight(desk, key)
+    for text in wrong:
+        written = set(desk.ui.words)
+        fill(desk, key, text)
+        sentences = [words for words in set(desk.ui.words) - written if len(words) > 12]
+        assert sentences, f"{text!r} is refused with a sentence"
+        assert state(desk) == before and desk.world.motion_edits == edits
+        assert field_text(desk, key) == text, "it stays, to be mended"
+        click(desk, key)
+        tap(desk, "escape")
+        assert field_text(desk, key) == shown, "Escape restores the number"
+        assert not set(sentences) & set(desk.ui.words)
+    fill(desk, key, "   ")
+    assert "a number is needed" in desk.ui.words and state(desk) == before
+
+
+@pytest.mark.parametrize("end", ["return", "tab", "escape"])
+def test_a_field_that_is_left_as_it_is_keeps_every_figure(end: str) -> None:
+    desk, body = bench("Transform.position.x")
+    third = 1.0 / 3.0
+    desk.world.component(body, Transform).position = Vector2(third, third)
+    desk.world.component(body, Mass).mass = third
+    desk.frames(SETTLED)
+    edits = desk.world.motion_edits
+    for key in ("Transform.position.x", "Mass.mass"):
+        click(desk, key)
+        tap(desk, end)
+        assert held(desk, body, key) == third
+        click(desk, key)
+        write(desk, "7")
+        tap(desk, "escape")
+        assert held(desk, body, key) == third
+        fill(desk, key, field_text(desk, key), end)
+        assert held(desk, body, key) == third
+    assert desk.world.motion_edits == edits
+
+
+def test_a_click_on_another_body_takes_over_what_was_written_for_the_first() -> None:
+    desk, body = bench("Mass.mass")
+    (other,) = [e for e in desk.world.entities() if e != body]
+    click(desk, "Mass.mass")
+    write(desk, "7 kg")
+    click_at(desk, desk.pixel(-2.0, -2.0))
+    assert desk.window.selection.entities == (other,)
+    assert held(desk, body, "Mass.mass") == 7.0 and held(desk, other, "Mass.mass") == 3.0
+    assert field_text(desk, "Mass.mass") == "3"
+
+
+def test_a_wrong_number_that_is_left_for_the_world_is_reported() -> None:
+    desk, body = bench("Mass.mass")
+    click(desk, "Mass.mass")
+    write(desk, "7 m")
+    click_at(desk, desk.pixel(-4.0, 3.0))
+    assert held(desk, body, "Mass.mass") == 1.0
+    assert desk.window.notice == "'7 m' is in m; this is in kg" and desk.window.notice_failed
+
+
+def test_a_commit_is_one_edit() -> None:
+    desk, _ = bench("Mass.mass")
+    edits = desk.world.motion_edits
+    fill(desk, "Mass.mass", "2")
+    one = desk.world.motion_edits - edits
+    desk.frames(20)
+    assert desk.world.motion_edits - edits == one
+
+
+# ---- labels ----------------------------------------------------------------------------------------------
+
+
+def drag(desk: Desk, label: str, px: int, mods: int = 0) -> None:
+    bring_into_sight(desk, label)
+    x, y = middle_of(desk, label)
+    point(desk, (x, y))
+    pygame.key.set_mods(mods)
+    try:
+        button_down(desk, (x, y))
+        for n in range(1, 5):
+            point(desk, (x + px * n // 4, y), (1, 0, 0))
+        desk.frames(SETTLED)
+        button_up(desk, (x + px, y))
+    finally:
+        pygame.key.set_mods(0)
+
+
+@pytest.mark.parametrize(
+    ("mods", "expected"), [(0, 1.2), (pygame.KMOD_LSHIFT, 1.02), (pygame.KMOD_LCTRL, 3.0)]
+)
+def test_a_label_is_dragged_shift_finer_ctrl_coarser(mods: int, expected: float) -> None:
+    desk, body = bench("Mass.mass")
+    drag(desk, "label Mass.mass", 40, mods)
+    assert held(desk, body, "Mass.mass") == pytest.approx(expected, rel=1e-6)
+    drag(desk, "label Mass.mass", -4)
+    assert held(desk, body, "Mass.mass") < expected
+
+
+def test_a_drag_ends_where_the_range_ends() -> None:
+    desk, body = bench("Material.restitution")
+    drag(desk, "label Material.restitution", 160)
+    assert 0.5 < held(desk, body, "Material.restitution") <= 1.0
+    drag(desk, "label Shape.radius", -40)
+    assert held(desk, body, "Shape.radius") == pytest.approx(0.05)
+    drag(desk, "label Shape.radius", -36)
+    assert held(desk, body, "Shape.radius") == pytest.approx(0.005), "the last that it can hold"
+    assert not desk.window.notice_failed
+
+
+@pytest.mark.parametrize("key", [key for key in WRITTEN if not key.endswith((".x", ".y"))])
+def test_every_label_of_a_number_can_be_dragged(key: str) -> None:
+    desk, body = bench(key)
+    before = held(desk, body, key)
+    drag(desk, f"label {key}", 12)
+    assert held(desk, body, key) == pytest.approx(before + 12 * 0.005 * max(abs(before), 1.0), rel=1e-5)
+
+
+# ---- several, and components -----------------------------------------------------------------------------
+
+
+def test_several_have_the_fields_that_all_of_them_have() -> None:
+    desk, body = bench("Mass.mass")
+    (other,) = [e for e in desk.world.entities() if e != body]
+    wall = box(desk.world, (4, -3), static=True)
+    desk.world.synchronise()
+    desk.window.selection.entities = (body, other)
+    desk.frames(SETTLED)
+    assert "2 selected" in desk.ui.words and "Drag.linear" not in desk.ui.places
+    fill(desk, "Mass.mass", "2500 g")
+    fill(desk, "Transform.position.x", "1 m")
+    assert [held(desk, e, "Mass.mass") for e in (body, other)] == [2.5, 2.5]
+    assert [held(desk, e, "Transform.position.x") for e in (body, other)] == [1.0, 1.0]
+    assert [held(desk, e, "Transform.position.y") for e in (body, other)] == [0.5, -2.0]
+    desk.window.selection.entities = (body, wall)
+    desk.frames(SETTLED)
+    assert "Mass.mass" not in desk.ui.places and "Transform.angle" in desk.ui.places
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [(Velocity, "Can move"), (Mass, "Has mass"), (Drag, "Air resistance"), (Trail, "Leaves a trail")],
+)
+def test_a_box_to_tick_takes_a_component_away_and_gives_it_back(kind: type[Component], words: str) -> None:
+    desk, body = bench("Mass.mass")
+    had = desk.world.has(body, kind)
+    assert had
+    rows = {label for label in desk.ui.places if label.startswith(f"{kind.__name__}.")}
+    assert rows
+    for there in (False, True):
+        edits = desk.world.revision
+        click(desk, words)
+        assert desk.world.has(body, kind) == there and desk.world.revision > edits
+        assert rows <= set(desk.ui.places) if there else not rows & set(desk.ui.places)
+    desk.key("space")
+    desk.frames(5)
+    assert desk.world.time > 0.0 and not desk.window.error
+
+
+def test_a_flag_is_ticked() -> None:
+    desk, body = bench("Mass.mass")
+    for there in (True, False):
+        click(desk, "Keeps its angle")
+        assert desk.world.component(body, Mass).fixed_rotation == there
+
+
+def test_buttons_duplicate_remove_and_leave() -> None:
+    desk, body = bench("Mass.mass")
+    world, before = desk.world, set(desk.world.entities())
+    fill(desk, "Mass.mass", "4")
+    click(desk, "Duplicate")
+    (copy,) = set(world.entities()) - before
+    assert [*desk.window.selection.entities] == [copy]
+    for kind in (Mass, Shape, Material, Velocity):
+        assert world.component(copy, kind).given() == world.component(body, kind).given()
+    apart = world.component(copy, Transform).position - world.component(body, Transform).position
+    assert apart.magnitude >= 2 * world.component(body, Shape).radius, "beside it, not on it"
+    click(desk, "Done")
+    assert [*desk.window.selection.entities] == []
+    desk.window.selection.take(copy)
+    desk.frames(SETTLED)
+    click(desk, "Delete")
+    assert set(world.entities()) == before
+
+
+# ---- what follows ----------------------------------------------------------------------------------------
+
+
+def test_derived_figures_are_those_of_mechanics() -> None:
+    world = empty_world(gravity_mode="none")
+    body = circle(world, (0, 0), radius=0.5, mass=2.0, velocity=(3.0, 4.0), angular_velocity=2.0)
+    desk = Desk(world)
+    desk.key("space")
+    desk.window.selection.take(body)
+    desk.frames(SETTLED)
+    inertia = 0.5 * 2.0 * 0.25
+    rows = desk.ui.rows
+    assert rows["Speed"] == quantity(5.0, "m/s")
+    assert rows["Direction"] == f"{math.degrees(math.atan2(4, 3)):.1f}°"
+    assert rows["Momentum"] == quantity(10.0, "kg m/s")
+    assert rows["as a vector"] == vector_quantity(Vector2(6, 8), "kg m/s")
+    assert rows["Kinetic energy"] == quantity(0.5 * 2 * 25 + 0.5 * inertia * 4, "J")
+    assert rows["of turning"] == quantity(0.5 * inertia * 4, "J")
+
+
+def test_figures_follow_the_motion() -> None:
+    world = empty_world(gravity=(0, -10))
+    body = circle(world, (0, 30))
+    desk = Desk(world)
+    desk.window.selection.take(body)
+    seen = []
+    for _ in range(5):
+        desk.frames(13)
+        seen.append(desk.ui.rows["Speed"])
+    assert len(set(seen)) == 5
+    tap(desk, "space")
+    speed = world.component(body, Velocity).linear.magnitude
+    assert desk.ui.rows["Speed"] == quantity(speed, "m/s")
