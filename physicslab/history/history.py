@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from physicslab.history.commands import Command, Group, Spawn
-from physicslab.history.digest import differing, digest_of
+from physicslab.history.digest import Digester, differing
 from physicslab.history.keyframe import Keyframe
 from physicslab.history.keyframes import Keyframes
 from physicslab.history.line import Edit, Line, Run, Steps
@@ -20,10 +20,10 @@ from physicslab.world import World
 
 __all__ = ["Branch", "Difference", "History", "HistoryEntry"]
 
-_RUNNING, _SEEKING = 40.0, 4.0
+_RUNNING, _SEEKING = 80.0, 5.0
 """How many times as long as a key frame takes the steps between two take: in a run, and where steps are made
-again or an edit begins. Recording so takes a fortieth of the time of a run, and going back to any place about
-as long as forty key frames."""
+again or an edit begins. Key frames so take an eightieth of the time of a run, and going back to any place
+takes at most as long as eighty of them, while they are within their budget."""
 _FEW = 8
 """Number of steps that are made sooner than a key frame is gone back to."""
 _BRANCH_LIMIT = 8
@@ -141,7 +141,10 @@ class History:
         self._whole = True
         self._frames = Keyframes(budget)
         self._cost = self._since = 0.0
+        self._digester = Digester()
         self._last: Keyframe | None = None
+        self._take()  # the first takes longer than others will
+        self._cost = 0.0
         self._frames.add_along(0, self._take())
 
     # ---- doing ---------------------------------------------------------------------------------------------
@@ -201,11 +204,11 @@ class History:
         world = self.world
         for _ in range(steps):
             h = world.simulation.dt if dt is None else float(dt)
-            began = time.thread_time()
+            began = time.perf_counter()
             with self._all_or_nothing():
                 world.step(h)
-            self._since += time.thread_time() - began
-            self._run().add_step(h, digest_of(world))
+            self._since += time.perf_counter() - began
+            self._run().add_step(h, self._digester.digest(world))
             self._advance()
             if self._since >= _RUNNING * self._cost and self._frames.takes(self._place):
                 self._frames.add_along(self._place, self._take())
@@ -415,11 +418,11 @@ class History:
             self._place += 1
 
     def _make_step_again(self, dt: float, target: int) -> None:
-        began = time.thread_time()
+        began = time.perf_counter()
         self.world.step(dt)
         self._place += 1
-        self._since += time.thread_time() - began
-        columns = differing(digest_of(self.world), self._line.digest_before(self._place))
+        self._since += time.perf_counter() - began
+        columns = differing(self._digester.digest(self.world), self._line.digest_before(self._place))
         if columns and self.difference is None:
             self.difference = Difference(self.step_count, columns)
         if self._since >= _SEEKING * self._cost:
@@ -432,9 +435,13 @@ class History:
 
     def _take(self) -> Keyframe:
         """Return a key frame of now."""
-        began = time.thread_time()
+        began = time.perf_counter()
         frame = Keyframe(self.world, self._last)
-        self._cost, self._since, self._last = time.thread_time() - began, 0.0, frame
+        took = time.perf_counter() - began
+        self._cost = (
+            min(took, 2.0 * self._cost) if self._cost else took
+        )  # other programs may have run meanwhile
+        self._since, self._last = 0.0, frame
         return frame
 
     @contextmanager

@@ -117,6 +117,17 @@ class System:
         """Return which of ``kernels`` the world needs as it is; what it does not need is not waited for."""
         return self.kernels
 
+    def keep(self) -> tuple[NDArray[Any], ...]:
+        """Return copies of the arrays that the system goes on from, if it keeps any from step to step.
+
+        So a world can go back to a moment (:mod:`physicslab.history`). What the columns of components hold is
+        kept in any case.
+        """
+        return ()
+
+    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+        """Go on from what :meth:`keep` returned at an earlier moment; the entities are those of then."""
+
     def substep_factor(self, state: State) -> int:
         """Return the factor by which the next step needs more substeps than configured, at the end of one."""
         return 1
