@@ -52,7 +52,7 @@ BALL = (Transform((0, 1)), Velocity((0.5, 0)), Mass(2.0), Shape("circle", radius
 @pytest.fixture
 def dense(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave a key frame at every place."""
-    monkeypatch.setattr(history_module, "_RUNNING", 0.0)
+    monkeypatch.setattr(history_module, "_RARELY", 0.0)
     monkeypatch.setattr(history_module, "_SEEKING", 0.0)
 
 

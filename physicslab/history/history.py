@@ -20,10 +20,12 @@ from physicslab.world import World
 
 __all__ = ["Branch", "Difference", "History", "HistoryEntry"]
 
-_RUNNING, _SEEKING = 80.0, 5.0
-"""How many times as long as a key frame takes the steps between two take: in a run, and where steps are made
-again or an edit begins. Key frames so take an eightieth of the time of a run, and going back to any place
-takes at most as long as eighty of them, while they are within their budget."""
+_RARELY, _OFTEN, _SEEKING = 80.0, 30.0, 5.0
+"""How many times as long as a key frame takes the steps between two take, at most and at least in a run; and
+where steps are made again, or an edit begins."""
+_SMOOTH = 0.010
+"""Time [s] of the steps between two in a run, where that lies between those: nearly any place is then reached
+within a frame of the screen."""
 _FEW = 8
 """Number of steps that are made sooner than a key frame is gone back to."""
 _BRANCH_LIMIT = 8
@@ -210,7 +212,7 @@ class History:
             self._since += time.perf_counter() - began
             self._run().add_step(h, self._digester.digest(world))
             self._advance()
-            if self._since >= _RUNNING * self._cost and self._frames.takes(self._place):
+            if self._since >= self._interval and self._frames.takes(self._place):
                 self._frames.add_along(self._place, self._take())
 
     # ---- going through -------------------------------------------------------------------------------------
@@ -432,6 +434,12 @@ class History:
         if self._place not in self._frames:
             around = self._place if target is None else target
             self._frames.add_nearby(self._place, self._take(), around)
+
+    @property
+    def _interval(self) -> float:
+        """The time of the steps between two key frames in a run [s]."""
+        rarely = _RARELY * self._cost
+        return _SMOOTH if _OFTEN * self._cost <= _SMOOTH <= rarely else rarely
 
     def _take(self) -> Keyframe:
         """Return a key frame of now."""
