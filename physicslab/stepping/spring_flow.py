@@ -22,7 +22,7 @@ from physicslab.systems.system import ForceSystem
 __all__ = ["SpringFlow", "why_no_spring_flow"]
 
 _SHORTEST = 0.5
-"""Share of its rest length below which a spring is not followed: across it the pull changes faster than along."""
+"""Share of its rest length below which a spring is not followed: its pull changes faster across than along."""
 
 
 def why_no_spring_flow(state: State, forces: Sequence[ForceSystem]) -> str | None:
@@ -100,13 +100,19 @@ class SpringFlow:
         used = order >= 0
         rest = np.where(used, spring["rest_length"][rows[order]], 0.0)
         stiffness = np.where(used, spring["stiffness"][rows[order]], 0.0)
-        ends = (np.where(used, end[order], unused) for end in (ends_a, ends_b))
-        self._links: LinksTuple = (*ends, rest, stiffness, _SHORTEST * rest)
+        a, b = (np.where(used, end[order], unused) for end in (ends_a, ends_b))
+        self._links: LinksTuple = a, b, rest, stiffness, _SHORTEST * rest
         self._place, speed, pull = np.zeros((3, unused + 1, 2))
         self._known, self._gravity = np.zeros(1, np.bool_), np.zeros(2 * m)
         gain = np.repeat(inverse[layout.moving], 2)
         self._places: PlacesTuple = (
-            layout.moving, self._place, speed, pull, self._known, gain, self._gravity
+            layout.moving,
+            self._place,
+            speed,
+            pull,
+            self._known,
+            gain,
+            self._gravity,
         )
         self._physics: object = None
 
