@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 from typing import Any
 from unittest.mock import patch
 
@@ -17,6 +18,7 @@ from hypothesis import strategies as st
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS, SPRING_SPLITTING
@@ -51,11 +53,10 @@ def chain(order: int = 1, *, discs: int = 10, height: float = 0.3, gravity: floa
     """Return a bent chain of discs above a floor, spawned from one end or (-1) from the other."""
     world, random = open_space(gravity=gravity), np.random.default_rng(1)
     floor(world)
-    places = [
-        (0.25 * i + dx, height + dy) for i, (dx, dy) in enumerate(random.uniform(-0.02, 0.02, (discs, 2)))
-    ]
+    bends = random.uniform(-0.02, 0.02, (discs, 2)).tolist()
+    places = [(0.25 * i + dx, height + dy) for i, (dx, dy) in enumerate(bends)]
     row = [circle(world, at, radius=0.1, mass=0.1, angular_velocity=1.0) for at in places[::order]][::order]
-    for a, b in zip(row, row[1:], strict=False):
+    for a, b in pairwise(row):
         world.spawn(Spring(a, b, rest_length=0.25, stiffness=360.0))
     return world
 
@@ -282,7 +283,7 @@ def held_up() -> World:
 
 
 def edit_gravity(world: World) -> None:
-    world.physics = replace(world.physics, gravity=(1.0, -3.0))
+    world.physics = replace(world.physics, gravity=Vector2(1.0, -3.0))
 
 
 def edit_spring(world: World) -> None:

@@ -42,8 +42,8 @@ _SAMPLED_LIMIT = 200
 _WELL_RESOLVED = 0.5
 """omega h of the steps of blanes_moan: above about 1 it does not reach its order."""
 _RESOLVED_BESIDE_CONTACTS = 0.26
-"""omega h of the steps of spring_splitting. Its phase is then right to 4e-10, and what it adds to the error of
-contacts within four substeps is 1e-5 of that (docs/decisions/springs-beside-contacts.md)."""
+"""omega h of the steps of spring_splitting. Its phase is then right to 4e-10, and what it adds to the error
+of contacts within four substeps is 1e-5 of that (docs/decisions/springs-beside-contacts.md)."""
 MAX_STEPS = 1000
 """Largest number of steps of a method that ``auto`` makes of a step of the world."""
 _STIFF = 1.0

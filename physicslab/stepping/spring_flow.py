@@ -22,7 +22,7 @@ from physicslab.systems.system import ForceSystem
 __all__ = ["SpringFlow", "why_no_spring_flow"]
 
 _SHORTEST = 0.5
-"""Share of its rest length below which a spring is not followed: its pull changes faster across than along."""
+"""Share of its rest length below which a spring is not followed: across it, the pull changes faster."""
 
 
 def why_no_spring_flow(state: State, forces: Sequence[ForceSystem]) -> str | None:
