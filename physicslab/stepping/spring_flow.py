@@ -106,14 +106,8 @@ class SpringFlow:
         self._known, self._gravity = np.zeros(1, np.bool_), np.zeros(2 * m)
         gain = np.repeat(inverse[layout.moving], 2)
         self._places: PlacesTuple = (
-            layout.moving,
-            self._place,
-            speed,
-            pull,
-            self._known,
-            gain,
-            self._gravity,
-        )
+            layout.moving, self._place, speed, pull, self._known, gain, self._gravity
+        )  # fmt: skip
         self._physics: object = None
 
     def begin(self, state: State) -> None:
