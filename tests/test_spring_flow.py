@@ -199,16 +199,16 @@ def whirled() -> World:
 
 @pytest.mark.parametrize("build", [pressed, whirled])
 def test_a_spring_that_turns_or_shortens_fast_is_followed_by_dop853(build: Callable[[], World]) -> None:
-    asked: list[int] = []
+    followed: list[int] = []
     follow = SplitForces._follow
 
     def counted(self: SplitForces, *arguments: Any) -> int:
-        asked.append(1)
+        followed.append(1)
         return follow(self, *arguments)
 
     with patch.object(split_forces.SplitForces, "_follow", counted):
         found = after(build, 0.5)
-    assert 0 < len(asked) < 240
+    assert 0 < len(followed) < 240
     assert np.abs(found - after(build, 0.5, adaptive=True)).max() < 1e-5
 
 
