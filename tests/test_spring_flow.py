@@ -182,7 +182,7 @@ def test_a_chain_on_a_floor_is_where_a_far_more_accurate_method_has_it() -> None
 
 
 def pressed() -> World:
-    """Return two discs that meet in the middle of their spring, as its ends do not touch each other."""
+    """Return two discs that pass each other closely, which presses the spring between them together."""
     world = far_floor(open_space(gravity=None))
     ends = [circle(world, (x, 0.0), radius=0.01, mass=1.0, velocity=(-9.0 * x, 0.1 * x)) for x in (-1.0, 1.0)]
     world.spawn(Spring(ends[0], ends[1], rest_length=2.0, stiffness=20.0))
