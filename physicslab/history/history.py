@@ -6,7 +6,6 @@ import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Self
 
 from physicslab.history.commands import Command, Group, Spawn
@@ -16,9 +15,10 @@ from physicslab.history.keyframes import Keyframes
 from physicslab.history.line import Edit, Line, Run, Steps
 from physicslab.history.recording import load, save
 from physicslab.history.replay import follow_edit
+from physicslab.history.seen import Branch, Difference, HistoryEntry
 from physicslab.world import World
 
-__all__ = ["Branch", "Difference", "History", "HistoryEntry"]
+__all__ = ["History"]
 
 _RARELY, _OFTEN, _SEEKING = 80.0, 30.0, 5.0
 """How many times as long as a key frame takes the steps between two take, at most and at least in a run; and
@@ -30,68 +30,6 @@ _FEW = 8
 """Number of steps that are made sooner than a key frame is gone back to."""
 _BRANCH_LIMIT = 8
 """Number of branches that are kept; the oldest go first."""
-
-
-@dataclass(frozen=True, slots=True)
-class HistoryEntry:
-    """An edit or a run.
-
-    Attributes
-    ----------
-    words : str
-        What it was, in plain English: "made a circle", "mass of ball: 2 kg", "ran 3.2 s".
-    done : bool
-        Whether it, or the beginning of it, lies before the present place.
-    first_step, steps : int
-        How many steps the line has before it, and how many it is.
-    """
-
-    words: str
-    done: bool
-    first_step: int
-    steps: int
-
-
-@dataclass(frozen=True, slots=True)
-class Branch:
-    """What once came after a place of the line, where the line now goes on differently.
-
-    Attributes
-    ----------
-    line : Line
-        All of it, from the beginning.
-    place : int
-        Where it was left [ticks].
-    """
-
-    line: Line
-    place: int
-
-    @property
-    def step(self) -> int:
-        """After how many steps it was left."""
-        return self.line.steps_before(self.place)
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """What the edits and runs after that were."""
-        return tuple(entry.words for entry in self.line.entries[self.line.entry_at(self.place) :])
-
-
-@dataclass(frozen=True, slots=True)
-class Difference:
-    """Where steps that were made again did not give the bits that they once gave.
-
-    Attributes
-    ----------
-    step : int
-        The first such step of the line, from 1.
-    columns : tuple of str
-        The columns of motion that differ.
-    """
-
-    step: int
-    columns: tuple[str, ...]
 
 
 class History:
