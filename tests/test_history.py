@@ -260,21 +260,6 @@ def test_seeks_give_the_bits_of_a_fresh_run_where_all_fall_asleep() -> None:
     assert history.difference is None
 
 
-@pytest.mark.usefixtures("dense")
-def test_a_removal_near_64_rows_leaves_no_row_that_changes_bits() -> None:
-    document = crowd(1046)  # 64 entities: to so many, points of boxes are found again after any motion
-    document["simulation"]["contacts"] = "soft"
-    history = History(read_scene(document))
-    history.do(Remove(15))
-    history.step(steps=4)
-    expected = bits(history.world)
-    history.do(Remove(30))
-    history.undo()  # puts it back: rows are numbered again, and none is blank
-    history.undo()
-    history.redo()
-    assert bits(history.world) == expected and history.difference is None
-
-
 def test_a_seek_beyond_the_line_is_refused() -> None:
     history = History(box_of_discs(4))
     history.step(steps=5)
