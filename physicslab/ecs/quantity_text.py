@@ -1,0 +1,195 @@
+"""Numbers as people write them into a field: ``2*pi/3``, ``30 deg``, ``5 km/h``, ``1e3 g``."""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+__all__ = ["InvalidText", "evaluate"]
+
+type Dimension = tuple[int, int, int]
+"""Powers of metre, kilogram and second; an angle has none."""
+
+_SHOWN_LIMIT = 40
+_POWER_LIMIT = 1000.0
+"""Larger powers are refused: they would take for ever, and mean nothing."""
+_DEPTH_LIMIT = 200
+"""Longer texts are refused."""
+
+
+class InvalidText(ValueError):
+    """A text is no number with a unit; the message is one line that shows what is wrong."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Quantity:
+    value: float
+    dimension: Dimension = (0, 0, 0)
+
+
+_L, _M, _T, _ONE = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
+_V, _N, _J, _W, _PA, _HZ = (1, 0, -1), (1, 1, -2), (2, 1, -2), (2, 1, -3), (-1, 1, -2), (0, 0, -1)
+_UNITS: dict[str, _Quantity] = {
+    name: _Quantity(value, dimension)
+    for value, dimension, names in (
+        (1.0, _L, "m"), (1e3, _L, "km"), (0.1, _L, "dm"), (1e-2, _L, "cm"), (1e-3, _L, "mm"),
+        (1e-6, _L, "um µm"), (1e-9, _L, "nm"), (0.0254, _L, "inch"), (0.3048, _L, "ft foot"),
+        (0.9144, _L, "yd"), (1609.344, _L, "mile mi"), (149597870700.0, _L, "au"),
+        (1.0, _M, "kg"), (1e-3, _M, "g"), (1e-6, _M, "mg"), (1e3, _M, "t"), (0.45359237, _M, "lb"),
+        (1.0, _T, "s"), (1e-3, _T, "ms"), (1e-6, _T, "us µs"), (60.0, _T, "min"), (3600.0, _T, "h"),
+        (86400.0, _T, "day d"),
+        (1.0, _ONE, "rad"), (math.pi / 180.0, _ONE, "deg °"), (2.0 * math.pi, _ONE, "turn rev"),
+        (0.01, _ONE, "percent"),
+        (1.0, _HZ, "Hz"), (1e3, _HZ, "kHz"), (2.0 * math.pi / 60.0, _HZ, "rpm"),
+        (1.0 / 3.6, _V, "kmh kph"), (0.44704, _V, "mph"), (1852.0 / 3600.0, _V, "knot kn"),
+        (1.0, _N, "N"), (1e3, _N, "kN"), (1e-3, _N, "mN"),
+        (1.0, _J, "J"), (1e3, _J, "kJ"), (1e-3, _J, "mJ"), (3.6e6, _J, "kWh"),
+        (1.0, _W, "W"), (1e3, _W, "kW"), (1.0, _PA, "Pa"), (1e3, _PA, "kPa"), (1e5, _PA, "bar"),
+    )
+    for name in names.split()
+}  # fmt: skip
+"""The units there are, in SI."""
+_CONSTANTS = {"pi": _Quantity(math.pi), "π": _Quantity(math.pi), "e": _Quantity(math.e)}
+_FUNCTIONS: dict[str, Callable[[float], float]] = {
+    "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "tan": math.tan,
+    "asin": math.asin, "acos": math.acos, "atan": math.atan, "exp": math.exp, "log": math.log, "abs": abs,
+}  # fmt: skip
+_SUPERSCRIPTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_SIGNS = {0x2212: "-", 0xD7: "*"}
+"""The signs of print for minus and times."""
+_GLUED = re.compile(r"(?<![\w.])(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?|\))\s*(?=[A-Za-zµ°π(])")
+_SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
+
+
+def evaluate(text: str, unit: str = "1") -> float:
+    """Return the number that a text stands for, in an SI unit.
+
+    A number without a unit is taken to be in ``unit``. A comma between digits is a decimal point.
+
+    Parameters
+    ----------
+    text : str
+        Numbers, units, ``+ - * / ^ ( )``, ``pi``, ``sqrt``, ``sin`` and the like.
+    unit : str
+        What the result is in, as a field has it: ``"kg m^2"``, ``"m/s"``; ``"1"`` for a pure number.
+
+    Raises
+    ------
+    InvalidText
+        If it is no number, has another dimension than ``unit``, or is not finite.
+
+    Examples
+    --------
+    >>> evaluate("36 km/h", "m/s"), evaluate("180 deg", "rad"), evaluate("1e3 g", "kg"), evaluate("2,5", "m")
+    (10.0, 3.141592653589793, 1.0, 2.5)
+    >>> evaluate("3 kg", "m")
+    Traceback (most recent call last):
+        ...
+    physicslab.ecs.quantity_text.InvalidText: '3 kg' is in kg; this is in m
+    """
+    shown = text.strip() if len(text.strip()) <= _SHOWN_LIMIT else f"{text.strip()[: _SHOWN_LIMIT - 3]}..."
+    if not shown:
+        raise InvalidText("a number is needed")
+    if len(text) > _DEPTH_LIMIT:
+        raise InvalidText(f"'{shown}' is too long")
+    found = _evaluated(text, shown)
+    wanted = _evaluated(unit, unit) if unit not in ("", "1") else _Quantity(1.0)
+    if found.dimension == _ONE and not _names_unit(text):
+        value = found.value
+    elif found.dimension == wanted.dimension:
+        value = found.value / wanted.value
+    else:
+        raise InvalidText(
+            f"'{shown}' is in {_in_words(found.dimension)}; this is in {unit if unit != '1' else 'no unit'}"
+        )
+    if not math.isfinite(value):
+        raise InvalidText(f"'{shown}' is not finite")
+    return value
+
+
+def _names_unit(text: str) -> bool:
+    words = re.findall(r"[A-Za-zµ°]+", re.sub(r"(?<=[\d.])[eE](?=[+-]?\d)", " ", text))
+    return any(word in _UNITS for word in words)
+
+
+def _evaluated(text: str, shown: str) -> _Quantity:
+    prepared = re.sub(r"(?<=\d),(?=\d)", ".", text.strip())
+    prepared = re.sub(r"[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda found: f"^{found.group().translate(_SUPERSCRIPTS)}", prepared)
+    prepared = prepared.replace("°", " deg").replace("%", " percent").translate(_SIGNS)
+    prepared = _SPACED.sub("*", _GLUED.sub(r"\1*", prepared)).replace("^", "**").replace("·", "*")
+    prepared = re.sub(r"\b(\d+\.?\d*|\.\d+)\*[eE](?=[+-]?\d)", r"\1e", prepared)
+    try:
+        tree = ast.parse(prepared, mode="eval")
+        return _value(tree.body, shown)
+    except (SyntaxError, RecursionError, MemoryError, ValueError) as error:
+        if isinstance(error, InvalidText):
+            raise
+        raise InvalidText(f"'{shown}' is no number") from None
+    except (OverflowError, ZeroDivisionError):
+        raise InvalidText(f"'{shown}' is not finite") from None
+
+
+def _value(node: ast.expr, shown: str) -> _Quantity:
+    match node:
+        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+            return _Quantity(float(number))
+        case ast.Name(id=name):
+            return _named(name, shown)
+        case ast.UnaryOp(op=ast.USub() | ast.UAdd() as sign, operand=operand):
+            inner = _value(operand, shown)
+            return _Quantity(-inner.value if isinstance(sign, ast.USub) else inner.value, inner.dimension)
+        case ast.BinOp(left=left, op=kind, right=right):
+            return _combined(kind, _value(left, shown), _value(right, shown), shown)
+        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in _FUNCTIONS:
+            inner = _value(argument, shown)
+            if inner.dimension != _ONE:
+                raise InvalidText(f"{name} takes a pure number, not one in {_in_words(inner.dimension)}")
+            return _Quantity(float(_FUNCTIONS[name](inner.value)))
+    raise InvalidText(f"'{shown}' is no number")
+
+
+def _named(name: str, shown: str) -> _Quantity:
+    found = _CONSTANTS.get(name) or _UNITS.get(name)
+    if found is None:
+        raise InvalidText(f"'{name}' is no unit that is known: m, kg, s, km/h, deg, N, J, ...")
+    return found
+
+
+def _combined(kind: ast.operator, left: _Quantity, right: _Quantity, shown: str) -> _Quantity:
+    match kind:
+        case ast.Mult() | ast.Div():
+            sign = 1 if isinstance(kind, ast.Mult) else -1
+            deed = operator.mul if sign == 1 else operator.truediv
+            a, b, c = (p + sign * q for p, q in zip(left.dimension, right.dimension, strict=True))
+            return _Quantity(deed(left.value, right.value), (a, b, c))
+        case ast.Add() | ast.Sub():
+            if left.dimension != right.dimension:
+                words = f"{_in_words(left.dimension)} and {_in_words(right.dimension)}"
+                raise InvalidText(f"'{shown}': {words} cannot be added")
+            deed = operator.add if isinstance(kind, ast.Add) else operator.sub
+            return _Quantity(deed(left.value, right.value), left.dimension)
+        case ast.Pow() if right.dimension == _ONE and abs(right.value) <= _POWER_LIMIT:
+            raised_to = [p * right.value for p in left.dimension]
+            if not all(power.is_integer() for power in raised_to):
+                raise InvalidText(f"'{shown}': a unit to a broken power")
+            raised = left.value**right.value
+            if isinstance(raised, complex):
+                raise InvalidText(f"'{shown}' is no real number")
+            a, b, c = map(int, raised_to)
+            return _Quantity(raised, (a, b, c))
+    raise InvalidText(f"'{shown}' is no number")
+
+
+def _in_words(dimension: Dimension) -> str:
+    if dimension == _ONE:
+        return "no unit"
+    parts = [
+        name if power == 1 else f"{name}^{power}"
+        for name, power in zip(("m", "kg", "s"), dimension, strict=True)
+        if power
+    ]
+    return " ".join(parts)
