@@ -19,8 +19,8 @@ CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", 
 """Where the browser is, if there is one."""
 _FLAGS = (
     "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-extensions", "--no-proxy-server",
-    "--host-resolver-rules=MAP * ~NOTFOUND", "--remote-debugging-pipe",
+    "--disable-background-networking", "--disable-component-update", "--disable-extensions",
+    "--no-proxy-server", "--host-resolver-rules=MAP * ~NOTFOUND", "--remote-debugging-pipe",
 )  # fmt: skip
 _PATIENCE_S = 60.0
 
@@ -108,7 +108,9 @@ class Browser:
             case "Log.entryAdded":
                 self.complaints.append(found["entry"]["text"])
 
-    def open(self, path: Path, *, width: int = 1280, height: int = 720, dark: bool = True, still: bool = False) -> None:
+    def open(
+        self, path: Path, *, width: int = 1280, height: int = 720, dark: bool = True, still: bool = False
+    ) -> None:
         """Load a file into a window of so many pixels, and wait until its player is there.
 
         ``still`` is for the user's wish that nothing moves by itself.

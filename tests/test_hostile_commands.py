@@ -21,8 +21,20 @@ WARNINGS = {"SDL_VIDEODRIVER": "dummy", "PYTHONWARNINGS": "error"}
 WORDS = (
     "0", "1", "-1", "1e308", "5e-324", "nan", "9" * 400, "", " ", "--", "a\nb", "\udcff", "x" * 5000,
     "/dev/zero", "/", "drop", "leapfrog", "--bogus", "--json=", "--png=/", "--csv=/none/x",
+    "bob.Mass.mass=1e308", "ball.Velocity.linear=[1e308, 1e308]", "=.=.=",
 )  # fmt: skip
-OPTIONS = ("--seconds", "--steps", "--dt", "--substeps", "--integrator", "--json", "--csv", "--png")
+OPTIONS = (
+    "--seconds",
+    "--steps",
+    "--dt",
+    "--substeps",
+    "--integrator",
+    "--json",
+    "--csv",
+    "--png",
+    "--set",
+    "--every",
+)
 HOSTILE = (
     ["accuracy", "nothing"], ["accuracy", "a\nb"], ["accuracy", "--json"], ["accuracy", "--json", "/"],
     ["accuracy", "--json", "/none/x"], ["accuracy", "--plot", "/dev/null"],
@@ -31,6 +43,12 @@ HOSTILE = (
     ["stability", "nothing"], ["stability", ""], ["stability", "x" * 5000], ["stability", "a\nb"],
     ["stability", "--json", "/"], ["stability", "--json", "/none/x"], ["stability", "--json", "/proc/x"],
     ["scenes", "--json", "/"], ["scenes", "more"], ["bench", "nothing"], ["run"], ["run", "--json"],
+    ["export"], ["export", "drop"], ["export", "drop", "--html"], ["export", "drop", "--html", "/"],
+    ["export", "drop", "--html", "/none/x"], ["export", "drop", "--html", "/proc/x"],
+    ["export", "drop", "--html", "x" * 5000], ["export", "/dev/zero", "--html", "x.html"],
+    ["export", "drop", "--html", "x.html", "--seconds", "0"],
+    ["export", "drop", "--html", "x.html", "--seconds", "1e14"],
+    ["export", "drop", "--html", "x.html", "--set", "a\nb"],
     ["nothing"], ["--bogus"], ["drop", "drop"], ["/"], ["/dev/zero"], [""],
 )  # fmt: skip
 

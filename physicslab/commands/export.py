@@ -57,7 +57,8 @@ def execute(arguments: Namespace) -> int:
     if not output.to_stdout:
         bodies = "1 body that moves" if recorder.moving == 1 else f"{recorder.moving:,} bodies that move"
         size = f"{len(content) / 1000:,.0f} kB"
-        print(f"{printable(output.path)}: {arguments.seconds:g} s, {bodies}, {recorder.count:,} instants, {size}")
+        length = f"{arguments.seconds:g} s, {recorder.count:,} instants"
+        print(f"{printable(output.path)}: {length}, {bodies}, {size}")
     return 0
 
 
@@ -93,7 +94,9 @@ def _notes(world: World, run: MeasuredRun) -> list[str]:
     """Return how the run was computed, and what of it is not to be trusted, a line each."""
     simulation, drift = world.simulation, run.record.drift
     causes = " and ".join(drift.causes)
-    energy = f"energy changed by {causes}" if causes else f"largest relative energy drift {drift.relative:.2g}"
+    energy = (
+        f"energy changed by {causes}" if causes else f"largest relative energy drift {drift.relative:.2g}"
+    )
     method = f"{world.plan.integrator.name}, {run.record.steps} steps of {simulation.dt:.6g} s"
     advice = [f"Not to be trusted: {found}." for found in run.record.warnings.all]
     return [f"Computed by {method}, {simulation.substeps} substeps each; {energy}.", *advice]

@@ -103,22 +103,20 @@ class MeasuredRun:
         patience = math.inf if self._at_most is None else _PATIENCE_S
         stepping = world.stepping(seconds=seconds, steps=steps, stride=stride, patience=patience)
         self._measure_every, self._look_every = (max(1, whole // (stride * n)) for n in (_SAMPLES, _LOOKS))
-        if self._recorder is not None:
-            self._measure_every = 1
         progress = Progress(self._label, sys.stderr)
         try:
             self._keep()
             while not self.stopped and self._advance(stepping, progress):
-                if record.steps % stride == 0:
-                    self._sample()
                 if self._is_due(dt):
                     self._keep()
+                if record.steps % stride == 0:
+                    self._sample()
                 progress.show((world.time - self._start) / length)
                 self._tiers.foresee(record.steps / max(whole, record.steps))
                 if self._at_most is not None and self._seconds >= self._at_most:
                     self.stopped = self._where_stopped(self._at_most, self._start + length, whole)
             self._measure()
-            if self._kept_at < world.time:
+            if not self._kept_now:
                 self._keep()
             record.warnings.add(find_warnings(world))
         finally:
@@ -157,19 +155,25 @@ class MeasuredRun:
 
     def _is_due(self, dt: float) -> bool:
         """Whether a multiple of the time between what is kept lies after the last that was, up to now."""
-        if self._every <= dt:
-            return True
+        if self._recorder is None or self._every <= dt:
+            return self._recorder is not None
         late = _ON_TIME * dt
         now, before = (
             math.floor((t - self._start + late) / self._every) for t in (self._world.time, self._kept_at)
         )
         return now > before
 
+    @property
+    def _kept_now(self) -> bool:
+        """Whether the recorder has the state as it is now, which was measured for it."""
+        return self._kept_at == self._world.time
+
     def _keep(self) -> None:
-        """Hand the state as it is now, just measured, to the recorder if there is one."""
+        """Measure, and hand the state as it is now to the recorder, if there is one."""
         if self._recorder is not None:
+            self._measure()
             self._recorder.write(self._world, self.record.drift.latest)
-        self._kept_at = self._world.time
+            self._kept_at = self._world.time
 
     def _where_stopped(self, at_most: float, end: float, whole: int) -> str:
         """Return in words where a run was stopped; nothing where it was at its end."""
@@ -181,7 +185,7 @@ class MeasuredRun:
 
     def _sample(self) -> None:
         """Measure, and look for warnings, where that is due."""
-        if self._samples % self._measure_every == 0:
+        if self._samples % self._measure_every == 0 and not self._kept_now:
             self._measure()
         if self._samples % self._look_every == 0:
             self.record.warnings.add(find_warnings(self._world))

@@ -25,14 +25,16 @@ def pack(values: NDArray[np.float32]) -> str:
 
     A column begins with a byte: how often differences were taken. Of each number a byte holds seven bits, the
     lowest first, and the eighth says that more follow; the sign is the number's lowest bit.
-    ``physicslab/export/player.js`` unpacks it.
+    ``physicslab/export/player/run.js`` unpacks it.
 
     Parameters
     ----------
     values : float32 array (rows, columns)
         A row an instant, a column a quantity.
     """
-    return base64.b64encode(b"".join(map(_packed, np.ascontiguousarray(values.T, np.float32)))).decode("ascii")
+    return base64.b64encode(b"".join(map(_packed, np.ascontiguousarray(values.T, np.float32)))).decode(
+        "ascii"
+    )
 
 
 def _packed(column: NDArray[np.float32]) -> bytes:

@@ -16,6 +16,9 @@ from physicslab.world import World
 
 __all__ = ["page"]
 
+_SCRIPTS = ("run.js", "picture.js", "figures.js", "controls.js")
+"""The player, in order: one script, whose parts see the names of those before."""
+
 
 def page(world: World, name: str, recorder: RunRecorder, notes: Sequence[str]) -> bytes:
     """Return the page that plays what was recorded, in UTF-8.
@@ -35,11 +38,11 @@ def page(world: World, name: str, recorder: RunRecorder, notes: Sequence[str]) -
     texts = {
         "TITLE": html.escape(title),
         "DESCRIPTION": html.escape(printable(world.description.replace("\n", " "))),
-        "STYLE": _part("player.css"),
-        "PLAYER": _part("player.js"),
+        "STYLE": _part("style.css"),
+        "PLAYER": "".join(map(_part, _SCRIPTS)),
         "RUN": _json(_document(world, recorder, notes)),
     }
-    filled = _part("player.html")
+    filled = _part("page.html")
     head, *rest = filled.split("{{")
     pieces = [head]
     for piece in rest:
@@ -72,7 +75,7 @@ def _document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> dict
 
 
 def _part(name: str) -> str:
-    return files("physicslab.export").joinpath(name).read_text("utf-8")
+    return files("physicslab.export").joinpath("player", name).read_text("utf-8")
 
 
 def _json(document: Mapping[str, Any]) -> str:

@@ -86,7 +86,7 @@ class RunRecorder:
 
     @property
     def columns(self) -> Columns:
-        """What was kept: time since the start [s], energies [J], bodies; float32 (instants, 1 + e + 6 moving)."""
+        """Time since the start [s], energies [J] and bodies: float32 (instants, 1 + energies + 6 moving)."""
         return np.stack(self._instants)
 
     @property
