@@ -199,6 +199,19 @@ def test_all_that_moves_is_framed() -> None:
     assert -4.5 < left < -3.25 and 4.25 < high < 6.0 and -2.0 < low < 0.0 and 0.5 < right < 3.0
 
 
+def test_what_leaves_the_ground_is_not_followed_far() -> None:
+    left, low, right, high = framed("slope", 10.0)
+    assert left < -7.7 and right > 4.0 and high > 2.0
+    assert low > -10.0, "two blocks fall off"
+
+
+def test_free_flight_is_followed() -> None:
+    motion = np.zeros((61, 1, 6), np.float32)
+    motion[:, 0, 0] = np.linspace(0.0, 20.0, 61)
+    left, _, right, _ = frame_run([{"kind": "circle", "radius": 0.5, "moves": 0}], motion, [])
+    assert left < -0.5 and 20.5 < right < 23.0
+
+
 def test_what_falls_for_ever_is_not_followed() -> None:
     motion = np.zeros((601, 1, 6), np.float32)
     motion[:, 0, 1] = -4.905 * np.linspace(0.0, 100.0, 601) ** 2

@@ -43,11 +43,8 @@ HOSTILE = (
     ["stability", "nothing"], ["stability", ""], ["stability", "x" * 5000], ["stability", "a\nb"],
     ["stability", "--json", "/"], ["stability", "--json", "/none/x"], ["stability", "--json", "/proc/x"],
     ["scenes", "--json", "/"], ["scenes", "more"], ["bench", "nothing"], ["run"], ["run", "--json"],
-    ["export"], ["export", "drop"], ["export", "drop", "--html"], ["export", "drop", "--html", "/"],
-    ["export", "drop", "--html", "/none/x"], ["export", "drop", "--html", "/proc/x"],
-    ["export", "drop", "--html", "x" * 5000], ["export", "/dev/zero", "--html", "x.html"],
-    ["export", "drop", "--html", "x.html", "--seconds", "0"],
-    ["export", "drop", "--html", "x.html", "--seconds", "1e14"],
+    ["export", "drop"], ["export", "drop", "--html", "/proc/x"], ["export", "drop", "--html", "x" * 5000],
+    ["export", "/dev/zero", "--html", "x.html"], ["export", "drop", "--html", "x.html", "--seconds", "1e14"],
     ["export", "drop", "--html", "x.html", "--set", "a\nb"],
     ["nothing"], ["--bogus"], ["drop", "drop"], ["/"], ["/dev/zero"], [""],
 )  # fmt: skip
@@ -81,7 +78,7 @@ def spoken(line: list[str], directory: Path, program: ForkedProgram | None = Non
 
 def random_lines(count: int) -> list[list[str]]:
     """Return command lines that are drawn alike each time; those that are allowed run for two steps."""
-    chance = random.Random(9)
+    chance = random.Random(23)
     lines = []
     for _ in range(count):
         line = ["run", chance.choice(("drop", "pendulum", "two_planets", *WORDS))]

@@ -17,8 +17,8 @@ type Box = tuple[float, float, float, float]
 
 _SURROUNDINGS = 8.0
 """How much is shown at least, in sizes of the largest thing that moves."""
-_STRAY = 1.0
-"""How far what leaves the place is followed, in sizes of the place."""
+_STRAY_FROM_GROUND, _STRAY = 0.25, 4.0
+"""How far what leaves the place is followed, in sizes of it, where there is ground and where there is none."""
 _BESIDE = 0.1
 """How far what does not move is shown, in sizes of what is shown."""
 _MARGIN = 0.04
@@ -55,7 +55,8 @@ def frame_run(
     widened = _widened(_union(start), 2.0 * _SURROUNDINGS * float(reach.max(initial=0.0)))
     place = _union(np.concatenate(([widened], _clipped(still, _grown(widened, 1.0)))))
     path = np.concatenate((places.min(axis=0) - reach, places.max(axis=0) + reach), axis=1)
-    seen = _union(np.concatenate((start, _clipped(path, _grown(place, _STRAY)))))
+    stray = _STRAY_FROM_GROUND if len(still) or len(fixed) else _STRAY
+    seen = _union(np.concatenate((start, _clipped(path, _grown(place, stray)))))
     seen = _widened(seen, 0.5 * _SURROUNDINGS * float(reach.max(initial=0.0)))
     return _grown(_union(np.concatenate(([seen], _clipped(still, _grown(seen, _BESIDE))))), _MARGIN)
 

@@ -32,7 +32,6 @@ function drawChart() {
   ink.fillText(`${short(run.start + end, 4)} s`, width - RIGHT, height - 3);
   ink.textAlign = "left";
   ink.fillText(short(run.start, 4), LEFT, height - 3);
-  ink.fillText("J", 2, 12);
   const stride = Math.max(1, Math.floor(COUNT / (2 * room)));
   for (const line of [...lines].reverse()) {  // the total first, below the rest
     const { colour, width: wide } = look(line), points = [];

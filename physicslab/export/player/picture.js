@@ -124,7 +124,7 @@ function drawBody(body, at) {
   pen.globalAlpha = 1;
   pen.stroke();
   const mark = (body.radius ?? (body.size ? body.size[0] / 2 : 0)) * camera.scale;
-  if (mark > 4) { path([x, y], [x + mark * Math.cos(at[2]), y - mark * Math.sin(at[2])]); pen.stroke(); }
+  if (mark > 7) { path([x, y], [x + mark * Math.cos(at[2]), y - mark * Math.sin(at[2])]); pen.stroke(); }
 }
 
 function ends(spring, now) {
