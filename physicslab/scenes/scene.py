@@ -23,8 +23,9 @@ class Scene:
         For the command line, for a heading, and one line on what there is to see.
     fill : callable
         Spawns everything in the world that it is given.
-    view : tuple of four floats
-        What a window shows of it: xmin, ymin, xmax, ymax [m], with room for its first 10 s of motion.
+    view : tuple of four floats, optional
+        What a window shows of it: xmin, ymin, xmax, ymax [m], with room for 10 s of motion; by default
+        all that there is at the start.
     physics, simulation : PhysicsConfig, SimulationConfig
         The laws, and how they are stepped.
     """
@@ -33,7 +34,7 @@ class Scene:
     title: str
     description: str
     fill: Callable[[World], None]
-    view: View
+    view: View | None = None
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     simulation: SimulationConfig = field(default_factory=SimulationConfig)
 

@@ -118,7 +118,7 @@ CONTROLS: tuple[Control, ...] = (
             tip="Select all bodies"),
     Control("N", "next body", "n", actions.select_next, minor=True, group="edit",
             tip="Select the next body"),
-    Control("Arrows", "move what is selected", "left", actions.nudger(-1, 0), minor=True,
+    Control("Arrows", "move what is selected", "left", actions.nudger(-1, 0), minor=True, group="edit",
             tip="Move what is selected by a pixel"),
     Control("R", "clear all", "r", actions.clear, group="edit", tip="Remove everything"),
     Control("Space", "pause", "space", actions.toggle_pause, group="time",
