@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from bisect import insort
 from contextlib import suppress
 from hashlib import blake2b
 
@@ -101,18 +102,20 @@ class Driver:
     def __init__(self, world: World, seed: int, budget: int = 2**22) -> None:
         self.rng = random.Random(seed)
         self.history = History(world, budget)
-        self.known = {0: state_hash(world)}
+        self.known, self._places = {0: state_hash(world)}, [0]
 
     def check(self) -> None:
         """Compare the world with what it was at this place, or note it."""
-        found = state_hash(self.history.world)
-        assert self.known.setdefault(self.history._place, found) == found
+        here, found = self.history._place, state_hash(self.history.world)
+        if here not in self.known:
+            insort(self._places, here)
+        assert self.known.setdefault(here, found) == found
         assert self.history.difference is None
 
-    def forget(self) -> None:
-        """Forget what comes after this place, which is about to be another."""
-        here = self.history._place
-        self.known = {place: found for place, found in self.known.items() if place <= here}
+    def forget(self, here: int) -> None:
+        """Forget what came after a place, where the line goes on differently."""
+        while self._places[-1] > here:
+            del self.known[self._places.pop()]
 
     def undo(self) -> None:
         self.history.undo()
@@ -128,20 +131,28 @@ class Driver:
         self.check()
 
     def run(self, steps: int) -> None:
-        self.forget()
+        self.forget(self.history._place)
         with suppress(Diverged):
             self.history.step(self.rng.choice((None, None, 0.01)), steps)
         self.check()
 
     def edit(self) -> None:
-        self._carry_out(self.history.do)
+        """Make an edit, which may be refused."""
+        command, here = self._command(), self.history._place
+        try:
+            self.history.do(command)
+        except (ValueError, KeyError, TypeError):
+            assert self.history._place == here
+        else:
+            self.forget(here)
+        self.check()
 
     def drag(self) -> None:
         """Do what a hand does: take hold of something, move it, let go."""
         movers = self._movers()
         if not movers:
             return
-        self.forget()
+        self.forget(self.history._place)
         history, entity = self.history, self.rng.choice(movers)
         history.write(AddComponent(entity, Held((0.05, 0.0))))
         for _ in range(3):
@@ -171,27 +182,16 @@ class Driver:
                 assert self.known[self.history._place] == state_hash(self.history.world)
         assert self.history._place == 0 and state_hash(self.history.world) == self.known[0]
 
-    def _carry_out(self, do: object) -> None:
-        command = self._command()
-        here = dict(self.known)
-        self.forget()
-        try:
-            self.history.do(command)
-        except (ValueError, KeyError, TypeError):
-            self.known = here
-        self.check()
-
     def _movers(self) -> list[int]:
         world = self.history.world
         return [e for e in world.entities() if world.has(e, Velocity) and world.has(e, Transform)]
 
     def _command(self) -> Command:
-        rng, movers = self.rng, self._movers()
+        rng, movers, world = self.rng, self._movers(), self.history.world
         kind = rng.randrange(12)
         if (kind < 3 and len(movers) < 14) or len(movers) < 3:
             return self._spawn()
         entity = rng.choice(movers)
-        world = self.history.world
         match kind:
             case 3 | 4 | 5:
                 return Remove(rng.choice(world.entities()))

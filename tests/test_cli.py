@@ -151,10 +151,12 @@ def test_run_writes_a_row_a_step_and_body(capsys: pytest.CaptureFixture[str]) ->
     rows = list(csv.reader(io.StringIO(capsys.readouterr().out)))
     assert rows[0] == [
         "time [s]", "entity", "x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "omega [rad/s]",
+        "kinetic linear [J]", "kinetic angular [J]", "potential gravity [J]", "potential spring [J]",
+        "energy [J]", "px [kg m/s]", "py [kg m/s]", "angular momentum [kg m^2/s]",
     ]  # fmt: skip
     assert [row[1] for row in rows[1:]] == 4 * ["floor", "ball"]
     assert [float(row[0]) for row in rows[1::2]] == [0.0, 1 / 60, 2 / 60, 3 / 60]
-    assert rows[2] == ["0.0", "ball", "-3.0", "4.0", "0.0", "1.0", "0.0", "0.0"]
+    assert rows[2][:8] == ["0.0", "ball", "-3.0", "4.0", "0.0", "1.0", "0.0", "0.0"]
     assert float(rows[4][6]) == pytest.approx(-9.81 / 60, rel=1e-12)
 
 

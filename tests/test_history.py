@@ -17,10 +17,11 @@ from crowds import crowd
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, rule
+from numpy.typing import NDArray
 from random_edits import Driver, bits, box_of_discs, state_hash
 
 from physicslab import load_scene
-from physicslab.components import Held, Mass, Name, Shape, Spring, Transform, Velocity
+from physicslab.components import Held, Mass, Name, Shape, Spring, Trail, Transform, Velocity
 from physicslab.ecs.component import InvalidValue
 from physicslab.files.scene import read_scene
 from physicslab.history import (
@@ -42,6 +43,7 @@ from physicslab.state.masses import Diverged
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import Stage, System, at
+from physicslab.systems.trail import TrailSystem
 from physicslab.world import World
 
 BALL = (Transform((0, 1)), Velocity((0.5, 0)), Mass(2.0), Shape("circle", radius=0.2))
@@ -50,7 +52,7 @@ BALL = (Transform((0, 1)), Velocity((0.5, 0)), Mass(2.0), Shape("circle", radius
 @pytest.fixture
 def dense(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave a key frame at every place."""
-    monkeypatch.setattr(history_module, "_RUNNING", 0.0)
+    monkeypatch.setattr(history_module, "_RARELY", 0.0)
     monkeypatch.setattr(history_module, "_SEEKING", 0.0)
 
 
@@ -192,7 +194,7 @@ def test_a_step_that_diverges_leaves_the_world_as_it_was_to_the_bit() -> None:
 def goes_through(document: dict[str, Any], steps: int, seed: int) -> set[str]:
     """Seek steps at random in a run and compare with a run that was never recorded; return who stepped."""
     history, fresh = History(read_scene(document)), read_scene(document)
-    expected, names = [bits(fresh)], set()
+    expected, names = [bits(fresh)], set[str]()
     try:
         for _ in range(steps):
             fresh.step()
@@ -258,21 +260,6 @@ def test_seeks_give_the_bits_of_a_fresh_run_where_all_fall_asleep() -> None:
     assert history.difference is None
 
 
-@pytest.mark.usefixtures("dense")
-def test_a_removal_near_64_rows_leaves_no_row_that_changes_bits() -> None:
-    document = crowd(1046)  # 64 entities: to so many, points of boxes are found again after any motion
-    document["simulation"]["contacts"] = "soft"
-    history = History(read_scene(document))
-    history.do(Remove(15))
-    history.step(steps=4)
-    expected = bits(history.world)
-    history.do(Remove(30))
-    history.undo()  # puts it back: rows are numbered again, and none is blank
-    history.undo()
-    history.redo()
-    assert bits(history.world) == expected and history.difference is None
-
-
 def test_a_seek_beyond_the_line_is_refused() -> None:
     history = History(box_of_discs(4))
     history.step(steps=5)
@@ -297,22 +284,46 @@ def test_an_edit_at_the_place_that_is_sought_is_done_and_one_that_was_taken_back
     assert not history.world.has(made, Mass) and history.redo() == "made a circle, ball"
 
 
+@pytest.mark.usefixtures("dense")
+def test_trails_are_those_of_the_place() -> None:
+    history = History(box_of_discs(4))
+    history.do(AddComponent(2, Trail(0.3)))
+    trails = next(system for system in history.world.schedule.systems if isinstance(system, TrailSystem))
+    paths = []
+    for _ in range(40):
+        paths.append(b"".join(part.tobytes() for part in trails.paths()))
+        history.step()
+    for step in (39, 38, 5, 6, 20, 1, 0):
+        history.seek(step)
+        assert b"".join(part.tobytes() for part in trails.paths()) == paths[step]
+
+
+class Pushing(System):
+    """Pushes more from step to step; it keeps its count, or does not."""
+
+    def __init__(self, keeps: bool) -> None:
+        self._count, self._keeps = 0, keeps
+
+    @at(Stage.PREPARE)
+    def push(self, state: Any, h: float) -> None:
+        self._count += 1
+        state.table(Velocity)["angular"][1] += 0.001 * self._count
+
+    def keep(self) -> tuple[NDArray[Any], ...]:
+        return (np.array([self._count]),) if self._keeps else ()
+
+    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+        self._count = int(kept[0][0])
+
+
 def test_where_steps_made_again_give_other_bits_is_found() -> None:
-    class Counting(System):
-        """Pushes more from step to step, by a number that no key frame keeps."""
-
-        count = 0
-
-        @at(Stage.PREPARE)
-        def push(self, state: Any, h: float) -> None:
-            self.count += 1
-            state.table(Velocity)["angular"][1] += 0.001 * self.count
-
-    history = History(World(IntegrateSystem(), Counting()))
-    ball(history)
-    history.step(0.01, steps=10)
-    history.seek(0)
-    history.seek(7)
+    for keeps in (True, False):
+        history = History(World(IntegrateSystem(), Pushing(keeps)))
+        ball(history)
+        history.step(0.01, steps=10)
+        history.seek(0)
+        history.seek(7)
+        assert (history.difference is None) is keeps
     assert history.difference is not None
     assert (history.difference.step, history.difference.columns) == (
         1,
@@ -454,7 +465,7 @@ TestRandomCommands.settings = settings(max_examples=10, stateful_step_count=30, 
 
 @pytest.mark.slow
 def test_a_hundred_thousand_random_commands_are_taken_back() -> None:
-    driver = Driver(box_of_discs(10), 10, budget=64 * 2**20)
+    driver = Driver(box_of_discs(10, 4), 10, budget=64 * 2**20)
     rng = random.Random(11)
     for _ in range(100_000):
         kind = rng.random()

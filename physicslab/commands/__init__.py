@@ -25,7 +25,7 @@ class Command(Protocol):
         """Do it, and return the exit status."""
 
 
-COMMANDS = ("run", "replay", "accuracy", "stability", "bench", "scenes", "kernels")
+COMMANDS = ("run", "replay", "accuracy", "stability", "bench", "scenes", "export", "kernels")
 """Every command, by the name of its module."""
 
 

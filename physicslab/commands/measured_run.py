@@ -6,20 +6,20 @@ import math
 import sys
 import time
 from collections.abc import Iterator
+from typing import Protocol
 
 from physicslab.commands.progress import Progress
 from physicslab.commands.step_watch import StepWatch
-from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.energy import Drift, Energy
 from physicslab.diagnostics.overflow import find_overflow
 from physicslab.diagnostics.run_report import RunRecord
-from physicslab.diagnostics.trajectory import TrajectoryWriter
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.text import printable, shortened
 from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 
-__all__ = ["MeasuredRun"]
+__all__ = ["MeasuredRun", "Recorder"]
 
 _SAMPLES = 500
 """How often a run without contacts is measured: what lies between is one compiled loop."""
@@ -31,6 +31,15 @@ there: with few entities that takes a tenth of a second. It must not depend on h
 smooth motion ends in other bits where it is divided elsewhere."""
 _PATIENCE_S = 0.1
 """So long [s] a run with a budget goes on before the clock is looked at."""
+_ON_TIME = 1e-6
+"""Share of a step by which an instant may be late that is due: the clock is a sum of rounded steps."""
+
+
+class Recorder(Protocol):
+    """What keeps the state of a world at one instant after the other."""
+
+    def write(self, world: World, energy: Energy) -> None:
+        """Keep the state as it is now."""
 
 
 class MeasuredRun:
@@ -46,8 +55,11 @@ class MeasuredRun:
         What decides whether kernels are compiled or interpreted.
     at_most : float, optional
         Wall-clock time [s] after which the run is stopped, compiling left out.
-    trajectory : TrajectoryWriter, optional
-        What records every step.
+    recorder : Recorder, optional
+        What keeps the start, the end, and the steps between.
+    every : float, optional
+        The time [s] between what is kept: the first step that ends at or after each multiple of it, counted
+        from the start; every step if it is 0.
 
     Attributes
     ----------
@@ -63,10 +75,12 @@ class MeasuredRun:
         name: str,
         tiers: Tiers,
         at_most: float | None = None,
-        trajectory: TrajectoryWriter | None = None,
+        recorder: Recorder | None = None,
+        every: float = 0.0,
     ) -> None:
         self.record, self.stopped = RunRecord(name, Drift(world)), ""
-        self._world, self._tiers, self._at_most, self._trajectory = world, tiers, at_most, trajectory
+        self._world, self._tiers, self._at_most = world, tiers, at_most
+        self._recorder, self._every, self._kept_at = recorder, every, -math.inf
         self._watch = StepWatch(world)
         self._label = shortened(printable(name))
         self._start = world.time
@@ -85,17 +99,16 @@ class MeasuredRun:
         world, record, dt = self._world, self.record, self._world.simulation.dt
         length = (steps or 0) * dt if seconds is None else seconds
         whole = round(length / dt)
-        stride = 1 if self._trajectory is not None else self._stride(whole)
+        stride = 1 if self._recorder is not None else self._stride(whole)
         patience = math.inf if self._at_most is None else _PATIENCE_S
         stepping = world.stepping(seconds=seconds, steps=steps, stride=stride, patience=patience)
         self._measure_every, self._look_every = (max(1, whole // (stride * n)) for n in (_SAMPLES, _LOOKS))
-        if self._trajectory is not None:
-            self._measure_every = 1
         progress = Progress(self._label, sys.stderr)
         try:
-            self._write()
+            self._keep()
             while not self.stopped and self._advance(stepping, progress):
-                self._write()
+                if self._is_due(dt):
+                    self._keep()
                 if record.steps % stride == 0:
                     self._sample()
                 progress.show((world.time - self._start) / length)
@@ -103,6 +116,8 @@ class MeasuredRun:
                 if self._at_most is not None and self._seconds >= self._at_most:
                     self.stopped = self._where_stopped(self._at_most, self._start + length, whole)
             self._measure()
+            if not self._kept_now:
+                self._keep()
             record.warnings.add(find_warnings(world))
         finally:
             progress.clear()
@@ -138,9 +153,27 @@ class MeasuredRun:
         record.steps = done
         return True
 
-    def _write(self) -> None:
-        if self._trajectory is not None:
-            self._trajectory.write(self._world)
+    def _is_due(self, dt: float) -> bool:
+        """Whether a multiple of the time between what is kept lies after the last that was, up to now."""
+        if self._recorder is None or self._every <= dt:
+            return self._recorder is not None
+        late = _ON_TIME * dt
+        now, before = (
+            math.floor((t - self._start + late) / self._every) for t in (self._world.time, self._kept_at)
+        )
+        return now > before
+
+    @property
+    def _kept_now(self) -> bool:
+        """Whether the recorder has the state as it is now, which was measured for it."""
+        return self._kept_at == self._world.time
+
+    def _keep(self) -> None:
+        """Measure, and hand the state as it is now to the recorder, if there is one."""
+        if self._recorder is not None:
+            self._measure()
+            self._recorder.write(self._world, self.record.drift.latest)
+            self._kept_at = self._world.time
 
     def _where_stopped(self, at_most: float, end: float, whole: int) -> str:
         """Return in words where a run was stopped; nothing where it was at its end."""
@@ -152,7 +185,7 @@ class MeasuredRun:
 
     def _sample(self) -> None:
         """Measure, and look for warnings, where that is due."""
-        if self._samples % self._measure_every == 0:
+        if self._samples % self._measure_every == 0 and not self._kept_now:
             self._measure()
         if self._samples % self._look_every == 0:
             self.record.warnings.add(find_warnings(self._world))

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from contextlib import nullcontext
 from pathlib import Path
 
+from physicslab.commands.assignments import add_assignments, assign
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.numbers import STEP_LIMIT, count, duration, positive_count, positive_duration
@@ -47,21 +48,24 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--substeps", metavar="N", type=positive_count, help="parts of a step, in place of the scene's")
     add("--integrator", metavar="NAME", help=f"one of {', '.join(INTEGRATORS)}")
     add("--contacts", metavar="NAME", help=f"one of {', '.join(CONTACTS)}")
+    add_assignments(parser)
     budget = "stop after so many seconds of wall clock, compiling left out: exit 1, with what was reached"
     add("--at-most", metavar="SECONDS", type=positive_duration, help=budget)
     add("--json", metavar="FILE", help="write energies, momenta, costs and the final state (- for stdout)")
-    add(
-        "--csv",
-        metavar="FILE",
-        help="write every body's state at the start and after each step (- for stdout)",
-    )
+    table = "write every body's state with all energies and momenta, at the start and after each step (-)"
+    add("--csv", metavar="FILE", help=table)
+    spacing = "with --csv: rows at most so often, in the scene's time; those of the start and the end always"
+    add("--every", metavar="S", type=positive_duration, help=spacing)
     add("--png", metavar="FILE", help="draw the final state, without a window (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:
     """Run the scene and write what was asked for; a summary on stdout if nothing else goes there."""
     outputs = _outputs(arguments)
+    if arguments.every is not None and "csv" not in outputs:
+        raise CommandError("--every: must go with --csv, whose rows it spaces")
     world = load_scene(arguments.scene)
+    assign(world, arguments.set)
     with Tiers(is_small(world)) as tiers:
         return _execute(world, arguments, outputs, tiers)
 
@@ -73,9 +77,9 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
     label = shortened(printable(name))
     seconds = _DEFAULT_S if arguments.seconds is None and arguments.steps is None else arguments.seconds
     with outputs["csv"].stream() if "csv" in outputs else nullcontext() as stream:
-        trajectory = None if stream is None else TrajectoryWriter(stream)
+        table = None if stream is None else TrajectoryWriter(stream, world)
         try:
-            run = MeasuredRun(world, name, tiers, arguments.at_most, trajectory)
+            run = MeasuredRun(world, name, tiers, arguments.at_most, table, arguments.every or 0.0)
             run.go(seconds, arguments.steps)
         except Diverged as error:
             raise CommandError(f"{label}: {error}; {_rescue(world, name, outputs)}", FAILED) from error

@@ -17,6 +17,7 @@ from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
 from physicslab.view.window.graphs import Graph
+from physicslab.view.window.ruler import Ruler
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
@@ -89,6 +90,7 @@ class Sandbox:
         window.sparks.clear()
         window.selection.clear()
         window.graphs = [graph for graph in window.graphs if _goes_on(graph, titles, self._titles)]
+        window.naming, window.ruler = None, Ruler()
         window.error, window.next_world = "", None
         window.go_home(world)
         window.unchanged = world.motion_edits

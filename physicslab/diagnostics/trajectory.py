@@ -1,4 +1,4 @@
-"""The motion of every body as a table: one row a step and body."""
+"""The motion of every body, with the energy and momentum of all, as a table: a row an instant and body."""
 
 from __future__ import annotations
 
@@ -6,42 +6,66 @@ import csv
 from typing import TextIO
 
 from physicslab.components import Transform, Velocity
+from physicslab.diagnostics.energy import Energy, measure_momentum
 from physicslab.diagnostics.run_report import body_names
 from physicslab.world import World
 
-__all__ = ["HEADER", "TrajectoryWriter"]
+__all__ = ["BODY_HEADER", "TrajectoryWriter"]
 
-HEADER = ("time [s]", "entity", "x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "omega [rad/s]")
-"""The columns of the table."""
+BODY_HEADER = (
+    "time [s]", "entity", "x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "omega [rad/s]",
+)  # fmt: skip
+"""The columns that are a body's own."""
+_MOMENTUM_HEADER = ("px [kg m/s]", "py [kg m/s]", "angular momentum [kg m^2/s]")
 
 
 class TrajectoryWriter:
-    """Writes the state of a world's bodies to a stream as CSV, a row for each body and call.
+    """Writes the state of a world to a stream as CSV, a row for each body and call.
 
-    Numbers keep every bit; names are those of ``run --json``.
+    The columns after a body's own are sums over the world, alike in all rows of an instant: kinetic energy
+    of translation and of rotation, what each force stores, and the total [J]; momentum [kg m/s]; angular
+    momentum about the origin [kg m^2/s]. Numbers keep every bit; names are those of ``run --json``.
 
     Parameters
     ----------
     stream : text stream
         Opened with ``newline=""``.
+    world : World
+        What is written; its forces decide which potential energies have a column.
     """
 
-    def __init__(self, stream: TextIO) -> None:
+    def __init__(self, stream: TextIO, world: World) -> None:
+        world.synchronise()
+        stored = (force.potential for force in world.schedule.forces)
+        self._potentials = tuple(dict.fromkeys(("gravity", "spring", *filter(None, stored))))
         self._rows = csv.writer(stream, lineterminator="\n")
-        self._rows.writerow(HEADER)
+        potentials = (f"potential {name} [J]" for name in self._potentials)
+        energies = ("kinetic linear [J]", "kinetic angular [J]", *potentials, "energy [J]")
+        self._rows.writerow((*BODY_HEADER, *energies, *_MOMENTUM_HEADER))
         self._names: list[str] = []
         self._batch: object = None
 
-    def write(self, world: World) -> None:
-        """Write a row for every entity that has a Transform, as it is now."""
+    def write(self, world: World, energy: Energy) -> None:
+        """Write a row for every entity that has a Transform, as it is now, with the energy that there is."""
         batch = world.batch(Transform)
         if batch is not self._batch:
             self._batch, self._names = batch, list(body_names(world).values())
         transform, velocity = world.table(Transform), world.table(Velocity)
+        sums = self._sums(world, energy)
         bodies = zip(
             self._names, transform["position"][batch.rows].tolist(), transform["angle"][batch.rows].tolist(),
             velocity["linear"][batch.rows].tolist(), velocity["angular"][batch.rows].tolist(), strict=True,
         )  # fmt: skip
         self._rows.writerows(
-            (world.time, name, x, y, angle, vx, vy, w) for name, (x, y), angle, (vx, vy), w in bodies
+            (world.time, name, x, y, angle, vx, vy, w, *sums) for name, (x, y), angle, (vx, vy), w in bodies
         )
+
+    def _sums(self, world: World, energy: Energy) -> list[str]:
+        """Return the columns of the whole world as text: they are the same for every body."""
+        momentum = measure_momentum(world)
+        stored = (energy.potential.get(name, 0.0) for name in self._potentials)
+        kinetic = (energy.kinetic_linear, energy.kinetic_angular)
+        return [
+            repr(float(value))
+            for value in (*kinetic, *stored, energy.total, *momentum.linear, momentum.angular)
+        ]

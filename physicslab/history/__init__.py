@@ -16,7 +16,8 @@ from physicslab.history.commands import (
     SetSimulation,
     Spawn,
 )
-from physicslab.history.history import Branch, Difference, History, HistoryEntry
+from physicslab.history.history import History
+from physicslab.history.seen import Branch, Difference, HistoryEntry
 
 __all__ = [
     "AddComponent", "Branch", "Command", "Difference", "Group", "History", "HistoryEntry", "Remove",

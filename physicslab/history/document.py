@@ -142,7 +142,7 @@ def _read_run(found: Mapping[str, Any], where: str) -> Run:
 
 def _steps(piece: list[Any], where: str, most: int) -> tuple[float, int]:
     allowed = f"[a finite dt >= {MIN_TIME:g} s, a whole number of steps of which there are digests]"
-    dt, count = piece if len(piece) == 2 else (None, None)
+    dt, count = piece if len(piece) == 2 else (0.0, 0)
     if is_number(dt) and dt >= MIN_TIME and type(count) is int and 1 <= count <= most:
         return float(dt), count
     raise refusal(where, piece, allowed)

@@ -6,90 +6,30 @@ import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Self
 
 from physicslab.history.commands import Command, Group, Spawn
-from physicslab.history.digest import differing, digest_of
+from physicslab.history.digest import Digester, differing
 from physicslab.history.keyframe import Keyframe
 from physicslab.history.keyframes import Keyframes
 from physicslab.history.line import Edit, Line, Run, Steps
 from physicslab.history.recording import load, save
 from physicslab.history.replay import follow_edit
+from physicslab.history.seen import Branch, Difference, HistoryEntry
 from physicslab.world import World
 
-__all__ = ["Branch", "Difference", "History", "HistoryEntry"]
+__all__ = ["History"]
 
-_RUNNING, _SEEKING = 40.0, 4.0
-"""How many times as long as a key frame takes the steps between two take: in a run, and where steps are made
-again or an edit begins. Recording so takes a fortieth of the time of a run, and going back to any place about
-as long as forty key frames."""
+_RARELY, _OFTEN, _SEEKING = 80.0, 30.0, 5.0
+"""How many times as long as a key frame takes the steps between two take, at most and at least in a run; and
+where steps are made again, or an edit begins."""
+_SMOOTH = 0.010
+"""Time [s] of the steps between two in a run, where that lies between those: nearly any place is then reached
+within a frame of the screen."""
 _FEW = 8
 """Number of steps that are made sooner than a key frame is gone back to."""
 _BRANCH_LIMIT = 8
 """Number of branches that are kept; the oldest go first."""
-
-
-@dataclass(frozen=True, slots=True)
-class HistoryEntry:
-    """An edit or a run.
-
-    Attributes
-    ----------
-    words : str
-        What it was, in plain English: "made a circle", "mass of ball: 2 kg", "ran 3.2 s".
-    done : bool
-        Whether it, or the beginning of it, lies before the present place.
-    first_step, steps : int
-        How many steps the line has before it, and how many it is.
-    """
-
-    words: str
-    done: bool
-    first_step: int
-    steps: int
-
-
-@dataclass(frozen=True, slots=True)
-class Branch:
-    """What once came after a place of the line, where the line now goes on differently.
-
-    Attributes
-    ----------
-    line : Line
-        All of it, from the beginning.
-    place : int
-        Where it was left [ticks].
-    """
-
-    line: Line
-    place: int
-
-    @property
-    def step(self) -> int:
-        """After how many steps it was left."""
-        return self.line.steps_before(self.place)
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """What the edits and runs after that were."""
-        return tuple(entry.words for entry in self.line.entries[self.line.entry_at(self.place) :])
-
-
-@dataclass(frozen=True, slots=True)
-class Difference:
-    """Where steps that were made again did not give the bits that they once gave.
-
-    Attributes
-    ----------
-    step : int
-        The first such step of the line, from 1.
-    columns : tuple of str
-        The columns of motion that differ.
-    """
-
-    step: int
-    columns: tuple[str, ...]
 
 
 class History:
@@ -141,7 +81,10 @@ class History:
         self._whole, self._divided = True, False
         self._frames = Keyframes(budget)
         self._cost = self._since = 0.0
+        self._digester = Digester()
         self._last: Keyframe | None = None
+        self._take()  # the first takes longer than others will
+        self._cost = 0.0
         self._frames.add_along(0, self._take())
 
     # ---- doing ---------------------------------------------------------------------------------------------
@@ -201,13 +144,13 @@ class History:
         world = self.world
         for _ in range(steps):
             h = world.simulation.dt if dt is None else float(dt)
-            began = time.thread_time()
+            began = time.perf_counter()
             with self._all_or_nothing():
                 world.step(h)
-            self._since += time.thread_time() - began
-            self._run().add_step(h, digest_of(world))
+            self._since += time.perf_counter() - began
+            self._run().add_step(h, self._digester.digest(world))
             self._advance()
-            if self._since >= _RUNNING * self._cost and self._frames.takes(self._place):
+            if self._since >= self._interval and self._frames.takes(self._place):
                 self._frames.add_along(self._place, self._take())
 
     def divide(self) -> None:
@@ -420,11 +363,11 @@ class History:
             self._place += 1
 
     def _make_step_again(self, dt: float, target: int) -> None:
-        began = time.thread_time()
+        began = time.perf_counter()
         self.world.step(dt)
         self._place += 1
-        self._since += time.thread_time() - began
-        columns = differing(digest_of(self.world), self._line.digest_before(self._place))
+        self._since += time.perf_counter() - began
+        columns = differing(self._digester.digest(self.world), self._line.digest_before(self._place))
         if columns and self.difference is None:
             self.difference = Difference(self.step_count, columns)
         if self._since >= _SEEKING * self._cost:
@@ -435,11 +378,21 @@ class History:
             around = self._place if target is None else target
             self._frames.add_nearby(self._place, self._take(), around)
 
+    @property
+    def _interval(self) -> float:
+        """The time of the steps between two key frames in a run [s]."""
+        rarely = _RARELY * self._cost
+        return _SMOOTH if _OFTEN * self._cost <= _SMOOTH <= rarely else rarely
+
     def _take(self) -> Keyframe:
         """Return a key frame of now."""
-        began = time.thread_time()
+        began = time.perf_counter()
         frame = Keyframe(self.world, self._last)
-        self._cost, self._since, self._last = time.thread_time() - began, 0.0, frame
+        took = time.perf_counter() - began
+        self._cost = (
+            min(took, 2.0 * self._cost) if self._cost else took
+        )  # other programs may have run meanwhile
+        self._since, self._last = 0.0, frame
         return frame
 
     @contextmanager

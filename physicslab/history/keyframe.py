@@ -23,6 +23,7 @@ from physicslab.ecs.context import create_numbered
 from physicslab.ecs.table import Table
 from physicslab.state.remainders import Remainders
 from physicslab.stepping.plan import StepPlan
+from physicslab.systems.system import System
 from physicslab.world import World
 
 __all__ = ["Keyframe"]
@@ -112,7 +113,16 @@ class Keyframe:
     """
 
     __slots__ = (
-        "_columns", "_contacts", "_counts", "_forces", "_laws", "_plan", "_rates", "_remainders", "_sleep",
+        "_columns",
+        "_contacts",
+        "_counts",
+        "_forces",
+        "_laws",
+        "_own",
+        "_plan",
+        "_rates",
+        "_remainders",
+        "_sleep",
         "_structure",
     )  # fmt: skip
 
@@ -136,6 +146,9 @@ class Keyframe:
         self._forces: _Columns = shared(
             (world.bodies.force, world.bodies.torque), last._forces if last is not None else None
         )
+        self._own: dict[System, _Columns] = {
+            system: kept for system in world.schedule.running if (kept := system.keep())
+        }
         before = (last._contacts, last._sleep) if last is not None else (None, None)
         self._contacts: KeptContacts = KeptContacts.of(world.contacts, before[0])
         self._sleep: KeptSleep = KeptSleep.of(world.sleep, before[1])
@@ -147,10 +160,12 @@ class Keyframe:
         for columns in self._columns.values():
             yield from columns
         yield from self._forces
+        for kept in self._own.values():
+            yield from kept
         yield from self._contacts.arrays()
         yield from self._sleep.arrays()
-        kept = self._remainders
-        yield from (kept.keys, kept.q, kept.v, kept.q_low, kept.v_low)
+        low = self._remainders
+        yield from (low.keys, low.q, low.v, low.q_low, low.v_low)
 
     def restore(self, world: World) -> None:
         """Put the world back to this moment, in place; every entity has the number that it had."""
@@ -179,6 +194,8 @@ class Keyframe:
         self._sleep.restore(world, rows)
         for now, then in zip((world.bodies.force, world.bodies.torque), self._forces, strict=True):
             _put(then, now, rows)
+        for system, kept in self._own.items():
+            system.bring_back(kept)
         world.remainders = self._remainders
         world.fastest_rates.update(self._rates)
 

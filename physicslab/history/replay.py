@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from physicslab.ecs.component import InvalidValue
 from physicslab.files.checks import SceneError
-from physicslab.history.digest import differing, digest_of
+from physicslab.history.digest import Digester, differing
 from physicslab.history.line import Edit, Line, Steps
 from physicslab.world import World
 
@@ -49,13 +49,13 @@ def play(world: World, line: Line, source: str) -> Iterator[Played]:
     Diverged
         If a step cannot be made.
     """
-    made = place = 0
+    made, place, digester = 0, 0, Digester()
     for piece in line.between(0, line.ticks):
         if isinstance(piece, Steps):
             for _ in range(piece.count):
                 world.step(piece.dt)
                 made, place = made + 1, place + 1
-                yield Played(made, world.time, differing(digest_of(world), line.digest_before(place)))
+                yield Played(made, world.time, differing(digester.digest(world), line.digest_before(place)))
             continue
         command = piece.command if isinstance(piece, Edit) else piece
         try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -52,6 +54,17 @@ class TrailSystem(System):
         self.entities, self._rows = batch.entities, batch.rows
         self._place, self._time, self._head = place, time, head
         self._length = state.table(Trail)["length"][batch.rows]
+
+    def keep(self) -> tuple[NDArray[Any], ...]:
+        """Return copies of the record."""
+        if not len(self.entities):
+            return ()
+        return self._place.copy(), self._time.copy(), self._head.copy(), np.array(self._now)
+
+    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+        """Go on with an earlier record of the same bodies."""
+        place, time, head, now = kept
+        self._place, self._time, self._head, self._now = place.copy(), time.copy(), head.copy(), float(now)
 
     @at(Stage.FINISH)
     def record(self, state: State, h: float) -> None:

@@ -65,6 +65,8 @@ class RenderSystem(System):
             draw_free_body(world, window.selection.entities[0], overlays, camera, theme, canvas, size)
         if window.band is not None:
             draw_band(camera.to_screen(window.band), window.pointer, theme, canvas)
+        size = text_size(canvas, window.text_scale)
+        window.ruler.draw(camera, window.place, size, theme, canvas)
         self._draw_handles(world)
         self._draw_ghost(world)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)

@@ -166,6 +166,8 @@ CONTROLS: tuple[Control, ...] = (
             tip="The view at the start"),
     Control("Ctrl+S", "save the scene", "ctrl+s", file_actions.save, minor=True, group="file",
             tip="Save the scene to a new file"),
+    Control("Ctrl+Shift+S", "save under a name", "ctrl+shift+s", file_actions.begin_save_as, minor=True,
+            group="file", tip="Save the scene to a file that you name"),
     Control("Ctrl+O", "open the last scene saved", "ctrl+o", file_actions.reopen, minor=True, group="file",
             tip="Open the scene last saved"),
     Control("F12", "screenshot", "f12", file_actions.request_screenshot, minor=True, group="file",

@@ -8,12 +8,22 @@ from pathlib import Path
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable
 from physicslab.files.new_scene import save_new_scene
-from physicslab.files.scene import SceneError, load_scene
+from physicslab.files.scene import SceneError, load_scene, save_scene
 from physicslab.view.controls.scene_files import new_scene_paths, newest_scene
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["Deed", "open_scene", "reopen", "request_screenshot", "restart", "save", "study_error"]
+__all__ = [
+    "Deed",
+    "begin_save_as",
+    "open_scene",
+    "reopen",
+    "request_screenshot",
+    "restart",
+    "save",
+    "save_under",
+    "study_error",
+]
 
 type Deed = Callable[[World, Window], None]
 """What a click is to do."""
@@ -29,6 +39,34 @@ def save(world: World, window: Window) -> None:
         window.scene_file = path
         window.unchanged = world.motion_edits
         window.notify(f"Saved {printable(str(path))}")
+
+
+def begin_save_as(world: World, window: Window) -> None:
+    """Let the user write the name under which the scene is to be saved."""
+    window.naming_refused = ""
+    window.naming = next(path.name for path in new_scene_paths(Path.cwd(), world.name) if not path.exists())
+
+
+def save_under(world: World, window: Window, name: str) -> None:
+    """Save the world under a name; a file that is there is replaced only if the scene came from it."""
+    text = name.strip()
+    if not text:
+        window.naming_refused = "A name is needed"
+        return
+    path = Path(text).expanduser()
+    path = path if path.suffix else path.with_suffix(".json")
+    path = path if path.is_absolute() else Path.cwd() / path
+    if path.exists() and path != window.scene_file:
+        window.naming_refused = f"{path.name} is there already"
+        return
+    try:
+        save_scene(world, path)
+    except (SceneError, OSError, ValueError) as error:
+        window.naming_refused = f"It could not be saved: {error}"
+        return
+    window.naming, window.scene_file, window.source = None, path, path
+    window.unchanged = world.motion_edits
+    window.notify(f"Saved {printable(str(path))}")
 
 
 def reopen(world: World, window: Window) -> None:

@@ -168,8 +168,12 @@ SELECT = Tool(
     end_select,
 )
 PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True)
+RULER = Tool(
+    "ruler", "Ruler", "Ruler: drag from one point to another; length, parts and angle are shown.",
+    lambda _, window: window.ruler.press(window.place), lambda _, window: window.ruler.release(window.place),
+)  # fmt: skip
 _IN_PALETTE = ("circle", "box", "block", "pendulum", "chain")
-PALETTE = (SELECT, *(tool for tool in SPAWN_TOOLS if tool.name in _IN_PALETTE), SPRING, REMOVE, PAN)
+PALETTE = (SELECT, *(tool for tool in SPAWN_TOOLS if tool.name in _IN_PALETTE), SPRING, RULER, REMOVE, PAN)
 """The tools that are in sight, in their order."""
 MORE_TOOLS = tuple(tool for tool in SPAWN_TOOLS if tool.name not in _IN_PALETTE)
 """Those behind one more button."""

@@ -24,6 +24,7 @@ from physicslab.view.window.handles import Handles
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
+from physicslab.view.window.ruler import Ruler
 from physicslab.view.window.selection import Selection
 from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
@@ -101,6 +102,12 @@ class Window:
         Those of what is selected.
     recipe : Recipe
         What the next body is like.
+    ruler : Ruler
+        What lengths are measured with.
+    naming : str, optional
+        The name that is being written for the scene to be saved under; ``None`` while none is.
+    naming_refused : str
+        Why the scene could not be saved under it.
     copied : list
         The components of each body that was copied.
     band : Vector2, optional
@@ -157,6 +164,9 @@ class Window:
         self.handles = Handles()
         self.edits: Edits
         self.recipe = Recipe()
+        self.ruler = Ruler()
+        self.naming: str | None = None
+        self.naming_refused = ""
         self.copied: list[list[Component]] = []
         self.band: Vector2 | None = None
         self.graphs: list[Graph] = []

@@ -22,6 +22,7 @@ from physicslab.view.workbench.menu_bar import build_menu_bar
 from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
+from physicslab.view.workbench.save_panel import build_save
 from physicslab.view.workbench.settings_panel import SettingsPanel
 from physicslab.view.workbench.transport import build_transport
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
@@ -139,6 +140,8 @@ class Interface:
             window.help,
             window.error_study.shown,
             window.lists_history,
+            window.naming is None,
+            window.naming_refused,
             window.recovery.offered,
             window.figures,
             window.level,
@@ -186,6 +189,8 @@ class Interface:
             self._offer_height = build_recovery(ui, window, layout.visible)
         if window.error_study.shown:
             build_error_plot(ui, window)
+        if window.naming is not None:
+            build_save(ui, window)
         if window.lists_history:
             build_history(ui, window)
         if window.help:

@@ -1,0 +1,102 @@
+"""Export a run as one page of HTML that plays it in any browser, without a network."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from physicslab.commands.assignments import add_assignments, assign
+from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands.measured_run import MeasuredRun
+from physicslab.commands.numbers import STEP_LIMIT, positive_duration
+from physicslab.commands.output import Output
+from physicslab.ecs.text import printable, shortened
+from physicslab.export.page import page
+from physicslab.export.recording import NotShown, RunRecorder
+from physicslab.files.scene import load_scene
+from physicslab.kernels.tiers import Tiers
+from physicslab.scenes import SCENES
+from physicslab.state.masses import Diverged
+from physicslab.stepping.small import is_small
+from physicslab.world import World
+
+__all__ = ["add_arguments", "execute"]
+
+_DEFAULT_S = 10.0
+_EVERY_S = 1.0 / 60.0
+_LIMIT = 2_000_000
+"""Poses that a page may hold, bodies times instants: some 30 MB, which a browser unpacks within seconds."""
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Declare what the command takes."""
+    add = parser.add_argument
+    add("scene", metavar="SCENE", help="a built-in scene's name, or a path")
+    add("--html", metavar="FILE", required=True, help="where the page goes (- for stdout)")
+    seconds = f"how long, in the scene's time ({_DEFAULT_S:g}); the last step may be shorter"
+    add("--seconds", metavar="T", type=positive_duration, default=_DEFAULT_S, help=seconds)
+    spacing = "time between the instants that the page holds (1/60; every step where steps are longer)"
+    add("--every", metavar="S", type=positive_duration, default=_EVERY_S, help=spacing)
+    add_assignments(parser)
+    parser.epilog = (
+        f"A page holds bodies times instants of at most {_LIMIT:,}, positions to 7 digits. A scene of 20 "
+        "bodies takes less than 300 kB for 10 s."
+    )
+
+
+def execute(arguments: Namespace) -> int:
+    """Run the scene, and write the page."""
+    output = Output("--html", arguments.html)
+    if arguments.scene not in SCENES and output.is_same_as(arguments.scene):
+        raise CommandError(f"--html {output.path}: is the scene itself")
+    world = load_scene(arguments.scene)
+    assign(world, arguments.set)
+    with Tiers(is_small(world)) as tiers:
+        content, recorder = _recorded(world, arguments, tiers)
+    output.write(content)
+    if not output.to_stdout:
+        bodies = "1 body that moves" if recorder.moving == 1 else f"{recorder.moving:,} bodies that move"
+        size = f"{len(content) / 1000:,.0f} kB"
+        length = f"{arguments.seconds:g} s, {recorder.count:,} instants"
+        print(f"{printable(output.path)}: {length}, {bodies}, {size}")
+    return 0
+
+
+def _recorded(world: World, arguments: Namespace, tiers: Tiers) -> tuple[bytes, RunRecorder]:
+    """Return the page of a run of the world, and what was recorded for it."""
+    name = world.name or Path(arguments.scene).stem
+    label = shortened(printable(name))
+    recorder = RunRecorder(world)
+    _check_size(world, recorder, arguments)
+    try:
+        run = MeasuredRun(world, name, tiers, recorder=recorder, every=arguments.every)
+        run.go(arguments.seconds, None)
+    except (Diverged, NotShown) as error:
+        raise CommandError(f"{label}: {error}; no page was written", FAILED) from error
+    return page(world, name, recorder, _notes(world, run)), recorder
+
+
+def _check_size(world: World, recorder: RunRecorder, arguments: Namespace) -> None:
+    """Refuse a run of which no browser would show a page."""
+    dt, seconds = world.simulation.dt, arguments.seconds
+    if seconds / dt > STEP_LIMIT:
+        raise CommandError(f"--seconds {seconds:g}: must be at most {STEP_LIMIT:g} steps of dt")
+    instants = seconds / max(arguments.every, dt)
+    bodies = max(recorder.moving, 1)
+    if instants * bodies > _LIMIT:
+        raise CommandError(
+            f"--seconds {seconds:g}: {instants:,.0f} instants of {bodies:,} bodies; a page must hold at most "
+            f"{_LIMIT:,} poses: fewer seconds, or a longer --every than {max(arguments.every, dt):.3g} s"
+        )
+
+
+def _notes(world: World, run: MeasuredRun) -> list[str]:
+    """Return how the run was computed, and what of it is not to be trusted, a line each."""
+    simulation, drift = world.simulation, run.record.drift
+    causes = " and ".join(drift.causes)
+    energy = (
+        f"energy changed by {causes}" if causes else f"largest relative energy drift {drift.relative:.2g}"
+    )
+    method = f"{world.plan.integrator.name}, {run.record.steps} steps of {simulation.dt:.6g} s"
+    advice = [f"Not to be trusted: {found}." for found in run.record.warnings.all]
+    return [f"Computed by {method}, {simulation.substeps} substeps each; {energy}.", *advice]

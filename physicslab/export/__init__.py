@@ -1,0 +1,1 @@
+"""One page of HTML that plays a run in any browser, without a network."""

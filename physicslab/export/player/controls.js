@@ -1,0 +1,150 @@
+// Mouse, fingers, keys and buttons; and the loop that plays.
+
+const touching = new Map();
+let moved = 0;
+
+world.addEventListener("pointerdown", event => {
+  world.setPointerCapture(event.pointerId);
+  touching.set(event.pointerId, [event.offsetX, event.offsetY]);
+  if (touching.size === 1) moved = 0;
+});
+world.addEventListener("pointermove", event => {
+  const before = touching.get(event.pointerId), at = [event.offsetX, event.offsetY];
+  if (!before) return;
+  moved += Math.hypot(at[0] - before[0], at[1] - before[1]);
+  const other = [...touching].find(([id]) => id !== event.pointerId)?.[1];
+  const apart = place => Math.hypot(place[0] - other[0], place[1] - other[1]);
+  if (other) zoom(apart(at) / Math.max(apart(before), 1), ...other);
+  else if (moved > 6) {
+    camera.x -= (at[0] - before[0]) / camera.scale;
+    camera.y += (at[1] - before[1]) / camera.scale;
+    camera.fitted = false;
+    stale = true;
+  }
+  touching.set(event.pointerId, at);
+});
+world.addEventListener("pointerup", event => {
+  if (touching.size === 1 && moved <= 6) select(bodyAt(event.offsetX, event.offsetY));
+  touching.delete(event.pointerId);
+});
+world.addEventListener("pointercancel", event => touching.delete(event.pointerId));
+world.addEventListener("wheel", event => {
+  event.preventDefault();
+  zoom(Math.exp(-0.0015 * event.deltaY * (event.deltaMode ? 30 : 1)), event.offsetX, event.offsetY);
+}, { passive: false });
+
+// The nearest body within 14 pixels, one that moves before one that does not.
+function bodyAt(px, py) {
+  const [frame, share] = moment();
+  let best = null, nearest = 14;
+  for (const body of drawn) {
+    const [x, y, angle] = pose(body, frame, share), dx = px - toX(x), dy = py - toY(y);
+    const c = Math.cos(angle), s = Math.sin(angle);
+    const [w, h] = (body.size ?? [0, 0]).map(size => size * camera.scale / 2);
+    const off = body.kind === "box"
+      ? Math.hypot(Math.max(Math.abs(c * dx - s * dy) - w, 0), Math.max(Math.abs(s * dx + c * dy) - h, 0))
+      : Math.max(Math.hypot(dx, dy) - (body.radius ?? 0) * camera.scale, 0);
+    if (off < nearest || best && off <= nearest && body.columns) { best = body; nearest = off; }
+  }
+  return best;
+}
+
+function toggle(name) {
+  show[name] = !show[name];
+  $(name).setAttribute("aria-pressed", show[name]);
+  stale = true;
+}
+function setSpeed(value) {
+  speed = value;
+  $("speed").value = value;
+}
+function selectNext(back) {
+  const at = drawn.indexOf(selected), before = at > 0 ? at - 1 : drawn.length - 1;
+  select(drawn[back ? before : (at + 1) % drawn.length] ?? null);
+}
+const zoomMiddle = factor => zoom(factor, world.clientWidth / 2, world.clientHeight / 2);
+const keys = {
+  " ": () => play(!playing), k: () => play(!playing),
+  arrowleft: event => step(event.shiftKey ? -10 : -1), arrowright: event => step(event.shiftKey ? 10 : 1),
+  home: () => seek(0), end: () => { play(false); seek(end); },
+  l: () => toggle("loop"), t: () => toggle("trails"), v: () => toggle("arrows"), n: () => toggle("names"),
+  g: () => toggle("grid"), b: event => selectNext(event.shiftKey),
+  0: fit, "+": () => zoomMiddle(1.25), "-": () => zoomMiddle(0.8),
+};
+SPEEDS.forEach((value, i) => { keys[i + 1] = () => setSpeed(value); });
+document.addEventListener("keydown", event => {
+  const on = event.target.tagName, key = event.key.toLowerCase();
+  const own = on === "SELECT" || on === "INPUT" && /^(arrow|home|end)/.test(key)
+    || key === " " && (on === "BUTTON" || on === "SUMMARY");
+  if (own || event.ctrlKey || event.metaKey || event.altKey || !keys[key]) return;
+  event.preventDefault();
+  keys[key](event);
+});
+
+$("play").onclick = () => play(!playing);
+$("back").onclick = () => step(-1);
+$("forward").onclick = () => step(1);
+$("fit").onclick = fit;
+for (const name of ["loop", "trails", "arrows", "names", "grid"]) {
+  $(name).onclick = () => toggle(name);
+  $(name).setAttribute("aria-pressed", show[name]);
+}
+$("time").max = COUNT - 1;
+$("time").oninput = event => { play(false); seek(times[event.target.valueAsNumber]); };
+$("speed").append(...SPEEDS.map(value => new Option(`${short(value * natural, 3)}\u00d7`, value)));
+$("speed").onchange = event => setSpeed(Number(event.target.value));
+$("body").append(new Option("none (click a body)", ""));
+$("body").append(...drawn.map(body => new Option(body.name, run.bodies.indexOf(body))));
+$("body").onchange = event => select(run.bodies[event.target.value] ?? null);
+chart.onpointerdown = chart.onpointermove = event => {
+  if (!event.buttons) return;
+  play(false);
+  seek(times[frameAt((event.offsetX - LEFT) / (chart.clientWidth - LEFT - RIGHT) * end)]);
+};
+const notes = [
+  ...run.notes,
+  `${COUNT} instants, positions to 7 digits (float32). While it plays, bodies move straight from one to ` +
+  "the next; paused, the figures are those computed.",
+];
+$("notes").append(...notes.map(text => Object.assign(document.createElement("li"), { textContent: text })));
+new ResizeObserver(() => { if (camera.fitted) fit(); stale = true; }).observe(world);
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", readColours);
+
+const decimals = Math.min(Math.max(2 - Math.floor(Math.log10(end / COUNT * 10 || 1)), 0), 9);
+let last = 0;
+function tick(now) {
+  const passed = Math.min((now - last) / 1000, 0.1);
+  last = now;
+  if (playing) {
+    seek(time + passed * speed * natural);
+    if (time >= end && show.loop) time = 0;
+    else if (time >= end) play(false);
+  }
+  if (stale) {
+    stale = false;
+    const [frame, share] = moment();
+    drawWorld(frame, share);
+    drawChart();
+    showFigures(frame);
+    $("time").value = frame;
+    $("clock").textContent = `${(run.start + time).toFixed(decimals)} / ${short(run.start + end, 4)} s`;
+    $("time").setAttribute("aria-valuetext", $("clock").textContent);
+  }
+  requestAnimationFrame(tick);
+}
+
+// For a console, and for tests.
+window.player = {
+  run, times, lines, seek, play, get time() { return time; }, get playing() { return playing; },
+  get selected() { return selected?.name ?? null; },
+  at: (name, frame) => run.bodies.find(body => body.name === name).at(frame),
+  pixel: (x, y) => [world.getBoundingClientRect().x + toX(x), world.getBoundingClientRect().y + toY(y)],
+};
+const aspect = (run.view[2] - run.view[0]) / (run.view[3] - run.view[1]);
+$("stage").style.setProperty("--aspect", Math.min(Math.max(aspect, 0.9), 2));
+readColours();
+fit();
+setSpeed(1);
+select(movers.length === 1 ? movers[0] : null);
+play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+requestAnimationFrame(now => { last = now; tick(now); });

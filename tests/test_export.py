@@ -1,0 +1,532 @@
+"""``physicslab export``: what a page holds, that a browser plays it without a network; what is refused."""
+
+import base64
+import html
+import json
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from browser import CHROMIUM, Browser
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+from numpy.typing import NDArray
+
+from physicslab import World, cli, load_scene, save_scene
+from physicslab.components import Drag, Mass, Shape, Spring, Trail, Transform, Velocity
+from physicslab.diagnostics.energy import measure_energy
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.export.framing import frame_run
+from physicslab.export.packing import pack
+from physicslab.export.recording import RunRecorder
+from physicslab.prefabs import gas
+from physicslab.systems.standard import standard_systems
+
+SIZES = [(1280, 720), (390, 844)]
+needs_browser = pytest.mark.skipif(CHROMIUM is None, reason="not installed: chromium")
+
+
+def unpack(text: str, rows: int) -> NDArray[np.float32]:
+    """Return the array (rows, columns) that was packed."""
+    content = iter(base64.b64decode(text))
+    columns = []
+    for order in content:
+        values = np.zeros(rows, np.int64)
+        for row in range(rows):
+            number = shift = 0
+            more = True
+            while more:
+                byte = next(content)
+                number, shift, more = number | (byte & 127) << shift, shift + 7, byte > 127
+            values[row] = (number >> 1) ^ -(number & 1)
+        for _ in range(order):
+            values = np.cumsum(values)
+        bits = (values & 0xFFFFFFFF).astype(np.uint32).view(np.int32)
+        columns.append((bits ^ ((bits >> 31) & 0x7FFFFFFF)).view(np.float32))
+    return np.stack(columns, axis=1)
+
+
+def document(page: bytes) -> dict[str, Any]:
+    """Return what the player of a page is given."""
+    found = re.search(r'<script id="run" type="application/json">(.*?)</script>', page.decode(), re.DOTALL)
+    assert found is not None
+    read: dict[str, Any] = json.loads(found[1])
+    return read
+
+
+def exported(path: Path, *arguments: str) -> bytes:
+    """Export a run to a file, and return the page."""
+    assert cli.main(["export", *arguments, "--html", str(path)]) == 0
+    return path.read_bytes()
+
+
+def recorded(scene: str, seconds: float) -> tuple[World, RunRecorder]:
+    """Run a scene step by step; return the world at the end and what was recorded."""
+    world = load_scene(scene)
+    recorder = RunRecorder(world)
+    recorder.write(world, measure_energy(world))
+    for _ in world.stepping(seconds=seconds):
+        recorder.write(world, measure_energy(world))
+    return world, recorder
+
+
+# ---- what a page holds -------------------------------------------------------------------------------------
+
+BITS = arrays.arrays(np.uint32, st.tuples(st.integers(1, 12), st.integers(1, 4)))
+
+
+@given(BITS)
+def test_packing_keeps_every_bit(bits: NDArray[np.uint32]) -> None:
+    values = bits.view(np.float32)
+    assert unpack(pack(values), len(values)).view(np.uint32).tolist() == bits.tolist()
+
+
+def test_smooth_motion_takes_few_bytes() -> None:
+    t = np.linspace(0.0, 10.0, 601)
+    columns = np.stack((np.cos(t), 3.0 * t - 4.905 * t * t, np.zeros(601)), axis=1).astype(np.float32)
+    assert len(base64.b64decode(pack(columns))) < 0.45 * columns.nbytes
+    assert len(base64.b64decode(pack(columns[:, 2:]))) == 602
+
+
+@pytest.mark.parametrize("scene", ["drop", "sandbox", "two_planets"])
+def test_a_page_holds_the_numbers_of_the_run(
+    scene: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    read = document(exported(tmp_path / "page.html", scene, "--seconds", "1.51"))
+    _, recorder = recorded(scene, 1.51)
+    columns = unpack(read["data"], read["instants"])
+    assert columns.tobytes() == recorder.columns.tobytes()
+    assert (columns[0, 0], columns[-1, 0]) == (0.0, np.float32(1.51))
+    assert (
+        cli.main(["run", scene, "--seconds", "1.51", "--csv", str(tmp_path / "run.csv"), "--json", "-"]) == 0
+    )
+    told = json.loads(capsys.readouterr().out.partition("\n")[2])
+    for body in read["bodies"]:
+        state = told["entities"][body["name"]]
+        kept = [*state["position"], state["angle"], *state["linear"], state["angular"]]
+        if "moves" in body:
+            assert recorder.motion[-1, body["moves"]].tolist() == np.array(kept, np.float32).tolist()
+        else:
+            assert body["pose"] == kept[:3]
+    energies = dict(zip(read["energies"], columns[-1, 1:], strict=False))
+    assert energies["total"] == np.float32(told["energy"]["final"])
+    assert energies["gravity"] == np.float32(told["energy"]["potential_gravity"])
+
+
+def test_every_spaces_the_instants(tmp_path: Path) -> None:
+    read = document(exported(tmp_path / "page.html", "drop", "--seconds", "1", "--every", "0.25"))
+    assert unpack(read["data"], read["instants"])[:, 0].tolist() == [0.0, 0.25, 0.5, 0.75, 1.0]
+
+
+def test_a_page_goes_on_from_the_time_of_its_scene(tmp_path: Path) -> None:
+    world = load_scene("pendulum")
+    world.run(seconds=2.0)
+    save_scene(world, tmp_path / "later.json")
+    read = document(exported(tmp_path / "page.html", str(tmp_path / "later.json"), "--seconds", "1"))
+    assert read["start"] == 2.0 and unpack(read["data"], read["instants"])[0, 0] == 0.0
+
+
+def test_bodies_springs_and_laws_are_described() -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(bounds=(-1, -2, 3, 4)))
+    world.spawn(Transform((1, 2), 0.5), Shape.box(4, 1), name="wall")
+    ball = world.spawn(
+        Transform((0, 1)), Velocity((1, 0)), Mass(2.0), Shape.circle(0.5), Trail(3.0), Drag(0.1), name="ball"
+    )
+    world.spawn(Transform((5, 5)), name="mark")
+    world.spawn(Transform(), Velocity((0, 1)), name="lift")
+    world.spawn(Spring(a=ball, anchor_b=(0, 9)))
+    recorder = RunRecorder(world)
+    assert recorder.bodies(world) == [
+        {"name": "wall", "kind": "box", "size": [4.0, 1.0], "pose": [1.0, 2.0, 0.5]},
+        {
+            "name": "ball", "kind": "circle", "radius": 0.5, "mass": 2.0, "inertia": 0.25, "trail": 3.0,
+            "moves": 0,
+        },
+        {"name": "mark", "kind": "none", "pose": [5.0, 5.0, 0.0]},
+        {"name": "lift", "kind": "point", "moves": 1},
+    ]  # fmt: skip
+    assert recorder.springs(world) == [{"a": 1, "b": None, "anchor_a": [0.0, 0.0], "anchor_b": [0.0, 9.0]}]
+    assert recorder.energies == ("kinetic", "gravity", "spring", "total")
+
+
+def test_a_page_needs_nothing_else_and_its_texts_are_no_markup(tmp_path: Path) -> None:
+    evil = '</script><script>alert(1)</script><b a="&'
+    world = load_scene("drop")
+    world.title, world.description = evil[:60], evil
+    world.spawn(Transform((1, 1)), Velocity(), name=evil)
+    save_scene(world, tmp_path / "evil.json")
+    page = exported(tmp_path / "page.html", str(tmp_path / "evil.json"), "--seconds", "0.1").decode()
+    assert page.count("<script") == 2 and page.count("</script>") == 2
+    assert f"<title>{html.escape(evil[:60])}</title>" in page and f"<p>{html.escape(evil)}</p>" in page
+    assert [body["name"] for body in document(page.encode())["bodies"]][-1] == evil
+    assert "{{" not in page
+    for word in ("http:", "https:", " src=", "url(", "@import", "fetch(", "XMLHttp", "WebSocket"):
+        assert word not in page, word
+
+
+def twenty_bodies(folder: Path) -> list[str]:
+    """Return scenes of twenty bodies: on springs, and in a box with impacts all the time."""
+    walls = (-1.5, -1.0, 1.5, 1.0)
+    laws = PhysicsConfig(gravity_mode="none", bounds=walls, bounds_restitution=1.0, bounds_friction=0.0)
+    world = World(*standard_systems(), physics=laws)
+    gas(world, 20, walls)
+    save_scene(world, folder / "twenty.json")
+    return ["spring_chain", str(folder / "twenty.json"), "dominoes"]
+
+
+def test_twenty_bodies_for_ten_seconds_take_less_than_300_kilobytes(tmp_path: Path) -> None:
+    for scene in twenty_bodies(tmp_path):
+        page = exported(tmp_path / "page.html", scene)
+        assert sum("moves" in body for body in document(page)["bodies"]) == 20
+        assert len(page) < 300_000, scene
+
+
+# ---- what is shown of it -----------------------------------------------------------------------------------
+
+
+def framed(scene: str, seconds: float) -> tuple[float, float, float, float]:
+    world, recorder = recorded(scene, seconds)
+    return frame_run(recorder.bodies(world), recorder.motion, [])
+
+
+def test_all_that_moves_is_framed() -> None:
+    left, low, right, high = framed("drop", 5.0)
+    assert -4.5 < left < -3.25 and 4.25 < high < 6.0 and -2.0 < low < 0.0 and 0.5 < right < 3.0
+
+
+def test_what_leaves_the_ground_is_not_followed_far() -> None:
+    left, low, right, high = framed("slope", 10.0)
+    assert left < -7.7 and right > 4.0 and high > 2.0
+    assert low > -10.0, "two blocks fall off"
+
+
+def test_free_flight_is_followed() -> None:
+    motion = np.zeros((61, 1, 6), np.float32)
+    motion[:, 0, 0] = np.linspace(0.0, 20.0, 61)
+    left, _, right, _ = frame_run([{"kind": "circle", "radius": 0.5, "moves": 0}], motion, [])
+    assert left < -0.5 and 20.5 < right < 23.0
+
+
+def test_what_falls_for_ever_is_not_followed() -> None:
+    motion = np.zeros((601, 1, 6), np.float32)
+    motion[:, 0, 1] = -4.905 * np.linspace(0.0, 100.0, 601) ** 2
+    left, low, right, high = frame_run([{"kind": "circle", "radius": 0.5, "moves": 0}], motion, [])
+    assert low > -50.0 and high > 0.5 and left < -0.5 and right > 0.5
+
+
+def test_a_floor_of_a_kilometre_makes_no_speck_of_a_ball() -> None:
+    floor = {"kind": "box", "size": [1000.0, 1.0], "pose": [0.0, -0.5, 0.0]}
+    ball = {"kind": "circle", "radius": 0.5, "moves": 0}
+    motion = np.zeros((2, 1, 6), np.float32)
+    left, low, right, _ = frame_run([floor, ball], motion, [])
+    assert right - left < 20.0 and low < -0.5
+
+
+@pytest.mark.parametrize("bodies", [[], [{"kind": "box", "size": [2.0, 1.0], "pose": [7.0, 8.0, 0.0]}]])
+def test_where_nothing_moves_there_is_a_frame_all_the_same(bodies: list[dict[str, Any]]) -> None:
+    left, low, right, high = frame_run(bodies, np.zeros((2, 0, 6), np.float32), [])
+    assert right > left and high > low
+    for body in bodies:
+        assert left < body["pose"][0] < right and low < body["pose"][1] < high
+
+
+# ---- what is refused ---------------------------------------------------------------------------------------
+
+REFUSED = [
+    (["drop"], "the following arguments are required: --html"),
+    (["drp", "--html", "x.html"], 'drp: no such file, and no built-in scene; did you mean "drop"?'),
+    (["drop", "--html", ""], '--html "": must be a path, or - for stdout'),
+    (["drop", "--html", "none/x.html"], "--html none/x.html: cannot be written: there is no directory"),
+    (["drop", "--html", "/"], "--html /: cannot be written: / is a directory"),
+    (["drop", "--html", "a\0b"], "--html a\\x00b: cannot be written"),
+    *(
+        (["drop", "--html", "x.html", option, value], f"argument {option}: '{value}': must be a finite num")
+        for option in ("--seconds", "--every")
+        for value in ("0", "-1", "nan", "inf", "long")
+    ),
+    (["drop", "--html", "x.html", "--seconds", "1e300"], "--seconds 1e+300: must be at most 1e+15 steps"),
+    (
+        ["gas", "--html", "x.html", "--seconds", "1000"],
+        "--seconds 1000: 60,000 instants of 2,000 bodies; a page must hold at most 2,000,000 poses: fewer "
+        "seconds, or a longer --every than 0.0167 s",
+    ),
+    (["drop", "--html", "x.html", "--seconds", "1e9"], "--seconds 1e+09: 60,000,000,000 instants of 1"),
+    (["drop", "--html", "x.html", "--set", "ball.Mass.mass=0"], 'Mass.mass = "0": must be a finite number'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("arguments", "line"), REFUSED, ids=[ascii(row) for row in range(len(REFUSED))])
+def test_bad_usage_is_refused_in_one_line_and_nothing_is_written(
+    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str],
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["export", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and err.count("\n") == 1 and line in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_scene_is_not_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = tmp_path / "scene.json"
+    save_scene(load_scene("drop"), scene)
+    before = scene.read_bytes()
+    assert cli.main(["export", str(scene), "--html", str(scene)]) == 2
+    assert capsys.readouterr().err.endswith("is the scene itself\n") and scene.read_bytes() == before
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_full_disk_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["export", "drop", "--seconds", "0.1", "--html", "/dev/full"]) == 1
+    err = capsys.readouterr().err
+    assert "--html /dev/full: cannot be written: No space left on device" in err and err.count("\n") == 1
+
+
+def test_what_float32_does_not_hold_fails_with_its_place(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    world = World(physics=PhysicsConfig(gravity_mode="none"))
+    world.spawn(Transform((1e39, 0)), Velocity(), name="far")
+    save_scene(world, tmp_path / "far.json")
+    assert cli.main(["export", str(tmp_path / "far.json"), "--html", str(tmp_path / "page.html")]) == 1
+    err = capsys.readouterr().err
+    assert "far at t = 0 s: 1e+39 is more than a page can hold, 3.4e+38 at most; no page was written" in err
+    assert not (tmp_path / "page.html").exists()
+
+
+def test_a_run_that_diverges_leaves_the_old_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"))
+    world.spawn(Transform(), Velocity((1e305, 0)), Mass(), name="fast")
+    save_scene(world, tmp_path / "fast.json")
+    page = tmp_path / "page.html"
+    page.write_text("old")
+    assert cli.main(["export", str(tmp_path / "fast.json"), "--html", str(page)]) == 1
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1 and "at t = " in err and "no page was written" in err
+    assert page.read_text() == "old"
+
+
+def test_the_page_goes_to_stdout_alone(capfdbinary: pytest.CaptureFixture[bytes]) -> None:
+    assert cli.main(["export", "drop", "--seconds", "0.1", "--html", "-"]) == 0
+    out, err = capfdbinary.readouterr()
+    assert out.startswith(b"<!DOCTYPE html>") and out.endswith(b"</html>\n") and err == b""
+
+
+# ---- colours -----------------------------------------------------------------------------------------------
+
+
+def luminance(colour: str) -> float:
+    """Return the relative luminance of #rgb or #rrggbb, as WCAG 2 defines it."""
+    digits = colour.removeprefix("#")
+    digits = digits if len(digits) == 6 else "".join(2 * digit for digit in digits)
+    parts = [int(digits[i : i + 2], 16) / 255 for i in (0, 2, 4)]
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_contrast(scheme: str) -> None:
+    style = (Path(cli.__file__).parent / "export" / "player" / "style.css").read_text()
+    dark, light = (dict(re.findall(r"--([\w-]+): ([^;]+);", block)) for block in style.split("@media", 2)[:2])
+    colours = dark if scheme == "dark" else {**dark, **light}
+
+    def ratio(one: str, other: str) -> float:
+        bright, dim = sorted((luminance(colours[one]), luminance(colours[other])), reverse=True)
+        return (bright + 0.05) / (dim + 0.05)
+
+    for text in ("text", "faint"):
+        assert min(ratio(text, "background"), ratio(text, "panel")) >= 4.5
+    assert ratio("on-accent", "accent") >= 4.5
+    for line in ("accent", "arrow", *(f"b{k}" for k in range(7))):
+        assert ratio(line, "background") >= 4.5, line
+    for line in ("static", "bounds", "spring"):
+        assert ratio(line, "background") >= 3.0, line
+
+
+# ---- in a browser ------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with Browser() as opened:
+        yield opened
+
+
+@pytest.fixture
+def page(tmp_path: Path, browser: Browser) -> Path:
+    browser.requests.clear()
+    browser.complaints.clear()
+    exported(tmp_path / "page.html", "sandbox", "--seconds", "2")
+    return tmp_path / "page.html"
+
+
+@needs_browser
+def test_it_plays_without_a_network_and_without_a_complaint(page: Path, browser: Browser) -> None:
+    browser.open(page)
+    browser.until("player.time > 0.2")
+    assert browser.value("player.playing")
+    shown = browser.picture()
+    browser.until("player.time > 0.6")
+    assert browser.picture() != shown, "it moves"
+    assert browser.requests == [page.as_uri()]
+    assert browser.complaints == []
+
+
+@needs_browser
+def test_its_numbers_are_those_of_the_run_to_the_bit(page: Path, browser: Browser) -> None:
+    browser.open(page, still=True)
+    world, recorder = recorded("sandbox", 2.0)
+    assert browser.value("player.times.length") == recorder.count
+    for body in recorder.bodies(world):
+        if "moves" in body:
+            shown = browser.value(
+                f"Array.from(player.times, (_, frame) => player.at({json.dumps(body['name'])}, frame))"
+            )
+            assert np.array(shown, np.float32).tobytes() == recorder.motion[:, body["moves"]].tobytes()
+    totals = browser.value("Array.from(player.lines.find(line => line.name === 'total').values)")
+    assert np.array(totals, np.float32).tolist() == recorder.columns[:, len(recorder.energies)].tolist()
+
+
+@needs_browser
+def test_keys_and_buttons(page: Path, browser: Browser) -> None:
+    browser.open(page, still=True)
+    assert not browser.value("player.playing"), "the user wants nothing to move by itself"
+    browser.key("ArrowRight")
+    browser.key("ArrowRight", shift=True)
+    assert browser.value("player.time") == pytest.approx(11 / 60, rel=1e-6)
+    browser.key("ArrowLeft")
+    assert browser.value("player.time") == pytest.approx(10 / 60, rel=1e-6)
+    browser.key("End")
+    assert browser.value("player.time") == 2.0
+    browser.key("Home")
+    assert browser.value("player.time") == 0.0
+    for key, name in (("t", "trails"), ("v", "arrows"), ("n", "names"), ("g", "grid"), ("l", "loop")):
+        pressed = f"document.getElementById('{name}').ariaPressed === 'true'"
+        before = browser.value(pressed)
+        browser.key(key)
+        assert browser.value(pressed) is not before
+    browser.key("5")
+    assert browser.value("document.getElementById('speed').value") == "4"
+    browser.key(" ")
+    browser.until("player.time === 2 && !player.playing")  # not in a loop any more
+    browser.value("document.getElementById('play').click()")
+    assert browser.value("player.playing && player.time < 2")
+    browser.key("b")
+    assert browser.value("player.selected") == "floor"
+
+
+@needs_browser
+def test_a_clicked_body_shows_its_values(page: Path, browser: Browser) -> None:
+    browser.open(page, still=True)
+    browser.value("player.seek(player.times[60])")
+    x, y, _, vx, vy, spin = browser.value("player.at('bob', 60)")
+    browser.click(*browser.value(f"player.pixel({x}, {y})"))
+    browser.until("player.selected === 'bob' && document.getElementById('values').rows.length > 9")
+    cells = (
+        "[...document.getElementById('values').rows].map(row => [...row.cells].map(cell => cell.textContent))"
+    )
+    shown = {name: value.replace("\u2212", "-") for name, value in browser.value(cells)}
+    amounts = {name: float(value.split()[0]) for name, value in shown.items()}
+    assert amounts["position x"] == pytest.approx(x, rel=1e-6) and shown["position x"].endswith(" m")
+    assert amounts["speed"] == pytest.approx(math.hypot(vx, vy), rel=1e-6)
+    inertia = 0.5 * 2.0 * 0.28**2
+    kinetic = 0.5 * 2.0 * (vx * vx + vy * vy) + 0.5 * inertia * spin * spin
+    assert amounts["kinetic energy"] == pytest.approx(kinetic, rel=1e-6)
+    assert amounts["potential, 0 at the origin"] == pytest.approx(2.0 * 9.81 * y, rel=1e-6)
+    assert shown["kinetic energy"].endswith(" J")
+
+
+@needs_browser
+@pytest.mark.parametrize("dark", [True, False], ids=["dark", "light"])
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_nothing_is_cut_off_and_the_scheme_is_followed(
+    width: int, height: int, dark: bool, page: Path, browser: Browser
+) -> None:
+    browser.open(page, width=width, height=height, dark=dark, still=True)
+    browser.key("b")
+    browser.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    assert browser.value("document.documentElement.scrollWidth") <= width
+    assert browser.value(
+        "document.querySelector('aside').scrollWidth <= document.querySelector('aside').clientWidth"
+    )
+    if width > 820:
+        assert browser.value("document.documentElement.scrollHeight") <= height
+        assert (
+            browser.value(
+                "document.getElementById('stage').clientWidth * document.getElementById('stage').clientHeight"
+            )
+            > 0.5 * width * height
+        )
+    cut = browser.value(
+        "[...document.querySelectorAll('button')].filter(one => one.scrollWidth > one.clientWidth)"
+        ".map(one => one.id)"
+    )
+    assert cut == []
+    small = browser.value(
+        "[...document.querySelectorAll('button, select')].filter(one => one.offsetHeight < "
+        f"{36 if width > 820 else 44}).map(one => one.id)"
+    )
+    assert small == []
+    background = browser.value("getComputedStyle(document.body).backgroundColor")
+    assert background == ("rgb(15, 17, 23)" if dark else "rgb(255, 255, 255)")
+    assert browser.complaints == []
+
+
+@needs_browser
+def test_a_finger_drags_and_two_zoom(page: Path, browser: Browser) -> None:
+    browser.open(page, width=390, height=844, still=True)
+    place = "JSON.stringify([player.pixel(0, 0), player.pixel(1, 0)])"
+
+    def touch(kind: str, *points: tuple[float, float]) -> None:
+        browser.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y} for x, y in points])
+
+    (x0, y0), (x1, _) = json.loads(browser.value(place))
+    touch("touchStart", (200, 250))
+    touch("touchMove", (230, 250))
+    touch("touchMove", (250, 270))
+    touch("touchEnd")
+    (x, y), (right, _) = json.loads(browser.value(place))
+    assert (x - x0, y - y0) == pytest.approx((20, 20), abs=31) and x - x0 > 15
+    assert right - x == pytest.approx(x1 - x0)
+    touch("touchStart", (150, 250), (250, 250))
+    touch("touchMove", (100, 250), (300, 250))
+    touch("touchEnd")
+    (x, _), (right, _) = json.loads(browser.value(place))
+    assert right - x > 1.4 * (x1 - x0)
+
+
+@needs_browser
+@pytest.mark.parametrize("scene", ["nothing", "still", "long"])
+def test_odd_scenes_open(scene: str, tmp_path: Path, browser: Browser) -> None:
+    steps = SimulationConfig(dt=1.0 if scene == "long" else 1 / 60)
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"), simulation=steps)
+    if scene == "still":
+        world.spawn(Transform((3, 4)), Shape.box(1, 1), name="wall")
+    elif scene == "long":
+        world.spawn(Transform((1e9, 0)), Velocity((1e4, 0)), Mass(), name="probe")
+    save_scene(world, tmp_path / "scene.json")
+    every = ["--seconds", "1000", "--every", "10"] if scene == "long" else ["--seconds", "0.5"]
+    exported(tmp_path / "page.html", str(tmp_path / "scene.json"), *every)
+    browser.complaints.clear()
+    browser.open(tmp_path / "page.html")
+    browser.until("player.time > 0")
+    assert browser.complaints == []
+
+
+@needs_browser
+def test_a_name_that_looks_like_markup_is_text(tmp_path: Path, browser: Browser) -> None:
+    world = load_scene("drop")
+    world.spawn(Transform((1, 1)), Velocity(), name="<img src=x onerror=alert(1)>")
+    save_scene(world, tmp_path / "scene.json")
+    exported(tmp_path / "page.html", str(tmp_path / "scene.json"), "--seconds", "0.5")
+    browser.requests.clear()
+    browser.complaints.clear()
+    browser.open(tmp_path / "page.html", still=True)
+    browser.key("b", shift=True)
+    assert browser.value("player.selected") == "<img src=x onerror=alert(1)>"
+    assert browser.value("document.images.length") == 0 and browser.complaints == []
