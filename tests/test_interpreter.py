@@ -30,7 +30,15 @@ from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, read_scene, write_scene
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
-from physicslab.kernels import KERNELS, ask_before_compiling, compile_kernels, interpreter, motion, raster
+from physicslab.kernels import (
+    KERNELS,
+    ask_before_compiling,
+    compile_kernels,
+    interpreter,
+    motion,
+    raster,
+    triangles,
+)
 from physicslab.kernels.events.events import run_events
 from physicslab.kernels.forces import gravity
 from physicslab.kernels.forces.pairwise import attract_pairwise
@@ -186,6 +194,29 @@ def drawn() -> None:
     assert len(np.unique(pixels)) > 20
 
 
+def panels() -> None:
+    """Paint rectangles, letters and triangles of any colours, many beyond what may be painted."""
+    random = np.random.default_rng(4)
+    coverage = random.integers(0, 256, (16, 16)).astype(np.uint8)
+    pixels = np.zeros((30, 40), np.uint32)
+    for kind in range(8):
+        vertices = np.zeros((8, 5), np.float32)
+        vertices[:, :2] = random.integers(-20, 200, (8, 2)) / 4
+        vertices.view(np.uint32)[:, 4] = random.integers(0, 2**32, 8)
+        if kind % 2:  # a rectangle of one colour, plain or of the texture
+            (left, top), (right, bottom) = np.sort(vertices[:2, :2], axis=0)
+            vertices[:4, :2] = (left, top), (right, top), (right, bottom), (left, bottom)
+            vertices.view(np.uint32)[:4, 4] = random.integers(0, 2**32)
+            vertices[:4, 2:4] = ((0, 0), (1, 0), (1, 1), (0, 1)) if kind % 4 == 1 else 0.0
+        else:
+            vertices[:, 2:4] = random.uniform(0.0, 1.0, (8, 2)) if kind % 4 == 0 else 0.5
+        order = np.array((0, 1, 2, 0, 2, 3, 1, 2, 3), np.uint32)
+        triangles.paint_triangles(
+            pixels, vertices, vertices.view(np.uint32), order, 0, 9, kind // 2, coverage, 2, 1, 37, 28
+        )
+    assert len(np.unique(pixels)) > 100
+
+
 def built_in() -> None:
     for name in ("drop", "stack", "sandbox", "slope", "bounces", "dominoes", "pendulum", "newtons_cradle"):
         world = load_scene(name)
@@ -233,7 +264,7 @@ def impacts() -> None:
 def test_every_kernel_gives_the_same_bits_as_python() -> None:
     calls: Counter[str] = Counter()
     scenes = built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, rigid_contacts, impacts
-    for drive in (*scenes, springs_beside_contacts, forces_by_hand, drawn):
+    for drive in (*scenes, springs_beside_contacts, forces_by_hand, drawn, panels):
         with compared(calls):
             drive()
     own = {name_of(jitted) for jitted in KERNELS if jitted.__module__.startswith("physicslab.")}

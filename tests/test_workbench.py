@@ -40,7 +40,11 @@ from physicslab.world import World
 
 SIZES = [(640, 480), (800, 600), (1280, 720), (1920, 1080)]
 SCALES = [1.0, 1.75]
-TRANSPORT = {"Space", ".", "Ctrl+R", "Tab", "[", "]"}
+ROW = ("Restart", "Step back", "Pause", "Play", "Step", "Speed", "Time line")
+"""What stands in the transport."""
+BY_DRAGGING = {"Arrows"}
+"""Controls that do what the mouse does by dragging."""
+TRANSPORT = {"Space", ".", "B", "Ctrl+R", "Tab", "[", "]"}
 """Controls of the transport: the tests below do each of them by the mouse."""
 
 
@@ -96,7 +100,7 @@ def test_every_control_with_an_action_can_be_reached_by_the_mouse(
             assert done[-1] == control.label, "the line of the menu does this"
     for control in CONTROLS:
         by_tool = control.tool is not None and control.tool in TOOLS.values()
-        reached = control.label in done or by_tool or control.label in TRANSPORT
+        reached = control.label in {*done, *TRANSPORT, *BY_DRAGGING} or by_tool
         assert reached or control.action is None, control.label
     assert len(done) == len(set(done)), "no line is there twice"
 
@@ -143,6 +147,8 @@ def test_the_transport_does_what_its_keys_do(desk: Desk) -> None:
     steps = desk.world.steps
     click(desk, "Step")
     assert desk.world.steps == steps + 1
+    click(desk, "Step back")
+    assert desk.world.steps == steps
     click(desk, "Play")
     assert not window.pace.paused
     for words, speed in (("1/4x", 0.25), ("4x", 4.0), ("1x", 1.0), ("1/16x", 0.0625)):
@@ -301,13 +307,14 @@ def check_panels(desk: Desk) -> None:
         assert not one.colliderect(two), f"{one} lies over {two}"
     side = pygame.Rect(layout.side)
     for label, rect in rects(desk).items():
-        if rect.left >= side.left and rect.top >= side.top:  # it scrolls
+        if label not in ROW and rect.left >= side.left and rect.top >= side.top:  # it scrolls
             assert rect.right <= side.right, label
         else:
             assert any(panel.contains(rect) for panel in panels), f"{label} at {rect} is cut"
-    for (a, one), (b, two) in combinations(rects(desk).items(), 2):
-        if (one.left >= side.left) == (two.left >= side.left):
-            assert not one.inflate(-2, -2).colliderect(two.inflate(-2, -2)), f"{a} lies over {b}"
+    beside = {label: rect for label, rect in rects(desk).items() if label in ROW or rect.left < side.left}
+    inside = {label: rect for label, rect in rects(desk).items() if label not in beside}
+    for (a, one), (b, two) in (*combinations(beside.items(), 2), *combinations(inside.items(), 2)):
+        assert not one.inflate(-2, -2).colliderect(two.inflate(-2, -2)), f"{a} lies over {b}"
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -375,10 +382,11 @@ def test_no_click_on_a_panel_reaches_the_world(desk: Desk, button: str) -> None:
     desk.frames(SETTLED)
     centre = desk.window.camera.centre
     window = Window(desk.window.canvas)
-    for label in [label for label in desk.ui.places if label not in ("Delete", "Duplicate")]:
+    changes = ("Delete", "Duplicate", "Step back", "Time line")
+    for label in [label for label in desk.ui.places if label not in changes]:
         click(desk, label, button)
         tap(desk, "escape")
-        desk.window.closing = False
+        desk.window.closing = desk.window.pace.paused = False
         desk.window.tool = window.tool
         desk.window.selection.take(ball)
         desk.frames(2)
