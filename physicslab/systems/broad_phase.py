@@ -79,9 +79,9 @@ class BroadPhaseSystem(System):
 
     Attributes
     ----------
-    fat : float64 array (6, rows)
-        Where each body was (x, y, angle), its bounding radius then, the margin around it, and how far its box
-        has grown since all were made [m].
+    fat : float64 array (8, rows)
+        The middle of the way for which each box was made (x, y), the body's angle and bounding radius then,
+        the margin around the way, how far the box has grown since all were made, and half the way (x, y) [m].
     boxes : float64 array (rows, 4)
         The fat boxes: xmin, ymin, xmax, ymax [m].
     leavers : Leavers
@@ -97,7 +97,7 @@ class BroadPhaseSystem(System):
     )  # fmt: skip
 
     def __init__(self) -> None:
-        self.fat: NDArray[np.float64] = np.zeros((6, 0))
+        self.fat: NDArray[np.float64] = np.zeros((8, 0))
         self.leavers = Leavers(0)
         self.boxes: NDArray[np.float64] = np.zeros((0, 4))
         self._couples: NDArray[np.uint32] = np.zeros(512, np.uint32)
@@ -129,7 +129,7 @@ class BroadPhaseSystem(System):
         """Make room for every row; where the list is stale, invalidate every fat box."""
         rows = len(state.entity_index)
         if self.fat.shape[1] != rows:
-            self.fat, self.boxes = np.zeros((6, rows)), np.zeros((rows, 4))
+            self.fat, self.boxes = np.zeros((8, rows)), np.zeros((rows, 4))
             self.leavers = Leavers(rows)
             state.contacts.stale = True
         if state.contacts.stale:

@@ -9,7 +9,7 @@ from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wa
 from physicslab.kernels.records import Manifold, Point, Points
 
 __all__ = [
-    "ACTIVATION_RATIO", "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "TOLERANCE_WITHIN_STEP",
+    "ACTIVATION_RATIO", "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "TOLERANCE_WITHIN_STEP", "WIDE_TOLERANCE",
     "effective_masses", "find_contacts", "follow_pose", "forget_points", "mix", "note_pose", "touch",
 ]  # fmt: skip
 
@@ -21,6 +21,8 @@ CACHE_TURN_TOLERANCE = 0.002
 """How far [rad] either may turn."""
 TOLERANCE_WITHIN_STEP = 12.0
 """Multiple of these tolerances that counts after the first substep of a step."""
+WIDE_TOLERANCE = 4.0
+"""Multiple of these tolerances after which the points of a wide contact are found again, once a step."""
 _ROWS_FOUND_AGAIN = 64
 """Number of bodies up to which points of boxes are found again after any motion."""
 _ROUNDING = 1e-9

@@ -60,7 +60,7 @@ def find_touching(
         before = counts[SCALAR]
         for slots in (near.discs, near.boxes):
             refresh(
-                slots, near, motion, sizes, materials, inverse, bounds, first, h, start, speculative_margin
+                slots, near, motion, sizes, inverse, bounds, first, h, start, speculative_margin
             )
         came = counts[SCALAR] - before
         counts[WIDE_COUNT] -= came

@@ -1,17 +1,18 @@
 """Where wide contacts touch now, eight at a time; those that are not steady any more become scalar."""
 
 from physicslab.kernels import Numbers, fused, inlined, kernel
-from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
+from physicslab.kernels.arguments import Bounds, Inverse, Motion, Near, Sizes
 from physicslab.kernels.narrow.contact import (
     CACHE_TOLERANCE,
     CACHE_TURN_TOLERANCE,
-    TOLERANCE_WITHIN_STEP,
+    WIDE_TOLERANCE,
+    effective_masses,
     forget_points,
     note_pose,
     touch,
 )
 from physicslab.kernels.narrow.outline import Way
-from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
+from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
 from physicslab.kernels.wide.float64x8 import (
     Wide,
@@ -54,13 +55,15 @@ from physicslab.kernels.wide.layout import (
     Slots,
     rows_of,
 )  # fmt: skip
-from physicslab.kernels.wide.restore_slots import fill_slot
-from physicslab.kernels.wide.slots import clear_slot, empty_slot, set_scalar, store_slot
+from physicslab.kernels.wide.restore_slots import fill_points
+from physicslab.kernels.wide.slots import empty_slot, set_scalar, store_slot
 
 __all__ = ["deepest_wide", "refresh"]
 
 _DEEP = 0.1
 """Share of the smaller size: deeper overlap is resolved by moving bodies, which only scalar contacts do."""
+_WITHIN_STEP = 100.0
+"""Multiple of the tolerances of points beyond which a wide contact becomes scalar within a step."""
 _ONE_SPOT = 1e-300
 """Distance [m] below which there is no direction."""
 
@@ -69,19 +72,20 @@ _ONE_SPOT = 1e-300
 def _restless(slots: Slots, k: int, motion: Motion, h: float) -> int:
     """Return the slots of a block whose bodies move too far for their size in a substep, as bits.
 
-    Discs that do not press on each other may meet within it, and bounce at a time and with a normal that are
+    What does not press on each other may meet within it, and bounce at a time and with a normal that are
     to be found.
     """
     vax, vay = take_vectors(motion.linear, slots.a, k * WIDE)
     vbx, vby = take_vectors(motion.linear, slots.b, k * WIDE)
     at = k * rows_of(slots.kind)
     size = take(slots.data, at + SIZE)
+    pressed = take(slots.data, at + ONE + IMPULSE)
     limit = CONTACT_MARGIN * size
     if slots.kind == DISC:
-        meets = (take(slots.data, at + ONE + IMPULSE) < _ONE_SPOT) & (
-            take(slots.data, at + RESTITUTION) > 0.0
-        )
-        limit = choose(meets, SWEEP_THRESHOLD * size, limit)
+        limit = choose(take(slots.data, at + RESTITUTION) > 0.0, SWEEP_THRESHOLD * size, limit)
+    else:
+        pressed = pressed + take(slots.data, at + TWO + IMPULSE)
+    limit = choose(pressed > 0.0, WIDE_SHARE * size, limit)
     ux, uy = (vbx - vax) * h, (vby - vay) * h
     return mask_bits(ux * ux + uy * uy > limit * limit)
 
@@ -147,7 +151,7 @@ def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> tu
 
 @fused
 def _find_again(
-    slots: Slots, slot: int, near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
+    slots: Slots, slot: int, near: Near, motion: Motion, sizes: Sizes, inverse: Inverse,
     bounds: Bounds, h: float, start: float, speculative_margin: float,
 ) -> bool:  # fmt: skip
     """Find the points of a slot's pair in its present pose; return whether it keeps its slot."""
@@ -170,15 +174,14 @@ def _find_again(
         empty_slot(slots, slot)
         return False
     note_pose(manifold, way.dx, way.dy, motion.angle[a], motion.angle[b])
-    colour = slots.colour[slot // WIDE]
-    clear_slot(slots, slot)
-    fill_slot(slots, slot, colour, near.manifolds, near.points, p, sizes, materials, inverse)
+    effective_masses(manifold, near.points, p, inverse)
+    fill_points(slots, slot, manifold, one, two)
     return True
 
 
 @inlined
 def refresh(
-    slots: Slots, near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
+    slots: Slots, near: Near, motion: Motion, sizes: Sizes, inverse: Inverse,
     bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Find where the contacts of all blocks of a kind touch now.
@@ -187,7 +190,7 @@ def refresh(
     written to its records and added to the scalar pairs. The points of a pair with a box are followed; where
     it has moved, they are found again in the first substep, and it keeps its slot.
     """
-    tolerance = 1.0 if first else TOLERANCE_WITHIN_STEP
+    tolerance = WIDE_TOLERANCE if first else _WITHIN_STEP
     for k in range(near.counts[DISC_BLOCKS + slots.kind]):
         lost, moved = _restless(slots, k, motion, h) if first else 0, 0
         if slots.kind == DISC:
@@ -204,7 +207,7 @@ def refresh(
                 if p < 0 or not (moved >> place) & 1:
                     continue
                 if not _find_again(
-                    slots, slot, near, motion, sizes, materials, inverse, bounds, h, start, speculative_margin
+                    slots, slot, near, motion, sizes, inverse, bounds, h, start, speculative_margin
                 ):
                     near.scalar[near.counts[SCALAR]] = p
                     near.counts[SCALAR] += 1

@@ -53,7 +53,7 @@ from physicslab.kernels.wide.layout import (
 )  # fmt: skip
 from physicslab.kernels.wide.slots import clear_slot
 
-__all__ = ["fill_slot", "is_of_kind", "outdated", "remember", "restore_slots"]
+__all__ = ["fill_points", "fill_slot", "is_of_kind", "outdated", "remember", "restore_slots"]
 
 
 @inlined
@@ -117,6 +117,24 @@ def fill_slot(
     slots.used[i] |= bit
     slots.used[j] |= bit
     manifold.slot = 2 * slot + slots.kind
+
+
+@inlined
+def fill_points(slots: Slots, slot: int, manifold: Manifold, one: Point, two: Point) -> None:
+    """Write the points of a pair with a box, found again, into the slot that it has."""
+    data, at = slots.data, slot // WIDE * rows_of(slots.kind) + slot % WIDE
+    data[at + NORMAL_X], data[at + NORMAL_Y] = manifold.normal_x, manifold.normal_y
+    data[at + BASE_X], data[at + BASE_Y] = manifold.base_x, manifold.base_y
+    data[at + ANGLE_A], data[at + ANGLE_B] = manifold.base_angle_a, manifold.base_angle_b
+    _fill_point(data, at + ONE, one)
+    _fill_arms(data, at + ONE, one)
+    if manifold.count == 2:
+        _fill_point(data, at + TWO, two)
+        _fill_arms(data, at + TWO, two)
+    else:
+        for row in range(0, BASE_X - TWO, WIDE):
+            data[at + TWO + row] = 0.0
+        data[at + TWO + SEPARATION] = data[at + TWO + FOUND] = 1.0
 
 
 @inlined
