@@ -33,6 +33,7 @@ from physicslab.kernels.near_counts import (
 from physicslab.kernels.solver import impulse
 from physicslab.kernels.solver.impact import resolve_impacts
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
+from physicslab.kernels.solver.separate import separate
 from physicslab.kernels.wide.refresh import refresh
 from physicslab.kernels.wide.slots import wake
 
@@ -143,4 +144,4 @@ def relax(
         return
     contacts = _contacts(near)
     impulse.relax(contacts, near, motion, inverse, h, impulse.sweeps_of(near, iterations))
-    impulse.separate(contacts, motion.position, inverse.mass, softness.max_push * h)
+    separate(contacts, near, motion.position, inverse.mass, softness.max_push * h)

@@ -51,12 +51,12 @@ _OF_FIXED = 48
 
 @inlined
 def _is_steady(manifold: Manifold, one: Point, two: Point, linear: Vectors, h: float) -> bool:
-    """Whether a contact may be in a block: it is slow for its size, and overlaps little."""
+    """Whether a contact may be in a block: it is slow for its size, and meets no later than now."""
     if manifold.swept != 0 or manifold.impact_count != 0 or one.ahead != 0:
         return False
-    a, b, deep = manifold.a, manifold.b, -0.1 * manifold.size
-    if one.separation < deep or (manifold.count == 2 and (two.separation < deep or two.ahead != 0)):
+    if manifold.count == 2 and two.ahead != 0:
         return False
+    a, b = manifold.a, manifold.b
     ux, uy = (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h
     slow = SWEEP_THRESHOLD
     if one.normal_impulse > 0.0 or (manifold.count == 2 and two.normal_impulse > 0.0):

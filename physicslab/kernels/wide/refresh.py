@@ -60,8 +60,6 @@ from physicslab.kernels.wide.slots import empty_slot, set_scalar, store_slot
 
 __all__ = ["deepest_wide", "refresh"]
 
-_DEEP = 0.1
-"""Share of the smaller size: deeper overlap is resolved by moving bodies, which only scalar contacts do."""
 _WITHIN_STEP = 100.0
 """Multiple of the tolerances of points beyond which a wide contact becomes scalar within a step."""
 _ONE_SPOT = 1e-300
@@ -92,7 +90,7 @@ def _restless(slots: Slots, k: int, motion: Motion, h: float) -> int:
 
 @fused
 def _refresh_discs(slots: Slots, k: int, motion: Motion, speculative_margin: float) -> int:
-    """Find normals and separations of a block of discs; return which are apart or overlap much."""
+    """Find normals and separations of a block of discs; return which are apart."""
     data, at = slots.data, k * DISC_ROWS
     xa, ya = take_vectors(motion.position, slots.a, k * WIDE)
     xb, yb = take_vectors(motion.position, slots.b, k * WIDE)
@@ -106,26 +104,25 @@ def _refresh_discs(slots: Slots, k: int, motion: Motion, speculative_margin: flo
     put(data, at + ONE + SEPARATION, separation)
     apart = separation > 0.5 * CONTACT_MARGIN * size + speculative_margin
     on_one_spot = distance < _ONE_SPOT
-    return mask_bits((apart | on_one_spot | (separation < -_DEEP * size)) & (ra > 0.0))
+    return mask_bits((apart | on_one_spot) & (ra > 0.0))
 
 
 @fused
-def _separation(
+def _follow(
     data: Numbers, point: int, x: Wide, y: Wide, nx: Wide, ny: Wide, turn_a: Wide, turn_b: Wide
-) -> Wide:
-    """Return the separations of points, to second order in how far the pairs have moved and turned."""
+) -> None:
+    """Update the separations of points, to second order in how far the pairs have moved and turned."""
     rax, ray = take(data, point + ARM_AX), take(data, point + ARM_AY)
     rbx, rby = take(data, point + ARM_BX), take(data, point + ARM_BY)
     ax, ay = turn_a * (-ray - 0.5 * turn_a * rax), turn_a * (rax - 0.5 * turn_a * ray)
     bx, by = turn_b * (-rby - 0.5 * turn_b * rbx), turn_b * (rbx - 0.5 * turn_b * rby)
     separation = take(data, point + FOUND) + (x + bx - ax) * nx + (y + by - ay) * ny
     put(data, point + SEPARATION, separation)
-    return separation
 
 
 @fused
-def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> tuple[int, int]:
-    """Update the separations of a block with boxes; return whose points to find again, which overlap much.
+def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> int:
+    """Update the separations of a block with boxes; return whose points to find again.
 
     ``tolerance`` is a share of :data:`CACHE_TOLERANCE` and :data:`CACHE_TURN_TOLERANCE`.
     """
@@ -137,16 +134,15 @@ def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> tu
     turn_a = take_numbers(motion.angle, slots.a, k * WIDE) - take(data, at + ANGLE_A)
     turn_b = take_numbers(motion.angle, slots.b, k * WIDE) - take(data, at + ANGLE_B)
     turn_a, turn_b = turn_a * take(data, at + TURNS_A), turn_b * take(data, at + TURNS_B)
-    one = _separation(data, at + ONE, x, y, nx, ny, turn_a, turn_b)
-    two = _separation(data, at + TWO, x, y, nx, ny, turn_a, turn_b)
+    _follow(data, at + ONE, x, y, nx, ny, turn_a, turn_b)
+    _follow(data, at + TWO, x, y, nx, ny, turn_a, turn_b)
     size = take(data, at + SIZE)
     moved = (
         (size_of(x) + size_of(y) > tolerance * CACHE_TOLERANCE * size)
         | (size_of(turn_a) > tolerance * CACHE_TURN_TOLERANCE)
         | (size_of(turn_b) > tolerance * CACHE_TURN_TOLERANCE)
     )
-    deep = -_DEEP * size
-    return mask_bits(moved), mask_bits((one < deep) | (two < deep))
+    return mask_bits(moved)
 
 
 @fused
@@ -165,9 +161,7 @@ def _find_again(
     )  # fmt: skip
     manifold.offset_x, manifold.offset_y = way.dx, way.dy
     touch(manifold, one, two, way, motion, sizes, bounds, near.rotations, h, start, speculative_margin)
-    deep = -_DEEP * manifold.size
-    fits = manifold.count > 0 and manifold.swept == 0 and one.separation >= deep
-    if not fits or (manifold.count == 2 and two.separation < deep):
+    if manifold.count == 0 or manifold.swept != 0:
         if manifold.count == 0:
             forget_points(one, two)
         manifold.found, manifold.slot = 0, -1
@@ -186,7 +180,7 @@ def refresh(
 ) -> None:  # fmt: skip
     """Find where the contacts of all blocks of a kind touch now.
 
-    What is too fast (looked at in the ``first`` substep of a step), has come apart or overlaps deeply is
+    What is too fast (looked at in the ``first`` substep of a step), or has come apart is
     written to its records and added to the scalar pairs. The points of a pair with a box are followed; where
     it has moved, they are found again in the first substep, and it keeps its slot.
     """
@@ -196,8 +190,8 @@ def refresh(
         if slots.kind == DISC:
             lost |= _refresh_discs(slots, k, motion, speculative_margin)
         else:
-            moved, deep = _refresh_boxes(slots, k, motion, tolerance)
-            lost |= deep if first else deep | moved
+            moved = _refresh_boxes(slots, k, motion, tolerance)
+            lost |= 0 if first else moved
         if lost != 0:
             _lose(slots, k, lost, near)
         if first and moved & ~lost != 0:
