@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.kernels.broad import leaving
 from physicslab.systems import broad_phase
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.integrate import IntegrateSystem
@@ -194,3 +195,44 @@ def test_a_body_whose_box_meets_more_cells_than_there_are_integers_is_listed_in_
         world.component(first, Velocity).linear = (speed, speed)
         world.step()
         assert world.table(Transform)["position"].max() > 1e7
+
+
+def crowd_that_falls(speed: float) -> World:
+    """Return 400 discs in loose rows that fall together."""
+    simulation = SimulationConfig(contacts="soft", collisions="step", sleeping=False)
+    world = World(*standard_systems(), simulation=simulation)
+    for i in range(400):
+        place = (0.45 * (i % 20), 0.45 * (i // 20))
+        world.spawn(Transform(place), Velocity((0.0, -speed)), Mass(1.0), Shape.circle(0.1))
+    world.step()
+    return world
+
+
+def test_what_falls_together_is_near_what_is_before_it_and_not_what_is_beside_it() -> None:
+    for speed, pairs_each in ((1.0, 2), (20.0, 10)):  # with a margin for its way on every side: 2 and 40
+        assert len(near(crowd_that_falls(speed))) < pairs_each * 400
+
+
+def test_a_fat_box_reaches_as_far_as_its_body_would_come_and_not_back() -> None:
+    world = World(*standard_systems(), simulation=SimulationConfig(contacts="soft", collisions="step"))
+    for x, vx in ((0.0, 40.0), (5.0, -8.0)):
+        world.spawn(Transform((x, 3.0 * x)), Velocity((vx, 0.0)), Mass(1.0), Shape.circle(0.5))
+    world.step()
+    system = world.schedule.find(BroadPhaseSystem)
+    assert system is not None
+    x = world.table(Transform)["position"][:, 0]
+    ahead, behind = system.boxes[:, 2] - x, x - system.boxes[:, 0]
+    assert ahead[0] > 2.0 * behind[0]
+    assert behind[1] > ahead[1]
+
+
+def test_bodies_of_many_sizes_are_all_found_by_their_cells() -> None:
+    sizes = np.tile((1.0, 3.0, 6.0, 9.0), 50)
+    boxes, n = np.zeros((200, 4)), 200
+    boxes[:, :2] = np.random.default_rng(2).uniform(0.0, 60.0, (n, 2))
+    boxes[:, 2:] = boxes[:, :2] + sizes[:, None]
+    first, (body, home_x, home_y) = np.zeros(513, np.int64), np.zeros((3, n), np.int64)
+    sorted_ones, count, cell = leaving.index_bodies(boxes, np.ones(n, np.int64), first, body, home_x, home_y)
+    assert (sorted_ones, count) == (n, n)
+    assert cell < 4.0, "the small ones are in small cells"
+    assert sorted(body.tolist()) == list(range(n))
