@@ -60,23 +60,48 @@ def _any_deep(contacts: Contacts, near: Near) -> bool:
 
 
 @fused
-def _move(
+def _push_apart(
     a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
-    inverse_mass: Numbers, back: bool,
+    inverse_mass: Numbers,
 ) -> None:  # fmt: skip
-    """Move a pair that overlaps deeply apart, the lighter body further; ``back`` out of a fixed body alone."""
-    ma, mb = inverse_mass[a], inverse_mass[b]
-    if back and ma > 0.0 and mb > 0.0:
-        return
+    """Move the bodies of a pair that overlaps deeply apart, the lighter one further."""
     moved_x = position[b, 0] - before[b, 0] - position[a, 0] + before[a, 0]
     moved_y = position[b, 1] - before[b, 1] - position[a, 1] + before[a, 1]
     depth = -(lowest + moved_x * nx + moved_y * ny) - _DEEP * size
     if depth > 0.0:
-        share = (1.0 if back else _SHARE) * depth / (ma + mb)
-        position[a, 0] -= share * ma * nx
-        position[a, 1] -= share * ma * ny
-        position[b, 0] += share * mb * nx
-        position[b, 1] += share * mb * ny
+        share = _SHARE * depth / (inverse_mass[a] + inverse_mass[b])
+        position[a, 0] -= share * inverse_mass[a] * nx
+        position[a, 1] -= share * inverse_mass[a] * ny
+        position[b, 0] += share * inverse_mass[b] * nx
+        position[b, 1] += share * inverse_mass[b] * ny
+
+
+@fused
+def _put_back(
+    a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
+    inverse_mass: Numbers,
+) -> None:  # fmt: skip
+    """Move what overlaps a fixed body, or the world's bounds, out of it."""
+    if inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0:
+        return
+    i, sign = (b, 1.0) if inverse_mass[b] > 0.0 else (a, -1.0)
+    moved = sign * ((position[i, 0] - before[i, 0]) * nx + (position[i, 1] - before[i, 1]) * ny)
+    depth = -(lowest + moved) - _DEEP * size
+    if depth > 0.0:
+        position[i, 0] += sign * depth * nx
+        position[i, 1] += sign * depth * ny
+
+
+@fused
+def _move(
+    a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
+    inverse_mass: Numbers, back: bool,
+) -> None:  # fmt: skip
+    """Push a pair apart, or put it ``back`` out of a fixed body."""
+    if back:
+        _put_back(a, b, nx, ny, lowest, size, position, before, inverse_mass)
+    else:
+        _push_apart(a, b, nx, ny, lowest, size, position, before, inverse_mass)
 
 
 @inlined
