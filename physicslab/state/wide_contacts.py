@@ -80,7 +80,7 @@ class WideConstraints:
 class WideContacts:
     """The wide contacts of a world, and what they were made of.
 
-    A contact is steady when its bodies move little for their size, it has no impact, and overlaps little.
+    A contact is steady when its bodies move little for their size, and it has no impact.
     Steady contacts of discs and of boxes are in blocks of their own; all others, and all in a world of few
     contacts, are scalar.
 

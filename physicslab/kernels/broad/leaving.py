@@ -27,7 +27,7 @@ _MAX_LARGE = 64
 _SOON = 3.0
 """Substeps within which a body that leaves its box is treated at once, where another one leaves now."""
 _CELL = 1.5
-"""Size of the smallest cells as a multiple of the harmonic mean of the boxes' sizes, which goes by the small."""
+"""Size of the smallest cells, as a multiple of the harmonic mean of the boxes' sizes: that goes by the small."""
 _LEVELS = 4
 """Sizes of cells in the index, each twice the one before."""
 _MAX_CELLS = 256
@@ -35,7 +35,7 @@ _MAX_CELLS = 256
 
 
 class Index(NamedTuple):
-    """Bodies by the cell of their fat boxes' centres, of the level that fits them, then those too large for any.
+    """Bodies by the cells of their fat boxes' centres, of a level that fits them; then those too large.
 
     Where each bucket of cells begins, the rows of the bodies, the cells of the sorted ones, how many of these
     there are, how many in all, and the size of the smallest cells [m]. In ``home_x`` is the level as well.

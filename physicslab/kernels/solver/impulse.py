@@ -5,7 +5,7 @@ import math
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
-from physicslab.kernels.records import Manifold, Manifolds, Point, Points
+from physicslab.kernels.records import Manifolds, Point, Points
 from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.wide.solve import SoftConstraint, sweep_wide, warm_start_wide
 

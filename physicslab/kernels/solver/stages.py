@@ -60,9 +60,7 @@ def find_touching(
     if counts[WIDE_COUNT] > 0:
         before = counts[SCALAR]
         for slots in (near.discs, near.boxes):
-            refresh(
-                slots, near, motion, sizes, inverse, bounds, first, h, start, speculative_margin
-            )
+            refresh(slots, near, motion, sizes, inverse, bounds, first, h, start, speculative_margin)
         came = counts[SCALAR] - before
         counts[WIDE_COUNT] -= came
         if came > 0:
