@@ -104,7 +104,7 @@ def still_holds(
 
 @inlined
 def usual_speed(motion: Motion, sizes: Sizes) -> float:
-    """Return the mean speed [m/s] of what moves, against its mean velocity: what falls together meets less."""
+    """Return the mean speed [m/s] of what moves against its mean velocity: what falls together meets less."""
     moving, mean_x, mean_y, speeds = 0, 0.0, 0.0, 0.0
     for i in range(len(motion.angle)):
         vx, vy = motion.linear[i, 0], motion.linear[i, 1]
