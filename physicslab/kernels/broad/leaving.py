@@ -27,7 +27,7 @@ _MAX_LARGE = 64
 _SOON = 3.0
 """Substeps within which a body that leaves its box is treated at once, where another one leaves now."""
 _CELL = 1.5
-"""Size of the smallest cells, as a multiple of the harmonic mean of the sizes: that goes by the small boxes."""
+"""Size of the smallest cells: a multiple of the harmonic mean of the sizes, which goes by the small boxes."""
 _LEVELS = 4
 """Sizes of cells in the index, each twice the one before."""
 _MAX_CELLS = 256
