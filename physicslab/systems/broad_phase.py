@@ -48,7 +48,7 @@ def _lookahead(sleepers: int, awake: int) -> float:
 
 def _sparse(state: State) -> bool:
     """Whether records are few beside bodies: a list of all pairs is then cheap, and is to hold for long."""
-    return _SPARSE * state.contacts.recorded < len(state.entity_index)
+    return bool(_SPARSE * state.contacts.recorded < len(state.entity_index))
 
 
 class Leavers:
