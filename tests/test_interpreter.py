@@ -29,6 +29,7 @@ from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, read_scene, write_scene
+from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.kernels import KERNELS, ask_before_compiling, compile_kernels, interpreter, motion, raster
 from physicslab.kernels.events.events import run_events
 from physicslab.kernels.forces import gravity
@@ -153,6 +154,18 @@ def smooth_motion() -> None:
     scene(still, integrator="exact").run(steps=2)
 
 
+def springs_beside_contacts() -> None:
+    """Let a chain land on a floor, one end of it whirling about the other so fast that steps are chosen."""
+    chain: list[Entity] = []
+    for i in range(11):
+        fast = {"Velocity": {"linear": [0.0, 600.0 if i == 10 else 0.0]}}
+        spring = {"b": f"e{i}", "stiffness": 900.0, "rest_length": 1.1}
+        chain.append(body(1.15 * i, 0.51, "disc", **fast, **({"Spring": spring} if i else {})))
+    world = scene(FLOOR, *chain, contacts="soft", collisions="step")
+    world.run(steps=3)
+    assert world.plan.split_forces is SPRING_SPLITTING
+
+
 def forces_by_hand() -> None:
     """Call what only other kernels call, or none any more."""
     random, n = np.random.default_rng(2), 4
@@ -220,7 +233,7 @@ def impacts() -> None:
 def test_every_kernel_gives_the_same_bits_as_python() -> None:
     calls: Counter[str] = Counter()
     scenes = built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, rigid_contacts, impacts
-    for drive in (*scenes, forces_by_hand, drawn):
+    for drive in (*scenes, springs_beside_contacts, forces_by_hand, drawn):
         with compared(calls):
             drive()
     own = {name_of(jitted) for jitted in KERNELS if jitted.__module__.startswith("physicslab.")}

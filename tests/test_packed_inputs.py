@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from desk import bits
 
-from physicslab.components import Drag, Mass, Spring, Transform, Velocity
+from physicslab.components import Drag, Mass, Shape, Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
@@ -27,6 +27,15 @@ def linked() -> World:
     bob = world.spawn(Transform((1.0, 0.0)), Velocity((0.2, 0.0)), Mass(2.0), Drag(0.1, 0.05), name="bob")
     ends: dict[str, Any] = {"a": bob, "b": world.entity("fixed"), "anchor_b": (0.5, 0.2)}
     world.spawn(Spring(rest_length=2.0, stiffness=40.0, damping=0.3, **ends), name="rope")
+    return world
+
+
+def kicked() -> World:
+    """Return the same where bodies could touch, so that the forces of every row are packed, for kicks."""
+    world = linked()
+    world.simulation = replace(world.simulation, integrator="leapfrog", contacts="soft", collisions="step")
+    for x in (-100.0, 100.0):
+        world.spawn(Transform((x, 0.0)), Velocity(), Mass(1.0), Shape.circle(0.5))
     return world
 
 
@@ -65,6 +74,11 @@ def column(kind: type[Any], name: str, field: str, value: Any) -> Callable[[Worl
         (linked, column(Spring, "rope", "damping", 0.0)),
         (linked, column(Drag, "bob", "quadratic", 0.5)),
         (linked, column(Mass, "bob", "mass", 3.0)),
+        (kicked, laws(gravity=(1.0, -3.0))),
+        (kicked, column(Transform, "fixed", "angle", 1.2)),
+        (kicked, column(Spring, "rope", "stiffness", 60.0)),
+        (kicked, column(Drag, "bob", "quadratic", 0.5)),
+        (kicked, column(Mass, "bob", "mass", 3.0)),
         (planets, column(Mass, "sun", "mass", 70.0)),
         (planets, column(Mass, "bob", "mass", 2.0)),
         (planets, column(Transform, "sun", "position", (0.1, 0.0))),
@@ -87,7 +101,9 @@ def test_an_edit_between_steps_acts_as_in_a_world_that_begins_with_it(
     assert bits(world) == bits(fresh) != before
 
 
-@pytest.mark.parametrize(("build", "kind"), [(linked, SpringSystem), (planets, GravitySystem)])
+@pytest.mark.parametrize(
+    ("build", "kind"), [(linked, SpringSystem), (kicked, SpringSystem), (planets, GravitySystem)]
+)
 def test_what_is_unchanged_is_not_packed_again(
     build: Callable[[], World], kind: type[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:

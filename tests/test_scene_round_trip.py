@@ -327,7 +327,7 @@ def test_a_pile_that_was_edited_goes_on_with_the_same_bits(
 
 def fast_on_a_spring(world: World) -> int:
     ball = circle(world, (0, 3), velocity=(0, -60))
-    world.spawn(Spring(ball, anchor_b=(0, 5), rest_length=4.5, stiffness=500.0))
+    world.spawn(Spring(ball, None, (0.01, 0.0), (0.0, 5.0), rest_length=4.5, stiffness=500.0))
     return ball
 
 

@@ -24,7 +24,7 @@ from physicslab.files.checks import (
 )
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_rests
 from physicslab.files.remainders import check_remainders
-from physicslab.integrators import INTEGRATORS
+from physicslab.integrators import SPLIT_METHODS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.state.remainders import Remainders
 from physicslab.stepping.plan import MAX_STEPS
@@ -186,7 +186,7 @@ def _chosen(value: Any, where: str) -> tuple[str, str, int]:
     if isinstance(value, list) and len(value) == 3:
         collisions, method, steps = value
         known = collisions in ("exact", "rigid", "step", "none") and isinstance(method, str)
-        if known and method in INTEGRATORS and type(steps) is int and 1 <= steps <= MAX_STEPS:
+        if known and method in SPLIT_METHODS and type(steps) is int and 1 <= steps <= MAX_STEPS:
             return collisions, method, steps
     raise refusal(where, value, allowed)
 

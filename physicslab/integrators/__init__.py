@@ -7,9 +7,10 @@ from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
 from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.integrators.rk4 import RK4
+from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.integrators.symplectic_euler import SYMPLECTIC_EULER
 
-__all__ = ["INTEGRATORS", "Integrator", "StepTooSmall"]
+__all__ = ["INTEGRATORS", "SPLIT_METHODS", "Integrator", "StepTooSmall"]
 
 INTEGRATORS: dict[str, Integrator] = {
     method.name: method
@@ -24,3 +25,6 @@ INTEGRATORS: dict[str, Integrator] = {
     )
 }
 """Every method that can be chosen by name."""
+
+SPLIT_METHODS: dict[str, Integrator] = {**INTEGRATORS, SPRING_SPLITTING.name: SPRING_SPLITTING}
+"""Every method that may move bodies between contacts; spring_splitting is chosen by ``auto`` alone."""

@@ -11,7 +11,7 @@ from physicslab.components import Spring, Transform, Velocity
 from physicslab.kernels.forces.force_calls import ForceKernel
 from physicslab.state.state import State
 
-__all__ = ["PackedForce", "StateLayout", "spring_ends"]
+__all__ = ["PackedForce", "StateLayout", "spring_ends", "turned_anchors"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +108,15 @@ def spring_ends(state: State) -> tuple[NDArray[np.int64], NDArray[np.int64], NDA
     batch, spring, rows_of = state.batch(Spring), state.table(Spring), state.entity_index.rows_of
     a = spring["a"][batch.rows]
     return batch.rows, rows_of(np.where(a == 0, batch.entities, a)), rows_of(spring["b"][batch.rows])
+
+
+def turned_anchors(
+    state: State, end: NDArray[np.int64], springs: NDArray[np.int64], anchors: str
+) -> NDArray[np.float64]:
+    """Return the column ``anchors`` of springs, turned with the bodies at their ends (n, 2) [m]."""
+    angle, anchor = state.table(Transform)["angle"][end], state.table(Spring)[anchors][springs]
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack((c * anchor[:, 0] - s * anchor[:, 1], s * anchor[:, 0] + c * anchor[:, 1]), axis=1)
 
 
 def _swung(state: State) -> NDArray[np.int64]:

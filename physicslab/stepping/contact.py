@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.split_forces import SplitForces
+from physicslab.stepping.split_forces import OF_SPLIT_FORCES, SplitForces
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.schedule import Schedule
@@ -88,7 +88,7 @@ class Contact:
             state.time = start + drifted * h
             if stage is not Stage.PREDICT:
                 run(stage, state, share * h)
-            if split is not None:
+            if split is not None and stage in OF_SPLIT_FORCES:
                 split.take_part(stage, state, share * h)
             if stage is Stage.DRIFT:
                 drifted += share

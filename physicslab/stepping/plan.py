@@ -10,13 +10,14 @@ import numpy as np
 
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
-from physicslab.integrators import INTEGRATORS, Integrator
+from physicslab.integrators import INTEGRATORS, SPLIT_METHODS, Integrator
 from physicslab.integrators.blanes_moan import BLANES_MOAN
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.exact import EXACT
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
 from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_WITH_SPLIT_FORCES
 from physicslab.integrators.rk4 import RK4
+from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.state.packed import spring_ends
 from physicslab.state.state import State
@@ -24,6 +25,7 @@ from physicslab.stepping.ballistic import why_not_exact, why_not_worthwhile
 from physicslab.stepping.contact_model import choose_contacts
 from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.split_forces import sees_velocity_in_python, sub_integrated_rows
+from physicslab.stepping.spring_flow import why_no_spring_flow
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
@@ -39,6 +41,9 @@ _SAMPLED_LIMIT = 200
 """Number of attracting bodies from which sampling their forces takes longer than the accuracy is worth."""
 _WELL_RESOLVED = 0.5
 """omega h of the steps of blanes_moan: above about 1 it does not reach its order."""
+_RESOLVED_BESIDE_CONTACTS = 0.26
+"""omega h of the steps of spring_splitting. Its phase is then right to 4e-10, and what it adds to the error
+of contacts within four substeps is 1e-5 of that (docs/decisions/springs-beside-contacts.md)."""
 MAX_STEPS = 1000
 """Largest number of steps of a method that ``auto`` makes of a step of the world."""
 _STIFF = 1.0
@@ -53,7 +58,7 @@ times the time of the cheapest method that reaches 1e-10 m; 1e-13 takes 5 to 15 
 _OVERDAMPED = 1.4
 """The damping ratio from which that holds."""
 _ASKED_FOR = "asked for"
-_FOLLOWING = (BLANES_MOAN.name, DOP853.name, IMPLICIT_MIDPOINT.name)
+_FOLLOWING = (BLANES_MOAN.name, DOP853.name, IMPLICIT_MIDPOINT.name, SPRING_SPLITTING.name)
 """The methods that ``auto`` chooses by the state of motion."""
 
 
@@ -197,8 +202,8 @@ def resumed_plan(state: State, schedule: Schedule, kept: tuple[str, str, int]) -
         return plan
     reason = f"{method} was chosen before the scene was saved"
     if plan.split_forces is not None and method in _FOLLOWING:
-        return replace(plan, split_forces=INTEGRATORS[method], split_steps=steps, reason=reason)
-    if plan.smooth and (method in _FOLLOWING or method == LEAPFROG.name):
+        return replace(plan, split_forces=SPLIT_METHODS[method], split_steps=steps, reason=reason)
+    if plan.smooth and method in INTEGRATORS and (method in _FOLLOWING or method == LEAPFROG.name):
         return replace(plan, integrator=INTEGRATORS[method], substeps=steps, reason=reason)
     return plan
 
@@ -303,6 +308,9 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
         method, needed, how = IMPLICIT_MIDPOINT, 1, _too_fast(rate)
     elif followed:
         method, how = RK4, f"the force of {python[0]} has no compiled kernel, and forces depend on velocities"
+    elif why_no_spring_flow(state, forces) is None:
+        method, needed = SPRING_SPLITTING, _steps(rate, half, _RESOLVED_BESIDE_CONTACTS)
+        how = f"steps of omega h = {rate * half / needed:.2g}, and {DOP853.name} where springs turn fast"
     elif attractors > 1 or _sees_velocity(state, forces) or _why_singular(state, forces):
         method, needed, how = DOP853, 1, "the step follows the motion"
     else:
@@ -340,9 +348,9 @@ def _is_overdamped(state: State) -> bool:
     return bool(stiff.any() and (decay[stiff] >= 2.0 * _OVERDAMPED * rate[stiff]).all())
 
 
-def _steps(rate: float, h: float) -> int:
+def _steps(rate: float, h: float, resolved: float = _WELL_RESOLVED) -> int:
     """Return the number of steps of a time h that a rate needs, up to a limit."""
-    phase = rate * h / _WELL_RESOLVED
+    phase = rate * h / resolved
     return max(1, math.ceil(phase)) if phase <= MAX_STEPS else MAX_STEPS + 1
 
 

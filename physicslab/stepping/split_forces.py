@@ -9,14 +9,21 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.integrators import Integrator, StepTooSmall
+from physicslab.integrators.dop853 import DOP853
+from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.kernels import motion
+from physicslab.kernels.ode.spring_flow import spring_flow
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import Diverged
 from physicslab.state.state import State
 from physicslab.stepping.fastest_body import fastest_body
+from physicslab.stepping.spring_flow import SpringFlow, why_no_spring_flow
 from physicslab.systems.system import ForceSystem, Stage
 
-__all__ = ["SplitForces", "sees_velocity_in_python", "sub_integrated_rows"]
+__all__ = ["OF_SPLIT_FORCES", "SplitForces", "sees_velocity_in_python", "sub_integrated_rows"]
+
+OF_SPLIT_FORCES = frozenset({Stage.DRIFT, Stage.PREDICT})
+"""The stages in which they take part."""
 
 _MAX_PREDICTABLE = 1.0
 """omega h up to which a force hardly changes within a substep, so that contacts get its prediction."""
@@ -91,7 +98,11 @@ class SplitForces:
         self._ode.tolerance = max(state.simulation.tolerance, _TOLERANCE)
         state.bodies.sub_integrated[:] = rows & state.table(Velocity).present
         self._find_predictable(state)
-        state.compile((*method.kernels, motion.predict))
+        self._springs: SpringFlow | None = None
+        if method is SPRING_SPLITTING and why_no_spring_flow(state, forces) is None:
+            self._springs = SpringFlow(state, forces, self._ode.layout)
+        kernels = method.kernels if self._springs is None else (spring_flow,)
+        state.compile((*kernels, motion.predict))
 
     def outdated(self, state: State) -> bool:
         """Whether a number was changed that the layout, or the choice of a method, depends on."""
@@ -109,6 +120,9 @@ class SplitForces:
 
     def begin(self, state: State) -> None:
         """Take the present forces and masses; they are kept for a step."""
+        if self._springs is not None:
+            self._springs.begin(state)
+            return  # springs without dampers pull no more gently at another speed
         self._ode.gather(state)
         self._find_predictable(state)
 
@@ -125,12 +139,24 @@ class SplitForces:
 
     def _move(self, state: State, h: float) -> None:
         """Advance what is sub-integrated by a time h."""
-        ode = self._ode
-        ode.gather_state(state)
+        made = -1 if self._springs is None else self._springs.move(state, h / self._steps, self._steps)
+        if made < 0:
+            made = self._follow(state, h)
+        state.force_evaluations += made
+
+    def _follow(self, state: State, h: float) -> int:
+        """Advance by the method, or where springs turn too fast for its steps, by one that chooses them."""
+        ode, method, steps = self._ode, self._method, self._steps
+        if self._springs is None:
+            ode.gather_state(state)
+        else:
+            method, steps = DOP853, 1
+            state.compile(method.kernels)
+            ode.gather(state)
         try:
-            made = self._method.flow(state, ode, h / self._steps, self._steps)
+            made = method.flow(state, ode, h / steps, steps)
         except StepTooSmall as error:
             what = f"{fastest_body(state, self._ode.forces)}: Velocity changes too fast: {error}"
             raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error
         ode.scatter(state, h)
-        state.force_evaluations += made
+        return made

@@ -11,7 +11,7 @@ from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels.forces import packed_forces, springs
 from physicslab.kernels.forces.resistance import damper_resistance
-from physicslab.state.packed import PackedForce, StateLayout, spring_ends
+from physicslab.state.packed import PackedForce, StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
 
@@ -63,7 +63,10 @@ class SpringSystem(ForceSystem):
         """Return the pull for compiled integrators."""
         spring, angle = state.table(Spring), state.table(Transform)["angle"]
         rows, ends = self._rows, (self._a, self._b)
-        places = [part for end in ends for part in (layout.place[end], layout.turn[end])]
+        places = []
+        for end, anchors in zip(ends, ("anchor_a", "anchor_b"), strict=True):
+            turns = spring[anchors][rows].any(axis=1)  # the middle of a body stays where it is
+            places += [layout.place[end], np.where(turns, layout.turn[end], -1)]
         indices = np.concatenate(([len(rows)], np.stack(places, axis=1).ravel()))
         parameters = np.empty((len(rows), 7))
         for column, end, anchors in ((0, ends[0], "anchor_a"), (2, ends[1], "anchor_b")):
@@ -80,10 +83,10 @@ class SpringSystem(ForceSystem):
         """Return every number of every spring, and the angles of anchors that no force turns."""
         spring, angle, found = state.table(Spring), state.table(Transform)["angle"], [self.settings(state)]
         for end, anchors in ((self._a, "anchor_a"), (self._b, "anchor_b")):
-            steady = end[layout.turn[end] < 0]
-            if len(steady):
-                off = spring[anchors][self._rows[layout.turn[end] < 0]].any(axis=1)
-                found.append(angle[steady[off]].tobytes())
+            if spring[anchors].any():
+                steady = layout.turn[end] < 0
+                off = spring[anchors][self._rows[steady]].any(axis=1)
+                found.append(angle[end[steady][off]].tobytes())
         return b"".join(found)
 
     def rates(self, state: State) -> NDArray[np.float64]:
@@ -130,20 +133,16 @@ class SpringSystem(ForceSystem):
 
     def _lengths(self, state: State) -> NDArray[np.float64]:
         """Return how long every spring is [m]."""
-        spring, transform = state.table(Spring), state.table(Transform)
-        apart = np.zeros((len(self._rows), 2))
+        position, apart = state.table(Transform)["position"], np.zeros((len(self._rows), 2))
         for end, anchors, sign in ((self._a, "anchor_a", -1.0), (self._b, "anchor_b", 1.0)):
-            angle, anchor = transform["angle"][end], spring[anchors][self._rows]
-            c, s = np.cos(angle), np.sin(angle)
-            x, y = c * anchor[:, 0] - s * anchor[:, 1], s * anchor[:, 0] + c * anchor[:, 1]
-            apart += sign * (transform["position"][end] + np.stack((x, y), axis=1))
+            apart += sign * (position[end] + turned_anchors(state, end, self._rows, anchors))
         return np.hypot(apart[:, 0], apart[:, 1])
 
     def settings(self, state: State) -> bytes:
         """Return every number of every spring."""
         spring = state.table(Spring)
         columns = ("anchor_a", "anchor_b", "rest_length", "stiffness", "damping")
-        return b"".join(spring[column][self._rows].tobytes() for column in columns)
+        return b"".join(spring[column].tobytes() for column in columns)
 
     def couples(self, state: State) -> NDArray[np.int64]:
         """Return the bodies at both ends of every spring."""

@@ -263,16 +263,30 @@ class ForceSystem(System):
         return False
 
     _packed_for: tuple[str, int] = ("", -1)
+    _packed_of: tuple[Any, ...] | None = None
     _packed: PackedForce
+    _layout: StateLayout
     _calls: NDArray[np.int64]
 
     def add_packed(self, state: State, h: float) -> None:
-        """Add the packed force at the present state; the numbers that it reads are packed once a step."""
+        """Add the packed force at the present state; what it is made of is looked at once a step."""
         moment = state.context, state.generation
         if self._packed_for != moment:
-            force = self.packed(state, StateLayout.of_rows(len(state.entity_index)))
-            assert force is not None
-            state.compile((force.kernel, add_forces))
-            self._packed, self._calls, self._packed_for = force, np.array([force.call]), moment
+            self._pack(state)
+            self._packed_for = moment
         bodies = state.bodies
         add_forces(bodies.q, bodies.v, bodies.pull, self._calls)
+
+    def _pack(self, state: State) -> None:
+        """Pack the force for every row, where anything that it is made of was changed."""
+        bodies, structure = state.bodies, (state.context, state.entity_index.revision, state.revision)
+        if self._packed_of is None or self._packed_of[:3] != structure:
+            self._layout = StateLayout.of_rows(len(state.entity_index))
+        numbers = self.inputs(state, self._layout)
+        masses = bodies.inverse_mass.tobytes(), bodies.inverse_inertia.tobytes()
+        made_of = (*structure, state.physics, numbers, *masses)
+        if numbers is None or made_of != self._packed_of:
+            force = self.packed(state, self._layout)
+            assert force is not None
+            state.compile((force.kernel, add_forces))
+            self._packed, self._calls, self._packed_of = force, np.array([force.call]), made_of

@@ -1,0 +1,186 @@
+"""The flow of springs and uniform gravity beside contacts, eight springs at a time.
+
+It follows bodies whose springs are attached to their middles and have no dampers. The springs are in blocks
+of eight in which no two pull at one body that can be moved, and blocks are gone through in order: what acts
+on a body is always added up in the same order.
+"""
+
+from typing import NamedTuple
+
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels.arguments import Motion, MotionTuple
+from physicslab.kernels.wide.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
+from physicslab.kernels.wide.layout import WIDE
+
+__all__ = ["MAX_TURN", "TURNS_FAST", "Links", "LinksTuple", "Places", "PlacesTuple", "spring_flow"]
+
+TURNS_FAST = -1
+"""What is returned where a spring is too short, or turns too far, for steps of this length."""
+MAX_TURN = 0.25
+"""Angle [rad] by which a spring with a rest length may turn, or share of its length by which it may change,
+in a step of the method."""
+
+
+class Places(NamedTuple):
+    """What moves and what springs are attached to, one row each.
+
+    The rows of the world that move (m,); ``place`` and ``speed`` (m + f + 1, 2) of these, of f fixed ends,
+    and of one for slots without a spring; ``pull`` of the same shape, which is [0] the force of the springs
+    at ``place`` where ``known`` (1,) is true. Of each coordinate of what moves: ``gain`` (2 m,), the inverse
+    mass [1/kg], and ``gravity`` (2 m,) [m/s^2].
+    """
+
+    moving: Rows
+    place: Vectors
+    speed: Vectors
+    pull: Vectors
+    known: Flags
+    gain: Numbers
+    gravity: Numbers
+
+
+class Links(NamedTuple):
+    """The springs in blocks of eight: rows of :class:`Places` at A and B, numbers of each.
+
+    ``shortest`` is the length [m] below which the direction of a spring changes too fast.
+    """
+
+    a: Rows
+    b: Rows
+    rest: Numbers
+    stiffness: Numbers
+    shortest: Numbers
+
+
+PlacesTuple = tuple[Rows, Vectors, Vectors, Vectors, Flags, Numbers, Numbers]
+LinksTuple = tuple[Rows, Rows, Numbers, Numbers, Numbers]
+"""The same, without names."""
+
+
+@inlined
+def _gather(places: Places, motion: Motion) -> None:
+    """Take the state of what moves; the pull is known no more if anything is elsewhere."""
+    same = places.known[0]
+    for i in range(len(places.moving)):
+        row = places.moving[i]
+        x, y = motion.position[row, 0], motion.position[row, 1]
+        same = same and x == places.place[i, 0] and y == places.place[i, 1]
+        places.place[i, 0], places.place[i, 1] = x, y
+        places.speed[i, 0], places.speed[i, 1] = motion.linear[row, 0], motion.linear[row, 1]
+    places.known[0] = same
+
+
+@inlined
+def _scatter(places: Places, motion: Motion, span: float) -> None:
+    """Put the state back; what moves has turned steadily for ``span`` seconds."""
+    for i in range(len(places.moving)):
+        row = places.moving[i]
+        motion.position[row, 0], motion.position[row, 1] = places.place[i, 0], places.place[i, 1]
+        motion.linear[row, 0], motion.linear[row, 1] = places.speed[i, 0], places.speed[i, 1]
+        motion.angle[row] += span * motion.angular[row]
+
+
+@fused
+def _turn_fast(places: Places, links: Links, at: int, h: float) -> int:
+    """Return which of eight springs turn too far, or change too much, in ``h`` seconds, as bits."""
+    xa, ya = take_vectors(places.place, links.a, at)
+    xb, yb = take_vectors(places.place, links.b, at)
+    uxa, uya = take_vectors(places.speed, links.a, at)
+    uxb, uyb = take_vectors(places.speed, links.b, at)
+    dx, dy, ux, uy = xb - xa, yb - ya, (uxb - uxa) * h, (uyb - uya) * h
+    far = ux * ux + uy * uy > (dx * dx + dy * dy) * (MAX_TURN * MAX_TURN)
+    return mask_bits(far & (take(links.rest, at) > 0.0))
+
+
+@fused
+def _pull(places: Places, links: Links, at: int) -> int:
+    """Add the pull of eight springs to both ends; return which are too short, as bits."""
+    xa, ya = take_vectors(places.place, links.a, at)
+    xb, yb = take_vectors(places.place, links.b, at)
+    dx, dy = xb - xa, yb - ya
+    length = root(dx * dx + dy * dy)
+    share = take(links.stiffness, at) * (length - take(links.rest, at)) / length
+    share = choose(length > 0.0, share, 0.0)
+    fx, fy = share * dx, share * dy
+    pull_x, pull_y = take_vectors(places.pull, links.a, at)
+    put_vectors(places.pull, links.a, at, pull_x + fx, pull_y + fy)
+    pull_x, pull_y = take_vectors(places.pull, links.b, at)
+    put_vectors(places.pull, links.b, at, pull_x - fx, pull_y - fy)
+    return mask_bits(length < take(links.shortest, at))
+
+
+@inlined
+def _kick_and_drift(places: Places, kick: float, drift: float) -> None:
+    """Change velocities by the pull for ``kick`` seconds, then places for ``drift``; forget the pull."""
+    place, speed = places.place.reshape(places.place.size), places.speed.reshape(places.speed.size)
+    pull, gain, gravity = places.pull.reshape(places.pull.size), places.gain, places.gravity
+    n = len(gain)
+    for i in range(n):
+        v = speed[i] + kick * (pull[i] * gain[i] + gravity[i])
+        speed[i] = v
+        place[i] += drift * v
+        pull[i] = 0.0
+    for i in range(n, len(pull)):
+        pull[i] = 0.0
+
+
+@inlined
+def _clear_pull(places: Places) -> None:
+    pull = places.pull.reshape(places.pull.size)
+    for i in range(len(pull)):
+        pull[i] = 0.0
+
+
+@inlined
+def _evaluate(places: Places, links: Links) -> bool:
+    """Compute the pull of all springs; return whether each is long enough."""
+    short = 0
+    for at in range(0, len(links.a), WIDE):
+        short |= _pull(places, links, at)
+    return short == 0
+
+
+@inlined
+def _advance(places: Places, links: Links, drifts: Numbers, kicks: Numbers, h: float, steps: int) -> int:
+    """Advance what was gathered, as :func:`spring_flow` does."""
+    fast, evaluations = 0, 0
+    for at in range(0, len(links.a), WIDE):
+        fast |= _turn_fast(places, links, at, h)
+    if fast != 0:
+        return TURNS_FAST
+    if not places.known[0]:
+        _clear_pull(places)
+        evaluations = 1
+        if not _evaluate(places, links):
+            return TURNS_FAST
+    for _ in range(steps):
+        for stage in range(len(drifts)):
+            _kick_and_drift(places, kicks[stage] * h, drifts[stage] * h)
+            evaluations += 1
+            if not _evaluate(places, links):
+                return TURNS_FAST
+        speed, pull = places.speed.reshape(places.speed.size), places.pull.reshape(places.pull.size)
+        kick = kicks[len(drifts)] * h
+        for i in range(len(places.gain)):
+            speed[i] += kick * (pull[i] * places.gain[i] + places.gravity[i])
+    return evaluations
+
+
+@kernel
+def spring_flow(
+    motion_tuple: MotionTuple, places_tuple: PlacesTuple, links_tuple: LinksTuple,
+    drifts: Numbers, kicks: Numbers, h: float, steps: int,
+) -> int:  # fmt: skip
+    """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
+
+    A step is kick, drift, kick, ..., drift, kick, with the shares ``kicks`` (n + 1,) and ``drifts`` (n,) of
+    h. Where a spring becomes so short, or turns so fast, that steps of one length do not follow it, nothing
+    is changed, and :data:`TURNS_FAST` returned.
+    """
+    motion, places, links = Motion(*motion_tuple), Places(*places_tuple), Links(*links_tuple)
+    _gather(places, motion)
+    evaluations = _advance(places, links, drifts, kicks, h, steps)
+    places.known[0] = evaluations >= 0
+    if evaluations >= 0:
+        _scatter(places, motion, h * steps)
+    return evaluations

@@ -1,0 +1,338 @@
+"""Springs beside contacts: a flow of their own, eight springs at a time, with steps of one length."""
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from desk import bits
+from hypothesis import given
+from hypothesis import strategies as st
+
+from physicslab.components import Drag, Mass, Spring, Transform, Velocity
+from physicslab.diagnostics.energy import measure_energy
+from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.files.json_text import json_text
+from physicslab.files.scene import read_scene, write_scene
+from physicslab.integrators.spring_splitting import DRIFTS, KICKS, SPRING_SPLITTING
+from physicslab.lab import worlds
+from physicslab.lab.bench.moving import chains
+from physicslab.lab.worlds import floor, place
+from physicslab.prefabs import box, circle
+from physicslab.stepping import split_forces, spring_flow
+from physicslab.stepping.contact import Contact
+from physicslab.stepping.split_forces import SplitForces
+from physicslab.world import World
+
+open_space = partial(worlds.open_space, contacts="soft", collisions="step")
+
+
+def far_floor(world: World) -> World:
+    """Return a world in which things could touch, and do not."""
+    box(world, (0.0, -1e3), width=1.0, height=1.0, static=True)
+    return world
+
+
+def elastic_pendulum(substeps: int) -> tuple[World, int]:
+    """Return the elastic pendulum of the reference problems, of 2 m rad/s omega h a half substep of 0.5 s."""
+    world = far_floor(open_space())
+    world.simulation = replace(world.simulation, dt=0.5, substeps=substeps)
+    bob = circle(world, (1.2, 0.0), radius=0.1, mass=1.0)
+    world.add(bob, Spring(rest_length=1.0, stiffness=40.0))
+    return world, bob
+
+
+def chain(order: int = 1, *, discs: int = 10, height: float = 0.3, gravity: float | None = 9.81) -> World:
+    """Return a bent chain of discs above a floor, spawned from one end or (-1) from the other."""
+    world, random = open_space(gravity=gravity), np.random.default_rng(1)
+    floor(world)
+    bends = random.uniform(-0.02, 0.02, (discs, 2)).tolist()
+    places = [(0.25 * i + dx, height + dy) for i, (dx, dy) in enumerate(bends)]
+    row = [circle(world, at, radius=0.1, mass=0.1, angular_velocity=1.0) for at in places[::order]][::order]
+    for a, b in pairwise(row):
+        world.spawn(Spring(a, b, rest_length=0.25, stiffness=360.0))
+    return world
+
+
+def split_of(world: World) -> SplitForces:
+    world.synchronise()
+    stepper = world.steppers.usable[-1]
+    assert isinstance(stepper, Contact) and stepper._split is not None
+    return stepper._split
+
+
+def follows(world: World) -> bool:
+    """Whether springs are moved by a flow of their own."""
+    return split_of(world)._springs is not None
+
+
+# ---- the method --------------------------------------------------------------------------------------------
+
+
+def error_after_one_second(substeps: int) -> float:
+    world, bob = elastic_pendulum(substeps)
+    assert split_of(world)._steps == 1 and follows(world)
+    world.run(seconds=1.0)
+    at = place(world, bob)
+    return math.hypot(at.x + 0.6462298902398042, at.y + 1.284530828135613)
+
+
+def test_an_elastic_pendulum_is_where_the_reference_has_it() -> None:
+    """By Taylor's method with 40 digits, as the reference problems have it; omega h is 0.23 and 0.11."""
+    assert error_after_one_second(7) < 2e-6
+    assert error_after_one_second(14) < 1e-7
+
+
+def test_the_order_is_four() -> None:
+    assert math.log2(error_after_one_second(32) / error_after_one_second(64)) == pytest.approx(4, abs=0.1)
+
+
+def of_oscillator(z: float) -> np.ndarray[Any, Any]:
+    """Return the matrix of a step of omega h = z."""
+    step = np.eye(2)
+    for kick, drift in zip(KICKS, (*DRIFTS, 0.0), strict=True):
+        step = np.array(((1.0, drift * z), (0.0, 1.0))) @ np.array(((1.0, 0.0), (-kick * z, 1.0))) @ step
+    return step
+
+
+def test_linear_oscillations_are_followed_to_order_six() -> None:
+    errors = []
+    for z in (0.2, 0.4):
+        exact = np.array(((math.cos(z), math.sin(z)), (-math.sin(z), math.cos(z))))
+        errors.append(float(np.abs(of_oscillator(z) - exact).max()))
+    assert math.log2(errors[1] / errors[0]) == pytest.approx(7, abs=0.1)  # a step's is of one order more
+
+
+def test_what_the_method_states_of_itself_is_so() -> None:
+    z = 0.26
+    phase = math.acos(0.5 * float(np.trace(of_oscillator(z))))
+    lost = abs(phase / z - 1.0)
+    assert lost == pytest.approx(SPRING_SPLITTING.phase_share * z**SPRING_SPLITTING.phase_order, rel=0.1)
+    limit = SPRING_SPLITTING.stability_limit
+    assert abs(np.trace(of_oscillator(limit))) <= 2.0 < abs(np.trace(of_oscillator(1.01 * limit)))
+
+
+# ---- what it is used for -----------------------------------------------------------------------------------
+
+
+def with_damper(world: World) -> None:
+    world.spawn(Spring(2, 3, rest_length=0.25, stiffness=360.0, damping=0.1))
+
+
+def with_drag(world: World) -> None:
+    world.add(2, Drag(linear=0.1))
+
+
+def with_anchor(world: World) -> None:
+    world.spawn(Spring(2, 3, (0.05, 0.0), rest_length=0.25, stiffness=360.0))
+
+
+def with_damping(world: World) -> None:
+    world.physics = replace(world.physics, linear_damping=0.1)
+
+
+def with_planets(world: World) -> None:
+    world.physics = PhysicsConfig(gravity_mode="planet", G=1e-3)
+
+
+@pytest.mark.parametrize("change", [with_damper, with_drag, with_anchor, with_damping, with_planets])
+def test_what_is_no_plain_spring_is_followed_as_before(change: Callable[[World], None]) -> None:
+    world = chain()
+    assert follows(world) and world.plan.split_forces is SPRING_SPLITTING
+    change(world)
+    assert not follows(world) and world.plan.split_forces is not SPRING_SPLITTING
+
+
+def test_the_reason_names_the_method_and_its_steps() -> None:
+    world = chain()
+    world.synchronise()
+    assert (
+        "spring_splitting: steps of omega h = 0.25, and dop853 where springs turn fast" in world.plan.reason
+    )
+
+
+def by_dop853() -> Any:
+    """Let springs be followed by dop853 alone, within a with block."""
+    return patch.object(spring_flow.SpringFlow, "move", lambda *_: -1)
+
+
+def after(build: Callable[[], World], seconds: float, *, adaptive: bool = False) -> Any:
+    world = build()
+    split_of(world)
+    if adaptive:
+        with by_dop853():
+            world.run(seconds=seconds)
+    else:
+        world.run(seconds=seconds)
+    return np.concatenate((world.table(Transform)["position"], world.table(Velocity)["linear"]))
+
+
+def test_a_chain_on_a_floor_is_where_a_far_more_accurate_method_has_it() -> None:
+    """Contacts within four substeps are 3e-4 m off; the flow between them adds 2e-9."""
+    assert np.abs(after(chain, 0.5) - after(chain, 0.5, adaptive=True)).max() < 1e-6
+    flow, followed = (after(chain, 0.5, adaptive=way)[:12] for way in (False, True))
+    assert 0.0 < np.abs(flow - followed).max() < 2e-8
+
+
+def pressed() -> World:
+    """Return two discs that pass each other closely, which presses the spring between them together."""
+    world = far_floor(open_space(gravity=None))
+    ends = [circle(world, (x, 0.0), radius=0.01, mass=1.0, velocity=(-9.0 * x, 0.1 * x)) for x in (-1.0, 1.0)]
+    world.spawn(Spring(ends[0], ends[1], rest_length=2.0, stiffness=20.0))
+    return world
+
+
+def whirled() -> World:
+    """Return a body that goes round 20 rad a step at the end of a soft spring."""
+    world = far_floor(open_space(gravity=None))
+    bob = circle(world, (0.1, 0.0), radius=0.01, velocity=(0.0, 120.0))
+    world.add(bob, Spring(rest_length=0.1, stiffness=10.0))
+    return world
+
+
+@pytest.mark.parametrize("build", [pressed, whirled])
+def test_a_spring_that_turns_or_shortens_fast_is_followed_by_dop853(build: Callable[[], World]) -> None:
+    followed: list[int] = []
+    follow = SplitForces._follow
+
+    def counted(self: SplitForces, *arguments: Any) -> int:
+        followed.append(1)
+        return follow(self, *arguments)
+
+    with patch.object(split_forces.SplitForces, "_follow", counted):
+        found = after(build, 0.5)
+    assert 0 < len(followed) < 240
+    assert np.abs(found - after(build, 0.5, adaptive=True)).max() < 1e-5
+
+
+def test_energy_is_kept_where_a_spring_is_pressed_together() -> None:
+    world = pressed()
+    before = measure_energy(world).total
+    world.run(seconds=5.0)
+    assert measure_energy(world).total == pytest.approx(before, rel=1e-6)
+
+
+def test_a_flow_that_cannot_be_made_changes_nothing() -> None:
+    world = whirled()
+    split = split_of(world)
+    with world.active():
+        split.begin(world)
+        before = bits(world)
+        assert split._springs is not None and split._springs.move(world, 1e-3, 1) == -1
+    assert bits(world) == before
+
+
+# ---- bits --------------------------------------------------------------------------------------------------
+
+
+@given(
+    ends=st.lists(st.tuples(st.integers(0, 12), st.integers(0, 12)), max_size=60),
+    fixed=st.sets(st.integers(0, 12)),
+)
+def test_no_two_springs_of_a_block_pull_at_one_body(ends: list[tuple[int, int]], fixed: set[int]) -> None:
+    pairs = np.array([(a, b) for a, b in ends if a != b], np.int64).reshape(-1, 2)
+    movable = np.array([i not in fixed for i in range(13)])
+    order = spring_flow._in_blocks(pairs[:, 0], pairs[:, 1], movable)
+    assert sorted(order[order >= 0].tolist()) == list(range(len(pairs)))
+    pulled: list[list[int]] = [[] for _ in movable]
+    for block in order.reshape(-1, 8):
+        held = [end for spring in block[block >= 0] for end in pairs[spring] if movable[end]]
+        assert len(held) == len(set(held))
+        for spring in block[block >= 0]:
+            for end in pairs[spring]:
+                pulled[end].append(int(spring))
+    for body, springs in enumerate(pulled):
+        assert not movable[body] or springs == sorted(springs), "what pulls at a body does so in order"
+
+
+def test_a_run_has_the_bits_of_its_steps_and_of_a_file_between() -> None:
+    whole, single = chain(), chain()
+    whole.run(steps=90)
+    for _ in range(45):
+        single.step()
+    again = read_scene(json.loads(json_text(write_scene(single))))
+    for _ in range(45):
+        single.step()
+        again.step()
+    assert whole.contacts.count > 0
+    assert bits(whole) == bits(single) == bits(again)
+
+
+def test_in_free_motion_the_order_of_entities_changes_no_bit() -> None:
+    one, other = (chain(order, height=50.0) for order in (1, -1))
+    for world in (one, other):
+        world.run(seconds=1.0)
+    ends = [sorted(world.table(Transform)["position"][2:12].tolist()) for world in (one, other)]
+    assert follows(one) and ends[0] == ends[1]
+
+
+def held_up() -> World:
+    """Return a chain that hangs from a turned fixed body and a point, with a held end."""
+    world = chain()
+    post = world.spawn(Transform((0.0, 2.0), 0.3), name="post")
+    world.spawn(Spring(post, 2, (0.1, 0.2), rest_length=1.0, stiffness=50.0), name="rope")
+    world.spawn(Spring(11, None, anchor_b=(2.0, 2.0), rest_length=1.0, stiffness=50.0))
+    return world
+
+
+def edit_gravity(world: World) -> None:
+    world.physics = replace(world.physics, gravity=Vector2(1.0, -3.0))
+
+
+def edit_spring(world: World) -> None:
+    world.component(world.entity("rope"), Spring).stiffness = 80.0
+
+
+def edit_anchor(world: World) -> None:
+    world.component(world.entity("rope"), Spring).anchor_a = (0.2, -0.1)
+
+
+def edit_post(world: World) -> None:
+    world.component(world.entity("post"), Transform).position = (0.5, 2.5)
+
+
+def edit_angle(world: World) -> None:
+    world.component(world.entity("post"), Transform).angle = 1.0
+
+
+def edit_place(world: World) -> None:
+    world.component(5, Transform).position = (1.0, 0.6)
+
+
+def edit_mass(world: World) -> None:
+    world.component(6, Mass).mass = 0.3
+
+
+def edit_damper(world: World) -> None:
+    world.component(world.entity("rope"), Spring).damping = 0.5
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [edit_gravity, edit_spring, edit_anchor, edit_post, edit_angle, edit_place, edit_mass, edit_damper],
+)
+def test_an_edit_acts_as_in_a_world_that_begins_with_it(edit: Callable[[World], None]) -> None:
+    world = held_up()
+    world.run(steps=5)
+    unedited = read_scene(json.loads(json_text(write_scene(world))))
+    edit(world)
+    fresh = read_scene(json.loads(json_text(write_scene(world))))
+    for each in (world, fresh, unedited):
+        each.run(steps=5)
+    assert bits(world) == bits(fresh) != bits(unedited)
+
+
+def test_the_bench_chains_take_few_evaluations_and_none_by_dop853() -> None:
+    world = chains(10)
+    world.run(steps=20)
+    before = world.force_evaluations
+    with patch.object(split_forces, "DOP853", None):
+        world.run(steps=20)
+    assert world.force_evaluations - before == 20 * (8 * 5 + 4)  # and one a substep for the contacts
