@@ -13,11 +13,14 @@ from hypothesis import strategies as st
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels.broad import leaving
+from physicslab.prefabs import gas
 from physicslab.systems import broad_phase
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
+
+SOFT = SimulationConfig(contacts="soft", collisions="step", sleeping=False)
 
 
 def near(world: World) -> list[tuple[int, int, int]]:
@@ -131,9 +134,8 @@ def test_the_number_of_pairs_grows_with_the_bodies_and_not_their_square(count: i
 def funnel(seed: int, bounded: bool) -> World:
     """Return 90 discs and boxes that fall between slopes, past a plank that turns, to a floor or bounds."""
     rng = np.random.default_rng(seed)
-    simulation = SimulationConfig(contacts="soft", collisions="step", sleeping=False)
     bounds = PhysicsConfig(bounds=(-5.0, -3.0, 5.0, 30.0) if bounded else None)
-    world = World(*standard_systems(), physics=bounds, simulation=simulation)
+    world = World(*standard_systems(), physics=bounds, simulation=SOFT)
     if not bounded:
         body(world, 0.0, -3.5, Shape.box(40.0, 1.0), moves=False)
     for side in (-1.0, 1.0):
@@ -168,6 +170,22 @@ def test_new_pairs_of_few_bodies_give_the_same_bits_as_new_lists_of_all(seed: in
     assert bits(added) == bits(listed)
     pairs = near(added)
     assert len(set(pairs)) == len(pairs)
+
+
+def test_in_a_gas_whose_records_are_few_all_pairs_are_listed_again() -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"), simulation=SOFT)
+    gas(world, 300, (-4.0, -4.0, 4.0, 4.0))
+    world.step()
+    system = world.schedule.find(BroadPhaseSystem)
+    assert system is not None
+    listed = 0
+    for _ in range(60):
+        before = system.boxes.copy()
+        world.step()
+        assert system.leavers.number == 0, "no body had its new pairs alone listed"
+        listed += not np.array_equal(before, system.boxes)
+    assert listed > 10
+    assert 2 * world.contacts.recorded < len(world.entity_index)
 
 
 @pytest.mark.parametrize("bounded", [False, True])

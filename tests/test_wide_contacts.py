@@ -7,6 +7,7 @@ import pytest
 from desk import bits
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.contacts import wide
 from physicslab.contacts.arguments import motion_of, near_in
 from physicslab.contacts.memory import export_contacts, restore_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
@@ -15,6 +16,7 @@ from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import compile_kernels, near_counts
 from physicslab.kernels.arguments import Motion, MotionTuple
 from physicslab.kernels.solver import entries
+from physicslab.kernels.wide import restore_slots
 from physicslab.kernels.wide.layout import MASS_A, MASS_B, WIDE
 from physicslab.lab.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle, container, pile, pyramid
@@ -320,3 +322,22 @@ def test_a_heavier_body_keeps_its_slots_with_the_new_mass(name: str) -> None:
             for rows, at in ((constraints.a, MASS_A), (constraints.b, MASS_B)):
                 if rows[slot] == row:
                     assert block[at + slot % WIDE] == inverse[row]
+
+
+@pytest.mark.parametrize("name", ADDED)
+def test_an_edited_body_fills_its_own_slots_again_and_gives_the_bits_of_filling_all(name: str) -> None:
+    ours, full = ADDED[name](), ADDED[name]()
+    for world in (ours, full):
+        body = [entity for entity in world.entities() if world.has(entity, Mass)][40]
+        world.component(body, Mass).mass *= 1.1
+        world.component(body, Material).friction *= 0.9
+    with pytest.MonkeyPatch.context() as patch:
+        filled: list[World] = []
+        patch.setattr(wide, "fill_again", filled.append)
+        ours.run(steps=5)
+        assert not filled
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(restore_slots, "outdated", lambda *arguments: 2)
+        full.run(steps=1)
+    full.run(steps=4)
+    assert bits(ours) == bits(full)

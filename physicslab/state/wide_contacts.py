@@ -90,6 +90,8 @@ class WideContacts:
         The blocks.
     made_of : float64 array (rows, 7)
         The masses, sizes and materials that slots contain.
+    changed : bool array (rows,)
+        Which bodies have others now, when that was last looked at.
 
     Parameters
     ----------
@@ -99,7 +101,7 @@ class WideContacts:
 
     kernels = (
         graph_colour.add_constraints, restore_slots.restore_slots, graph_colour.sort_blocks,
-        restore_slots.remember, restore_slots.outdated,
+        restore_slots.remember, restore_slots.outdated, restore_slots.update_slots,
         slots.store, slots.list_scalar, slots.follow_pairs,
         slots.release, refresh.deepest_wide,
     )  # fmt: skip
@@ -108,6 +110,7 @@ class WideContacts:
         self._counts = counts
         self.discs, self.boxes = WideConstraints(DISC, counts), WideConstraints(BOX, counts)
         self.made_of: NDArray[np.float64] = np.zeros((0, 7))
+        self.changed: NDArray[np.bool_] = np.zeros(0, np.bool_)
 
     @property
     def kinds(self) -> tuple[WideConstraints, WideConstraints]:

@@ -11,14 +11,15 @@ from physicslab.kernels.arguments import Motion, MotionTuple, Sizes, SizesTuple
 from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE, WIDE_TOLERANCE
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN
 
-__all__ = ["CORNERWISE", "fat_boxes", "fatten", "left", "still_holds", "usual_speed"]
+__all__ = ["CORNERWISE", "HIT_SHARE", "fat_boxes", "fatten", "left", "still_holds", "usual_speed"]
 
 CORNERWISE = math.sqrt(2.0)
 """Largest ratio of the distance of two boxes to their distance along the normal of a side."""
 _BOX_SHARE = 0.5 * CORNERWISE * (1.5 * CONTACT_MARGIN + WIDE_TOLERANCE * CACHE_TOLERANCE)
 """Share of its smaller side up to which a slow box is one half of a pair that has points, or keeps them."""
-_HIT_SHARE = 1.0
-"""Share of its bounding radius by which the margin of a slow body is increased at most."""
+HIT_SHARE = 1.0
+"""Share of its bounding radius by which the margin of a slow body is increased at most where many pairs have
+records."""
 _TURN_SHARE = CORNERWISE * WIDE_TOLERANCE * CACHE_TURN_TOLERANCE
 """The same for points that are kept while it turns, as a share of its bounding radius."""
 
@@ -123,12 +124,14 @@ def usual_speed(motion: Motion, sizes: Sizes) -> float:
 
 @inlined
 def fatten(
-    i: int, motion: Motion, sizes: Sizes, fat: Vectors, h: float, usual: float, speculative_margin: float
-) -> tuple[float, float, float, float]:
+    i: int, motion: Motion, sizes: Sizes, fat: Vectors, h: float, usual: float, hit_share: float,
+    speculative_margin: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
     """Return the fat box (xmin, ymin, xmax, ymax) of body i, good for some three steps of four substeps h.
 
     It reaches as far as the body would come at its velocity. What is among fast bodies is likely to be hit:
-    the margin around that way goes by the ``usual`` speed [m/s], but for no more than a share of its size.
+    the margin around that way goes by the ``usual`` speed [m/s], but for no more than ``hit_share`` of its
+    bounding radius.
     """
     kind, angle = sizes.kind[i], motion.angle[i]
     x, y, width, height = motion.position[i, 0], motion.position[i, 1], sizes.width[i], sizes.height[i]
@@ -138,7 +141,7 @@ def fatten(
         c, s = abs(math.cos(angle)), abs(math.sin(angle))
         half_x, half_y = 0.5 * (c * width + s * height), 0.5 * (s * width + c * height)
     vx, vy = motion.linear[i, 0], motion.linear[i, 1]
-    around = max(2.0 * h * math.sqrt(vx * vx + vy * vy), min(13.0 * h * usual, _HIT_SHARE * reach))
+    around = max(2.0 * h * math.sqrt(vx * vx + vy * vy), min(13.0 * h * usual, hit_share * reach))
     ahead_x, ahead_y = max(6.5 * h * abs(vx) - 0.5 * around, 0.0), max(6.5 * h * abs(vy) - 0.5 * around, 0.0)
     margin = 0.08 * min(half_x, half_y) + around
     margin += 2.0 * h * abs(motion.angular[i]) * (reach if kind == 2 else 0.0)
@@ -153,9 +156,9 @@ def fatten(
 @kernel
 def fat_boxes(
     plain_motion: MotionTuple, plain_sizes: SizesTuple, inverse_mass: Numbers, fat: Vectors, boxes: Vectors,
-    h: float, speculative_margin: float,
+    h: float, hit_share: float, speculative_margin: float,
 ) -> None:  # fmt: skip
-    """Make each body's fat box (xmin, ymin, xmax, ymax), good for some three steps of four substeps h."""
+    """Make each body's fat box, as :func:`fatten` describes."""
     motion, sizes = Motion(*plain_motion), Sizes(*plain_sizes)
     usual = usual_speed(motion, sizes)
     for i in range(len(motion.angle)):
@@ -163,5 +166,5 @@ def fat_boxes(
         if sizes.kind[i] != 0:
             hit = usual if inverse_mass[i] > 0.0 else 0.0
             boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = fatten(
-                i, motion, sizes, fat, h, hit, speculative_margin
+                i, motion, sizes, fat, h, hit, hit_share, speculative_margin
             )

@@ -12,7 +12,7 @@ import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, fused, inlined, kernel
 from physicslab.kernels.arguments import Motion, MotionTuple, Near, NearTuple, Sizes, SizesTuple, named_near
-from physicslab.kernels.broad.fat_boxes import fatten, left, usual_speed
+from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fatten, left, usual_speed
 from physicslab.kernels.broad.grid import cell_at
 from physicslab.kernels.broad.near_pairs import beside, distance_to_activate, make_blank
 from physicslab.kernels.near_counts import PROXIMITY, RECORDED, SCALAR, UNORDERED
@@ -242,7 +242,7 @@ def _add_pairs(
         before = boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3]
         old = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i], fat[6, i], fat[7, i]
         hit = usual if inverse_mass[i] > 0.0 else 0.0
-        x0, y0, x1, y1 = fatten(i, motion, sizes, fat, ahead, hit, speculative_margin)
+        x0, y0, x1, y1 = fatten(i, motion, sizes, fat, ahead, hit, HIT_SHARE, speculative_margin)
         new = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i], fat[6, i], fat[7, i]
         if new[3] != old[3]:
             return -1

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import always_inlined, fused, inlined
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion, Sizes
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON, Lever, Weights, one_blow, two_blows
@@ -282,7 +282,7 @@ def _resolve_once(
     return bounced, left, energetic, lowered, elastic
 
 
-@inlined
+@always_inlined
 def resolve_impacts(
     contacts: Contacts, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log, logged: int,
     h: float, start: float, end: float,

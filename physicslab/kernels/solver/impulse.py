@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, fused, inlined, kernel
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
 from physicslab.kernels.records import Manifolds, Point, Points
@@ -120,7 +120,7 @@ def solve(
             break
 
 
-@inlined
+@always_inlined
 def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
     """Bring separations up to date for a drift of h at the present velocities."""
     for k in range(contacts.number):

@@ -3,7 +3,7 @@
 Systems call them one by one through :mod:`physicslab.kernels.solver.entries`.
 """
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import always_inlined, fused
 from physicslab.kernels.arguments import (
     Acting,
     Bounds,
@@ -46,7 +46,7 @@ def _contacts(near: Near) -> Contacts:
     return Contacts(near.manifolds, near.points, near.touching, near.counts[ACTIVE])
 
 
-@inlined
+@always_inlined
 def find_touching(
     near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
     first: bool, h: float, start: float, speculative_margin: float,
@@ -77,7 +77,7 @@ def find_touching(
     )
 
 
-@inlined
+@always_inlined
 def resolve_all_impacts(
     near: Near, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log,
     h: float, start: float, end: float,
