@@ -1,4 +1,4 @@
-"""A browser without a window, for tests of exported pages: Chromium, spoken to through two pipes."""
+"""A browser without a window, for tests of exported pages: Chromium, driven through two pipes."""
 
 from __future__ import annotations
 
@@ -44,20 +44,23 @@ class Browser:
         self._waiting = b""
 
     def __enter__(self) -> Self:
+        import fcntl  # which Windows has not
+
         assert CHROMIUM is not None
         self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         read_by_it, self._write = os.pipe()
         self._read, written_by_it = os.pipe()
         command = [CHROMIUM, *_FLAGS, f"--user-data-dir={self._folder.name}", "about:blank"]
-        # The browser reads from 3 and writes to 4, whichever numbers the pipes have here.
-        script = f'exec 3<&{read_by_it} 4>&{written_by_it}; exec "$@"'
+        # The browser reads from 3 and writes to 4; neither may be a pipe's number here.
+        ends = [fcntl.fcntl(end, fcntl.F_DUPFD, 10) for end in (read_by_it, written_by_it)]
+        script = f'exec 3<&{ends[0]} 4>&{ends[1]}; exec "$@"'
         self._program = subprocess.Popen(
             ["bash", "-c", script, "browser", *command],
-            pass_fds=(read_by_it, written_by_it), stdin=subprocess.DEVNULL,
+            pass_fds=ends, stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
-        os.close(read_by_it)
-        os.close(written_by_it)
+        for end in (read_by_it, written_by_it, *ends):
+            os.close(end)
         targets = self.call("Target.getTargets")["targetInfos"]
         page = next(target for target in targets if target["type"] == "page")
         attached = self.call("Target.attachToTarget", targetId=page["targetId"], flatten=True)

@@ -18,7 +18,7 @@ type Box = tuple[float, float, float, float]
 _SURROUNDINGS = 8.0
 """How much is shown at least, in sizes of the largest thing that moves."""
 _STRAY_FROM_GROUND, _STRAY = 0.25, 4.0
-"""How far what leaves the place is followed, in sizes of it: where there is ground, and where none is."""
+"""How far what leaves the place is followed, in sizes of it, where there is ground and where not."""
 _BESIDE = 0.1
 """How far what does not move is shown, in sizes of what is shown."""
 _MARGIN = 0.04
