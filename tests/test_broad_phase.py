@@ -12,11 +12,15 @@ from hypothesis import strategies as st
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.kernels.broad import leaving
+from physicslab.prefabs import gas
 from physicslab.systems import broad_phase
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
+
+SOFT = SimulationConfig(contacts="soft", collisions="step", sleeping=False)
 
 
 def near(world: World) -> list[tuple[int, int, int]]:
@@ -130,9 +134,8 @@ def test_the_number_of_pairs_grows_with_the_bodies_and_not_their_square(count: i
 def funnel(seed: int, bounded: bool) -> World:
     """Return 90 discs and boxes that fall between slopes, past a plank that turns, to a floor or bounds."""
     rng = np.random.default_rng(seed)
-    simulation = SimulationConfig(contacts="soft", collisions="step", sleeping=False)
     bounds = PhysicsConfig(bounds=(-5.0, -3.0, 5.0, 30.0) if bounded else None)
-    world = World(*standard_systems(), physics=bounds, simulation=simulation)
+    world = World(*standard_systems(), physics=bounds, simulation=SOFT)
     if not bounded:
         body(world, 0.0, -3.5, Shape.box(40.0, 1.0), moves=False)
     for side in (-1.0, 1.0):
@@ -169,6 +172,22 @@ def test_new_pairs_of_few_bodies_give_the_same_bits_as_new_lists_of_all(seed: in
     assert len(set(pairs)) == len(pairs)
 
 
+def test_in_a_gas_whose_records_are_few_all_pairs_are_listed_again() -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"), simulation=SOFT)
+    gas(world, 300, (-4.0, -4.0, 4.0, 4.0))
+    world.step()
+    system = world.schedule.find(BroadPhaseSystem)
+    assert system is not None
+    listed = 0
+    for _ in range(60):
+        before = system.boxes.copy()
+        world.step()
+        assert system.leavers.number == 0, "no body had its new pairs alone listed"
+        listed += not np.array_equal(before, system.boxes)
+    assert listed > 10
+    assert 2 * world.contacts.recorded < len(world.entity_index)
+
+
 @pytest.mark.parametrize("bounded", [False, True])
 def test_all_pairs_of_boxes_that_overlap_are_listed_when_some_have_left(bounded: bool) -> None:
     world = funnel(7, bounded)
@@ -194,3 +213,43 @@ def test_a_body_whose_box_meets_more_cells_than_there_are_integers_is_listed_in_
         world.component(first, Velocity).linear = (speed, speed)
         world.step()
         assert world.table(Transform)["position"].max() > 1e7
+
+
+def crowd_that_falls(speed: float) -> World:
+    """Return 400 discs in loose rows that fall together."""
+    simulation = SimulationConfig(contacts="soft", collisions="step", sleeping=False)
+    world = World(*standard_systems(), simulation=simulation)
+    for i in range(400):
+        place = (0.45 * (i % 20), 0.45 * (i // 20))
+        world.spawn(Transform(place), Velocity((0.0, -speed)), Mass(1.0), Shape.circle(0.1))
+    world.step()
+    return world
+
+
+def test_what_falls_together_is_near_what_is_before_it_and_not_what_is_beside_it() -> None:
+    for speed, pairs_each in ((1.0, 2), (20.0, 10)):  # with a margin for its way on every side: 2 and 40
+        assert len(near(crowd_that_falls(speed))) < pairs_each * 400
+
+
+def test_a_fat_box_reaches_as_far_as_its_body_would_come_and_not_back() -> None:
+    world = World(*standard_systems(), simulation=SimulationConfig(contacts="soft", collisions="step"))
+    for x, vx in ((0.0, 40.0), (50.0, -30.0)):
+        world.spawn(Transform((x, 3.0 * x)), Velocity((vx, 0.0)), Mass(1.0), Shape.circle(0.5))
+    world.step()
+    system = world.schedule.find(BroadPhaseSystem)
+    assert system is not None
+    right, left = system.boxes[1:, 2] - (0.0, 50.0), (0.0, 50.0) - system.boxes[1:, 0]
+    assert right[0] > 2.0 * left[0] > 1.0
+    assert left[1] > 1.5 * right[1] > 0.75
+
+
+def test_bodies_of_many_sizes_are_all_found_by_their_cells() -> None:
+    sizes = np.tile((1.0, 3.0, 6.0, 9.0), 50)
+    boxes, n = np.zeros((200, 4)), 200
+    boxes[:, :2] = np.random.default_rng(2).uniform(0.0, 60.0, (n, 2))
+    boxes[:, 2:] = boxes[:, :2] + sizes[:, None]
+    first, (body, home_x, home_y) = np.zeros(513, np.int64), np.zeros((3, n), np.int64)
+    sorted_ones, count, cell = leaving.index_bodies(boxes, np.ones(n, np.int64), first, body, home_x, home_y)
+    assert (sorted_ones, count) == (n, n)
+    assert cell < 4.0, "the small ones are in small cells"
+    assert sorted(body.tolist()) == list(range(n))

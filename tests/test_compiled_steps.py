@@ -1,7 +1,9 @@
 """Runs of whole steps in one compiled call: the same bits as step by step, and the same figures."""
 
 import math
+from collections import Counter
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,16 +11,20 @@ from desk import bits
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from physicslab.components import Drag, Transform, Velocity
+from physicslab.components import Drag, Mass, Name, Transform, Velocity
 from physicslab.contacts.memory import export_contacts
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene
+from physicslab.kernels.narrow.contact import AS_FOUND
 from physicslab.lab.bench.catalogue import SCENES as BENCH
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
+from physicslab.state import masses
 from physicslab.state.masses import Diverged
 from physicslab.stepping.fused_contact import FusedContact
+from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.gravity import GravitySystem
+from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
@@ -263,3 +269,93 @@ def test_the_cost_is_shared_out_among_the_systems() -> None:
     timings = world.schedule.timings
     assert math.isfinite(sum(timing.ms for timing in timings.values()))
     assert timings["ResolveSystem"].ms > 0.0 and timings["ContactSystem"].ms > 0.0
+
+
+class Forgetful(System):
+    """Lets the points of discs be found again in every substep."""
+
+    @at(Stage.RELAX)
+    def forget(self, world: World, h: float) -> None:
+        """Mark none as found in the pose of now."""
+        found = world.contacts.manifolds["found"]
+        found[found == AS_FOUND] = 0
+
+
+def test_discs_at_rest_keep_their_points_within_a_step_with_the_bits_of_finding_them_again() -> None:
+    kept, found_again = BENCH["circles_10"].build(), BENCH["circles_10"].build()
+    found_again.install(Forgetful())
+    for world in (kept, found_again):
+        world.run(steps=500)
+    near = kept.contacts.manifolds[: kept.contacts.recorded]
+    assert (near["found"][near["count"] > 0] == AS_FOUND).all() and kept.contacts.active >= 15
+    assert bits(kept) == bits(found_again)
+
+
+def test_a_step_after_which_nothing_was_edited_prepares_nothing_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    world, calls = BENCH["circles_10"].build(), Counter[str]()
+    world.run(steps=500)
+    world.step()
+
+    def count(owner: Any, name: str) -> None:
+        original = getattr(owner, name)
+
+        def counted(*arguments: Any) -> Any:
+            calls[name] += 1
+            return original(*arguments)
+
+        monkeypatch.setattr(owner, name, counted)
+
+    count(Schedule, "remake")
+    count(masses, "_columns")
+    for name in ("_fixed_arguments", "_settle"):
+        count(FusedContact, name)
+    count(BroadPhaseSystem, "list_pairs")
+    for _ in range(40):
+        world.step()
+    assert not calls
+    world.component(world.entities()[-1], Mass).mass *= 1.1
+    world.step()
+    assert not calls, "masses are derived in every step"
+    world.simulation = replace(world.simulation, substeps=5)
+    world.step()
+    assert calls["remake"] == 1 and calls["_fixed_arguments"] == 1
+
+
+def test_costs_that_are_noted_later_belong_to_the_stepper_that_had_them() -> None:
+    world, alike = BENCH["circles_10"].build(), BENCH["circles_10"].build()
+    for each in (world, alike):
+        for substeps in (4, 2, 3):
+            each.simulation = replace(each.simulation, substeps=substeps)
+            each.step()
+            each.step()
+            if each is alike:
+                assert each.schedule.timings["IntegrateSystem"].calls > 0
+    calls = {name: timing.calls for name, timing in world.schedule.timings.items()}
+    assert calls == {name: timing.calls for name, timing in alike.schedule.timings.items()}
+    assert calls["IntegrateSystem"] == 2 * 2 * (4 + 2 + 3)
+    before = world.schedule.timings["ResolveSystem"].ms
+    for _ in range(3):  # not one of them is timed
+        world.step()
+    assert world.schedule.timings["ResolveSystem"].ms > before
+
+
+def test_a_name_lets_the_near_pairs_be_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = BENCH["pile_1000"].build()
+    world.run(steps=400)
+    entities, listed = world.entity_index.entities, 0
+
+    def list_pairs(*_: Any) -> None:
+        nonlocal listed
+        listed += 1
+
+    monkeypatch.setattr(BroadPhaseSystem, "list_pairs", list_pairs)
+    for number in range(3):
+        world.add(world.entities()[-1], Name(f"disc {number}"))
+        world.step()
+    assert not listed and world.entity_index.entities is entities
+    monkeypatch.undo()
+    circle(world, (0.0, 50.0))
+    world.step()
+    assert world.contacts.candidate_pairs > 0 and world.entity_index.entities is not entities

@@ -181,8 +181,9 @@ def test_a_step_that_diverges_leaves_the_world_as_it_was_to_the_bit() -> None:
     with pytest.raises(Diverged):
         history.step(steps=5)
     assert history.step_count == 40 and state_hash(history.world) == before
-    with pytest.raises(InvalidValue):
-        history.step(-1.0)
+    for dt in (-1.0, float("nan"), True):
+        with pytest.raises(InvalidValue):
+            history.step(dt)
     assert len(history.entries) == 2 and history.undo() == "linear of b0: (1e+160, 0) m/s"
     history.step(steps=5)
     assert history.difference is None

@@ -7,13 +7,16 @@ import pytest
 from desk import bits
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.contacts import wide
 from physicslab.contacts.arguments import motion_of, near_in
 from physicslab.contacts.memory import export_contacts, restore_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import compile_kernels, near_counts
 from physicslab.kernels.arguments import Motion, MotionTuple
 from physicslab.kernels.solver import entries
+from physicslab.kernels.wide import restore_slots
 from physicslab.kernels.wide.layout import MASS_A, MASS_B, WIDE
 from physicslab.lab.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle, container, pile, pyramid
@@ -141,6 +144,40 @@ def test_what_moves_has_slots_too_and_a_file_goes_on_with_them() -> None:
     records = world.contacts.manifolds[: world.contacts.recorded]
     wide = records[records["slot"] >= 0]
     assert set((kinds[wide["a"]] + kinds[wide["b"]]).tolist()) == {2, 3, 4}, "pairs of all shapes"
+
+
+def test_what_slides_fast_under_load_has_a_slot() -> None:
+    world = open_space()
+    floor(world, width=400.0)
+    for i in range(80):
+        slider = box(world, (i - 40.0, 0.1), width=0.4, height=0.2, friction=0.1)
+        world.component(slider, Velocity).linear = (2.4, 0.0)  # a twentieth of its height in a substep
+    for _ in range(20):
+        world.step()
+    assert world.table(Velocity)["linear"][-1, 0] > 1.5
+    assert world.contacts.wide.filled == world.contacts.count == 80
+    assert world.table(Transform)["position"][-1, 1] == pytest.approx(0.1, abs=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["discs", "boxes", "floor"])
+def test_what_overlaps_deeply_has_a_slot_and_is_moved_apart(kind: str) -> None:
+    world = open_space()
+    world.physics = PhysicsConfig(gravity_mode="none")
+    for i in range(70):
+        x = 3.0 * i
+        if kind == "discs":
+            circle(world, (x, 0.0), radius=0.5)
+            circle(world, (x + 0.8, 0.0), radius=0.5)
+        else:
+            box(world, (x, 0.0), width=1.0, height=1.0, static=kind == "floor")
+            box(world, (x, 0.8), width=1.0, height=1.0)
+    world.step()
+    assert world.contacts.wide.filled == 70
+    assert world.contacts.max_penetration < 0.19
+    world.run(steps=60)
+    assert world.contacts.max_penetration <= 0.1 + 1e-9
+    energy = measure_energy(world)
+    assert energy.kinetic < 70 * 0.5 * 0.1**2, "moving them apart gives them little speed"
 
 
 def test_few_contacts_stay_scalar() -> None:
@@ -285,3 +322,22 @@ def test_a_heavier_body_keeps_its_slots_with_the_new_mass(name: str) -> None:
             for rows, at in ((constraints.a, MASS_A), (constraints.b, MASS_B)):
                 if rows[slot] == row:
                     assert block[at + slot % WIDE] == inverse[row]
+
+
+@pytest.mark.parametrize("name", ADDED)
+def test_an_edited_body_fills_its_own_slots_again_and_gives_the_bits_of_filling_all(name: str) -> None:
+    ours, full = ADDED[name](), ADDED[name]()
+    for world in (ours, full):
+        body = [entity for entity in world.entities() if world.has(entity, Mass)][40]
+        world.component(body, Mass).mass *= 1.1
+        world.component(body, Material).friction *= 0.9
+    with pytest.MonkeyPatch.context() as patch:
+        filled: list[World] = []
+        patch.setattr(wide, "fill_again", filled.append)
+        ours.run(steps=5)
+        assert not filled
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(restore_slots, "outdated", lambda *arguments: 2)
+        full.run(steps=1)
+    full.run(steps=4)
+    assert bits(ours) == bits(full)

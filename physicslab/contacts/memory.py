@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from physicslab.contacts.report import ordered_records
 from physicslab.kernels.events.events import DEEP
+from physicslab.kernels.narrow.contact import AS_FOUND
 from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.kernels.wide.layout import WIDE
 from physicslab.kernels.wide.slots import COLOURS
@@ -49,6 +50,8 @@ def kept_rows(contacts: Contacts) -> Iterator[list[float] | None]:
             yield None
         elif manifold["found"] == 2 or _overlaps_deeply(contacts, p):
             kept = [manifold[name].item() for name in _KEPT[1:]]
+            if manifold["found"] == AS_FOUND:  # a file's next step finds all points again
+                kept[_KEPT.index("found") - 1] = 0
             both = [value for j in (2 * p, 2 * p + 1) for value in contacts.points[j].item()]
             yield [*pair, *kept, *both, *slot]
         else:

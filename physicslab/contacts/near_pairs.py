@@ -21,7 +21,7 @@ def partition(
 ) -> None:  # fmt: skip
     """Take a new list of near pairs: ``found`` of bodies, in no order, and ``walls`` of the bounds.
 
-    Pairs without a record get none until they come near. ``fat`` (6, rows) is what the broad phase keeps of
+    Pairs without a record get none until they come near. ``fat`` (8, rows) is what the broad phase keeps of
     each body's fat box.
     """
     contacts = state.contacts

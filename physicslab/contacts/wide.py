@@ -40,11 +40,22 @@ def add_constraints(state: State, h: float) -> None:
 
 def refill(state: State) -> None:
     """Update the masses, sizes and materials in slots, if one of them was changed."""
-    contacts = state.contacts
-    if contacts.wide.filled and restore_slots.outdated(contacts.wide.made_of, *_columns(state)):
+    contacts, wide = state.contacts, state.contacts.wide
+    if not wide.filled:
+        return
+    found = restore_slots.outdated(wide.made_of, wide.changed, *_columns(state))
+    if found == 1:
+        bodies = state.bodies
+        for constraints in wide.kinds:
+            restore_slots.update_slots(
+                constraints.slots, constraints.count, wide.changed, contacts.manifolds, contacts.points,
+                sizes_of(state), materials_of(state), (bodies.inverse_mass, bodies.inverse_inertia),
+            )  # fmt: skip
+        _remember(state)
+    elif found:
         rows = len(state.entity_index)
         contacts.sync()
-        contacts.wide.reset(rows)
+        wide.reset(rows)
         fill_again(state)
         contacts.list_scalar(rows)
 
@@ -68,9 +79,12 @@ def fill_again(state: State) -> None:
 
 def _remember(state: State) -> None:
     """Record the masses, sizes and materials that slots contain."""
-    columns = _columns(state)
-    state.contacts.wide.made_of = np.zeros((len(columns[0]), len(columns)))
-    restore_slots.remember(state.contacts.wide.made_of, *columns)
+    columns, wide = _columns(state), state.contacts.wide
+    wide.made_of, wide.changed = (
+        np.zeros((len(columns[0]), len(columns))),
+        np.zeros(len(columns[0]), np.bool_),
+    )
+    restore_slots.remember(wide.made_of, *columns)
 
 
 def _columns(state: State) -> tuple[NDArray[np.float64], ...]:

@@ -42,7 +42,7 @@ class EntityIndex:
         Whether a change concerned the motion since this was last set to false: a component that is physical
         came or went.
     revision : int
-        How often entities or components have come or gone.
+        How often entities, or components that are physical, have come or gone.
     """
 
     def __init__(self) -> None:
@@ -72,12 +72,15 @@ class EntityIndex:
             return False
         self._batches.clear()
         living = set(esper.get_entities())
-        self._follow_entities(living)
+        renumbered = living != self.row_of.keys()
+        if renumbered:
+            self._follow_entities(living)
         changed: dict[int, tuple[Any, ...]] = {}
+        known = self._components.get
         for entity in living:
             components: tuple[Any, ...] = esper.components_for_entity(entity)
             try:
-                if self._components.get(entity) == components:  # handles are equal only to themselves
+                if known(entity) == components:  # handles are equal only to themselves
                     continue
             except Exception:  # a component of another program may define == in any way
                 pass
@@ -86,7 +89,8 @@ class EntityIndex:
         self._follow_components(changed)
         self._components.update(changed)
         self._seen = esper.get_component(_Nothing)
-        self.revision += 1
+        if renumbered or self.motion_edited:
+            self.revision += 1
         return True
 
     def flush_deleted(self) -> None:

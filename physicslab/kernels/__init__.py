@@ -15,6 +15,7 @@ from physicslab.kernels.compiler import (
     KERNELS,
     allocating,
     allocating_kernel,
+    always_inlined,
     fused,
     inlined,
     inlined_loosely,
@@ -23,6 +24,7 @@ from physicslab.kernels.compiler import (
 from physicslab.kernels.loading import (
     ask_before_compiling,
     compile_kernels,
+    direct_entry,
     load,
     prepare,
     seconds_waited,
@@ -32,7 +34,7 @@ from physicslab.kernels.types import Flags, Numbers, Rows, Vectors
 
 __all__ = [
     "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
-    "allocating", "allocating_kernel", "ask_before_compiling", "cache_directory", "cached", "compile_kernels",
-    "fused", "inlined", "inlined_loosely", "kernel", "load", "prepare", "seconds_waited",
-    "working_ns",
+    "allocating", "allocating_kernel", "always_inlined", "ask_before_compiling", "cache_directory", "cached",
+    "compile_kernels", "direct_entry", "fused", "inlined", "inlined_loosely", "kernel", "load", "prepare",
+    "seconds_waited", "working_ns",
 ]  # fmt: skip

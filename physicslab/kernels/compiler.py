@@ -15,7 +15,8 @@ from physicslab.kernels.loading import at_first_call, refuse_calls
 from physicslab.kernels.types import signature_of
 
 __all__ = [
-    "FASTMATH", "KERNELS", "allocating", "allocating_kernel", "fused", "inlined", "inlined_loosely", "kernel",
+    "FASTMATH", "KERNELS", "allocating", "allocating_kernel", "always_inlined", "fused", "inlined",
+    "inlined_loosely", "kernel",
 ]  # fmt: skip
 
 KERNELS: list[Any] = []
@@ -29,14 +30,16 @@ _without_constant: Any = numba.types.unliteral
 _njit: Any = numba.njit  # its type hints know no option of the target
 
 
-def _inner[F: Callable[..., Any]](function: F, counts: bool = False, fastmath: Any = False) -> F:
+def _inner[F: Callable[..., Any]](
+    function: F, counts: bool = False, fastmath: Any = False, always: bool = False
+) -> F:
     """Make a function that kernels alone call: without an entry for Python, and without a cache of its own.
 
     Entries are machine code too, and a function of a cache of its own is stored with every kernel that calls
     it in any case: both together were a fifth of the time that compiling took. An option that is not given
     is taken over from the function that calls.
     """
-    jitted = _njit(_nrt=counts, fastmath=fastmath, **_OF_INNER)(function)
+    jitted = _njit(_nrt=counts, fastmath=fastmath, forceinline=always, **_OF_INNER)(function)
     _take_constants_as_values(jitted)
     refuse_calls(jitted)
     return cast(F, jitted)
@@ -64,6 +67,15 @@ def inlined[F: Callable[..., Any]](function: F) -> F:
     work on eight contacts.
     """
     return _inner(function)
+
+
+def always_inlined[F: Callable[..., Any]](function: F) -> F:
+    """Make an ``@inlined`` function whose machine code LLVM puts wherever it is called.
+
+    It is compiled once, unlike a ``@fused`` one. For what has few callers, and is given so many arrays that
+    to pass them takes as long as the work on a few contacts.
+    """
+    return _inner(function, always=True)
 
 
 def allocating[F: Callable[..., Any]](function: F) -> F:

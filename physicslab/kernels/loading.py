@@ -18,8 +18,8 @@ from physicslab.kernels import cache
 from physicslab.kernels.interpreter import is_forced, stand_in
 
 __all__ = [
-    "ask_before_compiling", "at_first_call", "compile_kernels", "load", "prepare", "refuse_calls",
-    "seconds_waited", "separate_symbols", "working_ns",
+    "ask_before_compiling", "at_first_call", "compile_kernels", "direct_entry", "load", "prepare",
+    "refuse_calls", "seconds_waited", "separate_symbols", "working_ns",
 ]  # fmt: skip
 
 type _Ask = Callable[[Sequence[Any]], Collection[Any] | None]
@@ -111,6 +111,22 @@ def load(jitted: Any) -> None:
         jitted.compile(jitted.declared_signature)
         jitted.disable_compile()
         jitted.compiled = True  # looking it up in numba takes longer than many a kernel runs
+
+
+def direct_entry(jitted: Any) -> Callable[..., Any]:
+    """Return what calls a kernel without looking up the types of its arguments, which must be its own.
+
+    For sixty arrays, to look them up takes as long as the work on three bodies. A kernel that is not
+    compiled is returned itself.
+    """
+    entry: Callable[..., Any] = jitted
+    if jitted.compiled:
+        try:
+            entry = jitted.entry
+        except AttributeError:
+            (overload,) = jitted.overloads.values()
+            entry = jitted.entry = overload.entry_point
+    return entry
 
 
 def at_first_call(jitted: Any) -> None:

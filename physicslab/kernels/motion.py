@@ -13,7 +13,7 @@ def derive_masses(
     mass: Numbers, inertia: Numbers, inertia_given: Flags, fixed_rotation: Flags,
     kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
-    asleep: Flags, awake_inverse_mass: Numbers, awake_inverse_inertia: Numbers,
+    awake_inverse_mass: Numbers, awake_inverse_inertia: Numbers, asleep: Flags,
 ) -> tuple[float, int, int]:  # fmt: skip
     """Compute each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
 

@@ -28,7 +28,7 @@ MANIFOLD = np.dtype(
         ("offset_x", np.float64),  # from A's centre to B's when the separations were measured
         ("offset_y", np.float64),
         # The relative pose for which the points were found: while it hardly changes, they are kept.
-        ("found", np.int64),  # 2: good to keep
+        ("found", np.int64),  # 2: good to keep; 3: of a pair with a disc, good in this very pose
         ("base_x", np.float64),
         ("base_y", np.float64),
         ("base_angle_a", np.float64),

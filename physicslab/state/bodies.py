@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,16 +28,20 @@ class Bodies:
         The same, and zero for sleeping bodies: the simulation uses these.
     unequal : bool
         Whether two bodies that may meet differ so much in mass that one may be too heavy for the other.
+    columns : tuple of an object and arrays
+        What :func:`physicslab.state.masses.derive_masses` takes, and for which rows.
     sub_integrated : bool array (rows,)
         The rows with a method of their own between contacts (:class:`physicslab.stepping.split_forces`).
     """
 
     def __init__(self) -> None:
         self.unequal = False
+        self.columns: tuple[object, tuple[NDArray[Any], ...]]
         self.resize(0)
 
     def resize(self, rows: int) -> None:
         """Set the number of rows, all of them zero."""
+        self.columns = None, ()
         self.pull: NDArray[np.float64] = np.zeros(3 * rows)
         self.force, self.torque = self.pull[: 2 * rows].reshape(rows, 2), self.pull[2 * rows :]
         self.q: NDArray[np.float64] = np.zeros(3 * rows + 1)

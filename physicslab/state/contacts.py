@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import compile_kernels, near_counts
 from physicslab.kernels.broad import near_pairs
+from physicslab.kernels.narrow.contact import AS_FOUND
 from physicslab.kernels.records import IMPACT, MANIFOLD, POINT
 from physicslab.kernels.solver import impulse
 from physicslab.kernels.wide import refresh, slots
@@ -190,6 +191,8 @@ class Contacts:
     def set_inactive(self, inactive: NDArray[np.bool_], rows: int) -> None:
         """Leave out the pairs of which both bodies are ``inactive`` (rows,), and take in all others."""
         self.inactive = inactive
+        found = self.manifolds["found"]
+        found[found == AS_FOUND] = 0  # the effective masses are others
         if not self.stale:  # else this is done when they are listed
             self.list_scalar(rows)
             scalar = self.scalar[: self.scalar_count]

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
 from physicslab.components.shape import CIRCLE
 from physicslab.ecs.component import InvalidValue
-from physicslab.kernels import motion
+from physicslab.kernels import direct_entry, motion
 from physicslab.kernels.solver import impulse
 from physicslab.state.state import State
 
@@ -38,20 +40,32 @@ def derive_masses(state: State) -> None:
     if len(bodies.torque) != len(state.entity_index):
         bodies.resize(len(state.entity_index))
         state.compile((motion.derive_masses,))
-    mass, shape, velocity = state.table(Mass), state.table(Shape), state.table(Velocity)
-    ratio, infinite, sizeless = motion.derive_masses(
+    revision, columns = bodies.columns
+    if revision == state.entity_index.revision and columns[-1] is state.sleep.asleep:
+        ratio, infinite, sizeless = direct_entry(motion.derive_masses)(*columns)
+    else:
+        columns = _columns(state)
+        ratio, infinite, sizeless = motion.derive_masses(*columns)
+        bodies.columns = state.entity_index.revision, columns
+    if sizeless >= 0:
+        _refuse_size(state, sizeless)
+    if infinite >= 0:
+        mass = state.table(Mass)
+        inertia, allowed = float(mass["inertia"][infinite]), f"{_INERTIA.allowed}, of mass and Shape too"
+        raise InvalidValue(f"{state.label_of_row(infinite)}: Mass", "inertia", inertia, allowed)
+    bodies.unequal = ratio > impulse.HEAVY_RATIO
+
+
+def _columns(state: State) -> tuple[NDArray[Any], ...]:
+    """Return what masses are derived from, and the arrays that receive them."""
+    mass, shape, velocity, bodies = state.table(Mass), state.table(Shape), state.table(Velocity), state.bodies
+    return (
         velocity.present, mass.present, state.table(Held).present,
         mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
         shape["kind"], shape["radius"], shape["width"], shape["height"], velocity["angular"],
         bodies.inverse_mass, bodies.inverse_inertia,
-        state.sleep.asleep, bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
+        bodies.awake_inverse_mass, bodies.awake_inverse_inertia, state.sleep.asleep,
     )  # fmt: skip
-    if sizeless >= 0:
-        _refuse_size(state, sizeless)
-    if infinite >= 0:
-        inertia, allowed = float(mass["inertia"][infinite]), f"{_INERTIA.allowed}, of mass and Shape too"
-        raise InvalidValue(f"{state.label_of_row(infinite)}: Mass", "inertia", inertia, allowed)
-    bodies.unequal = ratio > impulse.HEAVY_RATIO
 
 
 def _refuse_size(state: State, row: int) -> None:

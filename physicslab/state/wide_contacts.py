@@ -80,7 +80,7 @@ class WideConstraints:
 class WideContacts:
     """The wide contacts of a world, and what they were made of.
 
-    A contact is steady when its bodies move little for their size, it has no impact, and overlaps little.
+    A contact is steady when its bodies move little for their size, and it has no impact.
     Steady contacts of discs and of boxes are in blocks of their own; all others, and all in a world of few
     contacts, are scalar.
 
@@ -90,6 +90,8 @@ class WideContacts:
         The blocks.
     made_of : float64 array (rows, 7)
         The masses, sizes and materials that slots contain.
+    changed : bool array (rows,)
+        Which bodies have others now, when that was last looked at.
 
     Parameters
     ----------
@@ -99,7 +101,7 @@ class WideContacts:
 
     kernels = (
         graph_colour.add_constraints, restore_slots.restore_slots, graph_colour.sort_blocks,
-        restore_slots.remember, restore_slots.outdated,
+        restore_slots.remember, restore_slots.outdated, restore_slots.update_slots,
         slots.store, slots.list_scalar, slots.follow_pairs,
         slots.release, refresh.deepest_wide,
     )  # fmt: skip
@@ -108,6 +110,7 @@ class WideContacts:
         self._counts = counts
         self.discs, self.boxes = WideConstraints(DISC, counts), WideConstraints(BOX, counts)
         self.made_of: NDArray[np.float64] = np.zeros((0, 7))
+        self.changed: NDArray[np.bool_] = np.zeros(0, np.bool_)
 
     @property
     def kinds(self) -> tuple[WideConstraints, WideConstraints]:

@@ -25,7 +25,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import fat_boxes
-from physicslab.kernels.loading import working_ns
+from physicslab.kernels.loading import direct_entry, working_ns
 from physicslab.kernels.solver import fused_contact as fused
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
@@ -85,6 +85,9 @@ class FusedContact:
         self._h = 0.0
         self._max_steps = 64
         self._kept: object = None
+        self._entry: Callable[..., Any] = fused.advance
+        self._steps = self._nanoseconds = 0
+        self._substeps = state.simulation.substeps
         self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], Any]
         self.reason = "bodies can touch, and nothing looks at substeps"
 
@@ -160,10 +163,10 @@ class FusedContact:
         """Run the loop as far as it goes; return why it ended, after how many steps, and where."""
         began = time.perf_counter_ns()
         contacts, substeps = state.contacts, state.substeps
-        self._cost[:] = 0
         plan = (substeps, state.simulation.iterations or 0, h / substeps, h, state.time + made * h)
-        why, done, substep, finished_impacts, impacts, contacts.impulse_dt = fused.advance(
-            steps, substep, stage, plan, *self._arguments(state, h / substeps)
+        arguments = self._arguments(state, h / substeps)
+        why, done, substep, finished_impacts, impacts, contacts.impulse_dt = self._entry(
+            steps, substep, stage, plan, *arguments
         )
         contacts.changed()
         state.collisions += finished_impacts
@@ -171,7 +174,9 @@ class FusedContact:
             state.force_evaluations += done * substeps * state.has_forces
             state.checkpoint.counts = state.counts
         state.collisions += impacts - finished_impacts
-        self._note(state, done, time.perf_counter_ns() - began)
+        self._steps += done
+        self._nanoseconds += time.perf_counter_ns() - began
+        self._schedule.defer(self._settle)
         return why, done, substep
 
     def _arguments(self, state: State, h: float) -> tuple[Any, ...]:
@@ -179,6 +184,9 @@ class FusedContact:
         contacts, sleep, kept = state.contacts, state.sleep, state.checkpoint.columns
         if self._kept is not kept or self._h != h:
             self._kept, self._h, self._fixed = kept, h, self._fixed_arguments(state, h)
+            self._entry = fused.advance  # which looks at the types of the arrays once
+        else:
+            self._entry = direct_entry(fused.advance)
         motion, laws, marked = self._fixed
         sleepers = (
             self._sleep is not None, sleep.count, sleep.asleep, sleep.rest, sleep.slowest, marked,
@@ -204,14 +212,19 @@ class FusedContact:
         laws = (physics.linear_damping, physics.angular_damping), bounds_of(state)
         return columns, laws, np.zeros_like(state.sleep.asleep)
 
-    def _note(self, state: State, steps: int, nanoseconds: int) -> None:
-        """Note as many calls as the stages would make; the time is divided by the loop's own clock."""
-        costs: list[int] = self._cost.tolist()
-        total, timings, substeps = max(1, sum(costs)), self._schedule.timings, state.substeps
+    def _settle(self) -> None:
+        """Note as many calls as the stages would have made; the time is divided by the loop's own clock.
+
+        What that has shown before counts half as much: the last steps may be too few to have been timed.
+        """
+        costs: list[int] = self._cost[: fused.STEPS].tolist()
+        total, timings = max(1, sum(costs)), self._schedule.timings
         for place, name, calls, once in self._calls:
             timing = timings[name]
-            timing.calls += steps * (calls * substeps + once)
-            timing.nanoseconds += nanoseconds * costs[place] // total
+            timing.calls += self._steps * (calls * self._substeps + once)
+            timing.nanoseconds += self._nanoseconds * costs[place] // total
+        self._cost[: fused.STEPS] //= 2
+        self._steps = self._nanoseconds = 0
 
     def _timed(self, system: System, call: Callable[[State, float], None], state: State, h: float) -> None:
         """Call a system's method, whose call is counted with the step, and note what it cost."""

@@ -46,12 +46,14 @@ class Steppers:
         It is one where a better stepper has left the coming step to it, and may make the next: a run makes
         the same steps as single ones.
         """
+        if steps == 1:
+            return 1
         first = next(one for one in self.usable if not isinstance(one, Asleep))
         return steps if stepper is first or isinstance(stepper, Asleep) else 1
 
     def hold(self, state: State) -> bool:
         """Whether the numbers that they were made from are still the same."""
-        return all(stepper.holds(state) for stepper in self.usable)
+        return False not in [stepper.holds(state) for stepper in self.usable]
 
 
 def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Steppers:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +11,7 @@ from physicslab.components import Shape, Transform, Velocity
 from physicslab.contacts.arguments import motion_of, near_in, sizes_of, speculative_margin
 from physicslab.contacts.near_pairs import partition
 from physicslab.kernels.broad import grid, leaving, near_pairs
-from physicslab.kernels.broad.fat_boxes import fat_boxes, still_holds
+from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
 from physicslab.kernels.wide import slots
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
@@ -20,6 +22,8 @@ _MAX_LOOKAHEAD = 8.0
 """Largest factor by which the margin of a moving body is increased."""
 _FEW = 64
 """Number of bodies up to which all pairs are listed again: that takes no longer than to find the new ones."""
+_SPARSE = 2
+"""Bodies for each record from which on all pairs are listed again: few records are soon carried over."""
 
 
 def nothing_to_touch(state: State) -> str | None:
@@ -40,6 +44,11 @@ def _lookahead(sleepers: int, awake: int) -> float:
     Among many sleeping bodies a new list takes longer than the surplus pairs of an old one.
     """
     return min(max(1.0, sleepers / max(1, awake)), _MAX_LOOKAHEAD)
+
+
+def _sparse(state: State) -> bool:
+    """Whether records are few beside bodies: a list of all pairs is then cheap, and is to hold for long."""
+    return bool(_SPARSE * state.contacts.recorded < len(state.entity_index))
 
 
 class Leavers:
@@ -79,9 +88,9 @@ class BroadPhaseSystem(System):
 
     Attributes
     ----------
-    fat : float64 array (6, rows)
-        Where each body was (x, y, angle), its bounding radius then, the margin around it, and how far its box
-        has grown since all were made [m].
+    fat : float64 array (8, rows)
+        The middle of the way for which each box was made (x, y), the body's angle and bounding radius then,
+        the margin around the way, how far the box has grown since all were made, and half the way (x, y) [m].
     boxes : float64 array (rows, 4)
         The fat boxes: xmin, ymin, xmax, ymax [m].
     leavers : Leavers
@@ -97,7 +106,7 @@ class BroadPhaseSystem(System):
     )  # fmt: skip
 
     def __init__(self) -> None:
-        self.fat: NDArray[np.float64] = np.zeros((6, 0))
+        self.fat: NDArray[np.float64] = np.zeros((8, 0))
         self.leavers = Leavers(0)
         self.boxes: NDArray[np.float64] = np.zeros((0, 4))
         self._couples: NDArray[np.uint32] = np.zeros(512, np.uint32)
@@ -129,7 +138,7 @@ class BroadPhaseSystem(System):
         """Make room for every row; where the list is stale, invalidate every fat box."""
         rows = len(state.entity_index)
         if self.fat.shape[1] != rows:
-            self.fat, self.boxes = np.zeros((6, rows)), np.zeros((rows, 4))
+            self.fat, self.boxes = np.zeros((8, rows)), np.zeros((rows, 4))
             self.leavers = Leavers(rows)
             state.contacts.stale = True
         if state.contacts.stale:
@@ -152,7 +161,7 @@ class BroadPhaseSystem(System):
     def _add_pairs(self, state: State, h: float, ahead: float) -> bool:
         """Add the new pairs of those bodies; return whether that was possible."""
         left, kind = self.leavers, state.table(Shape)["kind"]
-        if len(kind) <= _FEW or left.crowded or state.contacts.stale:
+        if len(kind) <= _FEW or _sparse(state) or left.crowded or state.contacts.stale:
             return False
         if left.indexed is None:
             left.indexed = leaving.index_bodies(
@@ -168,7 +177,8 @@ class BroadPhaseSystem(System):
 
     def _list_all(self, state: State, awake: NDArray[np.float64], ahead: float, margin: float) -> None:
         """List all near pairs again."""
-        fat_boxes(motion_of(state), sizes_of(state), awake, self.fat, self.boxes, ahead, margin)
+        share = math.inf if _sparse(state) else HIT_SHARE
+        fat_boxes(motion_of(state), sizes_of(state), awake, self.fat, self.boxes, ahead, share, margin)
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
         found, walls = self._count_pairs(state.table(Shape)["kind"], inverse_mass, bounded)

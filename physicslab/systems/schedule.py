@@ -51,8 +51,6 @@ class Schedule:
         The names of those that no kernel computes, and Python does.
     observer : System, optional
         The first of them that looks at every step.
-    timings : dict of str to Timing
-        Calls and cost of every system that ever ran.
     """
 
     def __init__(self, systems: Iterable[System]) -> None:
@@ -64,8 +62,23 @@ class Schedule:
         self.forces: tuple[ForceSystem, ...] = ()
         self.interpreted: tuple[str, ...] = ()
         self.observer: System | None = None
-        self.timings: dict[str, Timing] = {}
+        self._timings: dict[str, Timing] = {}
+        self._settle: Callable[[], None] | None = None
         self._calls: dict[Stage, list[tuple[Callable[[State, float], None], Timing]]] = {}
+
+    @property
+    def timings(self) -> dict[str, Timing]:
+        """Calls and cost of every system that ever ran."""
+        settle, self._settle = self._settle, None
+        if settle is not None:
+            settle()
+        return self._timings
+
+    def defer(self, settle: Callable[[], None]) -> None:
+        """Let ``settle`` be called, which notes costs, before timings are next read."""
+        if self._settle != settle:
+            _ = self.timings  # which another may owe
+            self._settle = settle
 
     def extend(self, systems: Iterable[System]) -> None:
         """Put systems behind those there are; they are considered when the schedule is next remade."""
@@ -94,7 +107,7 @@ class Schedule:
         self.observer = next((system for system in running if system.observes()), None)
         self._calls = {stage: [] for stage in Stage}
         for system in running:
-            timing = self.timings.setdefault(system.name, Timing())
+            timing = self._timings.setdefault(system.name, Timing())
             for stage, method in self._marked[system].items():
                 self._calls[stage].append((getattr(system, method), timing))
 
@@ -119,7 +132,7 @@ class Schedule:
 
     def call(self, system: System, method: Callable[[State, float], None], state: State, h: float) -> None:
         """Call a method of a running system beside its stages, and note what it cost."""
-        self._timed(method, self.timings[system.name], state, h)
+        self._timed(method, self._timings[system.name], state, h)
 
     def _timed(self, call: Callable[[State, float], None], timing: Timing, state: State, h: float) -> None:
         """Call, and note the time that it took, without what went by while kernels were compiled."""
@@ -130,9 +143,9 @@ class Schedule:
 
     def note(self, name: str, calls: int, nanoseconds: int) -> None:
         """Note what a system has cost that was not called by :meth:`run`."""
-        timing = self.timings.get(name)
+        timing = self._timings.get(name)
         if timing is None:
-            timing = self.timings[name] = Timing()
+            timing = self._timings[name] = Timing()
         timing.calls += calls
         timing.nanoseconds += nanoseconds
 

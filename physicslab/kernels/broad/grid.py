@@ -53,6 +53,14 @@ class Search(NamedTuple):
 
 
 @inlined
+def _extent(boxes: Vectors, fat: Vectors, i: int) -> tuple[float, float]:
+    """Return width and height of a fat box without margins and without the way of its body [m]."""
+    width = boxes[i, 2] - boxes[i, 0] - 2.0 * (fat[4, i] + abs(fat[6, i]))
+    height = boxes[i, 3] - boxes[i, 1] - 2.0 * (fat[4, i] + abs(fat[7, i]))
+    return width, height
+
+
+@inlined
 def _take(search: Search, found: int, i: int, j: int) -> int:
     """Write the pair (i, j), if it can be moved and there is room; return how many there are now.
 
@@ -62,11 +70,11 @@ def _take(search: Search, found: int, i: int, j: int) -> int:
     boxes, fat, inverse_mass, couples, company = search
     if inverse_mass[i] + inverse_mass[j] == 0.0:
         return found
-    # The boxes without their margins.
-    across_i, up_i = boxes[i, 2] - boxes[i, 0] - 2.0 * fat[4, i], boxes[i, 3] - boxes[i, 1] - 2.0 * fat[4, i]
-    across_j, up_j = boxes[j, 2] - boxes[j, 0] - 2.0 * fat[4, j], boxes[j, 3] - boxes[j, 1] - 2.0 * fat[4, j]
-    dx = abs(boxes[i, 0] + boxes[i, 2] - boxes[j, 0] - boxes[j, 2])
-    dy = abs(boxes[i, 1] + boxes[i, 3] - boxes[j, 1] - boxes[j, 3])
+    # The boxes without their margins, where the bodies are.
+    across_i, up_i = _extent(boxes, fat, i)
+    across_j, up_j = _extent(boxes, fat, j)
+    dx = 2.0 * abs(fat[0, i] - fat[6, i] - fat[0, j] + fat[6, j])
+    dy = 2.0 * abs(fat[1, i] - fat[7, i] - fat[1, j] + fat[7, j])
     if (dx < across_i + across_j) & (dy < up_i + up_j):
         larger, smaller = max(across_i, up_i), min(across_j, up_j)
         if larger <= _OWN_SIZE * smaller and max(across_j, up_j) <= _OWN_SIZE * min(across_i, up_i):

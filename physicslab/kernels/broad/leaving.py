@@ -12,7 +12,7 @@ import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, fused, inlined, kernel
 from physicslab.kernels.arguments import Motion, MotionTuple, Near, NearTuple, Sizes, SizesTuple, named_near
-from physicslab.kernels.broad.fat_boxes import fatten, left, usual_speed
+from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fatten, left, usual_speed
 from physicslab.kernels.broad.grid import cell_at
 from physicslab.kernels.broad.near_pairs import beside, distance_to_activate, make_blank
 from physicslab.kernels.near_counts import PROXIMITY, RECORDED, SCALAR, UNORDERED
@@ -24,15 +24,21 @@ _BODIES, _RECORDS = 20, 8
 the new pairs of a body takes as long as to list so many again."""
 _MAX_LARGE = 64
 """Number of large bodies up to which a leaver looks at each, and a sixteenth of all bodies beyond."""
+_SOON = 3.0
+"""Substeps within which a body that leaves its box is treated at once, where another one leaves now."""
+_CELL = 1.5
+"""Size of the smallest cells: a multiple of the harmonic mean of the sizes, which goes by the small boxes."""
+_LEVELS = 4
+"""Sizes of cells in the index, each twice the one before."""
 _MAX_CELLS = 256
 """Largest number of cells in which the neighbours of one body are looked for."""
 
 
 class Index(NamedTuple):
-    """Small bodies by the cell of their fat boxes' centres, then the larger ones.
+    """Bodies by the cells of their fat boxes' centres, of a level that fits them; then those too large.
 
-    Where each bucket of cells begins, the rows of the bodies, the cells of the small ones, how many
-    of these there are, how many in all, and the size of a cell [m].
+    Where each bucket of cells begins, the rows of the bodies, the cells of the sorted ones, how many of these
+    there are, how many in all, and the size of the smallest cells [m]. In ``home_x`` is the level as well.
     """
 
     first: Rows
@@ -42,6 +48,16 @@ class Index(NamedTuple):
     smalls: int
     bodies: int
     cell: float
+
+
+@inlined
+def _level_of(size: float, cell: float) -> int:
+    """Return the level of cells that a box of such a size fits in, or _LEVELS."""
+    level = 0
+    while level < _LEVELS and not size <= cell:
+        level += 1
+        cell *= 2.0
+    return level
 
 
 @inlined
@@ -55,7 +71,7 @@ def index_bodies(
 ) -> tuple[int, int, float]:
     """Sort bodies by the cells of their fat boxes' centres; ``first`` has a power of two of buckets, and one.
 
-    Returns how many are no larger than a cell, how many there are in all, and the size of a cell [m].
+    Returns how many fit a cell, how many there are in all, and the size of the smallest cells [m].
     """
     n, mask = len(kind), len(first) - 2
     inverse_sizes, count = 0.0, 0
@@ -64,15 +80,19 @@ def index_bodies(
             inverse_sizes += 1.0 / max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1])
             count += 1
     # The harmonic mean goes by the small bodies, which are many, and not by the few walls.
-    cell = 3.0 * count / inverse_sizes if count else 1.0
+    cell = _CELL * count / inverse_sizes if count else 1.0
     where = np.full(n, -1, np.int64)
     cells = np.empty((n, 2), np.int64)
     first[:] = 0
     smalls = 0
     for i in range(n):
-        if kind[i] != 0 and max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1]) <= cell:
-            cells[i, 0] = cell_at(0.5 * (boxes[i, 0] + boxes[i, 2]) / cell)
-            cells[i, 1] = cell_at(0.5 * (boxes[i, 1] + boxes[i, 3]) / cell)
+        if kind[i] == 0:
+            continue
+        level = _level_of(max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1]), cell)
+        if level < _LEVELS:
+            size = cell * 2.0**level
+            cells[i, 0] = cell_at(0.5 * (boxes[i, 0] + boxes[i, 2]) / size) * _LEVELS + level
+            cells[i, 1] = cell_at(0.5 * (boxes[i, 1] + boxes[i, 3]) / size)
             where[i] = _bucket(cells[i, 0], cells[i, 1], mask)
             first[where[i] + 1] += 1
             smalls += 1
@@ -153,18 +173,21 @@ def _list_leaver(
 ) -> bool:  # fmt: skip
     """List the new pairs of one body; return whether that can be done. Boxes may have grown by ``growth``."""
     first, body, home_x, home_y, smalls, count, cell = index
-    mask, around = len(first) - 2, 0.5 * cell + growth
-    box = leaver.box
-    from_x, to_x = cell_at((box[0] - around) / cell), cell_at((box[2] + around) / cell)
-    from_y, to_y = cell_at((box[1] - around) / cell), cell_at((box[3] + around) / cell)
-    if float(to_x - from_x + 1) * float(to_y - from_y + 1) > _MAX_CELLS:
-        return False
-    for ix in range(from_x, to_x + 1):
-        for iy in range(from_y, to_y + 1):
-            at = _bucket(ix, iy, mask)
-            for q in range(first[at], first[at + 1]):
-                if home_x[q] == ix and home_y[q] == iy:
-                    _pair(leaver, body[q], near, sizes, fat, boxes, moved, inverse_mass)
+    mask, box = len(first) - 2, leaver.box
+    for level in range(_LEVELS):
+        around = 0.5 * cell + growth
+        from_x, to_x = cell_at((box[0] - around) / cell), cell_at((box[2] + around) / cell)
+        from_y, to_y = cell_at((box[1] - around) / cell), cell_at((box[3] + around) / cell)
+        cell *= 2.0
+        if float(to_x - from_x + 1) * float(to_y - from_y + 1) > _MAX_CELLS:
+            return False
+        for ix in range(from_x, to_x + 1):
+            home = ix * _LEVELS + level
+            for iy in range(from_y, to_y + 1):
+                at = _bucket(home, iy, mask)
+                for q in range(first[at], first[at + 1]):
+                    if home_x[q] == home and home_y[q] == iy:
+                        _pair(leaver, body[q], near, sizes, fat, boxes, moved, inverse_mass)
     for q in range(smalls, count):
         _pair(leaver, body[q], near, sizes, fat, boxes, moved, inverse_mass)
     return True
@@ -212,15 +235,15 @@ def _add_pairs(
         if moved[i]:
             growth = max(growth, fat[5, i])
     for i in range(rows):
-        if not left(i, motion, sizes, fat, h, speculative_margin):
+        if not left(i, motion, sizes, fat, h, _SOON * h, speculative_margin):
             continue
         if not fat[3, i] > 0.0 or (not moved[i] and already >= limit):
             return -1
         before = boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3]
-        old = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i]
+        old = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i], fat[6, i], fat[7, i]
         hit = usual if inverse_mass[i] > 0.0 else 0.0
-        x0, y0, x1, y1 = fatten(i, motion, sizes, fat, ahead, hit, speculative_margin)
-        new = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i]
+        x0, y0, x1, y1 = fatten(i, motion, sizes, fat, ahead, hit, HIT_SHARE, speculative_margin)
+        new = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i], fat[6, i], fat[7, i]
         if new[3] != old[3]:
             return -1
         box = min(x0, before[0]), min(y0, before[1]), max(x1, before[2]), max(y1, before[3])
@@ -230,10 +253,12 @@ def _add_pairs(
         leaver = Leaver(i, box, before, not moved[i])
         # Which long bodies it was beside goes by where it was when all pairs were listed.
         fat[0, i], fat[1, i], fat[2, i], fat[4, i] = old[0], old[1], old[2], old[4]
+        fat[6, i], fat[7, i] = old[5], old[6]
         done = _list_leaver(leaver, growth, index, near, sizes, fat, boxes, moved, inverse_mass)
         if bounded and inverse_mass[i] > 0.0:
             _meet_walls(leaver, near, bounds)
         fat[0, i], fat[1, i], fat[2, i], fat[4, i] = new[0], new[1], new[2], new[4]
+        fat[6, i], fat[7, i] = new[5], new[6]
         boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = box
         already += 0 if moved[i] else 1
         moved[i] = True

@@ -84,7 +84,8 @@ def beside(sizes: Sizes, fat: Vectors, one: int, other: int) -> bool:
         return False
     c, s = math.cos(fat[2, long]), math.sin(fat[2, long])
     x, y = fat[0, small] - fat[0, long], fat[1, small] - fat[1, long]
-    clear = fat[3, small] + CORNERWISE * (fat[4, long] + fat[4, small])
+    ways = abs(fat[6, long]) + abs(fat[7, long]) + abs(fat[6, small]) + abs(fat[7, small])
+    clear = fat[3, small] + CORNERWISE * (fat[4, long] + fat[4, small]) + ways
     across, up = abs(c * x + s * y), abs(c * y - s * x)
     return bool((across > 0.5 * sizes.width[long] + clear) | (up > 0.5 * sizes.height[long] + clear))
 

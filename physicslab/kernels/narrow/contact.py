@@ -2,14 +2,15 @@
 
 import math
 
-from physicslab.kernels import Rows, Vectors, fused, inlined
+from physicslab.kernels import Rows, Vectors, always_inlined, fused, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
 from physicslab.kernels.narrow.outline import Way, kept_outline
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point, Points
 
 __all__ = [
-    "ACTIVATION_RATIO", "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "TOLERANCE_WITHIN_STEP",
+    "ACTIVATION_RATIO", "AS_FOUND", "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "TOLERANCE_WITHIN_STEP",
+    "WIDE_TOLERANCE",
     "effective_masses", "find_contacts", "follow_pose", "forget_points", "mix", "note_pose", "touch",
 ]  # fmt: skip
 
@@ -21,10 +22,14 @@ CACHE_TURN_TOLERANCE = 0.002
 """How far [rad] either may turn."""
 TOLERANCE_WITHIN_STEP = 12.0
 """Multiple of these tolerances that counts after the first substep of a step."""
+WIDE_TOLERANCE = 4.0
+"""Multiple of these tolerances after which the points of a wide contact are found again, once a step."""
 _ROWS_FOUND_AGAIN = 64
 """Number of bodies up to which points of boxes are found again after any motion."""
 _ROUNDING = 1e-9
 """Share of these tolerances that is no motion."""
+AS_FOUND = 3
+"""What ``found`` is of a pair with a disc whose point was found in its base pose, and is no later one's."""
 _APART, _KEPT, _OUTDATED = range(3)
 """What is known of a pair of boxes: that they have no points; where their points are; nothing any more."""
 
@@ -44,7 +49,7 @@ def follow_pose(
         point.separation = point.found_separation + along
 
 
-@inlined
+@always_inlined
 def effective_masses(manifold: Manifold, points: Points, p: int, inverse: Inverse) -> None:
     """Compute 1 / (1/m_a + 1/m_b + (r_a x n)^2 / I_a + (r_b x n)^2 / I_b), for normal and tangent."""
     a, b = manifold.a, manifold.b
@@ -153,6 +158,26 @@ def _look_up(
 
 
 @fused
+def _in_place(
+    manifold: Manifold, point: Point, way: Way, motion: Motion, sizes: Sizes, speculative_margin: float
+) -> bool:
+    """Whether a pair with a disc is, to the last bit, where its point was found, and presses on it.
+
+    To find it again would give the same.
+    """
+    a, b, angle, kind = manifold.a, manifold.b, motion.angle, sizes.kind
+    return bool(
+        manifold.found == AS_FOUND
+        and way.dx == manifold.base_x
+        and way.dy == manifold.base_y
+        and (kind[a] != 2 or angle[a] == manifold.base_angle_a)
+        and (kind[b] != 2 or angle[b] == manifold.base_angle_b)
+        and point.normal_impulse > 0.0
+        and point.found_separation < CONTACT_MARGIN * 0.5 * manifold.size + speculative_margin
+    )
+
+
+@fused
 def touch(
     manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, sizes: Sizes, bounds: Bounds,
     rotations: Vectors, h: float, start: float, speculative_margin: float,
@@ -200,7 +225,7 @@ def _has_few_rows(entities: Rows) -> bool:
     return filled <= _ROWS_FOUND_AGAIN
 
 
-@inlined
+@always_inlined
 def find_contacts(
     near: Near, count: int, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
     bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
@@ -243,7 +268,11 @@ def find_contacts(
             continue
         manifold.offset_x, manifold.offset_y = way.dx, way.dy
         known = _OUTDATED
-        if sizes.kind[b] == 2 if walled else boxes > 0:
+        with_disc = not walled and boxes < 2
+        if with_disc and not first and _in_place(manifold, one, way, motion, sizes, speculative_margin):
+            one.separation = one.found_separation
+            known = _KEPT
+        elif sizes.kind[b] == 2 if walled else boxes > 0:
             known = _look_up(
                 manifold, near.points, p, way, motion, sizes, h, speculative_margin, tolerance, circular
             )
@@ -253,8 +282,12 @@ def find_contacts(
             touch(
                 manifold, one, two, way, motion, sizes, bounds, near.rotations, h, start, speculative_margin
             )
-            if circular:
-                manifold.found = 2 if manifold.count == 0 else 0
+            if with_disc:
+                if not circular:
+                    note_pose(manifold, way.dx, way.dy, 0.0, 0.0)
+                manifold.found = AS_FOUND if manifold.count > 0 and manifold.swept == 0 else 0
+                if circular and manifold.count == 0:
+                    manifold.found = 2
         if manifold.count > 0:
             if first or known == _OUTDATED:
                 effective_masses(manifold, near.points, p, inverse)

@@ -15,7 +15,9 @@ from physicslab.kernels.narrow.sweep import (
 )
 from physicslab.kernels.records import Manifold, Point
 
-__all__ = ["CONTACT_MARGIN", "SWEEP_THRESHOLD", "touch_boxes", "touch_wall", "touch_with_circle"]
+__all__ = [
+    "CONTACT_MARGIN", "SWEEP_THRESHOLD", "WIDE_SHARE", "touch_boxes", "touch_wall", "touch_with_circle",
+]  # fmt: skip
 
 CONTACT_MARGIN = 0.02
 """Share of the smaller body's size within which a pair counts as near: its points are kept though they do
@@ -25,6 +27,8 @@ _ROUNDING = 1e-6
 SWEEP_THRESHOLD = 0.002
 """Share of the smaller body's size below which a substep's motion, or that of a turning box's corners, is not
 swept at all."""
+WIDE_SHARE = 0.1
+"""Share of the smaller body's size that a contact under load may move in a substep and be wide."""
 _TURNING = 0.1
 """Share of a body's way that the corners of a box may turn meanwhile, as the next tile of a floor may."""
 _FAST = 0.25

@@ -39,8 +39,8 @@ from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to
 
 __all__ = [
     "ACCELERATE", "ALL", "BEGIN", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "FIND",
-    "GRAVITY", "IMPACTS", "INTEGRATE", "PAIRS_STALE", "RESOLVE", "SLEEP", "SLEEP_PENDING", "WAKE_PENDING",
-    "advance",
+    "GRAVITY", "IMPACTS", "INTEGRATE", "PAIRS_STALE", "RESOLVE", "SLEEP", "SLEEP_PENDING", "STEPS",
+    "WAKE_PENDING", "advance",
 ]  # fmt: skip
 
 ALL, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING = range(6)
@@ -49,11 +49,12 @@ blocks may be needed; the last step left a number that is not finite; a sleeping
 of a step, an island may fall asleep."""
 BEGIN, FIND, IMPACTS = range(3)
 """Where in a substep the loop begins: at its start; where bodies touch; at the impacts."""
-COSTS = 7
-ACCELERATE, GRAVITY, INTEGRATE, BROAD_PHASE, CONTACT, RESOLVE, SLEEP = range(COSTS)
-"""The systems that do the same work in single stages, in the order of their times in ``cost``."""
+COSTS, STEPS = 8, 7
+ACCELERATE, GRAVITY, INTEGRATE, BROAD_PHASE, CONTACT, RESOLVE, SLEEP = range(STEPS)
+"""The systems that do the same work in single stages, in the order of their times in ``cost``; then how many
+steps were begun."""
 _TIMED = 8
-"""Every such step of a call is timed: reading the clock takes a twentieth of a step of ten bodies."""
+"""Every such step is timed: reading the clock takes a twentieth of a step of ten bodies."""
 
 
 @inlined
@@ -123,7 +124,8 @@ def _advance(
     while done < steps:
         if stage == BEGIN:
             if substep == 0:
-                now = ticks() if done % _TIMED == 0 else -1
+                now = ticks() if cost[STEPS] % _TIMED == 0 else -1
+                cost[STEPS] += 1
                 _keep(motion, kept)
                 now = charge(cost, ACCELERATE, now)
             drift(position, angle, linear, angular, sub_integrated, 0.5 * h)
@@ -203,7 +205,7 @@ def advance(
 
     The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and each does what the systems
     do there. ``kept`` receives the state in which the last step began, ``impacts`` is the log,
-    and ``cost`` (7,) gets ticks added for each system.
+    and ``cost`` (COSTS,) gets ticks added for each system, and the number of steps.
 
     Returns why it ended, how many steps are done, the substep that it was in, the impacts in the steps that
     are done and all impacts, and the time [s] over which the points' impulses act.

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import always_inlined, fused, inlined
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion, Sizes
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON, Lever, Weights, one_blow, two_blows
@@ -229,19 +229,20 @@ def _forced(
 def _resolve_once(
     contacts: Contacts, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log, logged: int,
     h: float, window: Window, again: bool,
-) -> tuple[int, int, int, int]:  # fmt: skip
+) -> tuple[int, int, int, int, bool]:  # fmt: skip
     """Resolve the pairs one after the other; inelastic ones are resolved once, and not ``again``.
 
-    Returns how many bounced, how many are left to the solver, how many obeyed Stronge's law, and how many had
-    their restitution lowered.
+    Returns how many bounced, how many are left to the solver, how many obeyed Stronge's law, how many had
+    their restitution lowered, and whether any may bounce again.
     """
-    bounced, left, energetic, lowered = 0, 0, 0, 0
+    bounced, left, energetic, lowered, elastic = 0, 0, 0, 0, False
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         if again and manifold.restitution == 0.0:
             left += 1
             continue
+        elastic = elastic or manifold.restitution > 0.0
         # Most pairs rest: these are handled here without a call.
         a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
         one, two = contacts.points[2 * p], contacts.points[2 * p + 1]
@@ -278,10 +279,10 @@ def _resolve_once(
             energetic += 1 if law == ENERGETIC else 0
             lowered += 1 if law == LOWERED else 0
         left += 1 - (min(one.ahead, two.ahead) if manifold.count == 2 else one.ahead)
-    return bounced, left, energetic, lowered
+    return bounced, left, energetic, lowered, elastic
 
 
-@inlined
+@always_inlined
 def resolve_impacts(
     contacts: Contacts, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log, logged: int,
     h: float, start: float, end: float,
@@ -305,13 +306,16 @@ def resolve_impacts(
     # Without forces there are no piles.
     window = Window(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     for sweep in range(_MAX_SWEEPS):
-        bounced, left, stronge, less = _resolve_once(
+        bounced, left, stronge, less, elastic = _resolve_once(
             contacts, motion, sizes, inverse, acting, log, logged + impacts, h, window, sweep > 0
         )
         impacts += bounced
         energetic += stronge
         lowered += less
         if bounced == 0:
+            break
+        if not elastic:
+            left = contacts.number
             break
     if impacts:
         _measure_again(contacts, motion)

@@ -2,16 +2,16 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating, fused, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, fused, inlined, kernel
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
-from physicslab.kernels.records import Manifold, Manifolds, Point, Points
+from physicslab.kernels.records import Manifolds, Point, Points
 from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.wide.solve import SoftConstraint, sweep_wide, warm_start_wide
 
 __all__ = [
     "HEAVY_RATIO", "MAX_SUBSTEP_FACTOR", "apply_impulse", "deepest", "follow_drift", "relative_velocity",
-    "relax", "separate", "solve", "sweeps_of", "worst_load_ratio",
+    "relax", "solve", "sweeps_of", "worst_load_ratio",
 ]  # fmt: skip
 
 
@@ -19,8 +19,6 @@ _MAX_SWEEPS = 16
 """Sweeps of a substep over few contacts: with a spring as stiff as they carry, cubes of 2 cm stand."""
 _CONTACT_SWEEPS = 512
 """Contacts times sweeps of a substep, where the number of sweeps is not set."""
-_DEEP = 0.1
-"""Share beyond which overlap is resolved by moving bodies."""
 HEAVY_RATIO = 10.0
 """Ratio of masses from which the lighter body of a pair may have to carry many times its weight."""
 MAX_SUBSTEP_FACTOR = 16
@@ -122,7 +120,7 @@ def solve(
             break
 
 
-@inlined
+@always_inlined
 def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
     """Bring separations up to date for a drift of h at the present velocities."""
     for k in range(contacts.number):
@@ -149,77 +147,6 @@ def relax(contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: f
             drift = 0.0
         elif not unsettled:
             break
-
-
-@inlined
-def _lowest(manifold: Manifold, points: Points, p: int) -> float:
-    """Return the lowest separation of a pair's points [m]."""
-    lowest: float = points[2 * p].separation
-    return min(lowest, points[2 * p + 1].separation) if manifold.count == 2 else lowest
-
-
-@inlined
-def _push_apart(contacts: Contacts, position: Vectors, before: Vectors, inverse_mass: Numbers) -> None:
-    """Move the bodies of each pair that overlaps deeply apart, the lighter one further."""
-    for k in range(contacts.number):
-        p = contacts.touching[k]
-        manifold = contacts.manifolds[p]
-        if manifold.swept == 1:
-            continue
-        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-        moved_x = position[b, 0] - before[b, 0] - position[a, 0] + before[a, 0]
-        moved_y = position[b, 1] - before[b, 1] - position[a, 1] + before[a, 1]
-        depth = -(_lowest(manifold, contacts.points, p) + moved_x * nx + moved_y * ny) - _DEEP * manifold.size
-        if depth > 0.0:
-            share = 0.6 * depth / (inverse_mass[a] + inverse_mass[b])
-            position[a, 0] -= share * inverse_mass[a] * nx
-            position[a, 1] -= share * inverse_mass[a] * ny
-            position[b, 0] += share * inverse_mass[b] * nx
-            position[b, 1] += share * inverse_mass[b] * ny
-
-
-@inlined
-def _put_back(contacts: Contacts, position: Vectors, before: Vectors, inverse_mass: Numbers) -> None:
-    """Move what overlaps a fixed body, or the world's bounds, out of it."""
-    for k in range(contacts.number):
-        p = contacts.touching[k]
-        manifold = contacts.manifolds[p]
-        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-        if manifold.swept == 1 or (inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0):
-            continue
-        i, sign = (b, 1.0) if inverse_mass[b] > 0.0 else (a, -1.0)
-        moved = sign * ((position[i, 0] - before[i, 0]) * nx + (position[i, 1] - before[i, 1]) * ny)
-        depth = -(_lowest(manifold, contacts.points, p) + moved) - _DEEP * manifold.size
-        if depth > 0.0:
-            position[i, 0] += sign * depth * nx
-            position[i, 1] += sign * depth * ny
-
-
-@allocating
-def separate(contacts: Contacts, position: Vectors, inverse_mass: Numbers, farthest: float) -> None:
-    """Move bodies that overlap deeply apart, six tenths of the way and by at most ``farthest`` [m].
-
-    Only positions change: however many bodies are on one spot, separating them gives them no speed. A body
-    beyond the world's bounds, or within a fixed body, is put back at once, so that the heaviest body cannot
-    press another one through a floor.
-    """
-    deep = False
-    for k in range(contacts.number):
-        p = contacts.touching[k]
-        manifold = contacts.manifolds[p]
-        for j in range(2 * p, 2 * p + manifold.count):
-            deep = deep or contacts.points[j].separation < -_DEEP * manifold.size
-    if not deep:
-        return
-    before = position.copy()
-    _push_apart(contacts, position, before, inverse_mass)
-    for i in range(len(inverse_mass)):
-        x, y = position[i, 0] - before[i, 0], position[i, 1] - before[i, 1]
-        way = math.sqrt(x * x + y * y)
-        if way > farthest:
-            position[i, 0] = before[i, 0] + x * farthest / way
-            position[i, 1] = before[i, 1] + y * farthest / way
-    _put_back(contacts, position, before, inverse_mass)
 
 
 @kernel

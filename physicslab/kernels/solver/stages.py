@@ -3,7 +3,7 @@
 Systems call them one by one through :mod:`physicslab.kernels.solver.entries`.
 """
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import always_inlined, fused
 from physicslab.kernels.arguments import (
     Acting,
     Bounds,
@@ -33,6 +33,7 @@ from physicslab.kernels.near_counts import (
 from physicslab.kernels.solver import impulse
 from physicslab.kernels.solver.impact import resolve_impacts
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
+from physicslab.kernels.solver.separate import separate
 from physicslab.kernels.wide.refresh import refresh
 from physicslab.kernels.wide.slots import wake
 
@@ -45,7 +46,7 @@ def _contacts(near: Near) -> Contacts:
     return Contacts(near.manifolds, near.points, near.touching, near.counts[ACTIVE])
 
 
-@inlined
+@always_inlined
 def find_touching(
     near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
     first: bool, h: float, start: float, speculative_margin: float,
@@ -59,9 +60,7 @@ def find_touching(
     if counts[WIDE_COUNT] > 0:
         before = counts[SCALAR]
         for slots in (near.discs, near.boxes):
-            refresh(
-                slots, near, motion, sizes, materials, inverse, bounds, first, h, start, speculative_margin
-            )
+            refresh(slots, near, motion, sizes, inverse, bounds, first, h, start, speculative_margin)
         came = counts[SCALAR] - before
         counts[WIDE_COUNT] -= came
         if came > 0:
@@ -78,7 +77,7 @@ def find_touching(
     )
 
 
-@inlined
+@always_inlined
 def resolve_all_impacts(
     near: Near, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log,
     h: float, start: float, end: float,
@@ -143,4 +142,4 @@ def relax(
         return
     contacts = _contacts(near)
     impulse.relax(contacts, near, motion, inverse, h, impulse.sweeps_of(near, iterations))
-    impulse.separate(contacts, motion.position, inverse.mass, softness.max_push * h)
+    separate(contacts, near, motion.position, inverse.mass, softness.max_push * h)

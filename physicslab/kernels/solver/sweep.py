@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import always_inlined, fused
 from physicslab.kernels.arguments import Contacts, Inverse, Motion
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.wide.solve import (
@@ -60,25 +60,50 @@ def _pushed(
 
 
 @fused
+def _one_point(
+    manifold: Manifold, point: Point, v: Velocities, weights: Weights, soft: SoftConstraint
+) -> tuple[Velocities, float]:
+    """Find the impulses of a pair of one point; return the velocities after them, and the largest change.
+
+    How the normal impulse changes the speed of sliding is added to it: a shorter chain of operations, each of
+    which waits for the one before, than by the velocities after it.
+    """
+    nx, ny = manifold.normal_x, manifold.normal_y
+    vx, vy = v.bx - v.ax, v.by - v.ay
+    turn_a, turn_b = point.arm_ax * ny - point.arm_ay * nx, point.arm_bx * ny - point.arm_by * nx
+    approach = nx * vx + ny * vy + (v.wb * turn_b - v.wa * turn_a)
+    change, _ = _free(point, approach, manifold.size, soft)
+    before = point.normal_impulse
+    normal, tangent, moment_a, moment_b = one_normal(before, change), 0.0, 0.0, 0.0
+    point.normal_impulse = before + normal
+    if manifold.friction > 0.0:
+        roll_a, roll_b = point.arm_ax * nx + point.arm_ay * ny, point.arm_bx * nx + point.arm_by * ny
+        coupling = weights.ia * turn_a * roll_a + weights.ib * turn_b * roll_b
+        slide = nx * vy - ny * vx + (v.wb * roll_b - v.wa * roll_a) + normal * coupling
+        held, limit = point.tangent_impulse, manifold.friction * point.normal_impulse
+        tangent = held_by_friction(held, point.tangent_mass, slide, limit) - held
+        point.tangent_impulse = held + tangent
+        moment_a, moment_b = tangent * roll_a, tangent * roll_b
+    px, py = normal * nx - tangent * ny, normal * ny + tangent * nx
+    moment_a, moment_b = normal * turn_a + moment_a, normal * turn_b + moment_b
+    return _pushed(v, weights, px, py, moment_a, moment_b), max(abs(normal), abs(tangent))
+
+
+@fused
 def _normals(
     manifold: Manifold, one: Point, two: Point, v: Velocities, weights: Weights, soft: SoftConstraint
 ) -> tuple[Velocities, float]:
-    """Find the normal impulses of a pair; return the velocities after them, and the largest change [N s]."""
+    """Find the normal impulses of two points; return the velocities after them, and the largest change."""
     nx, ny, size = manifold.normal_x, manifold.normal_y, manifold.size
     along = nx * (v.bx - v.ax) + ny * (v.by - v.ay)
-    d2 = turn_2a = turn_2b = 0.0
     turn_1a, turn_1b = one.arm_ax * ny - one.arm_ay * nx, one.arm_bx * ny - one.arm_by * nx
+    turn_2a, turn_2b = two.arm_ax * ny - two.arm_ay * nx, two.arm_bx * ny - two.arm_by * nx
     x1, x2 = one.normal_impulse, two.normal_impulse
     change1, mass1 = _free(one, along + v.wb * turn_1b - v.wa * turn_1a, size, soft)
-    if manifold.count == 2:
-        turn_2a, turn_2b = two.arm_ax * ny - two.arm_ay * nx, two.arm_bx * ny - two.arm_by * nx
-        change2, mass2 = _free(two, along + v.wb * turn_2b - v.wa * turn_2a, size, soft)
-        between = weights.ma + weights.mb + weights.ia * turn_1a * turn_2a + weights.ib * turn_1b * turn_2b
-        d1, d2 = two_normals(x1, x2, change1, change2, mass1, mass2, between)
-        two.normal_impulse = x2 + d2
-    else:
-        d1 = one_normal(x1, change1)
-    one.normal_impulse = x1 + d1
+    change2, mass2 = _free(two, along + v.wb * turn_2b - v.wa * turn_2a, size, soft)
+    between = weights.ma + weights.mb + weights.ia * turn_1a * turn_2a + weights.ib * turn_1b * turn_2b
+    d1, d2 = two_normals(x1, x2, change1, change2, mass1, mass2, between)
+    one.normal_impulse, two.normal_impulse = x1 + d1, x2 + d2
     turn_a, turn_b = d1 * turn_1a + d2 * turn_2a, d1 * turn_1b + d2 * turn_2b
     px, py = (d1 + d2) * nx, (d1 + d2) * ny
     return _pushed(v, weights, px, py, turn_a, turn_b), max(abs(d1), abs(d2))
@@ -88,31 +113,26 @@ def _normals(
 def _friction(
     manifold: Manifold, one: Point, two: Point, v: Velocities, weights: Weights
 ) -> tuple[Velocities, float]:
-    """Find the tangential impulses of a pair, each at most mu times the normal one.
+    """Find the tangential impulses of two points, each at most mu times the normal one.
 
     Returns the velocities after them, and the largest change [N s].
     """
     nx, ny, mu = manifold.normal_x, manifold.normal_y, manifold.friction
     across = nx * (v.by - v.ay) - ny * (v.bx - v.ax)
-    d2 = turn_2a = turn_2b = 0.0
     turn_1a, turn_1b = one.arm_ax * nx + one.arm_ay * ny, one.arm_bx * nx + one.arm_by * ny
+    turn_2a, turn_2b = two.arm_ax * nx + two.arm_ay * ny, two.arm_bx * nx + two.arm_by * ny
     v1 = across + v.wb * turn_1b - v.wa * turn_1a
-    x1, m1, limit1 = one.tangent_impulse, one.tangent_mass, mu * one.normal_impulse
-    if manifold.count == 2:
-        turn_2a, turn_2b = two.arm_ax * nx + two.arm_ay * ny, two.arm_bx * nx + two.arm_by * ny
-        v2 = across + v.wb * turn_2b - v.wa * turn_2a
-        between = weights.ma + weights.mb + weights.ia * turn_1a * turn_2a + weights.ib * turn_1b * turn_2b
-        x2, m2, limit2 = two.tangent_impulse, two.tangent_mass, mu * two.normal_impulse
-        d1, d2 = two_frictions(x1, x2, v1, v2, m1, m2, limit1, limit2, between)
-        two.tangent_impulse = x2 + d2
-    else:
-        d1 = held_by_friction(x1, m1, v1, limit1) - x1
-    one.tangent_impulse = x1 + d1
+    v2 = across + v.wb * turn_2b - v.wa * turn_2a
+    between = weights.ma + weights.mb + weights.ia * turn_1a * turn_2a + weights.ib * turn_1b * turn_2b
+    x1, x2 = one.tangent_impulse, two.tangent_impulse
+    limit1, limit2 = mu * one.normal_impulse, mu * two.normal_impulse
+    d1, d2 = two_frictions(x1, x2, v1, v2, one.tangent_mass, two.tangent_mass, limit1, limit2, between)
+    one.tangent_impulse, two.tangent_impulse = x1 + d1, x2 + d2
     turn_a, turn_b = d1 * turn_1a + d2 * turn_2a, d1 * turn_1b + d2 * turn_2b
     return _pushed(v, weights, -(d1 + d2) * ny, (d1 + d2) * nx, turn_a, turn_b), max(abs(d1), abs(d2))
 
 
-@inlined
+@always_inlined
 def sweep(contacts: Contacts, motion: Motion, inverse: Inverse, soft: SoftConstraint, backward: bool) -> bool:
     """Solve all scalar contacts once, ``backward`` from the last to the first.
 
@@ -126,10 +146,13 @@ def sweep(contacts: Contacts, motion: Motion, inverse: Inverse, soft: SoftConstr
         a, b = manifold.a, manifold.b
         weights = Weights(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
         v = Velocities(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
-        v, change = _normals(manifold, one, two, v, weights, soft)
-        if manifold.friction > 0.0:
-            v, slid = _friction(manifold, one, two, v, weights)
-            change = max(change, slid)
+        if manifold.count == 1:
+            v, change = _one_point(manifold, one, v, weights, soft)
+        else:
+            v, change = _normals(manifold, one, two, v, weights, soft)
+            if manifold.friction > 0.0:
+                v, slid = _friction(manifold, one, two, v, weights)
+                change = max(change, slid)
         linear[a, 0], linear[a, 1], angular[a] = v.ax, v.ay, v.wa
         linear[b, 0], linear[b, 1], angular[b] = v.bx, v.by, v.wb
         held = one.normal_impulse + (two.normal_impulse if manifold.count == 2 else 0.0)

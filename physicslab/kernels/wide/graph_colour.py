@@ -18,7 +18,7 @@ from physicslab.kernels.arguments import (
 )
 from physicslab.kernels.broad.near_pairs import sort_scalar
 from physicslab.kernels.narrow.contact import note_pose
-from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
+from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.near_counts import (
     ACTIVE,
     BOX_BLOCKS,
@@ -51,15 +51,19 @@ _OF_FIXED = 48
 
 @inlined
 def _is_steady(manifold: Manifold, one: Point, two: Point, linear: Vectors, h: float) -> bool:
-    """Whether a contact may be in a block: it is slow for its size, and overlaps little."""
+    """Whether a contact may be in a block: it is slow for its size, and meets no later than now."""
     if manifold.swept != 0 or manifold.impact_count != 0 or one.ahead != 0:
         return False
-    a, b, deep = manifold.a, manifold.b, -0.1 * manifold.size
-    if one.separation < deep or (manifold.count == 2 and (two.separation < deep or two.ahead != 0)):
+    if manifold.count == 2 and two.ahead != 0:
         return False
+    a, b = manifold.a, manifold.b
     ux, uy = (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h
-    loaded = one.normal_impulse > 0.0 or manifold.found == 2 or manifold.restitution == 0.0
-    slow = _ENTRY * (CONTACT_MARGIN if loaded else SWEEP_THRESHOLD)
+    slow = SWEEP_THRESHOLD
+    if one.normal_impulse > 0.0 or (manifold.count == 2 and two.normal_impulse > 0.0):
+        slow = WIDE_SHARE
+    elif manifold.found == 2 or manifold.restitution == 0.0:
+        slow = CONTACT_MARGIN
+    slow *= _ENTRY
     return bool(ux * ux + uy * uy <= slow * slow * manifold.size * manifold.size)
 
 
@@ -110,8 +114,6 @@ def _may_enter(
     manifold = near.manifolds[p]
     i, j = manifold.a, manifold.b
     if manifold.wall >= 0 or not is_of_kind(slots.kind, shape[i], shape[j]):
-        return False
-    if shape[i] == 2 and shape[j] == 2 and manifold.found != 2:
         return False
     if asleep[i] or asleep[j]:
         return False

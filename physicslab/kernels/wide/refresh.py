@@ -1,17 +1,18 @@
 """Where wide contacts touch now, eight at a time; those that are not steady any more become scalar."""
 
 from physicslab.kernels import Numbers, fused, inlined, kernel
-from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
+from physicslab.kernels.arguments import Bounds, Inverse, Motion, Near, Sizes
 from physicslab.kernels.narrow.contact import (
     CACHE_TOLERANCE,
     CACHE_TURN_TOLERANCE,
-    TOLERANCE_WITHIN_STEP,
+    WIDE_TOLERANCE,
+    effective_masses,
     forget_points,
     note_pose,
     touch,
 )
 from physicslab.kernels.narrow.outline import Way
-from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD
+from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
 from physicslab.kernels.wide.float64x8 import (
     Wide,
@@ -54,13 +55,13 @@ from physicslab.kernels.wide.layout import (
     Slots,
     rows_of,
 )  # fmt: skip
-from physicslab.kernels.wide.restore_slots import fill_slot
-from physicslab.kernels.wide.slots import clear_slot, empty_slot, set_scalar, store_slot
+from physicslab.kernels.wide.restore_slots import fill_points
+from physicslab.kernels.wide.slots import empty_slot, set_scalar, store_slot
 
 __all__ = ["deepest_wide", "refresh"]
 
-_DEEP = 0.1
-"""Share of the smaller size: deeper overlap is resolved by moving bodies, which only scalar contacts do."""
+_WITHIN_STEP = 100.0
+"""Multiple of the tolerances of points beyond which a wide contact becomes scalar within a step."""
 _ONE_SPOT = 1e-300
 """Distance [m] below which there is no direction."""
 
@@ -69,26 +70,27 @@ _ONE_SPOT = 1e-300
 def _restless(slots: Slots, k: int, motion: Motion, h: float) -> int:
     """Return the slots of a block whose bodies move too far for their size in a substep, as bits.
 
-    Discs that do not press on each other may meet within it, and bounce at a time and with a normal that are
+    What does not press on each other may meet within it, and bounce at a time and with a normal that are
     to be found.
     """
     vax, vay = take_vectors(motion.linear, slots.a, k * WIDE)
     vbx, vby = take_vectors(motion.linear, slots.b, k * WIDE)
     at = k * rows_of(slots.kind)
     size = take(slots.data, at + SIZE)
+    pressed = take(slots.data, at + ONE + IMPULSE)
     limit = CONTACT_MARGIN * size
     if slots.kind == DISC:
-        meets = (take(slots.data, at + ONE + IMPULSE) < _ONE_SPOT) & (
-            take(slots.data, at + RESTITUTION) > 0.0
-        )
-        limit = choose(meets, SWEEP_THRESHOLD * size, limit)
+        limit = choose(take(slots.data, at + RESTITUTION) > 0.0, SWEEP_THRESHOLD * size, limit)
+    else:
+        pressed = pressed + take(slots.data, at + TWO + IMPULSE)
+    limit = choose(pressed > 0.0, WIDE_SHARE * size, limit)
     ux, uy = (vbx - vax) * h, (vby - vay) * h
     return mask_bits(ux * ux + uy * uy > limit * limit)
 
 
 @fused
 def _refresh_discs(slots: Slots, k: int, motion: Motion, speculative_margin: float) -> int:
-    """Find normals and separations of a block of discs; return which are apart or overlap much."""
+    """Find normals and separations of a block of discs; return which are apart."""
     data, at = slots.data, k * DISC_ROWS
     xa, ya = take_vectors(motion.position, slots.a, k * WIDE)
     xb, yb = take_vectors(motion.position, slots.b, k * WIDE)
@@ -102,26 +104,25 @@ def _refresh_discs(slots: Slots, k: int, motion: Motion, speculative_margin: flo
     put(data, at + ONE + SEPARATION, separation)
     apart = separation > 0.5 * CONTACT_MARGIN * size + speculative_margin
     on_one_spot = distance < _ONE_SPOT
-    return mask_bits((apart | on_one_spot | (separation < -_DEEP * size)) & (ra > 0.0))
+    return mask_bits((apart | on_one_spot) & (ra > 0.0))
 
 
 @fused
-def _separation(
+def _follow(
     data: Numbers, point: int, x: Wide, y: Wide, nx: Wide, ny: Wide, turn_a: Wide, turn_b: Wide
-) -> Wide:
-    """Return the separations of points, to second order in how far the pairs have moved and turned."""
+) -> None:
+    """Update the separations of points, to second order in how far the pairs have moved and turned."""
     rax, ray = take(data, point + ARM_AX), take(data, point + ARM_AY)
     rbx, rby = take(data, point + ARM_BX), take(data, point + ARM_BY)
     ax, ay = turn_a * (-ray - 0.5 * turn_a * rax), turn_a * (rax - 0.5 * turn_a * ray)
     bx, by = turn_b * (-rby - 0.5 * turn_b * rbx), turn_b * (rbx - 0.5 * turn_b * rby)
     separation = take(data, point + FOUND) + (x + bx - ax) * nx + (y + by - ay) * ny
     put(data, point + SEPARATION, separation)
-    return separation
 
 
 @fused
-def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> tuple[int, int]:
-    """Update the separations of a block with boxes; return whose points to find again, which overlap much.
+def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> int:
+    """Update the separations of a block with boxes; return whose points to find again.
 
     ``tolerance`` is a share of :data:`CACHE_TOLERANCE` and :data:`CACHE_TURN_TOLERANCE`.
     """
@@ -133,21 +134,20 @@ def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> tu
     turn_a = take_numbers(motion.angle, slots.a, k * WIDE) - take(data, at + ANGLE_A)
     turn_b = take_numbers(motion.angle, slots.b, k * WIDE) - take(data, at + ANGLE_B)
     turn_a, turn_b = turn_a * take(data, at + TURNS_A), turn_b * take(data, at + TURNS_B)
-    one = _separation(data, at + ONE, x, y, nx, ny, turn_a, turn_b)
-    two = _separation(data, at + TWO, x, y, nx, ny, turn_a, turn_b)
+    _follow(data, at + ONE, x, y, nx, ny, turn_a, turn_b)
+    _follow(data, at + TWO, x, y, nx, ny, turn_a, turn_b)
     size = take(data, at + SIZE)
     moved = (
         (size_of(x) + size_of(y) > tolerance * CACHE_TOLERANCE * size)
         | (size_of(turn_a) > tolerance * CACHE_TURN_TOLERANCE)
         | (size_of(turn_b) > tolerance * CACHE_TURN_TOLERANCE)
     )
-    deep = -_DEEP * size
-    return mask_bits(moved), mask_bits((one < deep) | (two < deep))
+    return mask_bits(moved)
 
 
 @fused
 def _find_again(
-    slots: Slots, slot: int, near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
+    slots: Slots, slot: int, near: Near, motion: Motion, sizes: Sizes, inverse: Inverse,
     bounds: Bounds, h: float, start: float, speculative_margin: float,
 ) -> bool:  # fmt: skip
     """Find the points of a slot's pair in its present pose; return whether it keeps its slot."""
@@ -161,40 +161,37 @@ def _find_again(
     )  # fmt: skip
     manifold.offset_x, manifold.offset_y = way.dx, way.dy
     touch(manifold, one, two, way, motion, sizes, bounds, near.rotations, h, start, speculative_margin)
-    deep = -_DEEP * manifold.size
-    fits = manifold.count > 0 and manifold.swept == 0 and one.separation >= deep
-    if not fits or (manifold.count == 2 and two.separation < deep):
+    if manifold.count == 0 or manifold.swept != 0:
         if manifold.count == 0:
             forget_points(one, two)
         manifold.found, manifold.slot = 0, -1
         empty_slot(slots, slot)
         return False
     note_pose(manifold, way.dx, way.dy, motion.angle[a], motion.angle[b])
-    colour = slots.colour[slot // WIDE]
-    clear_slot(slots, slot)
-    fill_slot(slots, slot, colour, near.manifolds, near.points, p, sizes, materials, inverse)
+    effective_masses(manifold, near.points, p, inverse)
+    fill_points(slots, slot, manifold, one, two)
     return True
 
 
 @inlined
 def refresh(
-    slots: Slots, near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
+    slots: Slots, near: Near, motion: Motion, sizes: Sizes, inverse: Inverse,
     bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Find where the contacts of all blocks of a kind touch now.
 
-    What is too fast (looked at in the ``first`` substep of a step), has come apart or overlaps deeply is
+    What is too fast (looked at in the ``first`` substep of a step), or has come apart is
     written to its records and added to the scalar pairs. The points of a pair with a box are followed; where
     it has moved, they are found again in the first substep, and it keeps its slot.
     """
-    tolerance = 1.0 if first else TOLERANCE_WITHIN_STEP
+    tolerance = WIDE_TOLERANCE if first else _WITHIN_STEP
     for k in range(near.counts[DISC_BLOCKS + slots.kind]):
         lost, moved = _restless(slots, k, motion, h) if first else 0, 0
         if slots.kind == DISC:
             lost |= _refresh_discs(slots, k, motion, speculative_margin)
         else:
-            moved, deep = _refresh_boxes(slots, k, motion, tolerance)
-            lost |= deep if first else deep | moved
+            moved = _refresh_boxes(slots, k, motion, tolerance)
+            lost |= 0 if first else moved
         if lost != 0:
             _lose(slots, k, lost, near)
         if first and moved & ~lost != 0:
@@ -204,7 +201,7 @@ def refresh(
                 if p < 0 or not (moved >> place) & 1:
                     continue
                 if not _find_again(
-                    slots, slot, near, motion, sizes, materials, inverse, bounds, h, start, speculative_margin
+                    slots, slot, near, motion, sizes, inverse, bounds, h, start, speculative_margin
                 ):
                     near.scalar[near.counts[SCALAR]] = p
                     near.counts[SCALAR] += 1

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.arguments import (
     Inverse,
     InverseTuple,
@@ -51,9 +51,11 @@ from physicslab.kernels.wide.layout import (
     SlotsTuple,
     rows_of,
 )  # fmt: skip
-from physicslab.kernels.wide.slots import clear_slot
+from physicslab.kernels.wide.slots import clear_slot, store_slot
 
-__all__ = ["fill_slot", "is_of_kind", "outdated", "remember", "restore_slots"]
+__all__ = [
+    "fill_points", "fill_slot", "is_of_kind", "outdated", "remember", "restore_slots", "update_slots",
+]  # fmt: skip
 
 
 @inlined
@@ -117,6 +119,24 @@ def fill_slot(
     slots.used[i] |= bit
     slots.used[j] |= bit
     manifold.slot = 2 * slot + slots.kind
+
+
+@inlined
+def fill_points(slots: Slots, slot: int, manifold: Manifold, one: Point, two: Point) -> None:
+    """Write the points of a pair with a box, found again, into the slot that it has."""
+    data, at = slots.data, slot // WIDE * rows_of(slots.kind) + slot % WIDE
+    data[at + NORMAL_X], data[at + NORMAL_Y] = manifold.normal_x, manifold.normal_y
+    data[at + BASE_X], data[at + BASE_Y] = manifold.base_x, manifold.base_y
+    data[at + ANGLE_A], data[at + ANGLE_B] = manifold.base_angle_a, manifold.base_angle_b
+    _fill_point(data, at + ONE, one)
+    _fill_arms(data, at + ONE, one)
+    if manifold.count == 2:
+        _fill_point(data, at + TWO, two)
+        _fill_arms(data, at + TWO, two)
+    else:
+        for row in range(0, BASE_X - TWO, WIDE):
+            data[at + TWO + row] = 0.0
+        data[at + TWO + SEPARATION] = data[at + TWO + FOUND] = 1.0
 
 
 @inlined
@@ -184,17 +204,38 @@ def remember(
 
 @kernel
 def outdated(
-    made_of: Vectors, inverse_mass: Numbers, inverse_inertia: Numbers, restitution: Numbers,
+    made_of: Vectors, changed: Flags, inverse_mass: Numbers, inverse_inertia: Numbers, restitution: Numbers,
     friction: Numbers, radius: Numbers, width: Numbers, height: Numbers,
-) -> bool:  # fmt: skip
-    """Whether any of that has been changed since :func:`remember`."""
+) -> int:  # fmt: skip
+    """Mark the bodies of which any of that has been ``changed`` (rows,) since :func:`remember`.
+
+    Returns 0 where there are none; 1 where the contacts of none are to be in other slots; else 2: there are
+    other rows, or a body has another size, or can be moved where it could not, or the other way round.
+    """
     if len(made_of) != len(inverse_mass):
-        return True
+        return 2
+    found = 0
     for i in range(len(made_of)):
-        if (
-            (made_of[i, 0] != inverse_mass[i]) | (made_of[i, 1] != inverse_inertia[i])
-            | (made_of[i, 2] != restitution[i]) | (made_of[i, 3] != friction[i])
-            | (made_of[i, 4] != radius[i]) | (made_of[i, 5] != width[i]) | (made_of[i, 6] != height[i])
-        ):  # fmt: skip
-            return True
-    return False
+        fixed = (made_of[i, 0] == 0.0) != (inverse_mass[i] == 0.0)
+        sized = (made_of[i, 4] != radius[i]) | (made_of[i, 5] != width[i]) | (made_of[i, 6] != height[i])
+        weighs = (made_of[i, 0] != inverse_mass[i]) | (made_of[i, 1] != inverse_inertia[i])
+        changed[i] = weighs | (made_of[i, 2] != restitution[i]) | (made_of[i, 3] != friction[i])
+        found = max(found, 2 if fixed | sized else (1 if changed[i] else 0))
+    return found
+
+
+@kernel
+def update_slots(
+    plain: SlotsTuple, blocks: int, changed: Flags, manifolds: Manifolds, points: Points,
+    plain_sizes: SizesTuple, plain_materials: MaterialsTuple, plain_inverse: InverseTuple,
+) -> None:  # fmt: skip
+    """Fill the slots of the ``changed`` bodies again, with their impulses, masses and materials of now."""
+    slots, sizes, materials = Slots(*plain), Sizes(*plain_sizes), Materials(*plain_materials)
+    inverse = Inverse(*plain_inverse)
+    for slot in range(blocks * WIDE):
+        p = slots.pair[slot]
+        if p >= 0 and (changed[slots.a[slot]] or changed[slots.b[slot]]):
+            store_slot(slots, slot, manifolds, points)
+            fill_slot(
+                slots, slot, slots.colour[slot // WIDE], manifolds, points, p, sizes, materials, inverse
+            )

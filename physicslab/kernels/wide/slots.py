@@ -6,7 +6,7 @@ import numpy as np
 
 from physicslab.kernels import Flags, Rows, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.arguments import Acting, Inverse, Motion, Near
-from physicslab.kernels.narrow.contact import follow_pose
+from physicslab.kernels.narrow.contact import AS_FOUND, follow_pose
 from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, SCALAR
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.wide.layout import (
@@ -160,7 +160,10 @@ def empty_slot(slots: Slots, slot: int) -> None:
 def set_scalar(slots: Slots, slot: int, manifolds: Manifolds, points: Points) -> None:
     """Write a slot to the records of its pair, which is scalar from now on, and empty it."""
     store_slot(slots, slot, manifolds, points)
-    manifolds[slots.pair[slot]].slot = -1
+    manifold = manifolds[slots.pair[slot]]
+    manifold.slot = -1
+    if manifold.found == AS_FOUND:  # the slot's normal may be of a later pose
+        manifold.found = 0
     empty_slot(slots, slot)
 
 

@@ -1,0 +1,164 @@
+"""Deep overlap: bodies are moved apart, which gives them no speed."""
+
+import math
+
+from physicslab.kernels import Numbers, Vectors, allocating, fused, inlined
+from physicslab.kernels.arguments import Contacts, Near
+from physicslab.kernels.near_counts import DISC_BLOCKS
+from physicslab.kernels.records import Manifold, Points
+from physicslab.kernels.wide.float64x8 import lesser, mask_bits, take
+from physicslab.kernels.wide.layout import (
+    DISC,
+    NORMAL_X,
+    NORMAL_Y,
+    ONE,
+    SEPARATION,
+    SIZE,
+    TWO,
+    WIDE,
+    Slots,
+    rows_of,
+)
+
+__all__ = ["separate"]
+
+_DEEP = 0.1
+"""Share beyond which overlap is resolved by moving bodies."""
+_SHARE = 0.6
+"""Share of the way that they are moved in a substep."""
+
+
+@inlined
+def _lowest(manifold: Manifold, points: Points, p: int) -> float:
+    """Return the lowest separation of a pair's points [m]."""
+    lowest: float = points[2 * p].separation
+    return min(lowest, points[2 * p + 1].separation) if manifold.count == 2 else lowest
+
+
+@fused
+def _deep_slots(slots: Slots, k: int) -> int:
+    """Return the slots of a block that overlap deeply, as bits."""
+    at = k * rows_of(slots.kind)
+    lowest = take(slots.data, at + ONE + SEPARATION)
+    if slots.kind != DISC:
+        lowest = lesser(lowest, take(slots.data, at + TWO + SEPARATION))
+    return mask_bits(lowest < -_DEEP * take(slots.data, at + SIZE))
+
+
+@inlined
+def _any_deep(contacts: Contacts, near: Near) -> bool:
+    """Whether any contact overlaps deeply."""
+    for k in range(contacts.number):
+        p = contacts.touching[k]
+        if _lowest(contacts.manifolds[p], contacts.points, p) < -_DEEP * contacts.manifolds[p].size:
+            return True
+    for slots in (near.discs, near.boxes):
+        for k in range(near.counts[DISC_BLOCKS + slots.kind]):
+            if _deep_slots(slots, k) != 0:
+                return True
+    return False
+
+
+@fused
+def _push_apart(
+    a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
+    inverse_mass: Numbers,
+) -> None:  # fmt: skip
+    """Move the bodies of a pair that overlaps deeply apart, the lighter one further."""
+    moved_x = position[b, 0] - before[b, 0] - position[a, 0] + before[a, 0]
+    moved_y = position[b, 1] - before[b, 1] - position[a, 1] + before[a, 1]
+    depth = -(lowest + moved_x * nx + moved_y * ny) - _DEEP * size
+    if depth > 0.0:
+        share = _SHARE * depth / (inverse_mass[a] + inverse_mass[b])
+        position[a, 0] -= share * inverse_mass[a] * nx
+        position[a, 1] -= share * inverse_mass[a] * ny
+        position[b, 0] += share * inverse_mass[b] * nx
+        position[b, 1] += share * inverse_mass[b] * ny
+
+
+@fused
+def _put_back(
+    a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
+    inverse_mass: Numbers,
+) -> None:  # fmt: skip
+    """Move what overlaps a fixed body, or the world's bounds, out of it."""
+    if inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0:
+        return
+    i, sign = (b, 1.0) if inverse_mass[b] > 0.0 else (a, -1.0)
+    moved = sign * ((position[i, 0] - before[i, 0]) * nx + (position[i, 1] - before[i, 1]) * ny)
+    depth = -(lowest + moved) - _DEEP * size
+    if depth > 0.0:
+        position[i, 0] += sign * depth * nx
+        position[i, 1] += sign * depth * ny
+
+
+@fused
+def _move(
+    a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
+    inverse_mass: Numbers, back: bool,
+) -> None:  # fmt: skip
+    """Push a pair apart, or put it ``back`` out of a fixed body."""
+    if back:
+        _put_back(a, b, nx, ny, lowest, size, position, before, inverse_mass)
+    else:
+        _push_apart(a, b, nx, ny, lowest, size, position, before, inverse_mass)
+
+
+@inlined
+def _move_scalar(
+    contacts: Contacts, position: Vectors, before: Vectors, inverse_mass: Numbers, back: bool
+) -> None:
+    """Move the bodies of scalar contacts."""
+    for k in range(contacts.number):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
+        if manifold.swept != 1:
+            _move(
+                manifold.a, manifold.b, manifold.normal_x, manifold.normal_y,
+                _lowest(manifold, contacts.points, p), manifold.size, position, before, inverse_mass, back,
+            )  # fmt: skip
+
+
+@inlined
+def _move_wide(near: Near, position: Vectors, before: Vectors, inverse_mass: Numbers, back: bool) -> None:
+    """Move the bodies of wide contacts."""
+    for slots in (near.discs, near.boxes):
+        data = slots.data
+        for k in range(near.counts[DISC_BLOCKS + slots.kind]):
+            deep = _deep_slots(slots, k)
+            for place in range(WIDE):
+                if not (deep >> place) & 1:
+                    continue
+                at = k * rows_of(slots.kind) + place
+                lowest = data[at + ONE + SEPARATION]
+                if slots.kind != DISC:
+                    lowest = min(lowest, data[at + TWO + SEPARATION])
+                _move(
+                    slots.a[k * WIDE + place], slots.b[k * WIDE + place], data[at + NORMAL_X],
+                    data[at + NORMAL_Y], lowest, data[at + SIZE], position, before, inverse_mass, back,
+                )  # fmt: skip
+
+
+@allocating
+def separate(
+    contacts: Contacts, near: Near, position: Vectors, inverse_mass: Numbers, farthest: float
+) -> None:
+    """Move bodies that overlap deeply apart, six tenths of the way and by at most ``farthest`` [m].
+
+    Only positions change: however many bodies are on one spot, separating them gives them no speed. A body
+    beyond the world's bounds, or within a fixed body, is put back at once, so that the heaviest body cannot
+    press another one through a floor.
+    """
+    if not _any_deep(contacts, near):
+        return
+    before = position.copy()
+    _move_scalar(contacts, position, before, inverse_mass, False)
+    _move_wide(near, position, before, inverse_mass, False)
+    for i in range(len(inverse_mass)):
+        x, y = position[i, 0] - before[i, 0], position[i, 1] - before[i, 1]
+        way = math.sqrt(x * x + y * y)
+        if way > farthest:
+            position[i, 0] = before[i, 0] + x * farthest / way
+            position[i, 1] = before[i, 1] + y * farthest / way
+    _move_scalar(contacts, position, before, inverse_mass, True)
+    _move_wide(near, position, before, inverse_mass, True)
