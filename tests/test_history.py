@@ -286,6 +286,19 @@ def test_an_edit_at_the_place_that_is_sought_is_done_and_one_that_was_taken_back
 
 
 @pytest.mark.usefixtures("dense")
+def test_names_are_those_of_the_place() -> None:
+    history = History(box_of_discs(4))
+    history.step(steps=2)
+    history.do(AddComponent(2, Name("second")))
+    history.step(steps=2)
+    history.do(AddComponent(2, Name("another")))
+    history.step(steps=2)
+    for step, name in ((3, "second"), (1, "b1"), (6, "another"), (5, "another"), (2, "second")):
+        history.seek(step)
+        assert history.world.label(2) == name and history.world.entity(name) == 2
+
+
+@pytest.mark.usefixtures("dense")
 def test_trails_are_those_of_the_place() -> None:
     history = History(box_of_discs(4))
     history.do(AddComponent(2, Trail(0.3)))

@@ -43,6 +43,8 @@ class EntityIndex:
         came or went.
     revision : int
         How often entities, or components that are physical, have come or gone.
+    changes : int
+        How often entities or components of any kind have.
     """
 
     def __init__(self) -> None:
@@ -55,7 +57,7 @@ class EntityIndex:
         self.capacity = 16
         self._components: dict[int, tuple[Any, ...]] = {}
         self._seen: list[Any] | None = None
-        self.revision = 0
+        self.revision = self.changes = 0
         self._batches: dict[tuple[type[Any], ...], Batch] = {}
 
     def __len__(self) -> int:
@@ -89,6 +91,7 @@ class EntityIndex:
         self._follow_components(changed)
         self._components.update(changed)
         self._seen = esper.get_component(_Nothing)
+        self.changes += 1
         if renumbered or self.motion_edited:
             self.revision += 1
         return True

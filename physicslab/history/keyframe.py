@@ -41,7 +41,7 @@ class _Structure:
 
     Attributes
     ----------
-    revision : int
+    changes : int
         That of the entity index when the world last had it; nothing has come or gone while it is the same.
     entities : int64 array (rows,)
         The entity of each row, 0 for blank ones.
@@ -51,7 +51,7 @@ class _Structure:
         The components of each entity that have no columns, such as its name.
     """
 
-    revision: int
+    changes: int
     entities: NDArray[np.int64]
     present: dict[type[Any], NDArray[np.bool_]]
     others: dict[int, tuple[Any, ...]]
@@ -66,12 +66,12 @@ class _Structure:
             if plain:
                 others[entity] = plain
         present = {kind: table.present.copy() for kind, table in index.tables.items() if table.handles}
-        return cls(index.revision, index.entities.copy(), present, others)
+        return cls(index.changes, index.entities.copy(), present, others)
 
     def is_that_of(self, world: World) -> bool:
         """Whether nothing came or went since, and rows are numbered alike."""
         index = world.entity_index
-        return self.revision == index.revision and np.array_equal(self.entities, index.entities)
+        return self.changes == index.changes and np.array_equal(self.entities, index.entities)
 
     def restore(self, world: World) -> None:
         """Make the same entities of the same components; what is there already stays as it is."""
@@ -174,10 +174,10 @@ class Keyframe:
         with world.active():
             if index.synchronise():
                 world.stale = True
-            if index.revision != structure.revision:
+            if index.changes != structure.changes:
                 structure.restore(world)
                 world.stale |= index.synchronise()
-                structure.revision = index.revision
+                structure.changes = index.changes
             rows = np.where(structure.entities > 0, index.rows_of(structure.entities), -1)
             for kind, columns in self._columns.items():
                 for now, then in zip(world.table(kind).columns, columns, strict=True):
