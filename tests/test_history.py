@@ -181,8 +181,9 @@ def test_a_step_that_diverges_leaves_the_world_as_it_was_to_the_bit() -> None:
     with pytest.raises(Diverged):
         history.step(steps=5)
     assert history.step_count == 40 and state_hash(history.world) == before
-    with pytest.raises(InvalidValue):
-        history.step(-1.0)
+    for dt in (-1.0, float("nan"), True):
+        with pytest.raises(InvalidValue):
+            history.step(dt)
     assert len(history.entries) == 2 and history.undo() == "linear of b0: (1e+160, 0) m/s"
     history.step(steps=5)
     assert history.difference is None
@@ -282,6 +283,19 @@ def test_an_edit_at_the_place_that_is_sought_is_done_and_one_that_was_taken_back
     history.seek(1)
     history.seek(4)
     assert not history.world.has(made, Mass) and history.redo() == "made a circle, ball"
+
+
+@pytest.mark.usefixtures("dense")
+def test_names_are_those_of_the_place() -> None:
+    history = History(box_of_discs(4))
+    history.step(steps=2)
+    history.do(AddComponent(2, Name("second")))
+    history.step(steps=2)
+    history.do(AddComponent(2, Name("another")))
+    history.step(steps=2)
+    for step, name in ((3, "second"), (1, "b1"), (6, "another"), (5, "another"), (2, "second")):
+        history.seek(step)
+        assert history.world.label(2) == name and history.world.entity(name) == 2
 
 
 @pytest.mark.usefixtures("dense")

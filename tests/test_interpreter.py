@@ -29,6 +29,7 @@ from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, read_scene, write_scene
+from physicslab.history import History
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.kernels import (
     KERNELS,
@@ -261,10 +262,15 @@ def impacts() -> None:
     assert world.collisions > 0
 
 
+def recorded() -> None:
+    """Record steps, of which each has a digest."""
+    History(load_scene("pyramid")).step(steps=3)
+
+
 def test_every_kernel_gives_the_same_bits_as_python() -> None:
     calls: Counter[str] = Counter()
     scenes = built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, rigid_contacts, impacts
-    for drive in (*scenes, springs_beside_contacts, forces_by_hand, drawn, panels):
+    for drive in (*scenes, springs_beside_contacts, forces_by_hand, drawn, recorded, panels):
         with compared(calls):
             drive()
     own = {name_of(jitted) for jitted in KERNELS if jitted.__module__.startswith("physicslab.")}

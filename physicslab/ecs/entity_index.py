@@ -44,7 +44,7 @@ class EntityIndex:
     revision : int
         How often entities, or components that are physical, have come or gone.
     changes : int
-        How often anything has come or gone.
+        How often entities or components of any kind have.
     """
 
     def __init__(self) -> None:
@@ -57,8 +57,7 @@ class EntityIndex:
         self.capacity = 16
         self._components: dict[int, tuple[Any, ...]] = {}
         self._seen: list[Any] | None = None
-        self.revision = 0
-        self.changes = 0
+        self.revision = self.changes = 0
         self._batches: dict[tuple[type[Any], ...], Batch] = {}
 
     def __len__(self) -> int:

@@ -57,7 +57,7 @@ def _document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> dict
     physics = world.physics
     bounds = None if physics.bounds is None else list(physics.bounds)
     fixed = [[*spring["anchor_b"], *spring["anchor_b"]] for spring in springs if spring["b"] is None]
-    chosen = getattr(world, "view", None)  # what a scene opens with, where scenes have that
+    chosen = world.view  # what a scene opens with, where scenes have that
     view = chosen or frame_run(bodies, recorder.motion, [*fixed, *([bounds] if bounds else [])])
     uniform = physics.gravity_mode == "linear" and "gravity" in recorder.energies
     return {

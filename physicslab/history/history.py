@@ -44,7 +44,8 @@ class History:
     world : World
         As it is at the beginning of the line.
     budget : int
-        Bytes that key frames may take together. The line itself takes 16 bytes a step besides.
+        Bytes that key frames may take together; two are kept in any case. The line itself takes 16 bytes a
+        step besides.
 
     Attributes
     ----------
@@ -143,12 +144,12 @@ class History:
         self._mend()
         world = self.world
         for _ in range(steps):
-            h = world.simulation.dt if dt is None else float(dt)
+            h = world.simulation.dt if dt is None else dt
             began = time.perf_counter()
             with self._all_or_nothing():
                 world.step(h)
             self._since += time.perf_counter() - began
-            self._run().add_step(h, self._digester.digest(world))
+            self._run().add_step(float(h), self._digester.digest(world))
             self._advance()
             if self._since >= self._interval and self._frames.takes(self._place):
                 self._frames.add_along(self._place, self._take())
