@@ -35,6 +35,7 @@ from physicslab.kernels import (
     KERNELS,
     ask_before_compiling,
     compile_kernels,
+    digest,
     interpreter,
     motion,
     raster,
@@ -181,6 +182,8 @@ def forces_by_hand() -> None:
     vectors = [random.normal(size=(n, 2)) for _ in range(5)]
     numbers = [random.uniform(0.5, 2.0, n) for _ in range(4)]
     gravity.uniform_gravity(vectors[0], numbers[0], numbers[1], 0.5, -9.81)
+    columns = [random.normal(size=length).view(np.int64) for length in (14, 7, 14, 6)]
+    assert len(set(digest.digest_motion(*columns))) == 4
 
 
 def drawn() -> None:
