@@ -185,7 +185,8 @@ def test_a_run_that_diverges_is_reported_at_the_end(
         (["pile_4001"], '"pile_4001": is no scene; did you mean "pile_4000"?'),
         (
             ["qqqq"],
-            '"qqqq": is no scene; the groups are pyramids, piles, gases, ten_discs, moving, funnels, edits; ',
+            '"qqqq": is no scene; the groups are pyramids, piles, gases, ten_discs, moving, funnels, '
+            "untuned, edits; ",
         ),
         (["pile_1000", "--json", "none/x.json"], "--json none/x.json: cannot be written"),
     ],

@@ -22,6 +22,7 @@ from physicslab.lab.bench.quality import (
     within,
 )
 from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.bench.untuned import UNTUNED
 from physicslab.lab.case import Catalogue
 from physicslab.lab.worlds import open_space
 from physicslab.prefabs import box, container, gas, pile, pyramid
@@ -167,6 +168,7 @@ SCENES = Catalogue(
         _AUTO,
         *MOVING,
         *FUNNELS,
+        *UNTUNED,
         *edit_scenes(partial(discs, _PILE_EDITED), _PILE_EDITED, _OVERLAP),
     )
 )
