@@ -120,13 +120,20 @@ def test_lost_bodies_are_left_out() -> None:
 
 def test_a_spring_is_a_coil_with_a_pin() -> None:
     world = empty_world()
-    pendulum(world, (0, 1), length=2.0, angle=0.0)
+    pendulum(world, (0, 1), length=2.0, angle=0.0, stiffness=100.0)
     canvas = drawn(world)
     path = [call for call in canvas.called("lines") if call["colour"] == DARK.spring]
     assert np.allclose(path[0]["start"][0], (640, 460)) and np.allclose(path[0]["end"][-1], (640, 260))
     assert len(path[0]["start"]) > 10
     pin = canvas.called("discs")[-1]
     assert np.allclose(pin["centre"], [[640, 260]]) and tuple(pin["look"].rim[0]) == DARK.pin
+
+
+def test_a_spring_that_hardly_gives_is_a_string() -> None:
+    world = empty_world()
+    pendulum(world, (0, 1), length=2.0, angle=0.0, stiffness=50_000.0)
+    (path,) = [call for call in drawn(world).called("lines") if call["colour"] == DARK.spring]
+    assert len(path["start"]) == 1
 
 
 def test_springs_hold_where_they_are_fastened() -> None:

@@ -137,7 +137,8 @@ def end_spring(world: World, window: Window) -> None:
     target = body_at(world, window.camera, window.pointer)
     made = window.spring_tool.end(world, target, window.place)
     if isinstance(made, str):
-        window.notify(made)
+        if made:
+            window.notify(made)
     else:
         window.edits.do(Spawn([made]))
 
