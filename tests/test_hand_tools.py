@@ -100,7 +100,7 @@ def test_a_spring_to_a_wall_moves_and_one_between_walls_is_refused(desk: Desk) -
 
 def test_a_spring_needs_two_ends(desk: Desk) -> None:
     circle(desk.world, (0, 0))
-    draw_spring(desk, (4, 3), (0, 0))
+    draw_spring(desk, (3, 2), (0, 0))
     assert not springs(desk) and "begins on a body" in desk.window.notice
     draw_spring(desk, (0, 0), (0.05, 0))
     assert not springs(desk)

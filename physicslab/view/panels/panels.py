@@ -144,9 +144,9 @@ def pill_margin(size: int) -> int:
     return 4 * round(0.55 * size)
 
 
-def pill_height(lines: int, size: int, canvas: Canvas) -> int:
-    """Return how high a box around so many lines is [px], for text of a height [px]."""
-    return canvas.text_size("Ag", TextStyle(size, (0, 0, 0), bold=True))[1] * lines + round(0.55 * size)
+def pill_height(lines: int, style: TextStyle, canvas: Canvas) -> int:
+    """Return how high a box around so many lines is [px]."""
+    return canvas.text_size("Ag", style)[1] * lines + round(0.55 * style.size)
 
 
 def draw_pill(
