@@ -85,7 +85,8 @@ def test_slow_motion_is_as_smooth_as_full_speed() -> None:
     assert steps == pytest.approx([0.25 * FRAME] * 11)
 
 
-def test_a_world_that_diverges_is_paused_and_says_so() -> None:
+def test_a_world_that_diverges_is_paused_and_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     world = empty_world()
     ball = circle(world, (0, 0), name="ball")
     desk = Desk(world)

@@ -54,14 +54,14 @@ def test_a_thirteenth_body_and_its_removal_change_the_model_and_nothing_that_res
     world = desk.world
     assert "contacts are rigid: the step follows events" in said(world) and "few bodies touch" in said(world)
     start = places(world)
-    for n, x in enumerate((4.0, 5.5, 7.0), start=11):
+    for n, x in enumerate((4.5, 6.0, 7.5), start=11):
         click(desk, x, 2.0, "right" if n == 13 else "left")
         assert world.plan.contacts == ("soft" if n == 13 else "rigid")
     assert SOFT in said(world)
     for _ in range(60):
         desk.frames()
         assert np.abs(places(world) - start).max() < JUMP
-    desk.move(7.0, 0.5)
+    desk.move(7.5, 0.5)
     desk.key("delete")
     for _ in range(60):
         desk.frames()

@@ -136,11 +136,10 @@ def end_spring(world: World, window: Window) -> None:
     """End the spring at the body under the cursor, or at that point of the world."""
     target = body_at(world, window.camera, window.pointer)
     made = window.spring_tool.end(world, target, window.place)
-    if isinstance(made, str):
-        if made:
-            window.notify(made)
-    else:
+    if not isinstance(made, str):
         window.edits.do(Spawn([made]))
+    elif made:
+        window.notify(made)
 
 
 def spawning(spawn: Spawnable) -> Tool:

@@ -61,7 +61,7 @@ def draw_banners(
     for words, colour in banners:
         style = TextStyle(size + 2, colour, bold=True)
         lines = broken(words, max(room - pill_margin(size + 2), 1), canvas, style)
-        if top + pill_height(len(lines), size + 2, canvas) <= bottom:
+        if top + pill_height(len(lines), style, canvas) <= bottom:
             taken.append(draw_pill(lines, middle, top, size + 2, colour, canvas, theme))
             top += size // 2 + taken[-1][3]
     return taken
@@ -86,7 +86,7 @@ def lay_out_messages(
         style = TextStyle(size, colour, bold=True)
         lines = broken(message, max(room - pill_margin(size), 1), canvas, style)
         if lines:
-            height = pill_height(len(lines), size, canvas)
+            height = pill_height(len(lines), style, canvas)
             width = max(canvas.text_size(line, style)[0] for line in lines) + pill_margin(size)
             messages.append(Message(lines, colour, width, height))
     return messages

@@ -8,7 +8,7 @@ from typing import Literal
 
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle, TextSurface
 from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
-from physicslab.view.canvas.theme import DARK, Colour, Theme
+from physicslab.view.canvas.theme import Colour, Theme
 
 __all__ = ["Line", "Panel", "broken", "draw_pill", "lay_out", "pill_height", "pill_margin", "text_size"]
 
@@ -144,9 +144,9 @@ def pill_margin(size: int) -> int:
     return 4 * round(0.55 * size)
 
 
-def pill_height(lines: int, size: int, canvas: Canvas) -> int:
-    """Return how high a box around so many lines is [px], for text of a height [px]."""
-    return canvas.text_size("Ag", TextStyle(size, DARK.text, bold=True))[1] * lines + round(0.55 * size)
+def pill_height(lines: int, style: TextStyle, canvas: Canvas) -> int:
+    """Return how high a box around so many lines is [px]."""
+    return canvas.text_size("Ag", style)[1] * lines + round(0.55 * style.size)
 
 
 def draw_pill(

@@ -43,6 +43,6 @@ def draw_advice(
             lines += [f"- {pieces[0]}", *pieces[1:]]
         if len(ordered) > _MAX_SHOWN:
             lines.append(f"and {len(ordered) - _MAX_SHOWN} more")
-    if top + pill_height(len(lines), small, canvas) > bottom:
+    if top + pill_height(len(lines), style, canvas) > bottom:
         return None
     return draw_pill(lines, middle, top, small, theme.warning, canvas, theme)

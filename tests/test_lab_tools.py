@@ -1,0 +1,307 @@
+"""The tools of the lab in the window: handles, graphs, ruler, time line, undo, free-body diagrams."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+from desk import FRAME, Desk, bits, click, empty_world
+
+from physicslab.components import Held, Mass, Shape, Transform, Velocity
+from physicslab.diagnostics.free_body import forces_on, net_force
+from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import load_scene
+from physicslab.prefabs import box, circle
+from physicslab.scenes import SCENES
+from physicslab.view.controls import actions
+from physicslab.view.picture.bodies import body_rows
+from physicslab.view.picture.extent import _reach
+from physicslab.world import World
+
+CTRL = pygame.KMOD_LCTRL
+
+
+@pytest.fixture
+def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Desk:
+    monkeypatch.chdir(tmp_path)
+    return Desk(empty_world(gravity=(0, 0)))
+
+
+def drag(desk: Desk, start: Vector2, end: Vector2) -> None:
+    """Press, move in two steps, and let go, at points of the world [m]."""
+    desk.press(*start)
+    desk.frames()
+    for share in (0.5, 1.0):
+        desk.move(*(start + (end - start) * share))
+        desk.frames()
+    desk.release(*end)
+    desk.frames()
+
+
+def handle(desk: Desk, entity: int, kind: str) -> Vector2:
+    every = desk.window.handles.of(desk.world, entity, desk.window.camera)
+    return next(one.place for one in every if one.kind == kind)
+
+
+# Handles
+
+
+def paused_on(desk: Desk, entity: int) -> None:
+    desk.key("space")
+    desk.window.selection.take(entity)
+    desk.frames()
+
+
+def test_the_arrow_of_the_velocity_is_dragged_and_is_one_edit(desk: Desk) -> None:
+    ball = circle(desk.world, (0, 0), radius=0.2)
+    paused_on(desk, ball)
+    entries = len(desk.window.edits.history.entries)
+    start = handle(desk, ball, "velocity")
+    drag(desk, start, start + Vector2(0.0, 1.0))
+    velocity = desk.world.component(ball, Velocity).linear
+    # A metre of arrow stands for 3 m/s, beyond the 22 px that a body at rest has.
+    arrow = start + Vector2(0.0, 1.0)
+    expected = arrow * (3.0 * (arrow.magnitude - 0.22) / arrow.magnitude)
+    assert (velocity - expected).magnitude < 0.05
+    assert len(desk.window.edits.history.entries) == entries + 1
+    desk.key("z", CTRL)
+    desk.frames()
+    assert desk.world.component(ball, Velocity).linear == Vector2()
+
+
+def test_handles_give_size_and_angle(desk: Desk) -> None:
+    block = box(desk.world, (0, 0), width=1.0, height=0.5)
+    paused_on(desk, block)
+    corner = handle(desk, block, "size")
+    drag(desk, corner, corner + Vector2(0.25, -0.25))
+    shape = desk.world.component(block, Shape)
+    assert shape.width == pytest.approx(1.5, abs=0.03) and shape.height == pytest.approx(1.0, abs=0.03)
+    above = handle(desk, block, "angle")
+    drag(desk, above, Vector2(-1.0, 0.0))
+    assert desk.world.component(block, Transform).angle == pytest.approx(math.pi / 2.0, abs=0.02)
+
+
+def test_while_time_runs_there_are_no_handles(desk: Desk) -> None:
+    ball = circle(desk.world, (0, 0), radius=0.2)
+    desk.window.selection.take(ball)
+    assert desk.window.handled is None
+
+
+# The hand
+
+
+def test_the_hand_presses_nothing_through_a_floor_and_takes_nothing_beyond_the_walls() -> None:
+    world = empty_world(bounds=(-3.0, -1.0, 3.0, 3.0))
+    box(world, (0, -0.5), width=6.0, height=1.0, static=True)
+    lower = box(world, (0, 0.25), width=0.5, height=0.5)
+    upper = box(world, (0, 0.75), width=0.5, height=0.5)
+    desk = Desk(world)
+    desk.frames(20)
+    desk.press(0, 0.75)
+    desk.frames()
+    for n in range(40):
+        desk.move(0, 0.75 - 0.05 * n)
+        desk.frames()
+    assert world.component(lower, Transform).position.y > 0.15
+    assert world.component(upper, Transform).position.y > 0.15
+    desk.move(5.0, 1.0)
+    desk.frames(20)
+    place = world.component(upper, Transform).position
+    assert place.x <= 2.75 + 1e-6 and place.y > 0.15
+    desk.release(5.0, 1.0)
+    desk.frames(60)
+    inside = [world.component(body, Transform).position for body in (lower, upper)]
+    assert all(abs(place.x) < 3.0 and place.y > 0.1 for place in inside)
+
+
+# What is made
+
+
+def test_nothing_is_made_where_it_would_overlap_or_beyond_the_walls() -> None:
+    desk = Desk(empty_world(gravity=(0, 0), bounds=(-2.0, -2.0, 2.0, 2.0)))
+    box(desk.world, (0, 0), width=1.0, height=1.0, static=True)
+    for x, y in ((0.55, 0.0), (2.5, 0.0), (1.95, 1.0)):
+        desk.press(x, y, "right")
+        desk.release(x, y, "right")
+        desk.frames()
+        assert len(desk.world.entities()) == 1 and "no room" in desk.window.notice
+    desk.press(1.2, 1.2)
+    desk.release(1.2, 1.2)
+    desk.frames()
+    assert len(desk.world.entities()) == 2
+
+
+# The time line
+
+
+def test_undo_redo_and_the_time_line_give_the_bits_of_the_run() -> None:
+    desk = Desk(load_scene("sandbox"))
+    history = desk.window.edits.history
+    known = {0: bits(desk.world)}
+    for step in range(1, 41):
+        desk.frames()
+        known[step] = bits(desk.world)
+    desk.press(-1.0, 1.0)
+    desk.release(-1.0, 1.0)
+    desk.frames(20)
+    assert history.step_count == 60
+    for step in (7, 31, 2, 40):
+        actions.seek(desk.window, step)
+        if step < 40:
+            assert bits(desk.world) == known[step]
+    actions.seek(desk.window, 60)
+    end = bits(desk.world)
+    desk.key("z", CTRL)  # the run after the click
+    desk.frames(2)
+    desk.key("z", CTRL)  # what was made
+    desk.frames(2)
+    assert bits(desk.world) == known[40]
+    desk.key("y", CTRL)
+    desk.frames(2)
+    desk.key("y", CTRL)
+    desk.frames(2)
+    assert bits(desk.world) == end and desk.window.pace.paused
+
+
+def test_time_goes_on_from_the_past_as_it_was_until_something_is_changed() -> None:
+    desk = Desk(load_scene("sandbox"))
+    desk.frames(30)
+    end = bits(desk.world)
+    actions.seek(desk.window, 10)
+    desk.key("space")
+    desk.frames(20)
+    assert bits(desk.world) == end and not desk.window.edits.history.branches
+    actions.seek(desk.window, 10)
+    desk.key("g")
+    desk.frames(2)
+    assert len(desk.window.edits.history.branches) == 1
+
+
+def test_a_body_that_was_in_the_hand_is_let_go_where_another_future_begins() -> None:
+    world = empty_world(gravity=(0, -5))
+    ball = circle(world, (0, 0), radius=0.2)
+    desk = Desk(world)
+    desk.press(0, 0)
+    desk.frames(2)
+    for n in range(10):
+        desk.move(0.1 * n, 0)
+        desk.frames()
+    desk.release(0.9, 0)
+    desk.frames(5)
+    actions.seek(desk.window, 6)
+    assert world.has(ball, Held)
+    desk.key("g")
+    desk.frames(2)
+    desk.key("space")
+    desk.frames(3)
+    assert not world.has(ball, Held)
+
+
+# Graphs and ruler
+
+
+def test_a_graph_follows_a_body_and_is_written_as_a_table(desk: Desk, tmp_path: Path) -> None:
+    ball = circle(desk.world, (0, 0), velocity=(2, 0), name="ball")
+    desk.window.selection.take(ball)
+    desk.key("m")
+    desk.frames(31)
+    (graph,) = desk.window.graphs
+    line = graph.chosen["x"]
+    assert len(line.times) >= 30 and np.allclose(line.values, 2.0 * line.times, atol=1e-9)
+    click(desk, "CSV of Motion of ball")
+    desk.frames(2)
+    (path,) = tmp_path.glob("*.csv")
+    head, first, *_ = path.read_text("utf-8").splitlines()
+    assert head == "time [s],x [m],y [m],speed [m/s]"
+    assert [float(value) for value in first.split(",")][3] == pytest.approx(2.0)
+
+
+def test_a_graph_records_nothing_again_in_the_past(desk: Desk) -> None:
+    circle(desk.world, (0, 0), velocity=(2, 0))
+    desk.key("m")
+    desk.frames(20)
+    (graph,) = desk.window.graphs
+    before = graph.chosen["kinetic energy"].times.copy()
+    actions.seek(desk.window, 3)
+    desk.frames(3)
+    assert np.array_equal(graph.chosen["kinetic energy"].times, before)
+
+
+def test_the_ruler_shows_length_and_angle(desk: Desk) -> None:
+    desk.window.tool = "ruler"
+    drag(desk, Vector2(-1.0, 0.0), Vector2(2.0, 1.5))
+    assert not desk.world.entities()
+    length = float(desk.window.ruler.words.split()[0])
+    assert length == pytest.approx(math.hypot(3.0, 1.5), rel=0.01) and "26.6°" in desk.window.ruler.words
+
+
+# Free-body diagrams
+
+
+def test_forces_of_a_body_at_rest_balance_and_add_up_to_nothing() -> None:
+    world = load_scene("stack")
+    world.run(seconds=1.0)
+    for name, load in (("box 1", 9.0), ("box 10", 0.0)):
+        entity = _named(world, name)
+        forces = forces_on(world, entity)
+        weight = next(one for one in forces if one.name == "weight")
+        assert weight.force.y == pytest.approx(-9.81, rel=1e-12)
+        assert net_force(forces).magnitude < 1e-6 * 9.81 * (1.0 + load)
+        pushed = [one.force.y for one in forces if one.name.startswith("normal")]
+        assert max(pushed) == pytest.approx(9.81 * (1.0 + load), rel=1e-6)
+
+
+def _named(world: World, name: str) -> int:
+    """Return the box that is so many places from the floor."""
+    bodies = [e for e in world.entities() if world.has(e, Mass)]
+    bodies.sort(key=lambda e: world.component(e, Transform).position.y)
+    return bodies[int(name.split()[1]) - 1]
+
+
+def test_a_block_that_slides_has_friction_against_its_motion() -> None:
+    world = empty_world()
+    box(world, (0, -0.5), width=100.0, height=1.0, static=True, friction=0.3)
+    block = box(world, (0, 0.25), width=0.5, height=0.5, mass=2.0, friction=0.3, velocity=(3.0, 0.0))
+    world.run(seconds=0.2)
+    forces = forces_on(world, block)
+    rubbed = sum(one.force.x for one in forces if one.kind == "friction")
+    assert rubbed == pytest.approx(-0.3 * 2.0 * 9.81, rel=1e-3)
+    assert net_force(forces).x == pytest.approx(-0.3 * 2.0 * 9.81, rel=1e-3)
+
+
+# The first view
+
+
+@pytest.mark.parametrize("name", [name for name in SCENES if name != "slope"])
+def test_scenes_open_framed_for_their_first_ten_seconds(name: str) -> None:
+    """All that moves stays in sight; of the slope blocks slide off, and fall."""
+    world = SCENES[name].build()
+    view = world.view
+    assert view is not None
+    moves = world.table(Velocity)
+    for _ in range(20):
+        world.run(seconds=0.5)
+        rows = body_rows(world)
+        every = np.concatenate((rows.boxes, rows.discs, rows.points))
+        reach = _reach(world, every)[moves.present[every]]
+        assert (reach[:, :2] >= np.array(view[:2]) - 0.05).all(), world.time
+        assert (reach[:, 2:] <= np.array(view[2:]) + 0.05).all(), world.time
+
+
+def test_a_scene_that_is_left_alone_is_closed_at_once_and_one_that_was_edited_asks() -> None:
+    desk = Desk(load_scene("drop"))
+    desk.frames(10)
+    desk.key("escape")
+    desk.frames()
+    assert desk.window.closing
+    desk = Desk(load_scene("drop"))
+    desk.press(0, 2)
+    desk.release(0, 2)
+    desk.frames(2)
+    desk.key("escape")
+    desk.frames(2, FRAME)
+    assert not desk.window.closing and "Esc again" in desk.window.notice
+    desk.key("escape")
+    desk.frames()
+    assert desk.window.closing
