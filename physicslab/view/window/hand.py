@@ -21,6 +21,11 @@ __all__ = ["Hand"]
 
 _PRESSED = 0.04
 """How deep what is held may be pressed into others, as a share of half its size."""
+_TOUCHING, _PRESSING = 0.02, 0.2
+"""Of what is nearer than this share of half its size, the hand goes only so much faster [m/s]: what is free
+is pushed along ever faster, what is pressed against something is not pressed through it."""
+_ALONG, _MAX_BEHIND = 0.3, 24
+"""A body is behind another where the contact points at least so much along, and so many are looked at."""
 _WEIGHTS, _EARTH = 20.0, 9.81
 """The hand is as strong as so many times the weight of what it holds, on the Earth [m/s^2]."""
 _COMING_OUT = 0.3
@@ -67,20 +72,53 @@ def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vect
     out again.
     """
     velocity, size = wanted, max(*_reach(world, entity), 1e-9)
+    strength = _strength(world, entity)
     for contact in contacts_of(world, entity):
+        other = contact.b if contact.a == entity else contact.a
         into = contact.normal if contact.a == entity else -contact.normal
-        too_deep = contact.depth - _PRESSED * size
-        too_strong = sum(point.normal_force for point in contact.points) > _strength(world, entity)
-        if too_deep <= 0.0 and not too_strong:
+        force = sum(point.normal_force for point in contact.points)
+        too_deep = max(contact.depth, _depth_behind(world, entity, other, into)) - _PRESSED * size
+        if too_deep > 0.0 or force > strength:
+            fastest = -_COMING_OUT * max(too_deep, _PRESSED * size if force > strength else 0.0) / coming
+        elif contact.depth > -_TOUCHING * size:
+            fastest = _speed_along(world, other, into) + _PRESSING
+        else:
             continue
-        back = _COMING_OUT * max(too_deep, _PRESSED * size if too_strong else 0.0) / coming
-        velocity = velocity - into * max(velocity.dot(into) + back, 0.0)
+        velocity = velocity - into * max(velocity.dot(into) - fastest, 0.0)
     return velocity
+
+
+def _depth_behind(world: World, entity: int, other: int, into: Vector2) -> float:
+    """Return the deepest overlap [m] of what is pressed along: of bodies behind the one that is touched."""
+    deepest, seen, waiting = 0.0, {entity}, [other]
+    while waiting and len(seen) < _MAX_BEHIND:
+        body = waiting.pop()
+        if body in seen or not (body and world.has(body, Velocity)):
+            continue
+        seen.add(body)
+        for contact in contacts_of(world, body):
+            beyond = contact.b if contact.a == body else contact.a
+            way = contact.normal if contact.a == body else -contact.normal
+            if beyond not in seen and way.dot(into) > _ALONG:
+                deepest = max(deepest, contact.depth)
+                waiting.append(beyond)
+    return deepest
+
+
+def _speed_along(world: World, entity: int, direction: Vector2) -> float:
+    """Return how fast a body moves along a direction [m/s]; what is fixed does not."""
+    moves = bool(entity) and world.has(entity, Velocity)
+    return world.component(entity, Velocity).linear.dot(direction) if moves else 0.0
+
+
+def _weight(world: World, entity: int) -> float:
+    """Return what a body weighs on the Earth [N]."""
+    return _EARTH * world.component(entity, Mass).mass if world.has(entity, Mass) else math.inf
 
 
 def _strength(world: World, entity: int) -> float:
     """Return how hard the hand can press with a body [N]."""
-    return _WEIGHTS * _EARTH * world.component(entity, Mass).mass if world.has(entity, Mass) else math.inf
+    return _WEIGHTS * _weight(world, entity)
 
 
 def _carry_out(world: World, command: Command) -> None:
