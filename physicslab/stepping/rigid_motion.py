@@ -27,6 +27,8 @@ _MAX_WORK = 8_500
 """Largest work of a step by events (:attr:`MadeStep.work`): short steps need the rest of a frame."""
 _WORK_OF_A_PIECE = 8
 """Of a piece of motion, beside its force evaluations and half a unit for each pair that may touch."""
+_RESTING = 2.0
+"""In speeds that a short step gives: what is no faster than that comes to rest."""
 _REPEATS, _SHORT_REPEATS = 8, 3
 """How often contacts are found again after impacts at one time, and within a short step."""
 _MAX_STALLED = 60
@@ -184,12 +186,17 @@ class RigidMotion:
         h = left / max(count, 1)
         for k in range(count):
             time_stepping.drift(q, v, 0.5 * h)
-            none = _NONE * time_stepping.kick(scene, self._stages[-1], q, v, h)
+            gained = time_stepping.kick(scene, self._stages[-1], q, v, h)
+            none = _NONE * gained
             made.evaluations, made.closed = made.evaluations + 1, 0
             why = self._resist(scene, state, at + (k + 0.5) * h, h, none, made)
             if why != motion.DONE:
                 return _WHY[why]
             time_stepping.drift(q, v, 0.5 * h)
+            # What is as slow as a short step makes it comes to rest; moved each time, it would not.
+            rests = float(np.abs(v[:-1]).max(initial=0.0)) <= _RESTING * gained
+            if rests and k < count - 1:
+                continue
             refused = self._move_apart(scene, state, math.inf, made, pay=True)
             if refused:
                 return refused
