@@ -309,3 +309,26 @@ def test_a_scene_that_is_left_alone_is_closed_at_once_and_one_that_was_edited_as
     desk.key("escape")
     desk.frames()
     assert desk.window.closing
+
+
+# The gallery
+
+
+def test_the_gallery_has_a_card_with_a_picture_for_each_scene_and_opens_it() -> None:
+    desk = Desk(load_scene("sandbox"))
+    desk.key("l")
+    desk.frames(3)
+    titles = [scene.title for scene in SCENES.values()]
+    assert all(f"Scene: {title}" in desk.ui.places for title in titles)
+    desk.frames(20)
+    shown = desk.ui.pictures
+    assert len(shown) >= 6
+    for surface, _, _ in shown:
+        assert len(np.unique(pygame.surfarray.array2d(surface))) > 3, "something is to be seen in it"
+    click(desk, f"Scene: {SCENES['drop'].title}")
+    desk.frames(3)
+    assert desk.world.name == "drop" and not desk.window.shows_gallery
+    desk.key("l")
+    desk.key("escape")
+    desk.frames(2)
+    assert not desk.window.shows_gallery and not desk.window.closing

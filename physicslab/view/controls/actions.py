@@ -28,22 +28,32 @@ __all__ = [
     "go_home",
     "larger_text",
     "leave",
-    "next_theme", "nudger", "paste",
+    "next_theme",
+    "nudger",
+    "paste",
     "plot_selected",
-    "redo", "reduce", "seek", "select_all", "select_next",
+    "redo",
+    "reduce",
+    "seek",
+    "select_all",
+    "select_next",
     "slower",
     "smaller_text",
-    "step", "step_back",
+    "step",
+    "step_back",
     "toggle_arrows",
     "toggle_figures",
+    "toggle_gallery",
     "toggle_gravity",
     "toggle_grid",
-    "toggle_help", "toggle_history",
+    "toggle_help",
+    "toggle_history",
     "toggle_impulses",
     "toggle_pause",
     "toggle_planets",
     "toggle_slow_motion",
-    "toggle_trails", "undo",
+    "toggle_trails",
+    "undo",
     "zoom",
     "zoom_in",
     "zoom_out",
@@ -211,6 +221,11 @@ def toggle_grid(world: World, window: Window) -> None:
     window.grid = not window.grid
 
 
+def toggle_gallery(world: World, window: Window) -> None:
+    """Show the gallery of scenes, or no longer."""
+    window.shows_gallery = not window.shows_gallery
+
+
 def toggle_history(world: World, window: Window) -> None:
     """Show the list of edits and runs, or no longer."""
     window.lists_history = not window.lists_history
@@ -225,6 +240,8 @@ def leave(world: World, window: Window) -> None:
     """Leave the help, the plot, what is selected or the tool if there is one, else the window."""
     if window.help:
         window.help = False
+    elif window.shows_gallery:
+        window.shows_gallery = False
     elif window.error_study.shown:
         window.error_study.shown = False
     elif window.selection.entities:

@@ -164,6 +164,8 @@ CONTROLS: tuple[Control, ...] = (
     Control("F", "fit", "f", actions.fit, group="view", tip="Fit everything into the window"),
     Control("Home", "first view", "home", actions.go_home, minor=True, group="view",
             tip="The view at the start"),
+    Control("L", "scenes", "l", actions.toggle_gallery, minor=True, group="file",
+            state=lambda _, window: window.shows_gallery, tip="Choose a scene by its picture"),
     Control("Ctrl+S", "save the scene", "ctrl+s", file_actions.save, minor=True, group="file",
             tip="Save the scene to a new file"),
     Control("Ctrl+Shift+S", "save under a name", "ctrl+shift+s", file_actions.begin_save_as, minor=True,

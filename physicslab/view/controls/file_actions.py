@@ -17,6 +17,7 @@ __all__ = [
     "Deed",
     "begin_save_as",
     "open_scene",
+    "opening",
     "reopen",
     "request_screenshot",
     "restart",
@@ -95,6 +96,16 @@ def open_scene(window: Window, source: str | Path) -> None:
     if isinstance(source, Path):
         window.scene_file = source
     window.notify(f"Opened {printable(str(source)) if isinstance(source, Path) else opened.title}")
+
+
+def opening(source: str | Path) -> Deed:
+    """Return what opens a scene, and closes the gallery."""
+
+    def deed(world: World, window: Window) -> None:
+        window.shows_gallery = False
+        open_scene(window, source)
+
+    return deed
 
 
 def restart(world: World, window: Window) -> None:

@@ -8,16 +8,38 @@ from typing import BinaryIO
 import pygame
 
 from physicslab.ecs.config import WindowConfig
-from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.painting import draw_world
 from physicslab.world import World
 
-__all__ = ["save_png"]
+__all__ = ["picture_of", "save_png"]
 
 _WINDOW = WindowConfig()
+
+
+def picture_of(
+    world: World, size: tuple[int, int], theme: Theme = DARK, extent: Extent | None = None
+) -> pygame.Surface:
+    """Return a picture of the world as it is now.
+
+    Parameters
+    ----------
+    size : tuple of two ints
+        Width and height [px].
+    extent : Extent, optional
+        What is to be seen of it; by default what its scene says, or else all.
+    """
+    surface = pygame.Surface(size, 0, 32)
+    camera = Camera(size, scale=_WINDOW.pixels_per_metre)
+    shown = extent or world.view or extent_of(world)
+    if shown is not None:
+        camera.look_at(shown, camera.fitting_scale(shown))
+    with world.active():
+        draw_world(world, camera, theme, PygameCanvas(surface))
+    return surface
 
 
 def save_png(
@@ -44,13 +66,7 @@ def save_png(
     OSError
         If the file cannot be written.
     """
-    surface = pygame.Surface(size, 0, 32)
-    camera = Camera(size, scale=_WINDOW.pixels_per_metre)
-    extent = extent_of(world)
-    if extent is not None:
-        camera.look_at(extent, camera.fitting_scale(extent))
-    with world.active():
-        draw_world(world, camera, theme, PygameCanvas(surface))
+    surface = picture_of(world, size, theme, extent_of(world))
     if isinstance(path_or_stream, str | os.PathLike):
         with open(path_or_stream, "wb") as stream:
             pygame.image.save(surface, stream, "picture.png")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
+import pygame
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.canvas import Rect
@@ -41,6 +42,8 @@ class Ui:
         All that is written, in its order.
     rows : dict of str to str
         The value beside each label.
+    pictures : list of tuples
+        What is laid over panels: a surface, its corner, and the part of the window in which it is seen [px].
     """
 
     def __init__(self, fonts: Fonts, theme: Theme) -> None:
@@ -48,11 +51,12 @@ class Ui:
         self.places: dict[str, Rect] = {}
         self.words: list[str] = []
         self.rows: dict[str, str] = {}
+        self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
 
     def begin(self, theme: Theme) -> None:
         """Forget the frame before."""
         self.theme = theme
-        self.places, self.words, self.rows = {}, [], {}
+        self.places, self.words, self.rows, self.pictures = {}, [], {}, []
 
     @property
     def size(self) -> float:
@@ -93,6 +97,17 @@ class Ui:
             yield [bool(stays)]
         finally:
             imgui.end()
+
+    def picture(self, surface: pygame.Surface, corner: tuple[int, int], clip: pygame.Rect) -> None:
+        """Lay a picture over a panel, as far as it lies within ``clip``."""
+        self.pictures.append((surface, corner, clip))
+
+    def show_pictures(self, surface: pygame.Surface) -> None:
+        """Lay the pictures over a surface, after the panels."""
+        for picture, corner, clip in self.pictures:
+            surface.set_clip(clip)
+            surface.blit(picture, corner)
+        surface.set_clip(None)
 
     # ---- words ---------------------------------------------------------------------------------------------
 

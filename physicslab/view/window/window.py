@@ -84,8 +84,8 @@ class Window:
         Why the world stopped; empty while all is well.
     help, grid, figures : bool
         Whether all keys are shown, the grid, and the panels of figures and costs.
-    lists_history : bool
-        Whether the list of edits and runs is shown.
+    lists_history, shows_gallery : bool
+        Whether the list of edits and runs is shown, and the gallery of scenes.
     tool : str
         What the left mouse button does: the name of a tool of :mod:`physicslab.view.controls.tools`.
     level : str
@@ -154,7 +154,7 @@ class Window:
         self.wants_screenshot = False
         self.closing = False
         self.error = ""
-        self.help = self.lists_history = False
+        self.help = self.lists_history = self.shows_gallery = False
         self.grid = self.figures = True
         self.tool = "circle"
         self.level = "Explore"

@@ -13,6 +13,7 @@ from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
+from physicslab.view.workbench.gallery import Gallery
 from physicslab.view.workbench.graph_panel import build_graphs
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.history_panel import build_history
@@ -59,6 +60,7 @@ class Interface:
         self.ui = Ui(self.toolkit.fonts, window.theme)
         self._inspector = Inspector()
         self._settings = SettingsPanel()
+        self._gallery = Gallery()
         self._recipe = RecipePanel()
         self._next = 0.0
         self._offer_height = 0  # of the offer to restore a session [px]
@@ -140,6 +142,7 @@ class Interface:
             window.help,
             window.error_study.shown,
             window.lists_history,
+            window.shows_gallery,
             window.naming is None,
             window.naming_refused,
             window.recovery.offered,
@@ -191,6 +194,10 @@ class Interface:
             build_error_plot(ui, window)
         if window.naming is not None:
             build_save(ui, window)
+        if window.shows_gallery:
+            self._gallery.build(ui, window)
+            if not self._gallery.is_complete:
+                self.toolkit.wake()
         if window.lists_history:
             build_history(ui, window)
         if window.help:
@@ -208,6 +215,8 @@ class Interface:
     def draw(self, canvas: Canvas) -> None:
         """Show panels as they were built last."""
         canvas.paint(self.toolkit.draw)
+        if self.ui.pictures:
+            canvas.paint(self.ui.show_pictures)
 
     @property
     def covered(self) -> list[Rect]:

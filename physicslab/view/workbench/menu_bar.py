@@ -59,7 +59,7 @@ def _build_scenes(ui: Ui, world: World, window: Window) -> None:
     """Build a line for each scene, built-in or in the working directory."""
     for name, scene in SCENES.items():
         if ui.item(scene.title, on=world.title == scene.title, tip=scene.description):
-            window.deeds.append(_opening(name))
+            window.deeds.append(file_actions.opening(name))
     try:
         files = scene_files(Path.cwd())
     except OSError as error:
@@ -70,11 +70,4 @@ def _build_scenes(ui: Ui, world: World, window: Window) -> None:
         ui.faint("Files in the working directory")
     for path in files:
         if ui.item(printable(path.name)):
-            window.deeds.append(_opening(path))
-
-
-def _opening(source: str | Path) -> file_actions.Deed:
-    def deed(world: World, window: Window) -> None:
-        file_actions.open_scene(window, source)
-
-    return deed
+            window.deeds.append(file_actions.opening(path))
