@@ -8,7 +8,6 @@ The large numbers of the design are tried with
 from __future__ import annotations
 
 import random
-import time
 from typing import Any
 
 import numpy as np
@@ -478,10 +477,10 @@ TestRandomCommands.settings = settings(max_examples=10, stateful_step_count=30, 
 
 
 @pytest.mark.slow
-def test_a_hundred_thousand_random_commands_are_taken_back() -> None:
+def test_ten_thousand_random_commands_are_taken_back() -> None:
     driver = Driver(box_of_discs(10, 4), 10, budget=64 * 2**20)
     rng = random.Random(11)
-    for _ in range(100_000):
+    for _ in range(10_000):
         kind = rng.random()
         if kind < 0.45:
             driver.edit()
@@ -515,39 +514,3 @@ def test_ten_thousand_random_seeks_give_the_bits_of_a_fresh_run() -> None:
         history.seek(step)
         assert bits(history.world) == expected[step]
     assert history.difference is None
-
-
-# ---- cost --------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-def test_recording_costs_little_of_a_step() -> None:
-    plain, history = SCENES["pile_4000"].build(), History(SCENES["pile_4000"].build())
-    for _ in range(60):
-        plain.step()
-        history.step()
-    ratios = []
-    for _ in range(9):
-        spent = []
-        for step in (plain.step, history.step):
-            began = time.process_time()
-            for _ in range(60):
-                step()
-            spent.append(time.process_time() - began)
-        ratios.append(spent[1] / spent[0])
-    assert np.median(ratios) < 1.10, ratios  # 1.05 is the aim; the rest is what other processes do to both
-
-
-@pytest.mark.slow
-def test_a_minute_of_465_boxes_is_scrubbed_at_60_frames_a_second() -> None:
-    history = History(SCENES["pyramid_30"].build())
-    history.step(steps=3600)
-    assert history.size <= 64 * 2**20
-    for start, stride in ((3000, -1), (2000, 1), (1500, -4), (600, 3)):
-        history.seek(start)
-        spent = []
-        for k in range(1, 101):
-            began = time.process_time()
-            history.seek(start + k * stride)
-            spent.append(time.process_time() - began)
-        assert np.quantile(spent, 0.95) < 0.016, (stride, max(spent))

@@ -1,0 +1,58 @@
+"""What the time machine costs: recording, as a share of a step, and scrubbing, in ms a seek.
+
+``uv run python benchmarks/history.py``: a run of 4,000 discs with and without a history, in turns; then 60 s of 465
+boxes, gone through forwards and backwards.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from physicslab.history import History
+from physicslab.lab.bench.catalogue import SCENES
+
+TURNS, STEPS = 9, 60
+
+
+def recording() -> None:
+    """Print how many times as long a step takes with a history, in turns of 60 steps."""
+    plain, history = SCENES["pile_4000"].build(), History(SCENES["pile_4000"].build())
+    for _ in range(STEPS):
+        plain.step()
+        history.step()
+    ratios = []
+    for _ in range(TURNS):
+        spent = []
+        for step in (plain.step, history.step):
+            began = time.process_time()
+            for _ in range(STEPS):
+                step()
+            spent.append(time.process_time() - began)
+        ratios.append(spent[1] / spent[0])
+    print(f"pile_4000: a step with a history / without: median {np.median(ratios):.3f} of {TURNS} turns")
+    print(f"  from {min(ratios):.3f} to {max(ratios):.3f}; key frames {history.size / 2**20:.0f} MiB")
+
+
+def scrubbing() -> None:
+    """Print how long a seek takes from place to place nearby, in a minute of 465 boxes."""
+    history = History(SCENES["pyramid_30"].build())
+    history.step(steps=3600)
+    for start, stride in ((3000, -1), (2000, 1), (1500, -4), (600, 3)):
+        history.seek(start)
+        spent = []
+        for k in range(1, 101):
+            began = time.process_time()
+            history.seek(start + k * stride)
+            spent.append(1e3 * (time.process_time() - began))
+        p50, p95 = np.quantile(spent, (0.5, 0.95))
+        print(
+            f"pyramid_30: seeks by {stride:+d} from {start}: median {p50:.2f}, p95 {p95:.2f}, max {max(spent):.1f} ms"
+        )
+    print(f"  key frames {history.size / 2**20:.0f} MiB")
+
+
+if __name__ == "__main__":
+    recording()
+    scrubbing()
