@@ -1,7 +1,7 @@
 """What the time machine costs: recording, as a share of a step, and scrubbing, in ms a seek.
 
-``uv run python benchmarks/history.py``: a run of 4,000 discs with and without a history, in turns; then 60 s of 465
-boxes, gone through forwards and backwards.
+``uv run python benchmarks/history.py``: a run of 4,000 discs with and without a history, in turns; then 60 s of
+465 boxes, gone through forwards and backwards.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def scrubbing() -> None:
             spent.append(1e3 * (time.process_time() - began))
         p50, p95 = np.quantile(spent, (0.5, 0.95))
         print(
-            f"pyramid_30: seeks by {stride:+d} from {start}: median {p50:.2f}, p95 {p95:.2f}, max {max(spent):.1f} ms"
+            f"pyramid_30: by {stride:+d} from {start}: median {p50:.2f}, p95 {p95:.2f}, max {max(spent):.1f} ms"
         )
     print(f"  key frames {history.size / 2**20:.0f} MiB")
 
