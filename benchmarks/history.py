@@ -47,9 +47,8 @@ def scrubbing() -> None:
             history.seek(start + k * stride)
             spent.append(1e3 * (time.process_time() - began))
         p50, p95 = np.quantile(spent, (0.5, 0.95))
-        print(
-            f"pyramid_30: by {stride:+d} from {start}: median {p50:.2f}, p95 {p95:.2f}, max {max(spent):.1f} ms"
-        )
+        times = f"median {p50:.2f}, p95 {p95:.2f}, max {max(spent):.1f} ms"
+        print(f"pyramid_30: seeks by {stride:+d} from {start}: {times}")
     print(f"  key frames {history.size / 2**20:.0f} MiB")
 
 
