@@ -1,7 +1,7 @@
 """What the time machine costs: recording, as a share of a step, and scrubbing, in ms a seek.
 
-``uv run python benchmarks/history.py``: a run of 4,000 discs with and without a history, in turns; then 60 s of
-465 boxes, gone through forwards and backwards.
+``uv run python benchmarks/history.py``: a run of 4,000 discs with and without a history, in turns; then a
+minute of 465 boxes, gone through forwards and backwards.
 """
 
 from __future__ import annotations
