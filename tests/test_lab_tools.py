@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pygame
 import pytest
-from desk import FRAME, Desk, bits, click, empty_world
+from desk import FRAME, Desk, bits, click, empty_world, fill
 from random_edits import state_hash
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
@@ -332,3 +332,19 @@ def test_the_gallery_has_a_card_with_a_picture_for_each_scene_and_opens_it() -> 
     desk.key("escape")
     desk.frames(2)
     assert not desk.window.shows_gallery and not desk.window.closing
+
+
+def test_a_place_that_is_taken_or_beyond_the_walls_is_refused_in_the_inspector() -> None:
+    world = empty_world(gravity=(0, 0), bounds=(-3, -3, 3, 3))
+    ball = circle(world, (0, 0), radius=0.5)
+    circle(world, (2, 0), radius=0.5)
+    desk = Desk(world)
+    desk.window.selection.take(ball)
+    desk.frames(2)
+    for text, said in (("1.5", "overlap"), ("-2.8", "beyond the walls")):
+        fill(desk, "Transform.position.x", text)
+        desk.frames(3)
+        assert world.component(ball, Transform).position.x == 0.0 and said in desk.window.notice
+    fill(desk, "Transform.position.x", "-2")
+    desk.frames(3)
+    assert world.component(ball, Transform).position.x == -2.0

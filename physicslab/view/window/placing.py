@@ -11,15 +11,17 @@ from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
+from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
-__all__ = ["Outlines", "free_way", "outlines_of", "refused_place"]
+__all__ = ["Outlines", "free_way", "outlines_of", "refused_change", "refused_place"]
 
 type Numbers = NDArray[np.float64]
 
 _ALLOWED = 1e-3
 """Overlap [m] that is no obstacle: what is put down on a floor by eye."""
+_BEYOND = "there is no room beyond the walls"
 _STRIDE, _MAX_STRIDES, _HALVINGS = 0.1, 64, 10
 """A way is looked at every so many metres, at so many places at most, and then more closely."""
 
@@ -68,11 +70,8 @@ def outlines_of(world: World, rows: NDArray[np.int64] | None = None) -> Outlines
 
 def refused_place(world: World, outlines: Outlines) -> str:
     """Return why something cannot be made here; empty where it can."""
-    bounds = world.physics.bounds
-    if bounds is not None:
-        low, high = outlines.place - outlines.reach, outlines.place + outlines.reach
-        if (low < np.array(bounds[:2]) - _ALLOWED).any() or (high > np.array(bounds[2:]) + _ALLOWED).any():
-            return "there is no room beyond the walls"
+    if _is_outside(world, outlines):
+        return _BEYOND
     others = outlines_of(world)
     for n in range(len(outlines.place)):
         near = (np.abs(others.place - outlines.place[n]) < others.reach + outlines.reach[n]).all(axis=1)
@@ -80,6 +79,48 @@ def refused_place(world: World, outlines: Outlines) -> str:
             if _overlap(outlines, n, others, int(other)) > _ALLOWED:
                 return "there is no room here"
     return ""
+
+
+def refused_change(world: World, entity: int, kind: type[Component], name: str, value: object) -> str:
+    """Return why a body cannot be given another place or size: it would overlap, or lie beyond the walls.
+
+    What overlaps already may be changed as long as it does not overlap more.
+    """
+    if not (world.has(entity, Transform) and world.has(entity, Shape)):
+        return ""
+    before = _overlapping(world, entity)
+    part = world.component(entity, kind)
+    kept = getattr(part, name)
+    try:
+        setattr(part, name, value)
+        after = _overlapping(world, entity)
+        outside = _is_outside(world, outlines_of(world, _row_of(world, entity)))
+    finally:
+        setattr(part, name, kept)
+    if outside:
+        return _BEYOND
+    return "it would overlap another body" if after > max(before, _ALLOWED) else ""
+
+
+def _row_of(world: World, entity: int) -> NDArray[np.int64]:
+    return np.array([world.entity_index.row_of[entity]], np.int64)
+
+
+def _overlapping(world: World, entity: int) -> float:
+    """Return by how much a body overlaps any other [m]; at least 0."""
+    rows = world.batch(Transform, Shape).rows
+    own = _row_of(world, entity)
+    return _deepest(outlines_of(world, own), outlines_of(world, rows[rows != own[0]]))
+
+
+def _is_outside(world: World, outlines: Outlines) -> bool:
+    """Whether a part of this lies beyond the walls of the world."""
+    bounds = world.physics.bounds
+    if bounds is None:
+        return False
+    low, high = outlines.place - outlines.reach, outlines.place + outlines.reach
+    beyond = (low < np.array(bounds[:2]) - _ALLOWED) | (high > np.array(bounds[2:]) + _ALLOWED)
+    return bool(beyond.any())
 
 
 def free_way(world: World, entity: int, way: Vector2) -> Vector2:

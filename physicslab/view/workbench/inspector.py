@@ -18,6 +18,7 @@ from physicslab.view.canvas.quantities import quantity, vector_quantity
 from physicslab.view.controls.actions import duplicate_selected, plot_selected
 from physicslab.view.controls.tools import remove_selected
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.placing import refused_change
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
@@ -233,9 +234,20 @@ def _switching(entity: int, kind: type[Component]) -> Callable[[World, Window], 
 
 def _change(window: Window, changes: Sequence[SetField]) -> None:
     """Make one edit of a change to each of what is selected."""
+    for change in changes:
+        refused = _refused(window.edits.world, change)
+        if refused:
+            window.notify(f"{change.words(window.edits.world)}: {refused}", 6.0, failed=True)
+            return
     if changes:
         one = changes[0]
         window.edits.do(one if len(changes) == 1 else Group(one.words(window.edits.world), changes))
+
+
+def _refused(world: World, change: SetField) -> str:
+    """Return why a place or a size cannot be given to a body; of other fields nothing."""
+    kind = next((kind for kind in (Transform, Shape) if kind.__name__ == change.component), None)
+    return "" if kind is None else refused_change(world, change.entity, kind, change.field, change.value)
 
 
 def _title(world: World, entity: int) -> str:
