@@ -103,6 +103,7 @@ class Sandbox:
             self.window.hand.drop(self.world)
             self.show(self.window.next_world)
         self._advance()
+        self.window.selection.follow(self.world)  # in the past steps make and remove bodies
         self.world.frame(Stage.RENDER, elapsed)
         self.world.frame(Stage.HUD, elapsed)
         if self._autosave is not None:

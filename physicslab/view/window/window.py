@@ -183,6 +183,7 @@ class Window:
         self._notice, self._notice_until = "", 0.0
         self._may_close_until = 0.0
         self._shown: tuple[Vector2, float, float, Extent | None] | None = None
+        self._room: Rect | None = None
 
     @property
     def middle(self) -> tuple[float, float]:
@@ -250,9 +251,10 @@ class Window:
         )
 
     def follow_size(self, world: World) -> None:
-        """Let the camera follow the size of the canvas; an untouched view still shows all of the world."""
-        if self.camera.size == self.canvas.size:
+        """Let the camera follow the canvas and its room; an untouched view still shows all of the world."""
+        if self.camera.size == self.canvas.size and self._room == self.room():
             return
+        self._room = self.room()
         self.camera.resize(self.canvas.size)
         if self._shown is not None and self._shown[:2] == (self.camera.centre, self.camera.scale):
             self._show(world, *self._shown[2:])
