@@ -346,7 +346,7 @@ def test_what_was_being_written_of_a_body_goes_with_the_scene_that_is_replaced(d
     desk.press(2.0, 0.0)
     desk.frames(2)
     desk.release(2.0, 0.0)
-    assert not desk.window.notice
+    assert not desk.window.notice_failed
     assert world.component(body, Mass).mass != 7.0
 
 
@@ -424,3 +424,30 @@ def test_an_untouched_view_follows_the_room_that_text_of_another_size_leaves() -
 def test_numbers_of_vectors_are_short_enough_for_their_fields() -> None:
     shown = [shown_vector_part(value) for value in (-0.690123, -0.01234, 12.3456, -1234.4, 2.0, 12345.0)]
     assert shown == ["-0.69", "-0.012", "12.35", "-1234", "2", "1.23e+04"]
+
+
+def test_an_edited_scene_that_another_one_replaced_comes_back_with_its_history() -> None:
+    desk = Desk(load_scene("drop"))
+    desk.window.source = "drop"
+    desk.key("space")
+    desk.frames(2)
+    edited = desk.world
+    click_at(desk, desk.pixel(1.0, 2.0))
+    before, entries = bits(edited), len(desk.sandbox.history.entries)
+    file_actions.open_scene(desk.window, "pendulum")
+    desk.frames(5)
+    assert desk.world is not edited and "Ctrl+Z" in desk.window.notice
+    tap(desk, "z", CTRL)
+    assert desk.world is edited and bits(edited) == before
+    assert len(desk.sandbox.history.entries) == entries
+    assert desk.window.has_unsaved(edited)
+    tap(desk, "z", CTRL)
+    assert "Taken back: made" in desk.window.notice
+
+
+def test_a_scene_that_was_left_alone_is_not_kept() -> None:
+    desk = Desk(load_scene("drop"))
+    desk.frames(5)
+    file_actions.open_scene(desk.window, "pendulum")
+    desk.frames(5)
+    assert desk.window.left is None and "Ctrl+Z" not in desk.window.notice
