@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pygame
 import pytest
-from desk import FRAME, Desk, bits, click, empty_world, fill
+from desk import FRAME, Desk, bits, click, click_at, empty_world, fill, tap, write
 from random_edits import state_hash
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
@@ -15,9 +15,10 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
-from physicslab.view.controls import actions
+from physicslab.view.controls import actions, file_actions
 from physicslab.view.picture.bodies import body_rows
 from physicslab.view.picture.extent import _reach
+from physicslab.view.workbench.number_field import shown_vector_part
 from physicslab.world import World
 
 CTRL = pygame.KMOD_LCTRL
@@ -348,3 +349,121 @@ def test_a_place_that_is_taken_or_beyond_the_walls_is_refused_in_the_inspector()
     fill(desk, "Transform.position.x", "-2")
     desk.frames(3)
     assert world.component(ball, Transform).position.x == -2.0
+
+
+def test_what_was_being_written_of_a_body_goes_with_the_scene_that_is_replaced(desk: Desk) -> None:
+    world = desk.world
+    body = circle(world, (0.0, 0.0), radius=0.5)
+    paused_on(desk, body)
+    click(desk, "Mass.mass")
+    write(desk, "7")
+    desk.window.next_world = empty_world(gravity=(0, 0))
+    desk.frames()
+    desk.press(2.0, 0.0)
+    desk.frames(2)
+    desk.release(2.0, 0.0)
+    assert not desk.window.notice_failed
+    assert world.component(body, Mass).mass != 7.0
+
+
+def test_a_body_that_goes_in_the_past_is_selected_no_more(desk: Desk) -> None:
+    click_at(desk, desk.pixel(1.0, 1.0))
+    (body,) = desk.world.batch(Mass).entities.tolist()
+    desk.frames(10)
+    made = desk.sandbox.history.step_count
+    desk.window.selection.take(body)
+    tap(desk, "delete")
+    desk.frames(10)
+    actions.seek(desk.window, made - 3)
+    desk.window.selection.take(body)
+    desk.window.pace.paused = False
+    desk.frames(20)
+    assert body not in desk.world.entities()
+    assert desk.window.selection.entities == ()
+
+
+@pytest.mark.parametrize("field", ["Mass.mass", "Transform.position.x"])
+def test_what_was_written_is_an_edit_of_the_time_at_which_it_was_written(desk: Desk, field: str) -> None:
+    desk.frames(20)
+    tap(desk, "space")
+    click_at(desk, desk.pixel(1.0, 1.0))
+    (body,) = desk.world.batch(Mass).entities.tolist()
+    desk.window.selection.take(body)
+    desk.frames(4)
+    last = desk.sandbox.history.steps_range[1]
+    click(desk, field)
+    write(desk, "0.75")
+    left, top, _, height = desk.ui.places["Time line"]
+    click_at(desk, (left + 12, top + height // 2))
+    assert desk.sandbox.history.step_count < last
+    actions.seek(desk.window, last)
+    kind, name = (Mass, "mass") if field == "Mass.mass" else (Transform, "position")
+    value = getattr(desk.world.component(body, kind), name)
+    assert (value if kind is Mass else value.x) == 0.75
+
+
+def test_a_press_in_the_world_makes_a_body_of_the_size_that_was_just_written(desk: Desk) -> None:
+    desk.window.tool = "circle"
+    desk.frames(4)
+    click(desk, "new size")
+    write(desk, "0.11")
+    before = set(desk.world.entities())
+    click_at(desk, desk.pixel(1.0, 1.0))
+    (made,) = set(desk.world.entities()) - before
+    assert desk.world.component(made, Shape).radius == 0.11
+
+
+@pytest.mark.parametrize("name", [".", "/", "x" * 400, "~no-such-user/x", "folder", "a\0b"])
+def test_a_name_that_no_file_can_have_is_refused(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    (tmp_path / "folder").mkdir()
+    monkeypatch.chdir(tmp_path)
+    file_actions.begin_save_as(desk.world, desk.window)
+    file_actions.save_under(desk.world, desk.window, name)
+    assert desk.window.naming is not None
+    assert desk.window.naming_refused
+    assert list(tmp_path.iterdir()) == [tmp_path / "folder"]
+
+
+def test_an_untouched_view_follows_the_room_that_text_of_another_size_leaves() -> None:
+    desk = Desk(load_scene("sandbox"))
+    desk.window.go_home(desk.world)
+    desk.frames(2)
+    desk.window.text_scale = 2.0
+    desk.frames(2)
+    left, _, width, _ = desk.window.room()
+    for x, y in ((-5.8, 0.0), (5.8, 0.0)):
+        assert left <= desk.pixel(x, y)[0] <= left + width
+
+
+def test_numbers_of_vectors_are_short_enough_for_their_fields() -> None:
+    shown = [shown_vector_part(value) for value in (-0.690123, -0.01234, 12.3456, -1234.4, 2.0, 12345.0)]
+    assert shown == ["-0.69", "-0.012", "12.35", "-1234", "2", "1.23e+04"]
+
+
+def test_an_edited_scene_that_another_one_replaced_comes_back_with_its_history() -> None:
+    desk = Desk(load_scene("drop"))
+    desk.window.source = "drop"
+    desk.key("space")
+    desk.frames(2)
+    edited = desk.world
+    click_at(desk, desk.pixel(1.0, 2.0))
+    before, entries = bits(edited), len(desk.sandbox.history.entries)
+    file_actions.open_scene(desk.window, "pendulum")
+    desk.frames(5)
+    assert desk.world is not edited and "Ctrl+Z" in desk.window.notice
+    tap(desk, "z", CTRL)
+    assert desk.world is edited and bits(edited) == before
+    assert len(desk.sandbox.history.entries) == entries
+    assert desk.window.has_unsaved(edited)
+    tap(desk, "z", CTRL)
+    assert "Taken back: made" in desk.window.notice
+
+
+def test_a_scene_that_was_left_alone_is_not_kept() -> None:
+    desk = Desk(load_scene("drop"))
+    desk.frames(5)
+    file_actions.open_scene(desk.window, "pendulum")
+    desk.frames(5)
+    assert desk.window.left is None and "Ctrl+Z" not in desk.window.notice

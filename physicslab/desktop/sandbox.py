@@ -18,7 +18,7 @@ from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
 from physicslab.view.window.graphs import Graph
 from physicslab.view.window.ruler import Ruler
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Left, Window
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
 
@@ -71,19 +71,24 @@ class Sandbox:
         hud = HudSystem(window, self.interface)
         self._systems = InputSystem(window, self.interface), RenderSystem(window), hud
         self.show(world)
+        self._source = window.source
         if autosave is not None:
             autosave.finish(world)
 
-    def show(self, world: World) -> None:
-        """Show a world in place of the one that was shown, with nothing held and nothing begun."""
+    def show(self, world: World, history: History | None = None) -> None:
+        """Show a world in place of the one that was shown, with nothing held and nothing begun.
+
+        A world that was shown before comes with its history.
+        """
         self.world = world
         titles, self._titles = self._titles, (world.name, world.title)
         if self._shown is not None:
             self._shown(world)
-        world.install(*self._systems)
+        if history is None:
+            world.install(*self._systems)
         window = self.window
         world.synchronise()  # what was done to make it is no edit
-        self.history = History(world)
+        self.history = history or History(world)
         window.follow_history(self.history)
         window.spring_tool.cancel()
         window.overlays.forget()
@@ -100,13 +105,29 @@ class Sandbox:
         self.window.pace.begin(elapsed)
         self.world.frame(Stage.INPUT, elapsed)
         if self.window.next_world is not None:
-            self.window.hand.drop(self.world)
-            self.show(self.window.next_world)
+            self._go_on_to(self.window.next_world)
         self._advance()
+        self.window.selection.follow(self.world)  # in the past steps make and remove bodies
         self.world.frame(Stage.RENDER, elapsed)
         self.world.frame(Stage.HUD, elapsed)
         if self._autosave is not None:
             self._keep(self._autosave)
+
+    def _go_on_to(self, world: World) -> None:
+        """Show another world; the one that is left can be had back if there are unsaved edits in it."""
+        window, back = self.window, self.window.left
+        window.hand.drop(self.world)
+        window.edits.take_back_shown()
+        edited = window.has_unsaved(self.world)
+        window.left = Left(self.history, self._source, window.unchanged) if edited else None
+        if back is not None and back.history.world is world:
+            self.show(world, back.history)
+            self._source, window.source, window.unchanged = back.source, back.source, back.unchanged
+            return
+        self.show(world)
+        self._source = window.source
+        if edited:
+            window.notify(f"{window.notice} - Ctrl+Z at its start brings back what was edited before", 6.0)
 
     def is_still(self) -> bool:
         """Whether the next frame would show what this one does, unless the user does something."""

@@ -77,7 +77,6 @@ class InputSystem(System):
                 handler(world, event)
             if event.type == pygame.MOUSEMOTION:
                 window.pointer_on_panel, window.has_pointed = taken, True
-        window.selection.follow(world)
         window.follow_size(world)
         window.trails.follow(world)
         window.hand.move(window.place, window.now)

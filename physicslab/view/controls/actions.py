@@ -353,6 +353,9 @@ def undo(world: World, window: Window) -> None:
     window.edits.take_back_shown()
     words = window.edits.history.undo()
     window.pace.paused = True
+    if words is None and window.left is not None:
+        window.next_world = window.left.history.world
+        words = "opened another scene"
     window.notify(f"Taken back: {words}" if words else "There is nothing to take back")
 
 

@@ -54,15 +54,17 @@ def save_under(world: World, window: Window, name: str) -> None:
     if not text:
         window.naming_refused = "A name is needed"
         return
-    path = Path(text).expanduser()
-    path = path if path.suffix else path.with_suffix(".json")
-    path = path if path.is_absolute() else Path.cwd() / path
-    if path.exists() and path != window.scene_file:
-        window.naming_refused = f"{path.name} is there already"
-        return
     try:
+        path = Path.cwd() / Path(text).expanduser()
+        if path.is_dir():
+            window.naming_refused = f"{text} is a directory: a name is needed"
+            return
+        path = path if path.suffix else path.with_suffix(".json")
+        if path.exists() and path != window.scene_file:
+            window.naming_refused = f"{path.name} is there already"
+            return
         save_scene(world, path)
-    except (SceneError, OSError, ValueError) as error:
+    except (SceneError, OSError, ValueError, RuntimeError) as error:
         window.naming_refused = f"It could not be saved: {error}"
         return
     window.naming, window.scene_file, window.source = None, path, path

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from physicslab.ecs.component import Component
@@ -29,7 +30,7 @@ from physicslab.view.window.selection import Selection
 from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
 
-__all__ = ["LEVELS", "Window"]
+__all__ = ["LEVELS", "Left", "Window"]
 
 _PATIENCE = 3.0
 """How long [s] after Esc a second one closes the window though there are unsaved edits."""
@@ -41,6 +42,25 @@ LEVELS = {
 """How much the panel at the right shows, with what each level is for."""
 _AROUND = 0.04
 """Room left around the world, as a share of what the panels leave."""
+
+
+@dataclass(frozen=True, slots=True)
+class Left:
+    """A scene with unsaved edits that another one took the place of.
+
+    Attributes
+    ----------
+    history : History
+        Its edits and runs, with its world.
+    source : str or path, optional
+        What it was opened from.
+    unchanged : int
+        How often it had been edited when it was opened or saved last.
+    """
+
+    history: History
+    source: str | Path | None
+    unchanged: int
 
 
 class Window:
@@ -130,6 +150,8 @@ class Window:
         How often the world had been edited when it was opened or saved last.
     next_world : World, optional
         The world that is to be shown in place of the present one from the next frame on.
+    left : Left, optional
+        The scene that was shown before, where it has unsaved edits; undo at the start brings it back.
     notice_failed : bool
         Whether the notice is of something that could not be done.
     recovery : Recovery
@@ -178,11 +200,13 @@ class Window:
         self.scene_file: Path | None = None
         self.unchanged = 0
         self.next_world: World | None = None
+        self.left: Left | None = None
         self.notice_failed = False
         self.recovery = Recovery()
         self._notice, self._notice_until = "", 0.0
         self._may_close_until = 0.0
         self._shown: tuple[Vector2, float, float, Extent | None] | None = None
+        self._room: Rect | None = None
 
     @property
     def middle(self) -> tuple[float, float]:
@@ -250,9 +274,10 @@ class Window:
         )
 
     def follow_size(self, world: World) -> None:
-        """Let the camera follow the size of the canvas; an untouched view still shows all of the world."""
-        if self.camera.size == self.canvas.size:
+        """Let the camera follow the canvas and its room; an untouched view still shows all of the world."""
+        if self.camera.size == self.canvas.size and self._room == self.room():
             return
+        self._room = self.room()
         self.camera.resize(self.canvas.size)
         if self._shown is not None and self._shown[:2] == (self.camera.centre, self.camera.scale):
             self._show(world, *self._shown[2:])

@@ -64,8 +64,13 @@ class Inspector:
             self._build_optional(ui, world, window, first)
         self._build_buttons(ui, window)
 
-    def finish(self) -> str:
-        """Take over what is half written in a field, and return why it is refused; empty where it is not."""
+    def finish(self, window: Window) -> str:
+        """Take over what is half written in a field, and return why it is refused; empty where it is not.
+
+        What was written of bodies that are shown no more is dropped.
+        """
+        if self._shown != (window.edits.world, window.selection.entities):
+            self._numbers.clear()
         return self._numbers.finish()
 
     # ---- fields --------------------------------------------------------------------------------------------
@@ -140,7 +145,7 @@ class Inspector:
         def deed(world: World, window: Window) -> None:
             _change(window, [SetField(e, kind.__name__, spec.name, value) for e in window.selection.entities])
 
-        window.deeds.append(deed)
+        window.deeds.insert(0, deed)  # before the click that ended the writing
 
     @staticmethod
     def _set_part(window: Window, kind: type[Component], spec: Field, axis: int, new: float) -> None:
@@ -152,7 +157,7 @@ class Inspector:
                 changes.append(SetField(entity, kind.__name__, spec.name, Vector2(*parts)))
             _change(window, changes)
 
-        window.deeds.append(deed)
+        window.deeds.insert(0, deed)
 
     # ---- what follows from them ----------------------------------------------------------------------------
 

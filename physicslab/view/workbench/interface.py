@@ -96,10 +96,14 @@ class Interface:
             self.toolkit.follow_pointer(event.pos)
         taken = self.toolkit.take(event)
         if event.type == pygame.MOUSEBUTTONDOWN and not taken:
-            refusal = self._inspector.finish() or self._settings.finish()
+            refusal = self._finish_fields()
             if refusal:
                 self._window.notify(refusal, 6.0, failed=True)
         return taken
+
+    def _finish_fields(self) -> str:
+        """Take over what is half written in a field, and return why it is refused; empty where it is not."""
+        return self._inspector.finish(self._window) or self._settings.finish() or self._recipe.finish()
 
     def build(
         self,

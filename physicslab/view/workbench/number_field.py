@@ -13,12 +13,14 @@ from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 
-__all__ = ["NumberFields", "shown_number"]
+__all__ = ["NumberFields", "shown_number", "shown_vector_part"]
 
 _DRAG = 0.005
 """Share of its size by which a number changes a pixel; of numbers below one, share of one."""
 _FINER, _COARSER = 0.1, 10.0
 """What Shift and Ctrl make of that."""
+_PART = 6
+"""Characters that the field of a part of a vector has room for."""
 
 type Commit = Callable[[float], None]
 
@@ -30,6 +32,16 @@ def shown_number(value: float, figures: int = 6) -> str:
     ('0.3', '0', '1.23457e+06', '2')
     """
     return f"{value + 0.0:.{figures}g}"
+
+
+def shown_vector_part(value: float) -> str:
+    """Return a number as half a field shows it: to four figures, or to fewer where it is longer than that.
+
+    >>> shown_vector_part(0.123456), shown_vector_part(-0.123456)
+    ('0.1235', '-0.123')
+    """
+    shorter = (shown_number(value, figures) for figures in range(4, 1, -1))
+    return next((text for text in shorter if len(text) <= _PART), shown_number(value, 3))
 
 
 @dataclass(slots=True)
@@ -70,7 +82,7 @@ class NumberFields:
         :class:`InvalidValue` for a number that the field cannot hold.
         """
         draft = self._drafts.get(key)
-        shown = shown_number(value, 4 if spec.kind == "vector" else 6)
+        shown = shown_vector_part(value) if spec.kind == "vector" else shown_number(value)
         text, active = ui.field(
             key, draft.text if draft else shown, width, wrong=bool(draft and draft.refusal)
         )

@@ -26,6 +26,10 @@ class RecipePanel:
     def __init__(self) -> None:
         self._numbers = NumberFields()
 
+    def finish(self) -> str:
+        """Take over what is half written in a field, and return why it is refused; empty where it is not."""
+        return self._numbers.finish()
+
     def build(self, ui: Ui, title: str, window: Window) -> None:
         """Build them under a title."""
         ui.gap(0.2)
