@@ -200,7 +200,7 @@ def test_what_a_crash_has_left_is_offered_and_restored(screen: Screen) -> None:
     try:
         (window,) = screen.windows()
         assert screen.do("getwindowname", window).strip() == "A ball on a floor - PhysicsLab"
-        screen.do("mousemove", 1055, 55)  # the bar's button below the toolbar
+        screen.do("mousemove", 403, 40)  # the button that restores, at the top of the world
         screen.do("click", 1)
         stack = "A tower of ten boxes - PhysicsLab"
         screen.until(lambda _: screen.do("getwindowname", window).strip() == stack, "the stack again")
