@@ -60,6 +60,10 @@ class Keyframes:
         along, nearby = (_last(places, place) for places in (self._along, self._nearby))
         return max(along, nearby)
 
+    def is_along(self, place: int) -> bool:
+        """Whether there is one along the line at a place."""
+        return _last(self._along, place) == place
+
     def takes(self, place: int) -> bool:
         """Whether a key frame along the line may be added at a place: it is not too near to the last one."""
         return place - _last(self._along, place) >= self.spacing
