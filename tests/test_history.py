@@ -432,7 +432,6 @@ def test_a_refused_write_is_no_part_of_the_run() -> None:
 # ---- memory ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.usefixtures("dense")
 def test_edits_leave_key_frames_along_the_line_as_runs_do(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(places_module, "_RARELY", 4.0)
     monkeypatch.setattr(places_module, "_SMOOTH", 0.0)
@@ -442,6 +441,7 @@ def test_edits_leave_key_frames_along_the_line_as_runs_do(monkeypatch: pytest.Mo
     assert len(history._places._frames._along) > 10
 
 
+@pytest.mark.usefixtures("dense")
 def test_key_frames_keep_to_their_budget() -> None:
     history = History(box_of_discs(8, 20), budget=400_000)
     history.step(steps=300)
