@@ -433,7 +433,7 @@ def test_a_refused_write_is_no_part_of_the_run() -> None:
 
 
 def test_edits_leave_key_frames_along_the_line_as_runs_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(places_module, "_RARELY", 4.0)
+    monkeypatch.setattr(places_module, "_RARELY", 10.0)
     monkeypatch.setattr(places_module, "_SMOOTH", 0.0)
     history = History(box_of_discs(8))
     for k in range(300):
