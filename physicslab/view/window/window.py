@@ -23,6 +23,7 @@ from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.pace import Pace
+from physicslab.view.window.recent import RecentFiles
 from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.ruler import Ruler
@@ -128,6 +129,12 @@ class Window:
         The name that is being written for the scene to be saved under; ``None`` while none is.
     naming_refused : str
         Why the scene could not be saved under it.
+    opening : str, optional
+        The name that is being written of the file to be opened; ``None`` while none is.
+    opening_refused : str
+        Why it could not be opened.
+    recent : RecentFiles
+        The files that were opened or saved last.
     copied : list
         The components of each body that was copied.
     band : Vector2, optional
@@ -189,6 +196,9 @@ class Window:
         self.ruler = Ruler()
         self.naming: str | None = None
         self.naming_refused = ""
+        self.opening: str | None = None
+        self.opening_refused = ""
+        self.recent = RecentFiles()
         self.copied: list[list[Component]] = []
         self.band: Vector2 | None = None
         self.graphs: list[Graph] = []

@@ -20,6 +20,7 @@ from physicslab.view.workbench.history_panel import build_history
 from physicslab.view.workbench.inspector import Inspector
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
+from physicslab.view.workbench.open_panel import build_open
 from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
@@ -149,6 +150,9 @@ class Interface:
             window.shows_gallery,
             window.naming is None,
             window.naming_refused,
+            window.opening is None,
+            window.opening_refused,
+            window.edits.history.branches,
             window.recovery.offered,
             window.figures,
             window.level,
@@ -198,6 +202,8 @@ class Interface:
             build_error_plot(ui, window)
         if window.naming is not None:
             build_save(ui, window)
+        if window.opening is not None:
+            build_open(ui, window)
         if window.shows_gallery:
             self._gallery.build(ui, window)
             if not self._gallery.is_complete:
