@@ -438,7 +438,7 @@ def test_edits_leave_key_frames_along_the_line_as_runs_do(monkeypatch: pytest.Mo
     history = History(box_of_discs(8))
     for k in range(300):
         history.do(SetField(1, "Mass", "mass", 1.0 + k % 3))
-    assert len(history._places._frames._along) > 3
+    assert len(history._places._frames._along.places) > 3
 
 
 @pytest.mark.usefixtures("dense")
@@ -452,10 +452,19 @@ def test_key_frames_keep_to_their_budget() -> None:
         assert history.size <= 400_000
     history.seek(300)
     assert bits(history.world) == expected
-    held = {
-        id(part): part.nbytes for frame in history._places._frames._frames.values() for part in frame.arrays()
-    }
+    places = history._places._frames
+    held = {id(a): a.nbytes for k in range(301) if k in places for a in places[k].arrays()}
     assert sum(held.values()) <= history.size
+
+
+def test_key_frames_nearby_are_as_many_after_thousands_of_commands() -> None:
+    driver, counts = Driver(box_of_discs(9, 4), 9, budget=2**20), list[int]()
+    for _ in range(4):
+        for _ in range(500):
+            driver.anything()
+        frames, ticks = driver.history._places._frames, driver.history._places.line.ticks
+        counts.append(sum(k in frames and not frames.is_along(k) for k in range(ticks + 1)))
+    assert min(counts) > 0.6 * max(counts)
 
 
 # ---- random commands ---------------------------------------------------------------------------------------
