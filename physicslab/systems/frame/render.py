@@ -67,8 +67,9 @@ class RenderSystem(System):
             draw_band(camera.to_screen(window.band), window.pointer, theme, canvas)
         size = text_size(canvas, window.text_scale)
         window.ruler.draw(camera, window.place, size, theme, canvas)
-        self._draw_handles(world)
-        self._draw_ghost(world)
+        if not window.filming.running:  # a film has no cursor
+            self._draw_handles(world)
+            self._draw_ghost(world)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
 
     def _draw_impulses(self, world: World) -> None:

@@ -242,6 +242,8 @@ def leave(world: World, window: Window) -> None:
         window.help = False
     elif window.shows_gallery:
         window.shows_gallery = False
+    elif window.filming.choosing:
+        window.filming.choosing = False
     elif window.opening is not None:
         window.opening = None
     elif window.naming is not None:

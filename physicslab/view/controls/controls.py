@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from physicslab.components import Trail
-from physicslab.view.controls import actions, file_actions, history_actions
+from physicslab.view.controls import actions, file_actions, film_actions, history_actions
 from physicslab.view.controls.spawning import spawn_pendulum
 from physicslab.view.controls.tools import (
     HAND,
@@ -181,6 +181,9 @@ CONTROLS: tuple[Control, ...] = (
             group="file", tip="Save all edits and runs to a file that physicslab replay plays"),
     Control("F12", "screenshot", "f12", file_actions.request_screenshot, minor=True, group="file",
             tip="Save a picture of the window"),
+    Control("F9", "film", "f9", film_actions.toggle_film, minor=True, group="file",
+            state=lambda _, window: window.filming.running,
+            tip="A film of what was run, or of what comes: GIF or MP4"),
     Control("F5", "error against run time", "f5", file_actions.study_error, minor=True, group="file",
             state=lambda _, window: window.error_study.running,
             tip="Runs this scene by every method, and plots how far each is off and what it costs"),

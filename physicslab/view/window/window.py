@@ -19,6 +19,7 @@ from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
 from physicslab.view.window.edits import Edits
+from physicslab.view.window.filming import Filming
 from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
@@ -133,6 +134,8 @@ class Window:
         The name that is being written of the file to be opened; ``None`` while none is.
     opening_refused : str
         Why it could not be opened.
+    filming : Filming
+        The film that is being made.
     recent : RecentFiles
         The files that were opened or saved last.
     copied : list
@@ -198,6 +201,7 @@ class Window:
         self.naming_refused = ""
         self.opening: str | None = None
         self.opening_refused = ""
+        self.filming = Filming(lambda words, failed: self.notify(words, 6.0, failed=failed))
         self.recent = RecentFiles()
         self.copied: list[list[Component]] = []
         self.band: Vector2 | None = None

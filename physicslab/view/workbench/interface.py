@@ -13,6 +13,7 @@ from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
+from physicslab.view.workbench.film_panel import build_film
 from physicslab.view.workbench.gallery import Gallery
 from physicslab.view.workbench.graph_panel import build_graphs
 from physicslab.view.workbench.help_panel import build_help
@@ -150,6 +151,8 @@ class Interface:
             window.shows_gallery,
             window.naming is None,
             window.naming_refused,
+            window.filming.choosing,
+            window.filming.refused,
             window.opening is None,
             window.opening_refused,
             window.edits.history.branches,
@@ -202,6 +205,8 @@ class Interface:
             build_error_plot(ui, window)
         if window.naming is not None:
             build_save(ui, window)
+        if window.filming.choosing:
+            build_film(ui, window)
         if window.opening is not None:
             build_open(ui, window)
         if window.shows_gallery:
