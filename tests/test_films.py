@@ -29,7 +29,10 @@ from physicslab.view.picture.moving import MovingPicture
 
 ROOT = Path(__file__).parent.parent
 HAS_VIDEO = importlib.util.find_spec("imageio_ffmpeg") is not None
-needs_video = pytest.mark.skipif(not HAS_VIDEO, reason="needs the extra video: uv run --extra video pytest")
+needs_video = pytest.mark.skipif(
+    not HAS_VIDEO, reason="needs the extra: uv run --extra video pytest -m video"
+)
+VIDEO = pytest.param(".mp4", marks=[pytest.mark.video, needs_video])
 
 
 def noise(seed: int, count: int, size: tuple[int, int] = (40, 30)) -> list[NDArray[np.uint8]]:
@@ -184,7 +187,7 @@ def test_a_full_disk_leaves_the_old_film(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such limit")
-@pytest.mark.parametrize("ending", [".gif", pytest.param(".mp4", marks=needs_video)])
+@pytest.mark.parametrize("ending", [".gif", VIDEO])
 def test_a_limit_of_the_system_leaves_no_film(ending: str, tmp_path: Path) -> None:
     path = tmp_path / f"old{ending}"
     path.write_text("old")
@@ -203,7 +206,7 @@ def test_a_limit_of_the_system_leaves_no_film(ending: str, tmp_path: Path) -> No
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such signal")
-@pytest.mark.parametrize("ending", [".gif", pytest.param(".mp4", marks=needs_video)])
+@pytest.mark.parametrize("ending", [".gif", VIDEO])
 def test_an_interrupted_film_leaves_nothing(ending: str, tmp_path: Path) -> None:
     command = [
         sys.executable,
@@ -226,6 +229,7 @@ def test_an_interrupted_film_leaves_nothing(ending: str, tmp_path: Path) -> None
     assert os.listdir(tmp_path) == []
 
 
+@pytest.mark.video
 @needs_video
 def test_an_mp4_film_has_the_size_the_length_and_the_colours(tmp_path: Path) -> None:
     path = tmp_path / "drop.mp4"

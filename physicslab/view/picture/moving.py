@@ -7,12 +7,13 @@ import pygame
 from numpy.typing import NDArray
 
 from physicslab.view.canvas.camera import Camera, Extent
+from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.picture.painting import draw_world
 from physicslab.world import World
 
-__all__ = ["MovingPicture", "pixels_of"]
+__all__ = ["MovingPicture", "part_of", "pixels_of"]
 
 _AROUND = 0.04
 """Room left around what is to be seen, as a share of the picture."""
@@ -43,6 +44,12 @@ class MovingPicture:
         with world.active():
             draw_world(world, self._camera, self._theme, self._canvas)
         return pixels_of(self._surface)
+
+
+def part_of(surface: pygame.Surface, rect: Rect, size: tuple[int, int]) -> NDArray[np.uint8]:
+    """Return the pixels of a part of a surface [px] in a picture of some size, as :func:`pixels_of` does."""
+    part = surface.subsurface(pygame.Rect(rect).clip(surface.get_rect()))
+    return pixels_of(part if part.get_size() == size else pygame.transform.smoothscale(part, size))
 
 
 def pixels_of(surface: pygame.Surface) -> NDArray[np.uint8]:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-
-import pygame
+from typing import TYPE_CHECKING
 
 from physicslab.export.film import Film
 from physicslab.history import History
 from physicslab.view.canvas.canvas import Canvas, Rect
-from physicslab.view.picture.moving import pixels_of
 from physicslab.world import World
+
+if TYPE_CHECKING:
+    import pygame
 
 __all__ = ["ALL", "BACK", "FORWARD", "FROM_NOW", "Filming"]
 
@@ -134,10 +135,9 @@ class Filming:
         self._run += self._spacing if cut else passed
 
         def grab(surface: pygame.Surface) -> None:
-            part = surface.subsurface(pygame.Rect(room).clip(surface.get_rect()))
-            if part.get_size() != self._size:
-                part = pygame.transform.smoothscale(part, self._size)
-            picture = pixels_of(part)
+            from physicslab.view.picture.moving import part_of  # it imports pygame
+
+            picture = part_of(surface, room, self._size)
             while film.count * self._spacing <= self._run + _LATE:
                 film.write(picture)
 
