@@ -85,7 +85,7 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
             (Sample(FORCE), FORCE.name, overlays.force.words),
             (Sample(CONTACT_NORMAL, CONTACT_NORMAL.width), CONTACT_NORMAL.name, "direction only"),
         ]
-        remarks.append("Force: gravity, springs, drag; no contacts.")
+        remarks.append("Select a body to see each of the forces on it.")
     if overlays.impulses:
         rows += [
             (Sample(NORMAL_IMPULSE, IMPACT_WIDTH), "Normal, impact", overlays.impact.words),
