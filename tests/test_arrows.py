@@ -13,6 +13,7 @@ from test_hud import MeasuringCanvas
 
 from physicslab.components import Velocity
 from physicslab.diagnostics.free_body import applied_forces
+from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.view.canvas.theme import DARK, Colour
@@ -89,6 +90,25 @@ def test_a_zoom_leaves_the_scale_as_it_was() -> None:
     assert desk.window.overlays.velocity.per_metre == before
     shaft = lines_in(canvas, DARK.velocity)[0]
     assert shaft["end"][0, 0] - shaft["start"][0, 0] == pytest.approx(2.0 / before * 50.0)
+
+
+def test_scales_are_kept_on_request() -> None:
+    world = empty_world(gravity=(0, 0))
+    ball = circle(world, (0, 0), velocity=(2.0, 0.0))
+    desk, canvas = shown(world, "v")
+    before = desk.window.overlays.velocity.per_metre
+    desk.key("a")
+    world.component(ball, Velocity).linear = Vector2(200.0, 0.0)
+    desk.frames(8)
+    assert desk.window.overlays.velocity.per_metre == before
+    desk.key("v")
+    desk.key("v")
+    canvas.calls.clear()
+    desk.frames(8)
+    assert desk.window.overlays.velocity.per_metre == before and "scale, kept" in canvas.words
+    desk.key("a")
+    desk.frames(8)
+    assert desk.window.overlays.velocity.per_metre > 10.0 * before
 
 
 def test_forces_are_those_of_the_present_state() -> None:

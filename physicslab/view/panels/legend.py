@@ -108,7 +108,8 @@ def legend_of(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: 
         return None
     rows, remarks = _rows(overlays)
     pad = round(0.7 * size)
-    heading = lay_out([Line("Arrows", "scale", "heading")], 0, 0, width, size, canvas, theme)
+    scale = "scale, kept" if overlays.keeps_scales else "scale"
+    heading = lay_out([Line("Arrows", scale, "heading")], 0, 0, width, size, canvas, theme)
     label, value = TextStyle(size - 1, theme.text), TextStyle(size - 1, theme.faint)
     row_height = canvas.text_size("Ag", label)[1]
     texts, samples, y = list(heading.texts), [], heading.rect[3] - pad
