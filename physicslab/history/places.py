@@ -16,12 +16,13 @@ from physicslab.world import World
 
 __all__ = ["Places"]
 
-_RARELY, _OFTEN, _SEEKING = 80.0, 16.0, 5.0
+_RARELY, _OFTEN, _SEEKING = 60.0, 16.0, 5.0
 """How many times as long as a key frame takes that takes which lies between two, at most and at least along
 the line; and where steps are made again, or an edit begins."""
-_SMOOTH = 0.010
+_SMOOTH, _LIMIT = 0.010, 0.020
 """Time [s] of what lies between two along the line, where that lies between those: nearly any place is then
-reached within a frame of the screen."""
+reached within a frame of the screen. And how much it may be: where that is too little for the least share,
+no place would be reached in time, and key frames are as rare as they may be."""
 _SOON = 8
 """Number of ticks that are made sooner than a key frame is gone back to."""
 
@@ -184,15 +185,15 @@ class Places:
     @property
     def _interval(self) -> float:
         """The time of what lies between two key frames along the line [s]."""
-        rarely = _RARELY * self._cost
-        return _SMOOTH if _OFTEN * self._cost <= _SMOOTH <= rarely else rarely
+        often, rarely = _OFTEN * self._cost, _RARELY * self._cost
+        return rarely if often > _LIMIT else min(max(often, _SMOOTH), rarely)
 
     def _take(self) -> Keyframe:
         """Return a key frame of now."""
         began = time.perf_counter()
         frame = Keyframe(self.world, self._last)
         took = time.perf_counter() - began
-        # Other programs may have run meanwhile.
-        self._cost = min(took, 2.0 * self._cost) if self._cost else took
+        # A part of it, and no more than twice as much: other programs may have run meanwhile.
+        self._cost += 0.25 * (min(took, 2.0 * self._cost) - self._cost) if self._cost else took
         self._since, self._last = 0.0, frame
         return frame
