@@ -127,8 +127,11 @@ class History:
         h = world.simulation.dt if dt is None else dt
         for _ in range(steps):
             began = time.perf_counter()
-            with places.all_or_nothing():
+            try:
                 world.step(h)
+            except BaseException:
+                places.break_off()
+                raise
             self._run().add_step(float(h), places.digester.digest(world))
             self._advance(began)
 

@@ -16,7 +16,7 @@ from physicslab.world import World
 
 __all__ = ["Places"]
 
-_RARELY, _OFTEN, _SEEKING = 60.0, 16.0, 5.0
+_RARELY, _OFTEN, _SEEKING = 80.0, 16.0, 5.0
 """How many times as long as a key frame takes that takes which lies between two, at most and at least along
 the line; and where steps are made again, or an edit begins."""
 _SMOOTH, _LIMIT = 0.010, 0.020
@@ -59,6 +59,7 @@ class Places:
         self._frames = Keyframes(budget)
         self._whole = True
         self._cost = self._since = self._since_along = 0.0
+        self._interval = 0.0  # what lies between two key frames along the line takes [s]
         self._last: Keyframe | None = None
         self._take()  # the first takes longer than others will
         self._cost = 0.0
@@ -117,9 +118,13 @@ class Places:
         try:
             yield
         except BaseException:
-            self._whole = False
-            self.mend()
+            self.break_off()
             raise
+
+    def break_off(self) -> None:
+        """Go back to the present place: what was begun there failed."""
+        self._whole = False
+        self.mend()
 
     def mend(self) -> None:
         """Make the world again that is at the present place, where something was broken off."""
@@ -182,12 +187,6 @@ class Places:
             around = self.here if target is None else target
             self._frames.add_nearby(self.here, self._take(), around)
 
-    @property
-    def _interval(self) -> float:
-        """The time of what lies between two key frames along the line [s]."""
-        often, rarely = _OFTEN * self._cost, _RARELY * self._cost
-        return rarely if often > _LIMIT else min(max(often, _SMOOTH), rarely)
-
     def _take(self) -> Keyframe:
         """Return a key frame of now."""
         began = time.perf_counter()
@@ -195,5 +194,7 @@ class Places:
         took = time.perf_counter() - began
         # A part of it, and no more than twice as much: other programs may have run meanwhile.
         self._cost += 0.25 * (min(took, 2.0 * self._cost) - self._cost) if self._cost else took
+        often, rarely = _OFTEN * self._cost, _RARELY * self._cost
+        self._interval = rarely if often > _LIMIT else min(max(often, _SMOOTH), rarely)
         self._since, self._last = 0.0, frame
         return frame
