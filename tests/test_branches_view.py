@@ -120,5 +120,6 @@ def test_a_recording_cut_off_is_refused_in_one_line(
     pygame.event.post(pygame.Event(pygame.DROPFILE, file=str(tmp_path / "part.replay")))
     desk.frames(3)
     assert desk.window.notice.startswith("Not opened: ") and "\n" not in desk.window.notice
+    assert cut == 0.0 or desk.window.notice.endswith("is a recording: physicslab replay plays it")
     assert bits(desk.world) == before
     assert load_scene("drop").name == "drop"

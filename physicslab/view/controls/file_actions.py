@@ -9,7 +9,7 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable
 from physicslab.files.new_scene import save_new_scene
 from physicslab.files.scene import SceneError, load_scene, save_scene
-from physicslab.view.controls.scene_files import new_scene_paths, newest_scene
+from physicslab.view.controls.scene_files import is_recording, new_scene_paths, newest_scene
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -118,6 +118,8 @@ def open_scene(window: Window, source: str | Path) -> str:
         opened.synchronise()
     except (SceneError, InvalidValue, OSError) as error:
         reason = f"Not opened: {error}"
+        if isinstance(source, Path) and is_recording(source):
+            reason = f"Not opened: {printable(source.name)} is a recording: physicslab replay plays it"
         window.notify(reason, 8.0, failed=True)
         return reason
     window.next_world, window.opening = opened, None
