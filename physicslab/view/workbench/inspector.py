@@ -84,7 +84,7 @@ class Inspector:
         for spec in rows:
             if spec.kind == "vector":
                 self._build_vector(ui, world, window, kind, spec, getattr(held, spec.name))
-            elif spec.kind == "number":
+            elif spec.kind in ("number", "text"):
                 self._build_number(ui, world, window, kind, spec, getattr(held, spec.name))
             elif spec.kind == "flag" and ui.checkbox(
                 _label(spec), bool(getattr(held, spec.name)), spec.meaning
@@ -92,18 +92,19 @@ class Inspector:
                 self._set(window, kind, spec, not getattr(held, spec.name))
 
     def _build_number(
-        self, ui: Ui, world: World, window: Window, kind: type[Component], spec: Field, value: float
+        self, ui: Ui, world: World, window: Window, kind: type[Component], spec: Field, value: float | str
     ) -> None:
         key = f"{kind.__name__}.{spec.name}"
 
-        def commit(new: float) -> None:
+        def commit(new: object) -> None:
             spec.check(new)
             held = world.component(window.selection.entities[-1], kind)
             kind(**(held.given() | {spec.name: new}))  # some fields depend on others: a radius is above 0
             self._set(window, kind, spec, new)
 
         width = imgui.get_content_region_avail().x
-        self._numbers.label(ui, key, _label(spec), _LABELS * width, value, spec.meaning, commit)
+        dragged = None if isinstance(value, str) else value
+        self._numbers.label(ui, key, _label(spec), _LABELS * width, dragged, spec.meaning, commit)
         imgui.same_line()
         room = imgui.get_content_region_avail().x - _unit_width(spec)
         refusal = self._numbers.build(ui, key, value, spec, room, commit)
@@ -276,7 +277,7 @@ def _is_shown(spec: Field, held: Component) -> bool:
     """Whether a field has a row: sizes of the other kind of shape and what cannot change have none."""
     if isinstance(held, Shape):
         return spec.name in Shape.SIZES[held.kind]
-    return spec.kind in ("number", "vector", "flag") and not spec.fixed
+    return spec.kind in ("number", "vector", "flag", "text") and not spec.fixed
 
 
 def _label(spec: Field) -> str:
