@@ -253,6 +253,9 @@ def test_escape_restores_the_text() -> None:
 
 def test_a_text_too_long_is_refused_at_its_field() -> None:
     desk, text = _inspected("before")
-    _write_over(desk, "x" * 401, "return")
+    click(desk, "Note.text")
+    pygame.event.post(pygame.Event(pygame.TEXTINPUT, text="x" * 401))
+    desk.frames(2)
+    tap(desk, "return")
     assert text() == "before"
     assert any(words.startswith("must be a text of at most 8 lines") for words in desk.ui.words)
