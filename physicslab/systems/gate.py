@@ -180,7 +180,7 @@ class GateSystem(System):
         if self._rows_of is not self.crossings:
             self._rows = np.array([_numbers(one) for one in self.crossings]).reshape(-1, 5)
             self._rows_of = self.crossings
-        fresh = (
+        fresh: tuple[NDArray[Any], ...] = (
             np.array([self.count]), self._rows, np.array(pending, np.float64).reshape(-1, 8),
             self._gates, self._bodies, self._side,
         )  # fmt: skip

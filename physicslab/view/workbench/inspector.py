@@ -8,7 +8,19 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from imgui_bundle import imgui
 
-from physicslab.components import Drag, Held, Mass, Material, Name, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import (
+    Drag,
+    Held,
+    Mass,
+    Material,
+    Name,
+    Shape,
+    Spring,
+    Strobe,
+    Trail,
+    Transform,
+    Velocity,
+)
 from physicslab.diagnostics.free_body import forces_on, net_force
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field
@@ -17,6 +29,7 @@ from physicslab.history import AddComponent, Group, RemoveComponent, SetField
 from physicslab.view.canvas.quantities import quantity, vector_quantity
 from physicslab.view.controls.actions import duplicate_selected, plot_selected
 from physicslab.view.controls.tools import remove_selected
+from physicslab.view.overlay.instruments import instrument_of, readings_of
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.window import Window
@@ -58,6 +71,8 @@ class Inspector:
         for kind in sorted(kinds, key=lambda kind: _ORDER.get(kind, len(_ORDER))):
             self._build_component(ui, world, window, kind)
         if len(chosen) == 1:
+            for label, value in readings_of(world, first):
+                ui.row(label, value)
             self._build_now(ui, world, first)
             if window.level != "Explore" or window.overlays.arrows:
                 self._build_forces(ui, world, first)
@@ -206,7 +221,7 @@ class Inspector:
 
     def _build_optional(self, ui: Ui, world: World, window: Window, entity: int) -> None:
         """Build a box to tick for each component that the body may have or not."""
-        if world.has(entity, Spring) and not world.has(entity, Transform):
+        if not world.has(entity, Transform):
             return
         ui.gap(0.2)
         ui.rule()
@@ -265,7 +280,9 @@ def _kind(world: World, entity: int) -> str:
     if world.has(entity, Shape):
         shape = "circle" if world.component(entity, Shape).kind == "circle" else "box"
     else:
-        shape = "point" if world.has(entity, Transform) else "spring"
+        one = instrument_of(world, entity)
+        made = "spring" if one is None else one.kind.__name__.lower()
+        shape = "point" if world.has(entity, Transform) else made
     if not world.has(entity, Transform):
         return shape
     if not world.has(entity, Velocity):
@@ -310,4 +327,5 @@ _SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
     (Mass, "Has mass", "A body that can move and has none is infinitely heavy"),
     (Drag, "Air resistance", "A force against its motion"),
     (Trail, "Leaves a trail", "Shows where it was"),
+    (Strobe, "Strobe pictures", "Its outline stays where it was every 0.1 s"),
 )
