@@ -84,8 +84,8 @@ class RenderSystem(System):
         """Draw what measures, what is being placed of it, and beside the cursor what to do next."""
         window = self._window
         camera, theme, canvas, state = window.camera, window.theme, window.canvas, window.measuring
-        spot, tool = spot_of(world, window), TOOLS[window.tool]
-        preview = state.preview(spot)
+        tool = TOOLS[window.tool]
+        preview = state.preview(spot_of(world, window)) if state.spots else None
         shown = [*instruments_of(world, state.overrides), *([] if preview is None else [preview])]
         if state.writing is not None:
             shown = [one for one in shown if one.entity != state.writing.entity]

@@ -25,8 +25,8 @@ __all__ = [
     "toggle_strobes", "write_note",
 ]  # fmt: skip
 
-_DRAGGED = 5.0
-"""How far apart a press and a release are that are no click [px]."""
+_CLICK = 4.0
+"""How far apart a press and a release are at most that are a click [px]."""
 _SNAP = math.pi / 12.0
 """What directions go in steps of while Shift is held [rad]."""
 _SHARE = 0.3
@@ -64,7 +64,7 @@ def follow_pointer(world: World, window: Window) -> None:
         whole = len(state.dragged_points) > 1 or (one is not None and one.kind is Note)
         others = [] if one is None else [p for n, p in one.points.items() if n not in state.dragged_points]
         spot = Spot(window.place) if whole else _spot(world, window, others[0] if others else None)
-        state.drag(spot)
+        state.drag(spot, window.place, _CLICK / window.camera.scale)
         state.hovered = spot.body
     elif any(tool.name == window.tool for tool in MEASURING_TOOLS) and window.tool != NOTE.name:
         state.hovered = _spot(world, window, _origin(window)).body
@@ -80,9 +80,7 @@ def spot_of(world: World, window: Window) -> Spot:
 
 def _placing(kind: type[Any]) -> Callable[[World, Window], None]:
     def press(world: World, window: Window) -> None:
-        """Put down a point; or take what is there, while nothing is begun."""
-        if not window.measuring.spots and take_instrument(world, window):
-            return
+        """Put down a point."""
         if window.measuring.place(kind, spot_of(world, window)):
             _finish(world, window)
 
@@ -95,7 +93,7 @@ def _end_placing(world: World, window: Window) -> None:
     if state.kind is None or not state.spots:
         return
     x, y = window.camera.to_screen(state.spots[-1].place)
-    if math.hypot(x - window.pointer[0], y - window.pointer[1]) > _DRAGGED:
+    if math.hypot(x - window.pointer[0], y - window.pointer[1]) > _CLICK:
         spot = spot_of(world, window)
         if state.place(state.kind, spot):
             _finish(world, window)
@@ -202,6 +200,8 @@ def take_end(world: World, window: Window) -> bool:
     name = None if one is None else point_at(one, window.camera, window.pointer)
     if one is None or name is None or window.measuring.spots:
         return False
+    if _KINDS.get(window.tool, one.kind) is not one.kind:
+        return False  # another kind of instrument may begin there
     window.measuring.take(one, (name,), window.place)
     return True
 

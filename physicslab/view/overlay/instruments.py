@@ -139,6 +139,8 @@ def draw_instruments(
 
     Labels keep clear of all lines, of the bodies that points go with, of each other and of what is covered.
     """
+    if not instruments:
+        return {}
     shown: list[tuple[Instrument, dict[str, _Pixels]]] = []
     for one in instruments:
         pixels = {name: np.array(camera.to_screen(place)) for name, place in one.points.items()}

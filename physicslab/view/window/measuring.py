@@ -53,6 +53,7 @@ class _Drag:
     names: tuple[str, ...]
     begin: Vector2
     spot: Spot
+    moved: bool = False
 
     @property
     def places(self) -> dict[str, Spot]:
@@ -136,15 +137,16 @@ class Measuring:
         """Take points of an instrument, at a place of the world [m]."""
         self._drag = _Drag(one, names, place, Spot(place))
 
-    def drag(self, spot: Spot) -> None:
-        """Let what was taken follow the cursor."""
+    def drag(self, spot: Spot, cursor: Vector2, slack: float) -> None:
+        """Let what was taken follow the cursor, once that is farther than a slack [m] from where it was."""
         if self._drag is not None:
             self._drag.spot = spot
+            self._drag.moved |= (cursor - self._drag.begin).magnitude > slack
 
     @property
     def overrides(self) -> Overrides:
         """Where points are to be drawn that are being dragged."""
-        if self._drag is None or self._drag.spot.place == self._drag.begin:
+        if self._drag is None or not self._drag.moved:
             return {}
         entity = self._drag.one.entity
         return {(entity, name): spot.place for name, spot in self._drag.places.items()}
@@ -152,7 +154,7 @@ class Measuring:
     def release(self, world: World) -> Command | None:
         """Let go; return what moves the points, ``None`` where nothing was moved."""
         drag, self._drag, self.hovered = self._drag, None, None
-        if drag is None or drag.spot.place == drag.begin or not world.has(drag.one.entity, drag.one.kind):
+        if drag is None or not drag.moved or not world.has(drag.one.entity, drag.one.kind):
             return None
         return moved(world, drag.one, drag.places)
 

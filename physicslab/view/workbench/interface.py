@@ -203,7 +203,7 @@ class Interface:
         if window.graphs:
             build_graphs(ui, window)
         if window.shows_stopwatch:
-            build_stopwatch(ui, world, window)
+            build_stopwatch(ui, world, window, layout.visible)
         if window.measuring.writing is not None:
             self._note.build(ui, window)
         if window.recovery.offered:

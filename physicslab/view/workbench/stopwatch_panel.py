@@ -17,6 +17,7 @@ from physicslab.files.new_scene import file_stem
 from physicslab.files.replace import create_file
 from physicslab.state.attached import place_of
 from physicslab.systems.gate import GateSystem
+from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.scene_files import new_paths
@@ -27,27 +28,31 @@ from physicslab.world import World
 __all__ = ["build_stopwatch", "crossings_csv"]
 
 _ROWS = 6
-"""Crossings that are shown, the last ones first."""
-_WIDTHS = (5.0, 6.0, 2.2, 5.2, 5.2)
-"""Of the columns, in heights of the text."""
-_HEAD = ("Gate", "Body", "", "Time", "Since")
+_FEWER_ROWS = 3
+"""Crossings that are shown, the last ones first; and where there is little room."""
+_COLUMNS = (("Gate", 5.0), ("Body", 5.4), ("", 1.3), ("Time", 4.4), ("Since", 4.4))
+"""Their heads, and their widths in heights of the text."""
+_NARROW = 2
+"""Columns that are left out where there is little room for the world."""
+_MARGIN = 4.0
+"""What the window is wider than its columns, in heights of the text."""
 _LETTERS = 11
 _MEAN = 10
 """How many of the last times are taken together."""
 _ARROWS = "→↗↑↖←↙↓↘"
 
 
-def build_stopwatch(ui: Ui, world: World, window: Window) -> None:
-    """Build it in a window of its own."""
+def build_stopwatch(ui: Ui, world: World, window: Window, room: Rect) -> None:
+    """Build it in a window of its own, which begins in a corner of the room [px]."""
     system = world.schedule.find(GateSystem)
     gates = len(world.batch(Gate))
     every = laps(system.crossings, gates) if system is not None else []
-    left, top, width, _ = window.room()
-    place = left + width - 0.55 * sum(_WIDTHS) * ui.size, top + 9.0 * ui.size
+    left, top, width, _ = room
+    columns = _COLUMNS if width > _width(_COLUMNS) * ui.size else _COLUMNS[_NARROW:]
+    place = left + width - 0.5 * _width(columns) * ui.size, top + 10.0 * ui.size
     with ui.floating("Stopwatch", place) as stays:
         _build_times(ui, world, every, gates)
-        if every:
-            _build_table(ui, world, every[-_ROWS:])
+        _build_table(ui, world, every[-(_ROWS if columns is _COLUMNS else _FEWER_ROWS) :], columns)
         if ui.button("CSV of crossings", "Write all of them to a file", shown="CSV", enabled=bool(every)):
             window.deeds.append(_save)
     if not stays[0]:
@@ -87,14 +92,18 @@ def _meaning(world: World, last: Lap | None, every: Sequence[Lap], gates: int) -
     return "Until it crosses again, the same way" if gates == 1 else "Until it crosses another gate"
 
 
-def _build_table(ui: Ui, world: World, rows: Sequence[Lap]) -> None:
+def _width(columns: Sequence[tuple[str, float]]) -> float:
+    return sum(width for _, width in columns) + _MARGIN
+
+
+def _build_table(ui: Ui, world: World, rows: Sequence[Lap], columns: Sequence[tuple[str, float]]) -> None:
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_fixed_fit
-    if not imgui.begin_table("crossings", len(_HEAD), flags):
+    if not imgui.begin_table(f"{len(columns)} columns", len(columns), flags):
         return
-    for words, width in zip(_HEAD, _WIDTHS, strict=True):
+    for words, width in columns:
         imgui.table_setup_column(words, imgui.TableColumnFlags_.width_fixed, width * ui.size)
     imgui.table_next_row()
-    for words in _HEAD:
+    for words, _ in columns:
         imgui.table_next_column()
         ui.faint(words, wrapped=False)
     for lap in reversed(rows):
@@ -104,7 +113,7 @@ def _build_table(ui: Ui, world: World, rows: Sequence[Lap]) -> None:
             quantity(one.time, "s"), "" if seconds is None else quantity(seconds, "s"),
         )  # fmt: skip
         imgui.table_next_row()
-        for words in cells:
+        for words in cells[-len(columns) :]:
             imgui.table_next_column()
             ui.text(words)
     imgui.end_table()
