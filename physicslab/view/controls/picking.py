@@ -69,11 +69,16 @@ def instrument_at(
     """
     found = 0
     for one in instruments_of(world):
-        left, top, width, height = rects.get(one.entity, (0, 0, 0, 0))
-        on_words = left <= pixel[0] < left + width and top <= pixel[1] < top + height
-        if on_words or _line_gap(one, camera, pixel) <= _ON_LINE:
+        if _is_within(pixel, rects.get(one.entity)) or _line_gap(one, camera, pixel) <= _ON_LINE:
             found = max(found, one.entity)
     return found or None
+
+
+def _is_within(pixel: tuple[float, float], rect: Rect | None) -> bool:
+    if rect is None:
+        return False
+    left, top, width, height = rect
+    return left <= pixel[0] < left + width and top <= pixel[1] < top + height
 
 
 def point_at(one: Instrument, camera: Camera, pixel: tuple[float, float]) -> str | None:

@@ -100,7 +100,7 @@ class Labels:
             extent = width, line_height * len(label.lines) + 2 * _PAD
             found = self._find(label, extent, taken, canvas.size)
             if found is None and always:
-                found = self._find(label, extent, [(0, 0, 0, 0)], canvas.size)
+                found = self._find(label, extent, (), canvas.size)
             if found is None:
                 continue
             slots[label.key], rect = found
@@ -119,7 +119,7 @@ class Labels:
         rects = _beside(label.at, extent)
         low, high = rects, rects + extent
         free = ((low >= 0) & (high <= screen)).all(axis=1)
-        other = np.array(taken)
+        other = np.array(taken, np.int64).reshape(-1, 4)
         apart = (low[:, None] >= other[:, :2] + other[:, 2:] + _CLEAR) | (
             other[:, :2] >= high[:, None] + _CLEAR
         )
