@@ -115,6 +115,9 @@ def _select(window: Window, entities: tuple[int, ...]) -> None:
 
 def _begin_note(world: World, window: Window) -> None:
     """Write a note at the cursor, or the one that is there."""
+    if window.measuring.kept:
+        window.measuring.kept = False
+        return
     entity = instrument_at(world, window.camera, window.pointer, window.measuring.rects)
     if entity is not None and world.has(entity, Note):
         write_note(world, window, entity)

@@ -80,6 +80,8 @@ class Measuring:
         Where the words of instruments were drawn last [px].
     labels : Labels
         Where they stand.
+    kept : bool
+        Whether the press at hand was beside the field of a note, which it kept.
     hovered : int, optional
         The body that the point at the cursor would go with.
     """
@@ -89,6 +91,7 @@ class Measuring:
     writing: Writing | None = None
     rects: dict[int, Rect] = field(default_factory=dict)
     labels: Labels = field(default_factory=Labels)
+    kept: bool = False
     hovered: int | None = None
     _drag: _Drag | None = None
 

@@ -56,7 +56,7 @@ class NotePanel:
         elif active or not self._active:
             writing.text = text
         else:
-            self.finish(window)
+            self._keep(window, writing)
         self._active = active
         ui.faint("Enter: keep   Ctrl+Enter: next line   Esc: drop", wrapped=False)
         if writing.refusal:
@@ -64,10 +64,13 @@ class NotePanel:
         imgui.end()
 
     def finish(self, window: Window) -> str:
-        """Keep what is written, and return why it cannot be; empty where it can."""
+        """Keep what is written because of a press beside it; return why it cannot be, empty where it can."""
         writing = window.measuring.writing
-        if writing is None:
-            return ""
+        refusal = "" if writing is None else self._keep(window, writing)
+        window.measuring.kept = writing is not None and not refusal
+        return refusal
+
+    def _keep(self, window: Window, writing: Writing) -> str:
         try:
             _SPEC.check(writing.text)
         except InvalidValue as error:
