@@ -151,7 +151,7 @@ def pictured(tool: str) -> np.ndarray:
 @pytest.mark.parametrize("tool", MEASURING_TOOLS[:3])
 def test_by_keys_alone(desk: Desk, tool: Any) -> None:
     """The key takes the tool, and once more puts one into the middle; arrows move it, Del removes it."""
-    key = {"ruler": "d", "protractor": "a", "gate": "j"}[tool.name]
+    key = {"ruler": "d", "protractor": "y", "gate": "j"}[tool.name]
     tap(desk, key)
     assert desk.window.tool == tool.name and not desk.world.entities()
     tap(desk, key)
