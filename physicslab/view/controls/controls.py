@@ -164,7 +164,7 @@ CONTROLS: tuple[Control, ...] = (
             tip="A light gate: notes when bodies cross it"),
     Control("W", "note", "w", measuring(NOTE, actions.choose_tool), minor=True, group="measure", tool=NOTE,
             tip="Words at a place of the world"),
-    Control("K", "stopwatch", "k", toggle_stopwatch, minor=True, group="measure",
+    Control("C", "stopwatch", "c", toggle_stopwatch, minor=True, group="measure",
             state=lambda _, window: window.shows_stopwatch, tip="The times between crossings of gates"),
     Control("X", "strobe of all that moves", "x", toggle_strobes, minor=True, group="measure",
             state=lambda world, _: bool(world.table(Strobe).handles),
