@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import itertools
 import math
+import random
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from random_edits import box_of_discs, state_hash
 
-from physicslab.components import Gate, Transform, Velocity
+from physicslab.components import Gate, Note, Ruler, Strobe, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.history import History, Remove, SetField
+from physicslab.history import AddComponent, History, Remove, SetField, Spawn
 from physicslab.prefabs import circle, pendulum
 from physicslab.state.state import State
 from physicslab.systems.gate import LIMIT, Crossing, GateSystem
@@ -385,3 +387,36 @@ def test_an_edit_of_the_gate_and_its_undo() -> None:
     history.undo()
     history.step(steps=100)
     assert len(gate.crossings) > len(before)
+
+
+@given(st.integers(0, 2**32), st.lists(st.integers(0, 7), min_size=5, max_size=25))
+@settings(deadline=None, max_examples=25)
+def test_random_edits_of_instruments_are_undone_to_the_bit(seed: int, deeds: list[int]) -> None:
+    rng = random.Random(seed)
+    history = History(box_of_discs(seed % 100))
+    world = history.world
+    start = state_hash(world)
+    for deed in deeds:
+        bodies = world.batch(Transform).entities.tolist()
+        made = [entity for entity in world.entities() if entity not in bodies]
+        point, body = (rng.uniform(-1, 1), rng.uniform(0, 2)), rng.choice([*bodies, None])
+        match deed:
+            case 0:
+                history.do(Spawn([Gate(point, (rng.uniform(-1, 1), 1.0), start_body=body)]))
+            case 1:
+                history.do(Spawn([Ruler(point, (0, 0), end_body=body)]))
+            case 2:
+                history.do(Spawn([Note(f"note {rng.random()}", point, place_body=body)]))
+            case 3 if bodies and not world.has(bodies[0], Strobe):
+                history.do(AddComponent(bodies[0], Strobe(0.01 + rng.random() / 10)))
+            case 4 if bodies or made:
+                history.do(Remove(rng.choice([*bodies, *made])))
+            case 5:
+                history.undo()
+            case 6:
+                history.seek(rng.randint(*history.steps_range))
+            case _:
+                history.step(steps=rng.randint(1, 8))
+    while history.undo() is not None:
+        pass
+    assert state_hash(world) == start and history.difference is None

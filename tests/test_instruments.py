@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pygame
 import pytest
-from desk import SETTLED, Desk, choose, click, click_at, empty_world, sized, tap
+from desk import SETTLED, Desk, choose, click, click_at, empty_world, fill, sized, tap
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -175,7 +175,7 @@ def test_between_two_bodies_that_are_selected(desk: Desk) -> None:
     tap(desk, "d")
     part = desk.world.component(only(desk, Ruler), Ruler)
     assert (part.start_body, part.end_body) == (one, two)
-    assert desk.ui.rows["Length"] == "5.000 m"
+    assert desk.ui.rows["Length"] == "5.000 m" and desk.ui.rows["End goes with"] == f"entity {two}"
     desk.world.component(two, Transform).position = (0.0, 2.0)
     desk.window.pace.paused = False
     desk.frames(20)
@@ -470,6 +470,17 @@ def test_strobe_of_all_that_moves_and_of_one(desk: Desk) -> None:
     desk.frames(SETTLED)
     click(desk, "Strobe pictures")
     assert desk.world.batch(Strobe).entities.tolist() == balls[1:]
+
+
+def test_how_many_pictures_are_kept_is_written_in_the_inspector(desk: Desk) -> None:
+    ball = circle(desk.world, (0, 0), radius=0.2, velocity=(1, 0))
+    desk.world.add(ball, Strobe())
+    begin(desk)
+    desk.window.selection.entities = (ball,)
+    desk.frames(SETTLED)
+    for text, count in (("12", 12), ("12.5", 12), ("201", 12), ("4e1", 40)):
+        fill(desk, "Strobe.count", text)
+        assert desk.world.component(ball, Strobe).count == count
 
 
 def test_copies_are_faint_and_in_the_picture_that_is_saved() -> None:

@@ -121,7 +121,12 @@ def reading_of(one: Instrument) -> list[tuple[str, str]]:
 def readings_of(world: World, entity: int) -> list[tuple[str, str]]:
     """Return what the instrument reads that an entity is; nothing of others."""
     one = instrument_of(world, entity)
-    return [] if one is None else reading_of(one)
+    if one is None:
+        return []
+    part = world.component(entity, one.kind)
+    bodies = ((name, getattr(part, f"{name}_body")) for name in one.kind.POINTS)
+    attached = [(f"{name.capitalize()} goes with", world.label(body)) for name, body in bodies if body]
+    return [*reading_of(one), *attached]
 
 
 def draw_instruments(

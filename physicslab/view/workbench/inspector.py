@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from imgui_bundle import imgui
@@ -99,7 +100,7 @@ class Inspector:
         for spec in rows:
             if spec.kind == "vector":
                 self._build_vector(ui, world, window, kind, spec, getattr(held, spec.name))
-            elif spec.kind in ("number", "text"):
+            elif spec.kind in ("number", "whole", "text"):
                 self._build_number(ui, world, window, kind, spec, getattr(held, spec.name))
             elif spec.kind == "flag" and ui.checkbox(
                 _label(spec), bool(getattr(held, spec.name)), spec.meaning
@@ -111,7 +112,8 @@ class Inspector:
     ) -> None:
         key = f"{kind.__name__}.{spec.name}"
 
-        def commit(new: object) -> None:
+        def commit(new: Any) -> None:
+            new = int(new) if spec.kind == "whole" and float(new).is_integer() else new
             spec.check(new)
             held = world.component(window.selection.entities[-1], kind)
             kind(**(held.given() | {spec.name: new}))  # some fields depend on others: a radius is above 0
@@ -294,7 +296,7 @@ def _is_shown(spec: Field, held: Component) -> bool:
     """Whether a field has a row: sizes of the other kind of shape and what cannot change have none."""
     if isinstance(held, Shape):
         return spec.name in Shape.SIZES[held.kind]
-    return spec.kind in ("number", "vector", "flag", "text") and not spec.fixed
+    return spec.kind in ("number", "whole", "vector", "flag", "text") and not spec.fixed
 
 
 def _label(spec: Field) -> str:
