@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pygame
 import pytest
-from desk import SETTLED, Desk, choose, click, click_at, empty_world, fill, sized, tap
+from desk import SETTLED, Desk, choose, click, click_at, empty_world, fill, point, sized, tap
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -137,6 +137,24 @@ def test_a_newcomer_sees_what_to_do_beside_the_cursor() -> None:
     assert not np.array_equal(with_prompt, without)
 
 
+def test_what_to_do_is_written_within_the_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    desk = sized((800, 600), empty_world(gravity=(0, 0)), 1.75)
+    desk.window.figures, desk.window.tool = False, "gate"
+    desk.frames(SETTLED)
+    seen: list[pygame.Rect] = []
+    panel = desk.window.canvas.panel
+    monkeypatch.setattr(
+        desk.window.canvas, "panel", lambda rect, *rest: (seen.append(pygame.Rect(rect)), panel(rect, *rest))
+    )
+    left, top, width, height = desk.window.room()
+    for place in ((left + 2, top + 2), (left + width - 3, top + 2), (left + width - 3, top + height - 3)):
+        point(desk, place)
+        seen.clear()
+        desk.frames()
+        words = min(seen, key=lambda rect: math.dist(rect.center, place))
+        assert pygame.Rect(left, top, width, height).contains(words) and words.width > 200
+
+
 def pictured(tool: str) -> np.ndarray:
     desk = Desk(empty_world(gravity=(0, 0)))
     desk.window.pace.paused, desk.window.tool = True, tool
@@ -196,6 +214,18 @@ def test_an_end_in_the_middle_of_a_body_goes_with_it_and_stays_when_that_is_remo
     assert part.end_body is None and part.end == Vector2(1.0, 1.0)
     tap(desk, "z", CTRL)
     assert desk.world.component(ruler, Ruler).end_body == ball
+
+
+def test_a_body_that_goes_while_a_ruler_is_drawn_from_it(desk: Desk) -> None:
+    tap_at(desk, 0.0, 0.0)  # a circle, which undo takes back
+    (ball,) = desk.world.entities()
+    click(desk, "Ruler")
+    tap_at(desk, 0.0, 0.0)
+    assert desk.window.measuring.spots[0].body == ball
+    desk.window.edits.history.undo()
+    tap_at(desk, 1.0, 0.0)
+    part = desk.world.component(only(desk, Ruler), Ruler)
+    assert part.start_body is None and near(part.start, 0.0, 0.0)
 
 
 # ---- what is there -----------------------------------------------------------------------------------------

@@ -98,7 +98,7 @@ class RenderSystem(System):
             draw_selection(world, (state.hovered,), camera, theme, canvas)
         if tool.prompts and not window.pointer_on_panel and state.dragged is None and state.writing is None:
             words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)]
-            draw_reading(words, window.pointer, size, theme, canvas)
+            draw_reading(words, window.pointer, size, theme, canvas, window.room())
 
     def _draw_handles(self, world: World) -> None:
         """Draw the handles of what is selected while time stands still, and the number that one has given."""

@@ -42,7 +42,7 @@ _FAR = 1e6
 _LETTERS = 44
 """Letters in a line of a note."""
 _PAD = 6
-_CLEAR = 10
+_CLEAR = 14
 """Distance of the boxes along a line that labels keep clear of [px]."""
 _FLASH = 0.12
 """How long a gate that was crossed is drawn brighter [s]."""
@@ -284,6 +284,12 @@ def _room_of(pixels: Mapping[str, _Pixels], screen: tuple[int, int]) -> list[Rec
     points = list(pixels.values())
     boxes: list[Rect] = []
     for other in points[1:]:
+        low, high = np.minimum(points[0], other), np.maximum(points[0], other)
+        if (high - low).min() < _CLEAR:  # upright or level: one box will do
+            left, top = np.clip(low, 0, screen) - 0.5 * _CLEAR
+            width, height = np.clip(high, 0, screen) - np.clip(low, 0, screen) + _CLEAR
+            boxes.append((round(left), round(top), round(width), round(height)))
+            continue
         count = min(max(math.ceil(float(np.hypot(*(other - points[0]))) / _CLEAR), 1), _MAX_TICKS)
         places = points[0] + np.linspace(0.0, 1.0, count + 1)[:, None] * (other - points[0])
         inside = ((places > -_CLEAR) & (places < np.array(screen) + _CLEAR)).all(axis=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from physicslab.components import Note
+from physicslab.components import Note, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, SetField, Spawn
 from physicslab.state.attached import local_point
@@ -164,7 +164,7 @@ class Measuring:
 
 def made(world: World, kind: type[Any], spots: list[Spot], **values: object) -> Spawn:
     """Return what makes an instrument with its points at these spots, under a name of its own."""
-    for name, spot in zip(kind.POINTS, spots, strict=True):
+    for name, spot in zip(kind.POINTS, (_living(world, spot) for spot in spots), strict=True):
         values[name] = local_point(world, spot.body, spot.place)
         values[f"{name}_body"] = spot.body
     noun, number = kind.__name__.lower(), 1
@@ -174,12 +174,18 @@ def made(world: World, kind: type[Any], spots: list[Spot], **values: object) -> 
     return Spawn([kind(**values)], name=f"{noun} {number}")
 
 
+def _living(world: World, spot: Spot) -> Spot:
+    """Return a spot without its body where that is gone meanwhile, as in the past."""
+    return spot if spot.body is None or world.has(spot.body, Transform) else Spot(spot.place)
+
+
 def moved(world: World, one: Instrument, places: dict[str, Spot]) -> Group:
     """Return what puts points of an instrument elsewhere; several keep the bodies that they go with."""
     part, kind = world.component(one.entity, one.kind), one.kind.__name__
     commands: list[Command] = []
     for name, spot in places.items():
         body = getattr(part, f"{name}_body")
+        spot = _living(world, spot)
         wanted = spot.body if len(places) == 1 and one.kind is not Note else body
         if wanted != body:
             commands.append(SetField(one.entity, kind, f"{name}_body", wanted))
