@@ -107,6 +107,22 @@ def test_an_angle_is_dragged_along_one_arm_and_clicked_for_the_other(desk: Desk)
     assert near(desk.world.component(only(desk, Protractor), Protractor).second, 1.0, 1.0)
 
 
+def test_an_arm_goes_along_a_slope_and_level_where_it_nearly_does(desk: Desk) -> None:
+    slope = box(desk.world, (0, 0), width=4, height=0.3, angle=math.radians(21.3), static=True)
+    begin(desk)
+    corner = desk.world.component(slope, Transform).position + Vector2(-1.8, 0.15).rotated(math.radians(21.3))
+    level, along = corner + Vector2(2.0, 0.02), corner + Vector2.from_angle(math.radians(22.0), 2.5)
+    click(desk, "Angle")
+    for place in (corner, level, along):
+        tap_at(desk, place.x, place.y)
+    assert desk.ui.rows["Angle"] == "21.30°"
+    tap(desk, "z", CTRL)
+    off = corner + Vector2.from_angle(math.radians(30.0), 2.5)
+    for place in (corner, level, off):
+        tap_at(desk, place.x, place.y)
+    assert float(desk.ui.rows["Angle"][:-1]) == pytest.approx(30.0, abs=0.4)
+
+
 @pytest.mark.parametrize("begun", [1, 2])
 def test_escape_forgets_what_was_begun(desk: Desk, begun: int) -> None:
     click(desk, "Angle")
@@ -143,15 +159,18 @@ def test_what_to_do_is_written_within_the_room(monkeypatch: pytest.MonkeyPatch) 
     desk.frames(SETTLED)
     seen: list[pygame.Rect] = []
     panel = desk.window.canvas.panel
-    monkeypatch.setattr(
-        desk.window.canvas, "panel", lambda rect, *rest: (seen.append(pygame.Rect(rect)), panel(rect, *rest))
-    )
+
+    def noted(rect: Rect, *rest: Any) -> None:
+        seen.append(pygame.Rect(rect))
+        panel(rect, *rest)
+
+    monkeypatch.setattr(desk.window.canvas, "panel", noted)
     left, top, width, height = desk.window.room()
     for place in ((left + 2, top + 2), (left + width - 3, top + 2), (left + width - 3, top + height - 3)):
         point(desk, place)
         seen.clear()
         desk.frames()
-        words = min(seen, key=lambda rect: math.dist(rect.center, place))
+        words = max(seen, key=lambda rect: rect.width)
         assert pygame.Rect(left, top, width, height).contains(words) and words.width > 200
 
 

@@ -79,7 +79,10 @@ class GateSystem(System):
     def attach(self, state: State) -> None:
         """Follow the gates and the bodies there are; points that went with removed bodies stay where put."""
         let_go_of_removed(state)
-        gates, bodies = state.batch(Gate), state.batch(Transform, Velocity)
+        gates = state.batch(Gate)
+        if not len(gates) and not len(self._gates):
+            return
+        bodies = state.batch(Transform, Velocity)
         side = np.zeros((len(gates), len(bodies)), np.int8)
         g, n = np.isin(gates.entities, self._gates), np.isin(bodies.entities, self._bodies)
         side[np.ix_(g, n)] = self._side[

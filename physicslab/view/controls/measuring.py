@@ -12,7 +12,7 @@ from physicslab.components import Gate, Note, Protractor, Ruler, Strobe, Transfo
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, Remove, RemoveComponent, SetField
 from physicslab.state.attached import attached_to, place_of
-from physicslab.view.controls.picking import centre_near, instrument_at, point_at
+from physicslab.view.controls.picking import centre_near, directions_near, instrument_at, point_at
 from physicslab.view.controls.tool import Tool
 from physicslab.view.overlay.instruments import instrument_of
 from physicslab.view.window.measuring import Spot, Writing, made
@@ -29,6 +29,8 @@ _CLICK = 4.0
 """How far apart a press and a release are at most that are a click [px]."""
 _SNAP = math.pi / 12.0
 """What directions go in steps of while Shift is held [rad]."""
+_NEARLY = math.radians(1.5)
+"""How far from a direction an arm may be drawn to be meant to have it [rad]."""
 _SHARE = 0.3
 """Length of an instrument that is put into the middle of the picture, as a share of its smaller side."""
 
@@ -42,11 +44,24 @@ def _spot(world: World, window: Window, origin: Vector2 | None = None) -> Spot:
     if body is not None:
         return Spot(world.component(body, Transform).position, body)
     place = window.place
-    if origin is not None and place != origin and pygame.key.get_mods() & pygame.KMOD_SHIFT:
+    if origin is not None and place != origin:
         way = place - origin
-        angle = round(way.angle / _SNAP) * _SNAP
-        place = origin + Vector2.from_angle(angle, way.magnitude)
+        if pygame.key.get_mods() & pygame.KMOD_SHIFT:
+            place = origin + Vector2.from_angle(round(way.angle / _SNAP) * _SNAP, way.magnitude)
+        elif window.measuring.kind_in_hand is Protractor:
+            place = origin + Vector2.from_angle(
+                _straightened(world, window, origin, way.angle), way.magnitude
+            )
     return Spot(place)
+
+
+def _straightened(world: World, window: Window, vertex: Vector2, angle: float) -> float:
+    """Return the angle of an arm [rad]: level, upright or along the box at its vertex, if it nearly is so."""
+    for along in (*directions_near(world, window.camera, vertex), 0.0):
+        off = math.remainder(angle - along, 0.5 * math.pi)
+        if abs(off) < _NEARLY:
+            return angle - off
+    return angle
 
 
 def _origin(window: Window) -> Vector2 | None:

@@ -16,7 +16,7 @@ from physicslab.view.overlay.instruments import Instrument, instruments_of
 from physicslab.view.picture.bodies import POINT_RADIUS, body_rows
 from physicslab.world import World
 
-__all__ = ["body_at", "centre_near", "instrument_at", "point_at"]
+__all__ = ["body_at", "centre_near", "directions_near", "instrument_at", "point_at"]
 
 type Rows = NDArray[np.int64]
 type Numbers = NDArray[np.float64]
@@ -58,6 +58,14 @@ def centre_near(world: World, camera: Camera, pixel: tuple[float, float]) -> int
     if not len(distance) or not np.fmin.reduce(distance) <= _MIDDLE / camera.scale:
         return None
     return int(world.entity_index.entities[everything[int(np.nanargmin(distance))]])
+
+
+def directions_near(world: World, camera: Camera, place: Vector2) -> list[float]:
+    """Return the angles of the boxes at a place [rad]: along them, or across, lines may be meant to go."""
+    rows = body_rows(world).boxes
+    near = rows[_box_gap(world, rows, place) <= _MIDDLE / camera.scale]
+    angles: list[float] = world.table(Transform)["angle"][near].tolist()
+    return angles
 
 
 def instrument_at(

@@ -132,6 +132,11 @@ class Measuring:
         return None if self._drag is None else self._drag.one.entity
 
     @property
+    def kind_in_hand(self) -> type[Any] | None:
+        """What is being placed or dragged."""
+        return self.kind if self._drag is None else self._drag.one.kind
+
+    @property
     def dragged_points(self) -> tuple[str, ...]:
         """The names of its points that are."""
         return () if self._drag is None else self._drag.names
