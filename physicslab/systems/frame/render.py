@@ -14,7 +14,8 @@ from physicslab.view.overlay.ghost import draw_ghost
 from physicslab.view.overlay.handle_marks import draw_handles, draw_reading
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
-from physicslab.view.overlay.instruments import draw_instruments, instruments_of
+from physicslab.view.overlay.instrument_marks import draw_instruments
+from physicslab.view.overlay.instruments import instruments_of
 from physicslab.view.overlay.selection_marks import draw_band, draw_selection
 from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.panels.panels import text_size
