@@ -6,6 +6,7 @@ import itertools
 import math
 import random
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,8 @@ from random_edits import box_of_discs, state_hash
 
 from physicslab.components import Gate, Note, Ruler, Strobe, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.files.checks import SceneError
+from physicslab.files.reader import FORMAT, read_scene
 from physicslab.history import AddComponent, History, Remove, SetField, Spawn
 from physicslab.prefabs import circle, pendulum
 from physicslab.state.state import State
@@ -420,3 +423,36 @@ def test_random_edits_of_instruments_are_undone_to_the_bit(seed: int, deeds: lis
     while history.undo() is not None:
         pass
     assert state_hash(world) == start and history.difference is None
+
+
+def test_a_recording_holds_gates_on_bodies_under_other_numbers(tmp_path: Path) -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"))
+    gone = circle(world, (9, 9), radius=0.1)
+    carrier = circle(world, (0.0, 2.0), radius=0.1, velocity=(1.0, 0.0))
+    circle(world, (0.52, 0.0), radius=0.1)
+    world.remove(gone)
+    history = History(world)
+    (gate,) = history.do(Spawn([Gate((0, 0), (0, -4))]))
+    history.step(steps=5)
+    for name in ("start_body", "end_body"):
+        history.do(SetField(gate, "Gate", name, carrier))
+    history.step(steps=60)
+    system = world.schedule.find(GateSystem)
+    assert system is not None and len(system.crossings) == 1
+    history.save(tmp_path / "run.json")
+    again = History.load(tmp_path / "run.json")
+    again.seek(again.steps_range[1])
+    loaded = again.world.schedule.find(GateSystem)
+    assert loaded is not None and again.difference is None
+    assert [(one.time, one.direction, one.speed) for one in loaded.crossings] == [
+        (one.time, one.direction, one.speed) for one in system.crossings
+    ]
+
+
+def test_a_file_with_a_gate_on_what_has_no_place_is_refused() -> None:
+    entities = [{"id": "words", "Note": {"text": "a"}}, {"id": "g", "Gate": {"end_body": "words"}}]
+    with pytest.raises(SceneError) as refused:
+        read_scene({"format": FORMAT, "entities": entities}, "gates.json")
+    assert str(refused.value) == (
+        'gates.json: entity "g": Gate.end_body = "words": must be the id of an entity with a Transform'
+    )
