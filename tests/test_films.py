@@ -20,12 +20,13 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from physicslab import cli, load_scene
+from physicslab.components import Note
 from physicslab.export import mp4
 from physicslab.export.film import Film
 from physicslab.export.gif import GifWriter
 from physicslab.export.palette import find_palette
 from physicslab.kernels.lzw import CODES, pack_lzw
-from physicslab.view.picture.moving import MovingPicture
+from physicslab.view.overlay.moving import MovingPicture
 
 ROOT = Path(__file__).parent.parent
 HAS_VIDEO = importlib.util.find_spec("imageio_ffmpeg") is not None
@@ -257,3 +258,12 @@ def test_a_film_that_is_given_up_leaves_the_file_as_it_was(tmp_path: Path) -> No
     film.write(noise(3, 1)[0])
     film.give_up()
     assert path.read_text() == "old" and os.listdir(tmp_path) == ["a.gif"]
+
+
+def test_what_measures_is_in_the_film() -> None:
+    world = load_scene("drop")
+    camera = MovingPicture((320, 200), (-2, -1, 2, 3))
+    before = camera.pixels(world)
+    world.spawn(Note("a word", place=(0, 2)))
+    changed = (camera.pixels(world) != before).any(axis=2)
+    assert 20 < np.count_nonzero(changed) < 4000

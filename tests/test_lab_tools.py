@@ -1,4 +1,4 @@
-"""The tools of the lab in the window: handles, graphs, ruler, time line, undo, free-body diagrams."""
+"""The tools of the lab in the window: handles, graphs, time line, undo, free-body diagrams."""
 
 import math
 from pathlib import Path
@@ -203,7 +203,7 @@ def test_a_body_that_was_in_the_hand_is_let_go_where_another_future_begins() -> 
     assert not world.has(ball, Held)
 
 
-# Graphs and ruler
+# Graphs
 
 
 def test_a_graph_follows_a_body_and_is_written_as_a_table(desk: Desk, tmp_path: Path) -> None:
@@ -231,14 +231,6 @@ def test_a_graph_records_nothing_again_in_the_past(desk: Desk) -> None:
     actions.seek(desk.window, 3)
     desk.frames(3)
     assert np.array_equal(graph.chosen["kinetic energy"].times, before)
-
-
-def test_the_ruler_shows_length_and_angle(desk: Desk) -> None:
-    desk.window.tool = "ruler"
-    drag(desk, Vector2(-1.0, 0.0), Vector2(2.0, 1.5))
-    assert not desk.world.entities()
-    length = float(desk.window.ruler.words.split()[0])
-    assert length == pytest.approx(math.hypot(3.0, 1.5), rel=0.01) and "26.6°" in desk.window.ruler.words
 
 
 # Free-body diagrams

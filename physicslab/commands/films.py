@@ -27,7 +27,7 @@ from physicslab.stepping.small import is_small
 from physicslab.world import World
 
 if TYPE_CHECKING:
-    from physicslab.view.picture.moving import MovingPicture
+    from physicslab.view.overlay.moving import MovingPicture
 
 __all__ = ["film_size", "make_film"]
 
@@ -101,7 +101,7 @@ def _world(arguments: Namespace) -> World:
 def _run(world: World, name: str, output: Output, every: float, rate: float, arguments: Namespace) -> int:
     """Make the film, and return how many pictures it has."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
-    from physicslab.view.picture.moving import MovingPicture
+    from physicslab.view.overlay.moving import MovingPicture
 
     try:
         with Tiers(is_small(world)) as tiers:

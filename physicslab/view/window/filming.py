@@ -135,7 +135,7 @@ class Filming:
         self._run += self._spacing if cut else passed
 
         def grab(surface: pygame.Surface) -> None:
-            from physicslab.view.picture.moving import part_of  # it imports pygame
+            from physicslab.view.overlay.moving import part_of  # it imports pygame
 
             picture = part_of(surface, room, self._size)
             while film.count * self._spacing <= self._run + _LATE:

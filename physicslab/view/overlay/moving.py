@@ -10,17 +10,22 @@ from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
+from physicslab.view.overlay.instrument_marks import draw_instruments
+from physicslab.view.overlay.instruments import instruments_of
+from physicslab.view.overlay.labels import Labels
 from physicslab.view.picture.painting import draw_world
 from physicslab.world import World
 
 __all__ = ["MovingPicture", "part_of", "pixels_of"]
 
+_TEXT = 14
+"""Height of the words of instruments [px]."""
 _AROUND = 0.04
 """Room left around what is to be seen, as a share of the picture."""
 
 
 class MovingPicture:
-    """Draws a world again and again, as one camera sees it.
+    """Draws a world and what measures in it again and again, as one camera sees it.
 
     Parameters
     ----------
@@ -34,6 +39,7 @@ class MovingPicture:
 
     def __init__(self, size: tuple[int, int], extent: Extent, theme: Theme = DARK) -> None:
         self._surface = pygame.Surface(size, 0, 32)
+        self._labels = Labels()
         self._canvas, self._theme = PygameCanvas(self._surface), theme
         self._camera = Camera(size, scale=100.0)
         scale = self._camera.fitting_scale(extent, (0, 0, *size), _AROUND)
@@ -43,6 +49,10 @@ class MovingPicture:
         """Return the world as it is now: uint8 (height, width, 4), red, green, blue and one unused."""
         with world.active():
             draw_world(world, self._camera, self._theme, self._canvas)
+            draw_instruments(
+                world, list(instruments_of(world)), (), self._labels, (), self._camera, self._theme,
+                self._canvas, _TEXT,
+            )  # fmt: skip
         return pixels_of(self._surface)
 
 
