@@ -16,7 +16,7 @@ from physicslab.world import World
 
 __all__ = ["Places"]
 
-_RARELY, _OFTEN, _SEEKING = 80.0, 16.0, 5.0
+_RARELY, _OFTEN, _SEEKING = 100.0, 16.0, 5.0
 """How many times as long as a key frame takes that takes which lies between two, at most and at least along
 the line; and where steps are made again, or an edit begins."""
 _SMOOTH, _LIMIT = 0.010, 0.020
