@@ -16,7 +16,6 @@ from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
-from physicslab.view.window.graphs import Graph
 from physicslab.view.window.ruler import Ruler
 from physicslab.view.window.window import Left, Window
 from physicslab.view.workbench.interface import Interface
@@ -66,6 +65,7 @@ class Sandbox:
         self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
         self._titles = "", ""
+        self.world = world
         self.interface = Interface(window)
         window.room = self.interface.room
         hud = HudSystem(window, self.interface)
@@ -80,13 +80,15 @@ class Sandbox:
 
         A world that was shown before comes with its history.
         """
-        self.world = world
         titles, self._titles = self._titles, (world.name, world.title)
+        before = self.world if titles == self._titles and world is not self.world else None
+        self.world = world
         if self._shown is not None:
             self._shown(world)
+        window = self.window
+        window.measuring.begin(world, before, is_new=history is None)
         if history is None:
             world.install(*self._systems)
-        window = self.window
         world.synchronise()  # what was done to make it is no edit
         self.history = history or History(world)
         window.follow_history(self.history)
@@ -94,7 +96,6 @@ class Sandbox:
         window.overlays.forget()
         window.sparks.clear()
         window.selection.clear()
-        window.graphs = [graph for graph in window.graphs if _goes_on(graph, titles, self._titles)]
         window.naming, window.ruler = None, Ruler()
         window.error, window.next_world = "", None
         window.go_home(world)
@@ -193,8 +194,3 @@ class Sandbox:
         self._rescued = self.world, self.world.time
         return f"The last good state is shown, and saved as {path.name}."
 
-
-def _goes_on(graph: Graph, before: tuple[str, str], now: tuple[str, str]) -> bool:
-    """Whether a graph stays where another world is shown: it does if that is the same scene once more."""
-    graph.restart()
-    return before == now

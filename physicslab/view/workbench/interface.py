@@ -14,7 +14,7 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
 from physicslab.view.workbench.gallery import Gallery
-from physicslab.view.workbench.graph_panel import build_graphs
+from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.history_panel import build_history
 from physicslab.view.workbench.inspector import Inspector
@@ -62,6 +62,7 @@ class Interface:
         self._settings = SettingsPanel()
         self._gallery = Gallery()
         self._recipe = RecipePanel()
+        self._scene_panels = ScenePanels()
         self._next = 0.0
         self._offer_height = 0  # of the offer to restore a session [px]
         self._seen: tuple[object, ...] = ()
@@ -103,7 +104,7 @@ class Interface:
 
     def _finish_fields(self) -> str:
         """Take over what is half written in a field, and return why it is refused; empty where it is not."""
-        return self._inspector.finish(self._window) or self._settings.finish() or self._recipe.finish()
+        return self._inspector.finish(self._window) or self._settings.finish() or self._recipe.finish() or self._scene_panels.finish()
 
     def build(
         self,
@@ -152,7 +153,7 @@ class Interface:
             window.recovery.offered,
             window.figures,
             window.level,
-            len(window.graphs),
+            window.measuring.state,
         )
         time = pace.paused, pace.speed, world.time if pace.paused else None
         return (
@@ -190,8 +191,7 @@ class Interface:
                 ui.gap(0.3)
                 ui.rule()
                 self._build_counts(ui, figures)
-        if window.graphs:
-            build_graphs(ui, window)
+        self._scene_panels.build(ui, world, window, layout.visible)
         if window.recovery.offered:
             self._offer_height = build_recovery(ui, window, layout.visible)
         if window.error_study.shown:
@@ -221,6 +221,7 @@ class Interface:
         canvas.paint(self.toolkit.draw)
         if self.ui.pictures:
             canvas.paint(self.ui.show_pictures)
+        self._scene_panels.save_picture(self._window, self.toolkit)
 
     @property
     def covered(self) -> list[Rect]:

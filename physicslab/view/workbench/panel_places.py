@@ -1,0 +1,167 @@
+"""Where graphs, meters and sliders are put: beside each other, in what the other panels leave."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from physicslab.view.canvas.canvas import Rect
+
+__all__ = ["Small", "is_bar", "places"]
+
+_GRAPH = (27.0, 18.0)
+"""Width and height that a graph has where there is room, in heights of the text."""
+_LEAST = (12.0, 14.0)
+"""Width and height below which nothing can be read in a graph: only one is then open, the others are bars."""
+_BAR = 2.2
+"""Height of such a bar, in heights of the text."""
+_GAP = 0.6
+"""Room between two panels, in heights of the text."""
+_LEAST_GRAPH = 18.0
+"""Width that is left for graphs beside small panels; where there is less they lie above or below them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Small:
+    """A meter or a slider: its entity, the corner it is in, and its width and height [px]."""
+
+    entity: int
+    corner: str
+    size: tuple[int, int]
+
+
+def places(
+    area: Rect, text: float, graphs: Mapping[int, str], small: Sequence[Small], active: int | None = None
+) -> dict[int, Rect]:
+    """Return where panels are, by entity; none lies over another unless there is too little room for any.
+
+    Parameters
+    ----------
+    area : Rect
+        What is left for them [px].
+    text : float
+        Height of the text [px].
+    graphs : mapping of int to str
+        The graphs, and at which side each is.
+    small : sequence of Small
+        Meters and sliders; they are put down first.
+    active : int, optional
+        The graph that is open where there is room for one alone; the last of them by default.
+    """
+    gap = round(_GAP * text)
+    left, top, width, height = area
+    inner = (left + gap, top + gap, max(width - 2 * gap, 1), max(height - 2 * gap, 1))
+    found: dict[int, Rect] = {}
+    for corner in dict.fromkeys(one.corner for one in small):
+        stack = [one for one in small if one.corner == corner]
+        found |= _stacked(inner, gap, stack, corner)
+    rest = _without(inner, list(found.values()), gap, round(_LEAST_GRAPH * text))
+    sides = {side: [e for e, where in graphs.items() if where == side] for side in ("left", "right")}
+    if _too_small(_tile(rest, text, gap, len(graphs))[1], text) and len(graphs) > 1:
+        return found | _folded(rest, text, gap, list(graphs), active)
+    if all(sides.values()):
+        half = (rest[2] - gap) // 2
+        found |= _tiled((rest[0], rest[1], half, rest[3]), text, gap, sides["left"], "left")
+        found |= _tiled((rest[0] + rest[2] - half, rest[1], half, rest[3]), text, gap, sides["right"], "right")
+    else:
+        for side, entities in sides.items():
+            found |= _tiled(rest, text, gap, entities, side)
+    return found
+
+
+def _stacked(area: Rect, gap: int, stack: Sequence[Small], corner: str) -> dict[int, Rect]:
+    """Put small panels above each other from a corner on, and go on beside them where the room ends."""
+    left, top, width, height = area
+    found: dict[int, Rect] = {}
+    down = across = widest = 0
+    for one in stack:
+        w, h = min(one.size[0], width), min(one.size[1], height)
+        if down and down + h > height:
+            down, across, widest = 0, across + widest + gap, 0
+        x = left + across if "left" in corner else left + width - across - w
+        y = top + down if "top" in corner else top + height - down - h
+        found[one.entity] = (max(min(x, left + width - w), left), y, w, h)
+        down, widest = down + h + gap, max(widest, w)
+    return found
+
+
+def _without(area: Rect, taken: Sequence[Rect], gap: int, least: int) -> Rect:
+    """Return the largest part of an area that small panels leave, at one side of them, wide enough if one is."""
+    left, top, width, height = area
+    if not taken:
+        return area
+    right, bottom = left + width, top + height
+    low_x, high_x = left, right
+    low_y, high_y = top, bottom
+    for x, y, w, h in taken:
+        if x + 0.5 * w < left + 0.5 * width:
+            low_x = max(low_x, x + w + gap)
+        else:
+            high_x = min(high_x, x - gap)
+        if y + 0.5 * h < top + 0.5 * height:
+            low_y = max(low_y, y + h + gap)
+        else:
+            high_y = min(high_y, y - gap)
+    beside = (low_x, top, max(high_x - low_x, 1), height)
+    between = (left, low_y, width, max(high_y - low_y, 1))
+    return beside if beside[2] >= least else max(beside, between, key=lambda rect: rect[2] * rect[3])
+
+
+def _tile(area: Rect, text: float, gap: int, count: int) -> tuple[int, tuple[float, float]]:
+    """Return in how many columns graphs are largest, and their width and height [px]."""
+    _, _, width, height = area
+    largest = (_GRAPH[0] * text, _GRAPH[1] * text)
+
+    def size(columns: int) -> tuple[float, float]:
+        rows = -(-count // columns)
+        w = (width - (columns - 1) * gap) / columns
+        h = (height - (rows - 1) * gap) / rows
+        return max(min(w, largest[0]), 1.0), max(min(h, largest[1]), 1.0)
+
+    def scale(columns: int) -> float:
+        w, h = size(columns)
+        return min(w / largest[0], h / largest[1])
+
+    columns = max(range(1, count + 1), key=scale, default=1)
+    return columns, size(columns) if count else largest
+
+
+def _too_small(size: tuple[float, float], text: float) -> bool:
+    return size[0] < _LEAST[0] * text or size[1] < _LEAST[1] * text
+
+
+def _tiled(area: Rect, text: float, gap: int, entities: Sequence[int], side: str) -> dict[int, Rect]:
+    """Put graphs below each other, and in as many columns as leaves them largest."""
+    left, top, width, _ = area
+    columns, (w, h) = _tile(area, text, gap, len(entities))
+    rows = -(-len(entities) // columns)
+    found: dict[int, Rect] = {}
+    for n, entity in enumerate(entities):
+        across, down = round(n // rows * (w + gap)), round(n % rows * (h + gap))
+        x = left + width - across - round(w) if side == "right" else left + across
+        found[entity] = (x, top + down, int(w), int(h))
+    return found
+
+
+def is_bar(rect: Rect, text: float) -> bool:
+    """Whether a graph has room for its title alone."""
+    return rect[3] <= round(_BAR * text)
+
+
+def _folded(
+    area: Rect, text: float, gap: int, entities: Sequence[int], active: int | None
+) -> dict[int, Rect]:
+    """Leave one graph open, and of the others only bars, above and below it in their order."""
+    left, top, width, height = area
+    shown = active if active in entities else entities[-1]
+    bar = round(_BAR * text)
+    bars = (len(entities) - 1) * (bar + gap // 2)
+    w = min(width, round(_GRAPH[0] * text))
+    open_height = max(min(height - bars, round(_GRAPH[1] * text)), 1)
+    found: dict[int, Rect] = {}
+    down = 0
+    for entity in entities:
+        h = open_height if entity == shown else bar
+        found[entity] = (left + width - w, top + down, w, h)
+        down += h + gap // 2
+    return found

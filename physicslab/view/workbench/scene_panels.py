@@ -1,0 +1,55 @@
+"""The panels that belong to the scene: graphs, meters and sliders."""
+
+from __future__ import annotations
+
+import io
+
+import pygame
+
+from physicslab.view.canvas.canvas import Rect
+from physicslab.view.controls import measuring_actions
+from physicslab.view.toolkit.toolkit import Toolkit
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.window import Window
+from physicslab.view.workbench.graph_panel import GraphPanels, owner_of
+from physicslab.view.workbench.meter_panel import build_meters, meter_sizes
+from physicslab.view.workbench.panel_places import places
+from physicslab.view.workbench.slider_panel import SliderPanels
+from physicslab.world import World
+
+__all__ = ["ScenePanels"]
+
+
+class ScenePanels:
+    """The panels of a scene, each at a place of its own."""
+
+    def __init__(self) -> None:
+        self._graphs = GraphPanels()
+        self._sliders = SliderPanels()
+
+    def build(self, ui: Ui, world: World, window: Window, area: Rect) -> None:
+        """Build all that the scene has, within a part of the window."""
+        measuring = window.measuring
+        if not measuring.is_shown:
+            return
+        small = [*meter_sizes(ui, window), *self._sliders.sizes(ui, window)]
+        found = places(area, ui.size, self._graphs.free(measuring.graphs), small, measuring.active)
+        build_meters(ui, world, window, found)
+        self._sliders.build(ui, world, window, found)
+        self._graphs.build(ui, world, window, found)
+
+    def finish(self) -> str:
+        """Take over what is half written in a field; return why it is refused, empty where it is not."""
+        return self._sliders.finish()
+
+    @staticmethod
+    def save_picture(window: Window, toolkit: Toolkit) -> None:
+        """Write the picture of a graph that is wanted, as it is painted."""
+        entity, window.measuring.picture_of = window.measuring.picture_of, None
+        graph = next((one for one in window.measuring.graphs if one.entity == entity), None)
+        picture = None if graph is None else toolkit.picture_of(owner_of(graph.entity))
+        if graph is None or picture is None:
+            return
+        content = io.BytesIO()
+        pygame.image.save(picture, content, "graph.png")
+        measuring_actions.save_picture(window.edits.world, window, graph, content.getvalue())
