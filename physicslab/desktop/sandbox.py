@@ -64,14 +64,13 @@ class Sandbox:
         self._autosave = autosave
         self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
-        self._titles = "", ""
+        self._titles, self._source = ("", ""), window.source
         self.world = world
         self.interface = Interface(window)
         window.room = self.interface.room
         hud = HudSystem(window, self.interface)
         self._systems = InputSystem(window, self.interface), RenderSystem(window), hud
         self.show(world)
-        self._source = window.source
         if autosave is not None:
             autosave.finish(world)
 
@@ -81,7 +80,8 @@ class Sandbox:
         A world that was shown before comes with its history.
         """
         titles, self._titles = self._titles, (world.name, world.title)
-        before = self.world if titles == self._titles and world is not self.world else None
+        is_again = titles == self._titles and self.window.source == self._source
+        before = self.world if is_again and world is not self.world else None
         self.world = world
         if self._shown is not None:
             self._shown(world)
@@ -104,6 +104,8 @@ class Sandbox:
     def frame(self, elapsed: float) -> None:
         """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last."""
         self.window.pace.begin(elapsed)
+        if self.window.next_world is None:
+            self._source = self.window.source  # another, once the scene was saved under another name
         self.world.frame(Stage.INPUT, elapsed)
         if self.window.next_world is not None:
             self._go_on_to(self.window.next_world)
@@ -123,10 +125,9 @@ class Sandbox:
         window.left = Left(self.history, self._source, window.unchanged) if edited else None
         if back is not None and back.history.world is world:
             self.show(world, back.history)
-            self._source, window.source, window.unchanged = back.source, back.source, back.unchanged
+            window.source, window.unchanged = back.source, back.unchanged
             return
         self.show(world)
-        self._source = window.source
         if edited:
             window.notify(f"{window.notice} - Ctrl+Z at its start brings back what was edited before", 6.0)
 
@@ -193,4 +194,3 @@ class Sandbox:
             return f"The last good state is shown; it could not be saved: {error}."
         self._rescued = self.world, self.world.time
         return f"The last good state is shown, and saved as {path.name}."
-

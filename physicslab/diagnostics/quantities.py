@@ -65,7 +65,7 @@ class Reading:
         if body is None:
             return float(_OF_WORLD[name](self))
         read = _OF_BODY[name]
-        if why_undefined(self._world, name, body):
+        if _why_undefined(self._world, name, body):
             return _NAN
         return float(read(self, body))
 
@@ -96,7 +96,7 @@ class Reading:
         return self._mass(body) * self._velocity(body).linear
 
     def _inertia(self, body: int) -> float:
-        """The moment of inertia [kg m^2]; 0 of what does not turn, and of points."""
+        """Return the moment of inertia [kg m^2]; 0 of what does not turn, and of points."""
         inverse = float(self._world.bodies.inverse_inertia[self._rows[body]])
         return 1.0 / inverse if inverse > 0.0 else 0.0
 
@@ -125,7 +125,7 @@ class Reading:
 
     @quiet
     def _potential(self, body: int) -> float:
-        """Of weight, zero at the origin, and of the springs that hold it to what cannot move."""
+        """Return that of weight, zero at the origin, and of the springs that hold it to what cannot move."""
         world, total = self._world, 0.0
         if any(force.potential == "gravity" for force in world.schedule.forces):
             gravity, place = world.physics.gravity, self._transform(body).position
@@ -144,6 +144,11 @@ class Reading:
 
 def why_undefined(world: World, name: str, body: int | None) -> str:
     """Return in a few words why a quantity has no value now; empty where it has one."""
+    world.synchronise()
+    return _why_undefined(world, name, body)
+
+
+def _why_undefined(world: World, name: str, body: int | None) -> str:
     if body is None:
         return ""
     if body not in world.entity_index.row_of:

@@ -6,9 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from physicslab.components import (
-    Graph, GraphLine, Mass, Meter, Shape, Slider, Spring, Transform, Velocity,
-)  # fmt: skip
+from physicslab.components import Graph, GraphLine, Mass, Meter, Shape, Slider, Spring, Transform, Velocity
 from physicslab.components.graph import TIME
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
 from physicslab.ecs.component import Component
@@ -28,8 +26,8 @@ from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "add_meter", "add_slider", "changing", "close_graph", "go_to", "plot_phase", "plot_selected", "put_across",
-    "removing", "save_picture", "save_table", "slide", "toggle_line", "usual_range",
+    "add_meter", "add_slider", "changing", "close_graph", "go_to", "plot_phase", "plot_selected",
+    "put_across", "removing", "save_picture", "save_table", "slide", "toggle_line", "usual_range",
 ]  # fmt: skip
 
 type Deed = Callable[[World, Window], None]

@@ -71,7 +71,7 @@ class Pictures:
             surface.blit(picture.surface, picture.corner, special_flags=pygame.BLEND_PREMULTIPLIED)
 
     def of(self, ending: str, paper: pygame.Color) -> pygame.Surface | None:
-        """Return the picture of the window whose name ends so, on paper of a colour; ``None`` if none is shown."""
+        """Return the window whose name ends so as it is painted, on paper; ``None`` if there is none."""
         name = next((name for name in self._of if name.endswith(ending)), None)
         if name is None:
             return None

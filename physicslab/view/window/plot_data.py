@@ -51,8 +51,9 @@ def line_to_show(x: Numbers, y: Numbers, low: float, high: float, width: int) ->
 def path_to_show(
     x: Numbers, y: Numbers, low: tuple[float, float], high: tuple[float, float], size: tuple[int, int]
 ) -> tuple[Numbers, Numbers]:
-    """Return the points of a path that can be seen: of those that follow each other in one pixel the first
-    and the last.
+    """Return the points of a path that can be seen.
+
+    Of those that follow each other within one pixel the first and the last stay.
 
     Parameters
     ----------

@@ -8,14 +8,14 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Graph
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.canvas.drawable_text import drawable, shortened
+from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.controls import measuring_actions
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.measuring import GraphShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_plot import GraphPlot
-from physicslab.view.workbench.graph_readings import build_moment, build_readings, build_spans
+from physicslab.view.workbench.graph_readings import ButtonRow, build_cursors, build_moment, build_readings
 from physicslab.view.workbench.panel_places import is_bar
 from physicslab.view.workbench.quantity_menu import build_quantities
 from physicslab.world import World
@@ -25,8 +25,6 @@ __all__ = ["GraphPanels", "owner_of"]
 _FLAGS = imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_nav
 _LEAST_PLOT = 6.0
 """Height of a plot at least, in heights of the text: what is below the rest can be scrolled to."""
-_LETTERS = 28
-"""Letters of a title on a bar."""
 _LEAST = (12.0, 9.0)
 """Width and height down to which a graph can be made by hand, in heights of the text."""
 
@@ -55,14 +53,17 @@ class GraphPanels:
     def build(self, ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
         """Build every graph at its place."""
         pointed: float | None = None
+        bar: Rect | None = None
         for graph in window.measuring.graphs:
             place = places.get(graph.entity)
             if place is not None and is_bar(place, ui.size):
                 self._put.pop(graph.entity, None)
-                _build_bar(ui, window, graph, place)
+                bar = place
                 continue
             hovered = self._build(ui, world, window, graph, place)
             pointed = hovered if hovered is not None else pointed
+        if bar is not None:
+            _build_bar(ui, window, bar, places)
         window.measuring.pointed = pointed
 
     def _build(
@@ -75,7 +76,11 @@ class GraphPanels:
             imgui.set_next_window_size(ImVec2(place[2], place[3]))
             self._put[entity] = place
         room = imgui.get_io().display_size
-        least = ImVec2(*(min(share * ui.size, px) for share, px in zip(_LEAST, (room.x, room.y), strict=True)))
+        least = ImVec2(
+            *(min(share * ui.size, px) for share, px in zip(_LEAST, (room.x, room.y), strict=True))
+        )
+        if place is not None:
+            least = ImVec2(min(least.x, place[2]), min(least.y, place[3]))
         imgui.set_next_window_size_constraints(least, room)
         title = _title(graph, window)
         shown, stays = imgui.begin(f"{title}{owner_of(entity)}", True, _FLAGS)
@@ -84,14 +89,11 @@ class GraphPanels:
         self._follow_hand(entity)
         if shown:
             self._build_head(ui, world, window, graph)
+            build_cursors(ui, window, graph)
             build_readings(ui, world, window, graph)
-            spans = window.measuring.marks != [None, None]
-            below = build_spans(ui, window, graph, measure=True) if spans else 0.0
-            height = max(imgui.get_content_region_avail().y - below, _LEAST_PLOT * ui.size)
+            height = max(imgui.get_content_region_avail().y, _LEAST_PLOT * ui.size)
             plot = self._plots.setdefault(entity, GraphPlot())
             hovered = plot.build(ui, world, window, graph, height)
-            if spans:
-                build_spans(ui, window, graph)
         imgui.end()
         if not stays:
             window.deeds.append(measuring_actions.close_graph(graph))
@@ -111,7 +113,7 @@ class GraphPanels:
     def _build_head(self, ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         """Build the choice of lines, and what can be done with them."""
         number, measuring = graph.number, window.measuring
-        row = _Row(ui)
+        row = ButtonRow(ui)
         row.next("Lines")
         if ui.button(f"Lines of graph {number}", "What is plotted", shown="Lines"):
             imgui.open_popup("lines")
@@ -174,38 +176,23 @@ class GraphPanels:
             window.deeds.append(measuring_actions.changing(graph.entity, Graph(name, body, other)))
 
 
-def _build_bar(ui: Ui, window: Window, graph: GraphShown, place: Rect) -> None:
-    """Build what opens a graph where there is room for one alone."""
-    with ui.panel(f"bar of graph {graph.entity}", place, padded=False):
-        size = imgui.get_content_region_avail()
-        tip = "There is room for one graph: open this one"
-        words = shortened(_title(graph, window), _LETTERS)
-        if ui.button(f"Open graph {graph.number}", tip, shown=words, size=(size.x, size.y)):
-            window.measuring.active = graph.entity
-
-
-class _Row:
-    """Puts buttons beside each other, and in a new row where they would be cut.
-
-    Attributes
-    ----------
-    used : float
-        How much of the width is used up in the present row [px].
-    """
-
-    def __init__(self, ui: Ui) -> None:
-        self._room = imgui.get_content_region_avail().x
-        self.used = 0.0
-
-    def next(self, words: str) -> None:
-        """Go on to where a button with these words has room."""
-        style = imgui.get_style()
-        width = imgui.calc_text_size(words).x + 2.0 * style.frame_padding.x
-        if self.used and self.used + style.item_spacing.x + width <= self._room:
+def _build_bar(ui: Ui, window: Window, bar: Rect, places: dict[int, Rect]) -> None:
+    """Build what opens a graph, by its number, where there is room for one alone."""
+    with ui.panel("bar of graphs", bar, padded=False, rounded=True):
+        height = imgui.get_content_region_avail().y
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + 0.5 * (height - imgui.get_text_line_height()))
+        ui.faint("Graph", wrapped=False)
+        for graph in window.measuring.graphs:
+            place = places.get(graph.entity)
+            if place is None:
+                continue
             imgui.same_line()
-            self.used += style.item_spacing.x + width
-        else:
-            self.used = width
+            imgui.set_cursor_pos_y(0.5 * (bar[3] - height))
+            tip, is_open = f"Open {_title(graph, window)}", not is_bar(place, ui.size)
+            if ui.button(
+                f"Open graph {graph.number}", tip, shown=f"{graph.number}", on=is_open, size=(0, height)
+            ):
+                window.measuring.active = graph.entity
 
 
 def _popup(name: str, build: Callable[[], None]) -> None:

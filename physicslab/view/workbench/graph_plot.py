@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pygame
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from numpy.typing import NDArray
 
@@ -12,6 +13,7 @@ from physicslab.components.quantities import QUANTITIES
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.canvas.units import written_unit
 from physicslab.view.controls import measuring_actions
+from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.measuring import GraphShown
 from physicslab.view.window.plot_data import line_to_show, path_to_show, range_to_show, unbroken
@@ -32,8 +34,8 @@ _FAINT = 0.35
 """Opacity of the run before."""
 _CLICK = 4.0
 """A press that moves the mouse no further than this [px] is a click; further, it moves the plot."""
-_LABEL = 24
-"""Letters of an axis beyond which only its unit is written."""
+_BELOW = 2.6
+"""Height of what is written below a plot, in heights of the text."""
 
 
 class GraphPlot:
@@ -53,7 +55,7 @@ class GraphPlot:
         implot.get_input_map().fit = -1  # a double click goes to the moment
         if not implot.begin_plot(f"##plot {graph.entity}", ImVec2(-1.0, height), flags):
             return None
-        axis_of = self._set_up_axes(ui, graph, window, follows=follows)
+        axis_of = self._set_up_axes(ui, graph, window, height - _BELOW * ui.size, follows=follows)
         self._draw_lines(ui, graph, window, axis_of)
         self._draw_moments(ui, world, window, graph, axis_of)
         hovered = self._follow_mouse(window, graph)
@@ -64,7 +66,7 @@ class GraphPlot:
     # ---- axes ----------------------------------------------------------------------------------------------
 
     def _set_up_axes(
-        self, ui: Ui, graph: GraphShown, window: Window, *, follows: bool
+        self, ui: Ui, graph: GraphShown, window: Window, height: float, *, follows: bool
     ) -> dict[Key, implot.ImAxis_]:
         """Set up an axis for each unit, three at most; return which axis each line has."""
         across = "time [s]" if graph.across is None else _heading([graph.across])
@@ -75,7 +77,7 @@ class GraphPlot:
         for n, axis in enumerate(_AXES[: max(len(units), 1)]):
             own = units[n:] if n == len(_AXES) - 1 else units[n : n + 1]
             mine = [key for key in keys if QUANTITIES[key[1]].unit in own]
-            self._set_up(ui, axis, _heading(mine), graph, window, mine, follows=follows)
+            self._set_up(ui, axis, _heading(mine, height), graph, window, mine, follows=follows)
             axis_of |= dict.fromkeys(mine, axis)
         implot.setup_finish()
         return axis_of
@@ -157,12 +159,7 @@ class GraphPlot:
     # ---- moments -------------------------------------------------------------------------------------------
 
     def _draw_moments(
-        self,
-        ui: Ui,
-        world: World,
-        window: Window,
-        graph: GraphShown,
-        axis_of: dict[Key, implot.ImAxis_],
+        self, ui: Ui, world: World, window: Window, graph: GraphShown, axis_of: dict[Key, implot.ImAxis_]
     ) -> None:
         """Mark the moment shown, that under the cursor, and the cursors A and B."""
         measuring, theme = window.measuring, ui.theme
@@ -173,35 +170,16 @@ class GraphPlot:
         for n, (name, time, colour) in enumerate(moments):
             if time is None:
                 continue
-            x: float | None = time
-            if graph.across is not None:
-                x = self._draw_point(graph, measuring.record, time, colour, axis_of, f"{name}##{n}")
-            else:
+            place: tuple[float, float] | None
+            if graph.across is None:
+                place = time, implot.get_plot_limits().y.max
                 spec = _look(colour, 0.8, 1.0)
                 spec.flags = implot.ItemFlags_.no_fit
                 implot.plot_inf_lines(f"##moment {n}", np.array([time]), spec)
-            if name and x is not None:
-                implot.tag_x(x, _opaque(colour), name)
-                ui.words.append(f"cursor {name}")
-
-    @staticmethod
-    def _draw_point(
-        graph: GraphShown, record: Record, time: float, colour: Colour, axis_of: dict[Key, implot.ImAxis_],
-        label: str,
-    ) -> float | None:  # fmt: skip
-        """Mark a moment on the paths of a graph; return where it is across."""
-        row = record.nearest(time)
-        if row is None or graph.across is None:
-            return None
-        x = float(record.values(graph.across)[row])
-        for line in graph.lines:
-            y = float(record.values(line.key)[row])
-            if math.isfinite(x) and math.isfinite(y):
-                implot.set_axes(implot.ImAxis_.x1, axis_of[line.key])
-                spec = _look(colour, 1.0, 1.5)
-                spec.marker, spec.marker_size, spec.flags = implot.Marker_.circle, 5.0, implot.ItemFlags_.no_fit
-                implot.plot_scatter(f"##{label} {line.entity}", np.array([x]), np.array([y]), spec)
-        return x if math.isfinite(x) else None
+            else:
+                place = _draw_point(graph, measuring.record, time, colour, axis_of, f"{name}##{n}")
+            if name and place is not None:
+                _draw_letter(ui, place, name, colour)
 
     def _follow_mouse(self, window: Window, graph: GraphShown) -> float | None:
         """Set cursors by clicks, go to a moment by a double click; return the time under the cursor."""
@@ -221,7 +199,7 @@ class GraphPlot:
             self._pressed = None
         if imgui.is_mouse_released(0) and self._pressed is not None:
             if math.dist(place, self._pressed) <= _CLICK:
-                measuring.marks[1 if window.adding else 0] = time
+                measuring.marks[1 if pygame.key.get_mods() & pygame.KMOD_SHIFT else 0] = time
             self._pressed = None
         return time
 
@@ -237,7 +215,8 @@ class GraphPlot:
         span = max(limits.x.max - limits.x.min, 1e-300), max(limits.y.max - limits.y.min, 1e-300)
         for line in graph.lines:
             apart = np.hypot(
-                (record.values(graph.across) - mouse.x) / span[0], (record.values(line.key) - mouse.y) / span[1]
+                (record.values(graph.across) - mouse.x) / span[0],
+                (record.values(line.key) - mouse.y) / span[1],
             )
             if np.isfinite(apart).any():
                 row = int(np.nanargmin(apart))
@@ -246,12 +225,50 @@ class GraphPlot:
         return found
 
 
-def _heading(keys: list[Key]) -> str:
+def _draw_point(
+    graph: GraphShown, record: Record, time: float, colour: Colour, axis_of: dict[Key, implot.ImAxis_],
+    label: str,
+) -> tuple[float, float] | None:  # fmt: skip
+    """Mark a moment on the paths of a graph; return where it is on the first."""
+    row, first = record.nearest(time), None
+    if row is None or graph.across is None:
+        return None
+    x = float(record.values(graph.across)[row])
+    for line in graph.lines:
+        y = float(record.values(line.key)[row])
+        if not (math.isfinite(x) and math.isfinite(y)):
+            continue
+        first = first or (x, y)
+        implot.set_axes(implot.ImAxis_.x1, axis_of[line.key])
+        spec = _look(colour, 1.0, 1.5)
+        spec.marker, spec.marker_size, spec.flags = implot.Marker_.circle, 4.0, implot.ItemFlags_.no_fit
+        implot.plot_scatter(f"##{label} {line.entity}", np.array([x]), np.array([y]), spec)
+    return first
+
+
+def _draw_letter(ui: Ui, place: tuple[float, float], letter: str, colour: Colour) -> None:
+    """Write the letter of a cursor where it is, within the plot."""
+    ui.words.append(f"cursor {letter}")
+    limits, text = implot.get_plot_limits(), imgui.calc_text_size(letter)
+    if not limits.x.min <= place[0] <= limits.x.max:
+        return
+    implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y1)
+    at, corner, size = implot.plot_to_pixels(*place), implot.get_plot_pos(), implot.get_plot_size()
+    room = 0.25 * ui.size
+    left = min(max(at.x - 0.5 * text.x, corner.x + room), corner.x + size.x - text.x - room)
+    top = min(max(at.y - 1.4 * text.y, corner.y), corner.y + size.y - text.y)
+    low, high = ImVec2(left - room, top), ImVec2(left + text.x + room, top + text.y)
+    paper = implot.get_plot_draw_list()
+    paper.add_rect_filled(low, high, packed(colour), room)
+    paper.add_text(ImVec2(left, top), packed(ui.theme.background), letter)
+
+
+def _heading(keys: list[Key], room: float = math.inf) -> str:
     """Return what is written along an axis: quantities with their unit, or units alone where that is long."""
     names = list(dict.fromkeys(key[1] for key in keys))
     units = ", ".join(dict.fromkeys(written_unit(QUANTITIES[name].unit) for name in names))
     words = f"{', '.join(names)} [{units}]"
-    return words if names and len(words) <= _LABEL else units
+    return words if names and imgui.calc_text_size(words).x <= room else units
 
 
 def _look(colour: Colour, opacity: float, weight: float) -> implot.Spec:

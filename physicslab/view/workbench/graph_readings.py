@@ -21,12 +21,36 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench.quantity_menu import unit_of
 from physicslab.world import World
 
-__all__ = ["build_moment", "build_readings", "build_spans", "colour_of", "line_name"]
+__all__ = ["ButtonRow", "build_cursors", "build_moment", "build_readings", "colour_of", "line_name"]
 
 _VALUE = "-0.0000"
 """As wide as most values are: what follows stays in its place while they change."""
 _MARK = 1.1
 """Length of the mark in a line's colour, in heights of the text."""
+
+
+class ButtonRow:
+    """Puts buttons beside each other, and in a new row where they would be cut.
+
+    Attributes
+    ----------
+    used : float
+        How much of the width is used up in the present row [px].
+    """
+
+    def __init__(self, ui: Ui) -> None:
+        self._room = imgui.get_content_region_avail().x
+        self.used = 0.0
+
+    def next(self, words: str) -> None:
+        """Go on to where a button with these words has room."""
+        style = imgui.get_style()
+        width = imgui.calc_text_size(words).x + 2.0 * style.frame_padding.x
+        if self.used and self.used + style.item_spacing.x + width <= self._room:
+            imgui.same_line()
+            self.used += style.item_spacing.x + width
+        else:
+            self.used = width
 
 
 def colour_of(ui: Ui, number: int) -> Colour:
@@ -41,18 +65,25 @@ def line_name(graph: GraphShown, key: Key, window: Window) -> str:
 
 
 def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
-    """Write every line with its colour, and its value at the moment under the cursor or at that shown."""
+    """Write every line with its colour, and its value at the moment under the cursor or at that shown.
+
+    Between two cursors its slope and its area are written in place of the value.
+    """
     measuring = window.measuring
-    time = world.time if measuring.pointed is None else measuring.pointed
-    row = measuring.record.nearest(time)
+    row = measuring.record.nearest(world.time if measuring.pointed is None else measuring.pointed)
     if not graph.lines:
         ui.faint("Lines: choose what is plotted")
         return
+    spans = _spans(window, graph)
     style = imgui.get_style()
     used, room = 0.0, imgui.get_content_region_avail().x
     for colour, key in _entries(ui, graph):
-        name, value = line_name(graph, key, window), _value(world, window, key, row)
-        usual = f"{_VALUE} {unit_of(key)}"
+        name = line_name(graph, key, window)
+        if spans is not None:
+            if colour is not None:
+                _entry(ui, colour, name, spans[key], wrapped=True)
+            continue
+        value, usual = _value(world, window, key, row), f"{_VALUE} {unit_of(key)}"
         width = (_MARK + 0.4) * ui.size if colour is not None else 0.0
         width += imgui.calc_text_size(f"{name} ").x
         width += max(imgui.calc_text_size(usual).x, imgui.calc_text_size(value).x)
@@ -87,7 +118,7 @@ def _entries(ui: Ui, graph: GraphShown) -> list[tuple[Colour | None, Key]]:
     return [*across, *((colour_of(ui, n), line.key) for n, line in enumerate(graph.lines))]
 
 
-def _entry(ui: Ui, colour: Colour | None, name: str, value: str) -> None:
+def _entry(ui: Ui, colour: Colour | None, name: str, value: str, *, wrapped: bool = False) -> None:
     if colour is not None:
         corner, height = imgui.get_cursor_screen_pos(), imgui.get_text_line_height()
         low = ImVec2(corner.x, corner.y + 0.5 * height - 0.1 * ui.size)
@@ -97,7 +128,9 @@ def _entry(ui: Ui, colour: Colour | None, name: str, value: str) -> None:
         imgui.same_line(0.0, 0.4 * ui.size)
     ui.faint(name, wrapped=False)
     imgui.same_line(0.0, imgui.calc_text_size(" ").x)
-    ui.text(value)
+    if wrapped and imgui.calc_text_size(value).x > imgui.get_content_region_avail().x:
+        imgui.new_line()
+    ui.text(value, wrapped=wrapped)
 
 
 def _value(world: World, window: Window, key: Key, row: int | None) -> str:
@@ -106,59 +139,60 @@ def _value(world: World, window: Window, key: Key, row: int | None) -> str:
     why = why_undefined(world, key[1], key[0])
     if np.isnan(value):
         return f"({why})" if why else "not recorded"
-    words = quantity(value, unit_of(key))
-    return f"{words} (gone)" if why == "gone" else words
+    words, record = quantity(value, unit_of(key)), window.measuring.record
+    return f"{words} (gone)" if why == "gone" and world.time >= record.times[-1] else words
 
 
-def build_spans(ui: Ui, window: Window, graph: GraphShown, *, measure: bool = False) -> float:
-    """Write what lies between the cursors A and B, with buttons that go there; return how high that is [px].
-
-    With ``measure`` nothing is drawn.
-    """
-    lines = _spans(window, graph)
-    spacing = imgui.get_style().item_spacing.y
-    width = imgui.get_content_region_avail().x
-    height = imgui.get_frame_height() + spacing
-    for _, words in lines:
-        height += imgui.calc_text_size(words, wrap_width=width).y + spacing
-    if measure:
-        return height
+def build_cursors(ui: Ui, window: Window, graph: GraphShown) -> None:
+    """Build a button for each cursor that is set, which goes to its moment; and what clears them."""
     marks = window.measuring.marks
-    for n, (name, time) in enumerate(zip("AB", marks, strict=True)):
-        if n:
-            imgui.same_line()
-        label = f"Go to {name} in graph {graph.number}"
-        if ui.button(label, "Pause, and go to this moment", shown=f"Go to {name}", enabled=time is not None):
-            assert time is not None
+    if marks == [None, None]:
+        return
+    row = ButtonRow(ui)
+    for name, time in zip("AB", marks, strict=True):
+        if time is None:
+            words = "Shift-click: B" if name == "B" else "Click: A"
+            row.next(words)
+            imgui.align_text_to_frame_padding()
+            ui.faint(words, wrapped=False)
+            continue
+        words = f"{name} {time:.3f} s"
+        row.next(words)
+        if ui.button(f"Go to {name} in graph {graph.number}", "Pause, and go to this moment", shown=words):
             window.deeds.append(measuring_actions.go_to(time))
-    imgui.same_line()
-    if ui.button(f"Clear cursors in graph {graph.number}", "Take A and B away", shown="Clear"):
+    row.next("Clear")
+    if ui.button(f"Clear cursors in graph {graph.number}", "Take the cursors A and B away", shown="Clear"):
         marks[:] = [None, None]
-    for colour, words in lines:
-        ui.text(words, colour, wrapped=True)
-    return height
+    a, b = marks
+    if a is not None and b is not None:
+        words = f"B - A {b - a:.3f} s"
+        row.next(words)
+        imgui.align_text_to_frame_padding()
+        ui.text(words)
 
 
-def _spans(window: Window, graph: GraphShown) -> list[tuple[Colour | None, str]]:
-    """Return in words the moments of the cursors, and for each line its slope and its area between them."""
+def _spans(window: Window, graph: GraphShown) -> dict[Key, str] | None:
+    """Return of each line its slope and its area between the cursors in words; ``None`` without two."""
     measuring = window.measuring
     record, (a, b) = measuring.record, measuring.marks
-    first = "  ".join(f"{name} {time:.3f} s" for name, time in zip("AB", (a, b), strict=True) if time is not None)
-    if a is None or b is None:
-        return [(None, f"{first}   Shift-click sets B" if b is None else f"{first}   a click sets A")]
-    rows = record.nearest(a), record.nearest(b)
-    if rows[0] is None or rows[1] is None:
-        return [(None, first)]
-    lines: list[tuple[Colour | None, str]] = [(None, f"{first}   B - A {b - a:.3f} s")]
+    first, last = (None if time is None else record.nearest(time) for time in (a, b))
+    if first is None or last is None:
+        return None
     across = record.times if graph.across is None else record.values(graph.across)
     unit = "s" if graph.across is None else QUANTITIES[graph.across[1]].unit
+    found: dict[Key, str] = {}
     for line in graph.lines:
         values, own = record.values(line.key), QUANTITIES[line.key[1]].unit
-        slope = _words(slope_between(across, values, *rows), quotient(own, unit))
-        area = _words(area_between(across, values, *rows), product(own, unit))
-        lines.append((None, f"{line_name(graph, line.key, window)}: slope {slope}, area {area}"))
-    return lines
+        slope = slope_between(across, values, first, last)
+        area = area_between(across, values, first, last)
+        if np.isnan(slope) and np.isnan(area):
+            found[line.key] = "not recorded from A to B"
+            continue
+        words = "slope not defined" if np.isnan(slope) else f"slope {_words(slope, quotient(own, unit))}"
+        more = "not all recorded" if np.isnan(area) else f"area {_words(area, product(own, unit))}"
+        found[line.key] = f"{words}, {more}"
+    return found
 
 
 def _words(value: float, unit: str) -> str:
-    return "not defined" if np.isnan(value) else quantity(value, written_unit(unit)).rstrip()
+    return quantity(value, written_unit(unit)).rstrip()

@@ -14,7 +14,6 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
 from physicslab.view.workbench.gallery import Gallery
-from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.history_panel import build_history
 from physicslab.view.workbench.inspector import Inspector
@@ -24,6 +23,7 @@ from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
 from physicslab.view.workbench.save_panel import build_save
+from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.settings_panel import SettingsPanel
 from physicslab.view.workbench.transport import build_transport
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
@@ -104,7 +104,12 @@ class Interface:
 
     def _finish_fields(self) -> str:
         """Take over what is half written in a field, and return why it is refused; empty where it is not."""
-        return self._inspector.finish(self._window) or self._settings.finish() or self._recipe.finish() or self._scene_panels.finish()
+        return (
+            self._inspector.finish(self._window)
+            or self._settings.finish()
+            or self._recipe.finish()
+            or self._scene_panels.finish()
+        )
 
     def build(
         self,

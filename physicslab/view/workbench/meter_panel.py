@@ -45,7 +45,7 @@ def build_meters(ui: Ui, world: World, window: Window, places: dict[int, Rect]) 
     for meter in window.measuring.meters:
         if meter.entity not in places:
             continue
-        with ui.panel(f"meter {meter.entity}", places[meter.entity]):
+        with ui.panel(f"meter {meter.entity}", places[meter.entity], rounded=True):
             if build_title(ui, named_key(meter.key, window), f"Meter {meter.number}"):
                 imgui.open_popup("meter")
             if imgui.begin_popup("meter"):

@@ -9,14 +9,18 @@ from physicslab.view.canvas.canvas import Rect
 
 __all__ = ["Small", "is_bar", "places"]
 
-_GRAPH = (27.0, 18.0)
+_GRAPH = (27.0, 20.0)
 """Width and height that a graph has where there is room, in heights of the text."""
 _LEAST = (12.0, 14.0)
-"""Width and height below which nothing can be read in a graph: only one is then open, the others are bars."""
+"""Width and height below which nothing can be read in a graph: only one is then open."""
 _BAR = 2.2
-"""Height of such a bar, in heights of the text."""
+"""Height of the bar by which the others are opened, in heights of the text."""
 _GAP = 0.6
 """Room between two panels, in heights of the text."""
+_NUMBERS = 1.4
+"""Room for the numbers of the world's axes at the left and below, beside small panels."""
+_SCALE_BAR = 3.4
+"""Room for the scale bar below panels at the right."""
 _LEAST_GRAPH = 18.0
 """Width that is left for graphs beside small panels; where there is less they lie above or below them."""
 
@@ -54,19 +58,33 @@ def places(
     found: dict[int, Rect] = {}
     for corner in dict.fromkeys(one.corner for one in small):
         stack = [one for one in small if one.corner == corner]
-        found |= _stacked(inner, gap, stack, corner)
+        found |= _stacked(_beside_numbers(inner, text, corner), gap, stack, corner)
     rest = _without(inner, list(found.values()), gap, round(_LEAST_GRAPH * text))
+    if rest[3] > 2.0 * _LEAST[1] * text:
+        rest = (*rest[:3], rest[3] - round(_SCALE_BAR * text))
     sides = {side: [e for e, where in graphs.items() if where == side] for side in ("left", "right")}
     if _too_small(_tile(rest, text, gap, len(graphs))[1], text) and len(graphs) > 1:
         return found | _folded(rest, text, gap, list(graphs), active)
     if all(sides.values()):
         half = (rest[2] - gap) // 2
         found |= _tiled((rest[0], rest[1], half, rest[3]), text, gap, sides["left"], "left")
-        found |= _tiled((rest[0] + rest[2] - half, rest[1], half, rest[3]), text, gap, sides["right"], "right")
+        found |= _tiled(
+            (rest[0] + rest[2] - half, rest[1], half, rest[3]), text, gap, sides["right"], "right"
+        )
     else:
         for side, entities in sides.items():
             found |= _tiled(rest, text, gap, entities, side)
     return found
+
+
+def _beside_numbers(area: Rect, text: float, corner: str) -> Rect:
+    """Leave room for what is written at the edges of the world, where there is enough."""
+    left, top, width, height = area
+    if width < _LEAST_GRAPH * text:
+        return area
+    across = round(_NUMBERS * text) if "left" in corner else 0
+    below = 0.0 if "top" in corner else _NUMBERS if "left" in corner else _SCALE_BAR
+    return left + across, top, width - across, max(height - round(below * text), 1)
 
 
 def _stacked(area: Rect, gap: int, stack: Sequence[Small], corner: str) -> dict[int, Rect]:
@@ -86,7 +104,7 @@ def _stacked(area: Rect, gap: int, stack: Sequence[Small], corner: str) -> dict[
 
 
 def _without(area: Rect, taken: Sequence[Rect], gap: int, least: int) -> Rect:
-    """Return the largest part of an area that small panels leave, at one side of them, wide enough if one is."""
+    """Return the part of an area that is left beside small panels if it is wide enough, or the largest."""
     left, top, width, height = area
     if not taken:
         return area
@@ -144,24 +162,18 @@ def _tiled(area: Rect, text: float, gap: int, entities: Sequence[int], side: str
 
 
 def is_bar(rect: Rect, text: float) -> bool:
-    """Whether a graph has room for its title alone."""
+    """Whether this is the place of the bar by which graphs are opened."""
     return rect[3] <= round(_BAR * text)
 
 
 def _folded(
     area: Rect, text: float, gap: int, entities: Sequence[int], active: int | None
 ) -> dict[int, Rect]:
-    """Leave one graph open, and of the others only bars, above and below it in their order."""
+    """Leave one graph open, and for the others a bar above it."""
     left, top, width, height = area
-    shown = active if active in entities else entities[-1]
-    bar = round(_BAR * text)
-    bars = (len(entities) - 1) * (bar + gap // 2)
-    w = min(width, round(_GRAPH[0] * text))
-    open_height = max(min(height - bars, round(_GRAPH[1] * text)), 1)
-    found: dict[int, Rect] = {}
-    down = 0
-    for entity in entities:
-        h = open_height if entity == shown else bar
-        found[entity] = (left + width - w, top + down, w, h)
-        down += h + gap // 2
-    return found
+    shown = active if active is not None and active in entities else entities[-1]
+    bar, w = round(_BAR * text), min(width, round(_GRAPH[0] * text))
+    below = bar + gap // 2
+    open_height = max(min(height - below, round(_GRAPH[1] * text)), 1)
+    others = dict.fromkeys(entities, (left + width - w, top, w, bar))
+    return others | {shown: (left + width - w, top + below, w, open_height)}

@@ -24,8 +24,8 @@ from physicslab.world import World
 
 __all__ = ["SliderPanels"]
 
-_WIDTH = 13.0
-"""Width of a slider, in heights of the text."""
+_WIDTH, _VALUE = 9.0, 5.5
+"""Width of a slider, and room for its number, in heights of the text."""
 _ENDS = (("low", "From"), ("high", "To"))
 
 
@@ -42,9 +42,9 @@ class SliderPanels:
 
     def sizes(self, ui: Ui, window: Window) -> list[Small]:
         """Return how large each slider is."""
-        height = 2.0 * imgui.get_frame_height() + imgui.get_style().item_spacing.y - imgui.get_frame_height()
+        width, height = (_WIDTH + _VALUE) * ui.size, imgui.get_frame_height()
         return [
-            Small(one.entity, one.corner, size_of(ui, _title(one, window), _WIDTH * ui.size, height))
+            Small(one.entity, one.corner, size_of(ui, _title(one, window), width, height))
             for one in window.measuring.sliders
         ]
 
@@ -53,7 +53,7 @@ class SliderPanels:
         for slider in window.measuring.sliders:
             if slider.entity not in places:
                 continue
-            with ui.panel(f"slider {slider.entity}", places[slider.entity]):
+            with ui.panel(f"slider {slider.entity}", places[slider.entity], rounded=True):
                 if build_title(ui, _title(slider, window), f"Slider {slider.number}"):
                     imgui.open_popup("slider")
                 if imgui.begin_popup("slider"):
@@ -68,8 +68,12 @@ class SliderPanels:
             return
         value = self._held.get(slider.entity, now)
         words = quantity(value, written_unit(slider.unit)).strip()
-        moved = ui.slider(f"Slider {slider.number}", value, slider.low, slider.high, words)
+        label, width = f"Slider {slider.number}", imgui.get_content_region_avail().x - _VALUE * ui.size
+        moved = ui.slider(label, value, slider.low, slider.high, "", width)
+        ui.tip(f"From {slider.low:g} to {slider.high:g} {written_unit(slider.unit)}".strip())
         held = imgui.is_item_active()
+        imgui.same_line()
+        ui.text(words)
         if moved is not None:
             moved = _rounded(moved, slider)
             self._held[slider.entity] = moved
