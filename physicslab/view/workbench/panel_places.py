@@ -55,26 +55,46 @@ def places(
     gap = round(_GAP * text)
     left, top, width, height = area
     inner = (left + gap, top + gap, max(width - 2 * gap, 1), max(height - 2 * gap, 1))
+    least = round(_LEAST_GRAPH * text)
+    ways = [_small(inner, text, gap, small, downwards=downwards) for downwards in (True, False)]
+    rests = [_without(inner, list(way.values()), gap, least) for way in ways]
+    found = [_graphs(rest, text, gap, graphs, active) for rest in rests]
+    scales = [
+        min((_scale(place[2:], text) for place in one.values() if not is_bar(place, text)), default=1.0)
+        for one in found
+    ]
+    best = 1 if scales[1] > scales[0] else 0  # beside each other only where graphs gain by it
+    return ways[best] | found[best]
+
+
+def _small(area: Rect, text: float, gap: int, small: Sequence[Small], *, downwards: bool) -> dict[int, Rect]:
+    """Put meters and sliders into their corners, above each other or beside each other."""
     found: dict[int, Rect] = {}
     for corner in dict.fromkeys(one.corner for one in small):
         stack = [one for one in small if one.corner == corner]
-        found |= _stacked(_beside_numbers(inner, text, corner), gap, stack, corner)
-    rest = _without(inner, list(found.values()), gap, round(_LEAST_GRAPH * text))
+        room = _beside_numbers(area, text, corner)
+        if downwards:
+            found |= _stacked(room, gap, stack, corner)
+        else:
+            found |= _in_rows((area[0], room[1], area[2], room[3]), gap, stack, corner)
+    return found
+
+
+def _graphs(
+    rest: Rect, text: float, gap: int, graphs: Mapping[int, str], active: int | None
+) -> dict[int, Rect]:
+    """Put graphs to their sides in what small panels leave."""
     if rest[3] > 2.0 * _LEAST[1] * text:
         rest = (*rest[:3], rest[3] - round(_SCALE_BAR * text))
     sides = {side: [e for e, where in graphs.items() if where == side] for side in ("left", "right")}
-    if _too_small(_tile(rest, text, gap, len(graphs))[1], text) and len(graphs) > 1:
-        return found | _folded(rest, text, gap, list(graphs), active)
-    if all(sides.values()):
-        half = (rest[2] - gap) // 2
-        found |= _tiled((rest[0], rest[1], half, rest[3]), text, gap, sides["left"], "left")
-        found |= _tiled(
-            (rest[0] + rest[2] - half, rest[1], half, rest[3]), text, gap, sides["right"], "right"
-        )
-    else:
-        for side, entities in sides.items():
-            found |= _tiled(rest, text, gap, entities, side)
-    return found
+    if len(graphs) > 1 and _too_small(_tile(rest, text, gap, len(graphs))[1], text):
+        return _folded(rest, text, gap, list(graphs), active)
+    if not all(sides.values()):
+        return {e: place for side in sides for e, place in _tiled(rest, text, gap, sides[side], side).items()}
+    half = (rest[2] - gap) // 2
+    right = (rest[0] + rest[2] - half, rest[1], half, rest[3])
+    at_left = _tiled((rest[0], rest[1], half, rest[3]), text, gap, sides["left"], "left")
+    return at_left | _tiled(right, text, gap, sides["right"], "right")
 
 
 def _beside_numbers(area: Rect, text: float, corner: str) -> Rect:
@@ -101,6 +121,15 @@ def _stacked(area: Rect, gap: int, stack: Sequence[Small], corner: str) -> dict[
         found[one.entity] = (max(min(x, left + width - w), left), y, w, h)
         down, widest = down + h + gap, max(widest, w)
     return found
+
+
+def _in_rows(area: Rect, gap: int, stack: Sequence[Small], corner: str) -> dict[int, Rect]:
+    """Put small panels beside each other from a corner on: stacks with across and down exchanged."""
+    left, top, width, height = area
+    turned = [Small(one.entity, corner, one.size[::-1]) for one in stack]
+    flipped = f"{'top' if 'left' in corner else 'bottom'} {'left' if 'top' in corner else 'right'}"
+    found = _stacked((top, left, height, width), gap, turned, flipped)
+    return {entity: (y, x, h, w) for entity, (x, y, w, h) in found.items()}
 
 
 def _without(area: Rect, taken: Sequence[Rect], gap: int, least: int) -> Rect:
@@ -131,17 +160,18 @@ def _tile(area: Rect, text: float, gap: int, count: int) -> tuple[int, tuple[flo
     largest = (_GRAPH[0] * text, _GRAPH[1] * text)
 
     def size(columns: int) -> tuple[float, float]:
-        rows = -(-count // columns)
+        rows = max(-(-count // columns), 1)
         w = (width - (columns - 1) * gap) / columns
         h = (height - (rows - 1) * gap) / rows
         return max(min(w, largest[0]), 1.0), max(min(h, largest[1]), 1.0)
 
-    def scale(columns: int) -> float:
-        w, h = size(columns)
-        return min(w / largest[0], h / largest[1])
+    columns = max(range(1, max(count, 1) + 1), key=lambda n: _scale(size(n), text))
+    return columns, size(columns)
 
-    columns = max(range(1, count + 1), key=scale, default=1)
-    return columns, size(columns) if count else largest
+
+def _scale(size: tuple[float, float], text: float) -> float:
+    """Return how large a graph is, as a share of what it has where there is room."""
+    return min(size[0] / (_GRAPH[0] * text), size[1] / (_GRAPH[1] * text))
 
 
 def _too_small(size: tuple[float, float], text: float) -> bool:

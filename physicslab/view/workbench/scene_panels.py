@@ -12,7 +12,7 @@ from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_panel import GraphPanels, owner_of
-from physicslab.view.workbench.meter_panel import build_meters, meter_sizes
+from physicslab.view.workbench.meter_panel import MeterPanels
 from physicslab.view.workbench.panel_places import places
 from physicslab.view.workbench.slider_panel import SliderPanels
 from physicslab.world import World
@@ -25,6 +25,7 @@ class ScenePanels:
 
     def __init__(self) -> None:
         self._graphs = GraphPanels()
+        self._meters = MeterPanels()
         self._sliders = SliderPanels()
 
     def build(self, ui: Ui, world: World, window: Window, area: Rect) -> None:
@@ -32,9 +33,9 @@ class ScenePanels:
         measuring = window.measuring
         if not measuring.is_shown:
             return
-        small = [*meter_sizes(ui, window), *self._sliders.sizes(ui, window)]
+        small = [*self._meters.sizes(ui, world, window), *self._sliders.sizes(ui, window)]
         found = places(area, ui.size, self._graphs.free(measuring.graphs), small, measuring.active)
-        build_meters(ui, world, window, found)
+        self._meters.build(ui, world, window, found)
         self._sliders.build(ui, world, window, found)
         self._graphs.build(ui, world, window, found)
 

@@ -24,7 +24,7 @@ from physicslab.world import World
 
 __all__ = ["SliderPanels"]
 
-_WIDTH, _VALUE = 9.0, 5.5
+_WIDTH, _VALUE = 7.5, 5.0
 """Width of a slider, and room for its number, in heights of the text."""
 _ENDS = (("low", "From"), ("high", "To"))
 
@@ -51,8 +51,6 @@ class SliderPanels:
     def build(self, ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
         """Build every slider at its place."""
         for slider in window.measuring.sliders:
-            if slider.entity not in places:
-                continue
             with ui.panel(f"slider {slider.entity}", places[slider.entity], rounded=True):
                 if build_title(ui, _title(slider, window), f"Slider {slider.number}"):
                     imgui.open_popup("slider")
