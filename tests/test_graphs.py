@@ -1,70 +1,24 @@
-"""Graphs, meters and sliders in the window: made, changed, undone, saved, looked into."""
+"""Graphs in the window: made, undone, saved, looked into."""
 
-import json
-import re
-from itertools import combinations
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pygame
 import pytest
 from desk import SETTLED, Desk, click, click_at, empty_world, point, sized, tap
-from imgui_bundle import implot
+from plotting import CTRL, SHIFT, ball_of, drawn_lines, graph_of, in_plot, pause
 
-from physicslab.components import Graph, GraphLine, Mass, Meter, Shape, Slider, Spring, Transform, Velocity
-from physicslab.files.scene import SceneError, load_scene, save_scene
-from physicslab.history import AddComponent, History, SetField, Spawn
+from physicslab.components import Graph, GraphLine
+from physicslab.files.scene import load_scene, save_scene
+from physicslab.history import SetField
 from physicslab.prefabs import circle
-from physicslab.view.canvas.canvas import Rect
 from physicslab.view.controls import actions, file_actions, measuring_actions
-from physicslab.view.window.measuring import GraphShown
-from physicslab.view.window.plot_data import line_to_show
-from physicslab.world import World
-
-CTRL, SHIFT = pygame.KMOD_LCTRL, pygame.KMOD_LSHIFT
 
 
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Desk:
     monkeypatch.chdir(tmp_path)
     return sized((1280, 720), empty_world(gravity=(0, 0)))
-
-
-def ball_of(desk: Desk, name: str = "ball", y: float = 0.0) -> int:
-    parts = [Transform((0, y)), Velocity((2, 0)), Mass(1.0), Shape.circle(0.3)]
-    (ball,) = desk.window.edits.do(Spawn(parts, name))
-    desk.window.selection.take(ball)
-    desk.frames()
-    return ball
-
-
-def graph_of(desk: Desk) -> GraphShown:
-    (graph,) = desk.window.measuring.graphs
-    return graph
-
-
-def in_plot(desk: Desk, across: float, up: float = 0.5, number: int = 1) -> tuple[int, int]:
-    left, top, width, height = desk.ui.places[f"Plot of graph {number}"]
-    return round(left + across * width), round(top + (1.0 - up) * height)
-
-
-def drawn_lines(monkeypatch: pytest.MonkeyPatch) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return a list to which the points of every line are added that is plotted."""
-    drawn: list[tuple[np.ndarray, np.ndarray]] = []
-    plot_line = implot.plot_line
-
-    def note(name: str, x: np.ndarray, y: np.ndarray, look: implot.Spec) -> None:
-        drawn.append((x, y))
-        plot_line(name, x, y, look)
-
-    monkeypatch.setattr(implot, "plot_line", note)
-    return drawn
-
-
-def pause(desk: Desk) -> None:
-    desk.window.pace.paused = True
-    desk.frames(SETTLED)
 
 
 # Making, undoing, keeping
@@ -170,8 +124,9 @@ def test_a_phase_plot_is_velocity_against_place(monkeypatch: pytest.MonkeyPatch)
     desk.frames(200)
     x, v = drawn[-1]
     record, bob = desk.window.measuring.record, desk.world.entity("bob")
-    assert len(x) > 150 and np.array_equal(v, record.values((bob, "velocity x"))[: len(v)])
-    assert np.array_equal(x, record.values((bob, "x"))[: len(x)]) and (np.diff(x) < 0).any()
+    shown = ~np.isnan(record.values((bob, "velocity x")))
+    assert len(x) > 150 and np.array_equal(v, record.values((bob, "velocity x"))[shown][: len(v)])
+    assert np.array_equal(x, record.values((bob, "x"))[shown][: len(x)]) and (np.diff(x) < 0).any()
 
 
 # Time
@@ -333,274 +288,3 @@ def test_another_scene_has_no_graph_of_the_last_one(desk: Desk) -> None:
     file_actions.open_scene(desk.window, "drop")
     desk.frames(SETTLED)
     assert not desk.window.measuring.graphs and not len(desk.window.measuring.before)
-
-
-# Meters and sliders
-
-
-def test_a_meter_shows_a_number_with_its_unit_and_can_show_another(desk: Desk) -> None:
-    ball_of(desk)
-    tap(desk, "m", CTRL)
-    assert "2.000 m/s" in desk.ui.words
-    click(desk, "Menu of meter 1")
-    click(desk, "ball")
-    click(desk, "kinetic energy [J]")
-    assert desk.window.measuring.meters[0].key[1] == "kinetic energy"
-    click(desk, "Menu of meter 1")
-    click(desk, "Place")
-    click(desk, "Top left")
-    assert desk.window.measuring.meters[0].corner == "top left"
-    click(desk, "Menu of meter 1")
-    click(desk, "Remove the meter")
-    assert not desk.world.batch(Meter).entities.size
-    pause(desk)
-    tap(desk, "z", CTRL)
-    tap(desk, "z", CTRL)
-    assert desk.world.batch(Meter).entities.size
-
-
-def slide(desk: Desk, label: str, share: float, between: int = 3) -> None:
-    """Press the slider in its middle, move to a share of its width, and let go there."""
-    left, top, width, height = desk.ui.places[label]
-    start, end = (left + width // 2, top + height // 2), (left + round(share * width), top + height // 2)
-    point(desk, start)
-    pygame.event.post(pygame.Event(pygame.MOUSEBUTTONDOWN, pos=start, button=1, touch=False))
-    desk.frames(2)
-    for n in range(1, 4):
-        place = start[0] + (end[0] - start[0]) * n // 3, start[1]
-        point(desk, place, (1, 0, 0))
-        desk.frames(between)
-    pygame.event.post(pygame.Event(pygame.MOUSEBUTTONUP, pos=end, button=1, touch=False))
-    desk.frames(SETTLED)
-
-
-def test_a_slider_is_one_edit_while_time_stands_still(desk: Desk) -> None:
-    ball = ball_of(desk)
-    pause(desk)
-    tap(desk, "m", CTRL | SHIFT)
-    entries = len(desk.window.edits.history.entries)
-    mass = mass_of(desk, ball)
-    slide(desk, "Slider 1", 0.8)
-    assert mass_of(desk, ball) > mass and len(desk.window.edits.history.entries) == entries + 1
-    tap(desk, "z", CTRL)
-    assert mass_of(desk, ball) == mass
-
-
-def mass_of(desk: Desk, ball: int) -> float:
-    return desk.world.component(ball, Mass).mass
-
-
-def test_a_slider_for_gravity_works_while_time_runs_and_the_run_is_the_same_again(
-    desk: Desk, tmp_path: Path
-) -> None:
-    ball_of(desk)
-    desk.window.selection.clear()
-    tap(desk, "m", CTRL | SHIFT)
-    desk.frames(5)
-    slide(desk, "Slider 1", 0.9)
-    assert 15.0 < -desk.world.physics.gravity.y <= 20.0
-    desk.frames(20)
-    pause(desk)
-    history, last = desk.window.edits.history, desk.window.edits.history.step_count
-    place = desk.world.component(desk.world.entity("ball"), Transform).position
-    assert place.y < 0.0
-    history.save(tmp_path / "slid.json")
-    history.seek(0)
-    history.seek(last)
-    assert history.difference is None
-    assert desk.world.component(desk.world.entity("ball"), Transform).position == place
-    again = History.load(tmp_path / "slid.json")
-    again.seek(again.steps_range[1])
-    assert again.difference is None
-    assert again.world.component(again.world.entity("ball"), Transform).position == place
-
-
-def test_the_slider_of_a_spring_is_for_its_stiffness_and_can_be_given_other_ends(desk: Desk) -> None:
-    ball = ball_of(desk)
-    desk.window.edits.do(AddComponent(ball, Spring(anchor_b=(0, 2), stiffness=40.0)))
-    pause(desk)
-    tap(desk, "m", CTRL | SHIFT)
-    slider = desk.window.measuring.sliders[0]
-    assert (slider.changes, slider.low, slider.high) == ("Spring.stiffness", 0.0, 200.0)
-    desk.window.deeds.append(
-        measuring_actions.changing(slider.entity, Slider("Spring.stiffness", ball, 10.0, 50.0))
-    )
-    desk.frames(SETTLED)
-    slide(desk, "Slider 1", 1.0)
-    assert desk.world.component(ball, Spring).stiffness == 50.0
-    desk.window.selection.take(ball)
-    tap(desk, "delete")
-    assert "The body is gone" in desk.ui.words
-
-
-# Pictures, and how it looks
-
-
-def test_the_picture_of_a_graph_is_its_panel(desk: Desk, tmp_path: Path) -> None:
-    ball_of(desk)
-    tap(desk, "m")
-    desk.frames(40)
-    click(desk, "More of graph 1")
-    click(desk, "Save as a picture (PNG)")
-    desk.frames(3)
-    (path,) = tmp_path.glob("*.png")
-    picture = pygame.image.load(path)
-    plot = desk.ui.places["Plot of graph 1"]
-    assert picture.get_width() > plot[2] and picture.get_height() > plot[3]
-    panel = desk.sandbox.interface.covered[4]
-    assert np.allclose(panel[2:], picture.get_size(), atol=2)
-    within = pygame.Rect(panel).contains(pygame.Rect(plot))
-    colours = {
-        tuple(picture.get_at((x, y)))[:3] for x in range(0, picture.get_width(), 2) for y in range(40, 200, 2)
-    }
-    assert within and desk.window.theme.bodies[0] in colours
-    assert "Saved" in desk.window.notice
-
-
-def test_a_full_disk_is_one_plain_sentence(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(path: Path, content: bytes) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(measuring_actions, "create_file", full)
-    ball_of(desk)
-    tap(desk, "m")
-    desk.window.deeds.append(measuring_actions.save_table(graph_of(desk)))
-    desk.frames(2)
-    assert desk.window.notice == "The graph could not be saved: No space left on device"
-
-
-def overlap(a: Rect, b: Rect) -> bool:
-    return pygame.Rect(a).colliderect(pygame.Rect(b))
-
-
-@pytest.mark.parametrize("count", [1, 2, 4])
-@pytest.mark.parametrize(
-    ("size", "text"), [((1280, 720), 1.0), ((1280, 720), 1.75), ((800, 600), 1.75), ((1920, 1080), 1.0)]
-)
-def test_panels_lie_over_nothing(size: tuple[int, int], text: float, count: int) -> None:
-    desk = sized(size, empty_world(gravity=(0, 0)), text)
-    for _ in range(count):
-        tap(desk, "m")
-    tap(desk, "m", CTRL)
-    tap(desk, "m", CTRL | SHIFT)
-    desk.frames(SETTLED)
-    covered = desk.sandbox.interface.covered
-    around = desk.sandbox.interface.layout
-    panels = [
-        rect for rect in covered if all(abs(rect[n] - fixed[n]) > 1 for fixed in around.panels for n in (3,))
-    ]
-    is_folded = "Open graph 1" in desk.ui.places
-    assert len(panels) == (2 if is_folded else count) + 2, covered
-    for a, b in combinations([*panels, *around.panels], 2):
-        assert not overlap(a, b) or a in around.panels, (a, b)
-    whole = pygame.Rect(0, 0, *size)
-    assert all(whole.contains(pygame.Rect(rect)) for rect in panels)
-
-
-def test_where_one_graph_has_room_the_others_are_bars_that_open() -> None:
-    desk = sized((800, 600), empty_world(), 1.75)
-    tap(desk, "m")
-    tap(desk, "m")
-    assert "Plot of graph 2" in desk.ui.places and "Plot of graph 1" not in desk.ui.places
-    click(desk, "Open graph 1")
-    assert "Plot of graph 1" in desk.ui.places and "Open graph 2" in desk.ui.places
-
-
-def test_no_more_points_are_drawn_than_can_be_seen(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    ball = ball_of(desk)
-    tap(desk, "m")
-    pause(desk)
-    record, count = desk.window.measuring.record, 20_000
-    for n in range(count):
-        record.add(100.0 + n / 60.0, n, {(ball, name): float(np.sin(n)) for name in ("x", "y", "speed")})
-    drawn = drawn_lines(monkeypatch)
-    reduced: list[int] = []
-
-    def reduce(x: np.ndarray, y: np.ndarray, *seen: Any) -> tuple[np.ndarray, np.ndarray]:
-        reduced.append(len(x))
-        return line_to_show(x, y, *seen)
-
-    monkeypatch.setattr("physicslab.view.workbench.graph_plot.line_to_show", reduce)
-    desk.sandbox.interface.toolkit.wake()
-    desk.frames(SETTLED)
-    width = desk.ui.places["Plot of graph 1"][2]
-    assert drawn and max(len(x) for x, _ in drawn) <= 4 * (width + 2)
-    made = len(reduced)
-    for _ in range(3):
-        desk.sandbox.interface.toolkit.wake()
-        desk.frames(SETTLED)
-    assert len(reduced) == made  # what does not change is not made again
-
-
-# Files
-
-
-def scene_with(**entities: object) -> str:
-    document = {
-        "format": "physicslab-scene/1",
-        "entities": [
-            {"id": "ball", "Transform": {}},
-            {"id": "plot", "Graph": {}},
-            *({"id": name, **parts} for name, parts in entities.items()),  # type: ignore[dict-item]
-        ],
-    }
-    return json.dumps(document)
-
-
-WITH = "must be the id of an entity with a"
-LINE: dict[str, object] = {"graph": "plot", "quantity": "x", "body": "ball"}
-MASS: dict[str, object] = {"changes": "Mass.mass", "entity": "ball"}
-REFUSED: list[tuple[str, dict[str, object], str]] = [
-    ("GraphLine", LINE | {"quantity": "sped"}, '.quantity = "sped": must be one of "x"'),
-    ("GraphLine", LINE | {"graph": "nothing"}, '.graph = "nothing": must be the id of an entity'),
-    ("GraphLine", LINE | {"graph": "ball"}, f'.graph = "ball": {WITH} Graph'),
-    ("GraphLine", LINE | {"graph": None}, ".graph = null: must be an entity with a Graph"),
-    ("GraphLine", LINE | {"body": None}, '.quantity = "x": must be one of "momentum x"'),
-    ("GraphLine", LINE | {"body": "plot"}, f'.body = "plot": {WITH} Transform'),
-    ("GraphLine", {"graph": "plot"}, " needs quantity"),
-    ("Graph", {"across": "sped"}, '.across = "sped": must be one of "time"'),
-    ("Graph", {"across": "x"}, '.across = "x": must be "time", or one of'),
-    ("Meter", {"quantity": "speed"}, '.quantity = "speed": must be one of'),
-    ("Meter", {"quantity": "momentum", "corner": "middle"}, '.corner = "middle": must be one of "bottom'),
-    ("Slider", {"changes": "gravity", "low": 3, "high": 2}, ".high = 2.0: must be a finite number > 3 m/s^2"),
-    ("Slider", MASS | {"low": 1}, f'.entity = "ball": {WITH} Mass'),
-    ("Slider", MASS, ".low = 0.0: must be a finite number >= 1e-300 kg, as Mass.mass is"),
-    ("Slider", {"changes": "Mass.mass"}, ".entity = null: must be an entity with a Mass for Mass.mass"),
-]
-
-
-@pytest.mark.parametrize(("kind", "fields", "words"), REFUSED)
-def test_a_bad_instrument_is_refused_in_one_line(
-    kind: str, fields: dict[str, object], words: str, tmp_path: Path
-) -> None:
-    path = tmp_path / "bad.json"
-    path.write_text(scene_with(one={kind: fields}), "utf-8")
-    with pytest.raises(SceneError, match=re.escape(f'bad.json: entity "one": {kind}{words}')) as caught:
-        load_scene(path)
-    assert "\n" not in str(caught.value)
-
-
-def test_what_refers_to_nothing_in_a_world_is_not_shown_and_not_saved(tmp_path: Path) -> None:
-    world = empty_world()
-    ball = circle(world, (0, 0), name="ball")
-    graph = world.spawn(Graph())
-    world.spawn(GraphLine(99, "x", ball))
-    world.spawn(GraphLine(graph, "x", 77))
-    world.spawn(Meter("speed", ball))
-    desk = sized((1280, 720), world)
-    desk.frames(5)
-    assert [line.key for line in graph_of(desk).lines] == [(77, "x")]
-    save_scene(world, tmp_path / "some.json")
-    again: World = load_scene(tmp_path / "some.json")
-    assert len(again.batch(Graph).entities) == len(again.batch(Meter).entities) == 1
-    assert not len(again.batch(GraphLine).entities)
-
-
-def test_instruments_change_no_motion() -> None:
-    plain, measured = load_scene("newtons_cradle"), load_scene("newtons_cradle")
-    measured.spawn(Graph())
-    measured.spawn(Meter("total energy"))
-    for world in (plain, measured):
-        world.run(seconds=1.0)
-    places = [world.table(Transform)["position"][world.batch(Transform).rows] for world in (plain, measured)]
-    assert np.array_equal(places[0], places[1])

@@ -113,7 +113,7 @@ class GraphPanels:
     def _build_head(self, ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         """Build the choice of lines, and what can be done with them."""
         number, measuring = graph.number, window.measuring
-        row = ButtonRow(ui)
+        row = ButtonRow()
         row.next("Lines")
         if ui.button(f"Lines of graph {number}", "What is plotted", shown="Lines"):
             imgui.open_popup("lines")

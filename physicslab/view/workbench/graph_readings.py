@@ -38,7 +38,7 @@ class ButtonRow:
         How much of the width is used up in the present row [px].
     """
 
-    def __init__(self, ui: Ui) -> None:
+    def __init__(self) -> None:
         self._room = imgui.get_content_region_avail().x
         self.used = 0.0
 
@@ -148,7 +148,7 @@ def build_cursors(ui: Ui, window: Window, graph: GraphShown) -> None:
     marks = window.measuring.marks
     if marks == [None, None]:
         return
-    row = ButtonRow(ui)
+    row = ButtonRow()
     for name, time in zip("AB", marks, strict=True):
         if time is None:
             words = "Shift-click: B" if name == "B" else "Click: A"

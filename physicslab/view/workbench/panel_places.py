@@ -76,7 +76,9 @@ def _small(area: Rect, text: float, gap: int, small: Sequence[Small], *, downwar
         if downwards:
             found |= _stacked(room, gap, stack, corner)
         else:
-            found |= _in_rows((area[0], room[1], area[2], room[3]), gap, stack, corner)
+            below = 0 if "top" in corner else round(_SCALE_BAR * text)
+            rows = (area[0], area[1], area[2], max(area[3] - below, 1))
+            found |= _in_rows(rows, gap, stack, corner)
     return found
 
 
