@@ -91,6 +91,14 @@ def test_where_one_graph_has_room_the_others_are_bars_that_open() -> None:
     assert "Plot of graph 1" in desk.ui.places and "Open graph 2" in desk.ui.places
 
 
+def test_where_no_graph_has_room_a_button_makes_some() -> None:
+    desk = sized((640, 480), empty_world(), 1.75)
+    tap(desk, "m")
+    assert not any("Plot" in label for label in desk.ui.places)
+    click(desk, "Show graphs")
+    assert "Plot of graph 1" in desk.ui.places and not desk.window.figures
+
+
 def test_no_more_points_are_drawn_than_can_be_seen(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     ball = ball_of(desk)
     tap(desk, "m")

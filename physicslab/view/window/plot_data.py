@@ -41,10 +41,13 @@ def line_to_show(x: Numbers, y: Numbers, low: float, high: float, width: int) ->
     begins = np.ones(len(x), np.bool_)  # where a pixel begins, or a gap, or the line after one
     begins[1:] = (pixel[1:] != pixel[:-1]) | (missing[1:] != missing[:-1])
     first = np.flatnonzero(begins)
-    last = np.append(first[1:], len(x)) - 1
+    kept = begins.copy()
+    kept[np.append(first[1:], len(x)) - 1] = True
     group = np.cumsum(begins) - 1
-    order = np.lexsort((y, group))  # within each pixel from the lowest to the highest
-    kept = np.unique(np.concatenate((first, last, order[first], order[last])))
+    for extreme in (np.minimum.reduceat(y, first), np.maximum.reduceat(y, first)):
+        found = np.flatnonzero(y == extreme[group])
+        pixels = group[found]
+        kept[found[np.append(True, pixels[1:] != pixels[:-1])[: len(found)]]] = True  # the first of equals
     return x[kept], y[kept]
 
 

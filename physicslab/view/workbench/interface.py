@@ -196,7 +196,7 @@ class Interface:
                 ui.gap(0.3)
                 ui.rule()
                 self._build_counts(ui, figures)
-        self._scene_panels.build(ui, world, window, layout.visible)
+        self._scene_panels.build(ui, world, window, self.visible)
         if window.recovery.offered:
             self._offer_height = build_recovery(ui, window, layout.visible)
         if window.error_study.shown:

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 from physicslab.view.canvas.canvas import Rect
 
-__all__ = ["Small", "is_bar", "places"]
+__all__ = ["Small", "bar_at_top", "has_room", "is_bar", "places"]
 
 _GRAPH = (27.0, 20.0)
 """Width and height that a graph has where there is room, in heights of the text."""
 _LEAST = (12.0, 14.0)
 """Width and height below which nothing can be read in a graph: only one is then open."""
+_ROOM = (13.0, 12.0)
+"""Width and height below which there is no room for any panel, in heights of the text."""
 _BAR = 2.2
 """Height of the bar by which the others are opened, in heights of the text."""
 _GAP = 0.6
@@ -65,6 +67,17 @@ def places(
     ]
     best = 1 if scales[1] > scales[0] else 0  # beside each other only where graphs gain by it
     return ways[best] | found[best]
+
+
+def has_room(area: Rect, text: float) -> bool:
+    """Whether panels can be put there at all."""
+    return area[2] >= _ROOM[0] * text and area[3] >= _ROOM[1] * text
+
+
+def bar_at_top(area: Rect, text: float) -> Rect:
+    """Return where a bar is that stands for all panels [px]."""
+    gap = round(_GAP * text)
+    return area[0] + gap, area[1] + gap, max(area[2] - 2 * gap, 1), round(_BAR * text)
 
 
 def _small(area: Rect, text: float, gap: int, small: Sequence[Small], *, downwards: bool) -> dict[int, Rect]:

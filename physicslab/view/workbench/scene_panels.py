@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 
 import pygame
+from imgui_bundle import imgui
 
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.controls import measuring_actions
@@ -13,7 +14,7 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_panel import GraphPanels, owner_of
 from physicslab.view.workbench.meter_panel import MeterPanels
-from physicslab.view.workbench.panel_places import places
+from physicslab.view.workbench.panel_places import bar_at_top, has_room, places
 from physicslab.view.workbench.slider_panel import SliderPanels
 from physicslab.world import World
 
@@ -32,6 +33,9 @@ class ScenePanels:
         """Build all that the scene has, within a part of the window."""
         measuring = window.measuring
         if not measuring.is_shown:
+            return
+        if not has_room(area, ui.size):
+            _build_bar(ui, window, bar_at_top(area, ui.size))
             return
         small = [*self._meters.sizes(ui, world, window), *self._sliders.sizes(ui, window)]
         found = places(area, ui.size, self._graphs.free(measuring.graphs), small, measuring.active)
@@ -54,3 +58,12 @@ class ScenePanels:
         content = io.BytesIO()
         pygame.image.save(picture, content, "graph.png")
         measuring_actions.save_picture(window.edits.world, window, graph, content.getvalue())
+
+
+def _build_bar(ui: Ui, window: Window, place: Rect) -> None:
+    """Build a button that makes room where the panel at the right leaves none, as in a small window."""
+    with ui.panel("bar of panels", place, padded=False, rounded=True):
+        tip = "There is no room for graphs here: this hides the panel at the right (I brings it back)"
+        size = imgui.get_content_region_avail()
+        if ui.button("Show graphs", tip, shown="Graphs", size=(size.x, size.y), enabled=window.figures):
+            window.figures = False
