@@ -10,7 +10,7 @@ from imgui_bundle import implot
 
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.history import Spawn
-from physicslab.view.window.measuring import GraphShown
+from physicslab.view.window.dashboard import GraphShown
 
 CTRL, SHIFT = pygame.KMOD_LCTRL, pygame.KMOD_LSHIFT
 
@@ -24,7 +24,7 @@ def ball_of(desk: Desk, name: str = "ball", y: float = 0.0) -> int:
 
 
 def graph_of(desk: Desk) -> GraphShown:
-    (graph,) = desk.window.measuring.graphs
+    (graph,) = desk.window.dashboard.graphs
     return graph
 
 

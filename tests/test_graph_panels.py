@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pygame
 import pytest
-from desk import SETTLED, Desk, click, empty_world, sized, tap
+from desk import SETTLED, Desk, button_down, button_up, click, empty_world, point, sized, tap
 from plotting import CTRL, SHIFT, ball_of, drawn_lines, graph_of, pause
 
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.controls import measuring_actions
+from physicslab.view.controls import dashboard_actions
 from physicslab.view.window.plot_data import line_to_show
 
 
@@ -46,10 +46,10 @@ def test_a_full_disk_is_one_plain_sentence(desk: Desk, monkeypatch: pytest.Monke
     def full(path: Path, content: bytes) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(measuring_actions, "create_file", full)
+    monkeypatch.setattr(dashboard_actions, "create_file", full)
     ball_of(desk)
     tap(desk, "m")
-    desk.window.deeds.append(measuring_actions.save_table(graph_of(desk)))
+    desk.window.deeds.append(dashboard_actions.save_table(graph_of(desk)))
     desk.frames(2)
     assert desk.window.notice == "The graph could not be saved: No space left on device"
 
@@ -99,11 +99,28 @@ def test_where_no_graph_has_room_a_button_makes_some() -> None:
     assert "Plot of graph 1" in desk.ui.places and not desk.window.figures
 
 
+def test_a_graph_that_was_moved_by_hand_stays_where_it_was_put(desk: Desk) -> None:
+    ball_of(desk)
+    tap(desk, "m")
+    plot = desk.ui.places["Plot of graph 1"]
+    start = plot[0], desk.ui.places["Lines of graph 1"][1] - 20  # on its title
+    point(desk, start)
+    button_down(desk, start)
+    for n in range(1, 5):
+        point(desk, (start[0] - 60 * n, start[1] + 30 * n), (1, 0, 0))
+    button_up(desk, (start[0] - 240, start[1] + 120))
+    moved = desk.ui.places["Plot of graph 1"]
+    assert np.allclose(moved[:2], (plot[0] - 240, plot[1] + 120), atol=2)
+    tap(desk, "m")
+    assert desk.ui.places["Plot of graph 1"] == moved
+    assert np.allclose(desk.ui.places["Plot of graph 2"][:2], plot[:2], atol=2)
+
+
 def test_no_more_points_are_drawn_than_can_be_seen(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     ball = ball_of(desk)
     tap(desk, "m")
     pause(desk)
-    record, count = desk.window.measuring.record, 20_000
+    record, count = desk.window.dashboard.record, 20_000
     for n in range(count):
         record.add(100.0 + n / 60.0, n, {(ball, name): float(np.sin(n)) for name in ("x", "y", "speed")})
     drawn = drawn_lines(monkeypatch)

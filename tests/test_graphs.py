@@ -12,7 +12,7 @@ from physicslab.components import Graph, GraphLine
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.history import SetField
 from physicslab.prefabs import circle
-from physicslab.view.controls import actions, file_actions, measuring_actions
+from physicslab.view.controls import actions, dashboard_actions, file_actions
 
 
 @pytest.fixture
@@ -28,7 +28,7 @@ def test_m_plots_what_is_selected_and_it_is_written_as_a_table(desk: Desk, tmp_p
     ball = ball_of(desk)
     tap(desk, "m")
     desk.frames(31)
-    record = desk.window.measuring.record
+    record = desk.window.dashboard.record
     x, times = record.values((ball, "x")), record.times
     assert len(times) >= 30 and np.allclose(np.diff(x), 2.0 * np.diff(times), atol=1e-9)
     assert [line.key for line in graph_of(desk).lines] == [(ball, "x"), (ball, "y"), (ball, "speed")]
@@ -47,7 +47,7 @@ def test_a_graph_is_taken_back_and_put_back_with_its_samples(desk: Desk) -> None
     tap(desk, "m")
     assert "Graph 1: ball" in desk.ui.words
     tap(desk, "z", CTRL)
-    assert not desk.window.measuring.graphs and "Graph 1: ball" not in desk.ui.words
+    assert not desk.window.dashboard.graphs and "Graph 1: ball" not in desk.ui.words
     tap(desk, "y", CTRL)
     assert [line.key[0] for line in graph_of(desk).lines] == [ball] * 3
     assert desk.window.edits.history.entries[-1].words == "plotted ball"
@@ -56,11 +56,11 @@ def test_a_graph_is_taken_back_and_put_back_with_its_samples(desk: Desk) -> None
 def test_closing_a_graph_is_an_edit_that_takes_its_lines_with_it(desk: Desk) -> None:
     ball_of(desk)
     tap(desk, "m")
-    desk.window.deeds.append(measuring_actions.close_graph(graph_of(desk)))
+    desk.window.deeds.append(dashboard_actions.close_graph(graph_of(desk)))
     desk.frames(2)
     assert not desk.world.batch(Graph).entities.size and not desk.world.batch(GraphLine).entities.size
     pause(desk)
-    while desk.window.measuring.graphs == ():
+    while desk.window.dashboard.graphs == ():
         tap(desk, "z", CTRL)
     assert len(graph_of(desk).lines) == 3
 
@@ -69,13 +69,13 @@ def test_a_saved_scene_opens_with_its_panels(desk: Desk, tmp_path: Path) -> None
     ball_of(desk)
     for key, held in (("m", 0), ("m", SHIFT), ("m", CTRL), ("m", CTRL | SHIFT)):
         tap(desk, key, held)
-    assert len(desk.window.measuring.graphs) == 2 and "Slider 1" in desk.ui.places
+    assert len(desk.window.dashboard.graphs) == 2 and "Slider 1" in desk.ui.places
     path = tmp_path / "with-graphs.json"
     save_scene(desk.world, path)
     file_actions.open_scene(desk.window, path)
     desk.frames(SETTLED)
     ball = desk.world.entity("ball")
-    graphs = desk.window.measuring.graphs
+    graphs = desk.window.dashboard.graphs
     assert [graph.across for graph in graphs] == [None, (ball, "x")]
     assert [line.key for line in graphs[1].lines] == [(ball, "velocity x")]
     assert "ball: speed" in desk.ui.words and "ball: mass" in desk.ui.words
@@ -123,7 +123,7 @@ def test_a_phase_plot_is_velocity_against_place(monkeypatch: pytest.MonkeyPatch)
     tap(desk, "m", SHIFT)
     desk.frames(200)
     x, v = drawn[-1]
-    record, bob = desk.window.measuring.record, desk.world.entity("bob")
+    record, bob = desk.window.dashboard.record, desk.world.entity("bob")
     shown = ~np.isnan(record.values((bob, "velocity x")))
     assert len(x) > 150 and np.array_equal(v, record.values((bob, "velocity x"))[shown][: len(v)])
     assert np.array_equal(x, record.values((bob, "x"))[shown][: len(x)]) and (np.diff(x) < 0).any()
@@ -136,14 +136,14 @@ def test_nothing_is_recorded_again_in_the_past_and_later_samples_stay_until_then
     ball = ball_of(desk)
     tap(desk, "m")
     desk.frames(20)
-    before = desk.window.measuring.record.times.copy()
+    before = desk.window.dashboard.record.times.copy()
     actions.seek(desk.window, desk.window.edits.history.step_count - 8)
     desk.frames(3)
-    assert np.array_equal(desk.window.measuring.record.times, before)
+    assert np.array_equal(desk.window.dashboard.record.times, before)
     desk.window.edits.do(SetField(ball, "Velocity", "linear", (1.0, 0.0)))
     desk.window.pace.paused = False
     desk.frames(3)
-    times = desk.window.measuring.record.times
+    times = desk.window.dashboard.record.times
     assert times[-1] < before[-1] and (np.diff(times) > 0).all()
 
 
@@ -167,7 +167,7 @@ def test_cursors_are_set_by_clicks_and_give_slope_and_area_in_words(desk: Desk) 
     desk.frames(60)
     pause(desk)
     click_at(desk, in_plot(desk, 0.25))
-    a, b = desk.window.measuring.marks
+    a, b = desk.window.dashboard.marks
     assert a is not None and b is None and "Shift-click: B" in desk.ui.words
     pygame.key.set_mods(SHIFT)
     try:
@@ -175,18 +175,18 @@ def test_cursors_are_set_by_clicks_and_give_slope_and_area_in_words(desk: Desk) 
         click_at(desk, in_plot(desk, 0.75))
     finally:
         pygame.key.set_mods(0)
-    a, b = desk.window.measuring.marks
+    a, b = desk.window.dashboard.marks
     assert a is not None and b is not None and b > a
     words = " / ".join(desk.ui.words)
     assert "slope 2.000 m/s, area" in words and "slope 0 m/s², area" in words
-    x = desk.window.measuring.record.values((graph_of(desk).lines[0].key[0], "x"))
-    times = desk.window.measuring.record.times
+    x = desk.window.dashboard.record.values((graph_of(desk).lines[0].key[0], "x"))
+    times = desk.window.dashboard.record.times
     between = (times >= a - 1e-9) & (times <= b + 1e-9)
     area = np.trapezoid(x[between], times[between])
     assert f"area {area:.4f} m s" in words or f"area {area:.3f} m s" in words
     assert f"mark at {a:.3f} s" in words and f"mark at {b:.3f} s" in words
     click(desk, "Clear cursors in graph 1")
-    assert desk.window.measuring.marks == [None, None]
+    assert desk.window.dashboard.marks == [None, None]
 
 
 def test_the_moment_under_the_cursor_is_that_of_every_graph_and_of_the_time_line(desk: Desk) -> None:
@@ -198,12 +198,12 @@ def test_the_moment_under_the_cursor_is_that_of_every_graph_and_of_the_time_line
     pause(desk)
     point(desk, in_plot(desk, 0.5, number=2))
     desk.frames(SETTLED)
-    pointed = desk.window.measuring.pointed
+    pointed = desk.window.dashboard.pointed
     assert pointed is not None and 0.1 < pointed < desk.world.time - 0.1
     assert desk.ui.words.count(f"t {pointed:.3f} s") == 2 and f"mark at {pointed:.3f} s" in desk.ui.words
     point(desk, (300, 300))
     desk.frames(SETTLED)
-    assert desk.window.measuring.pointed is None
+    assert desk.window.dashboard.pointed is None
 
 
 def test_a_double_click_goes_to_the_moment_and_so_does_the_button_of_a_cursor(desk: Desk) -> None:
@@ -216,7 +216,7 @@ def test_a_double_click_goes_to_the_moment_and_so_does_the_button_of_a_cursor(de
     for kind in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
         pygame.event.post(pygame.Event(kind, button=1, pos=place, touch=False))
         desk.frames(2)
-    mark = desk.window.measuring.marks[0]
+    mark = desk.window.dashboard.marks[0]
     assert mark is not None and desk.world.time == pytest.approx(mark)
     assert desk.window.edits.history.step_count < desk.window.edits.history.steps_range[1]
     actions.seek(desk.window, 10**9)
@@ -231,12 +231,12 @@ def test_axes_follow_until_they_are_moved_by_hand(desk: Desk) -> None:
     tap(desk, "m")
     desk.frames(30)
     point(desk, in_plot(desk, 0.5))
-    assert not desk.window.measuring.free_axes
+    assert not desk.window.dashboard.free_axes
     pygame.event.post(pygame.Event(pygame.MOUSEWHEEL, x=0, y=1, precise_x=0.0, precise_y=1.0))
     desk.frames(SETTLED)
-    assert desk.window.measuring.free_axes == {graph_of(desk).entity}
+    assert desk.window.dashboard.free_axes == {graph_of(desk).entity}
     click(desk, "Follow graph 1")
-    assert not desk.window.measuring.free_axes
+    assert not desk.window.dashboard.free_axes
 
 
 # Bodies that are gone, and other runs
@@ -250,7 +250,7 @@ def test_the_line_of_a_removed_body_stays_and_says_so(desk: Desk, tmp_path: Path
     desk.window.selection.take(ball)
     tap(desk, "delete")
     desk.frames(20)
-    record = desk.window.measuring.record
+    record = desk.window.dashboard.record
     assert np.isfinite(record.values((ball, "x"))).sum() > 10 and np.isnan(record.values((ball, "x"))[-1])
     words = " / ".join(desk.ui.words)
     assert "Graph 1: ball" in words and "(gone)" in words and "The body is gone" in words
@@ -271,13 +271,13 @@ def test_the_run_before_is_a_ghost_and_the_graph_comes_along(desk: Desk) -> None
     tap(desk, "m")
     desk.frames(30)
     for _ in range(2):
-        before = desk.window.measuring.record
+        before = desk.window.dashboard.record
         tap(desk, "r", CTRL)
         desk.frames(10)
         assert len(desk.world.batch(Graph).entities) == own + 1
         bob = desk.world.entity("bob")
-        ghost = desk.window.measuring.before.values((bob, "x"))
-        assert len(ghost) == len(before) and desk.window.measuring.record is not before
+        ghost = desk.window.dashboard.before.values((bob, "x"))
+        assert len(ghost) == len(before) and desk.window.dashboard.record is not before
         assert "x before" in desk.ui.words
         desk.frames(20)
 
@@ -287,4 +287,4 @@ def test_another_scene_has_no_graph_of_the_last_one(desk: Desk) -> None:
     tap(desk, "m")
     file_actions.open_scene(desk.window, "drop")
     desk.frames(SETTLED)
-    assert not desk.window.measuring.graphs and not len(desk.window.measuring.before)
+    assert not desk.window.dashboard.graphs and not len(desk.window.dashboard.before)

@@ -9,7 +9,7 @@ from plotting import CTRL, SHIFT, ball_of, pause
 
 from physicslab.components import Mass, Meter, Slider, Spring, Transform
 from physicslab.history import AddComponent, History
-from physicslab.view.controls import measuring_actions
+from physicslab.view.controls import dashboard_actions
 
 
 @pytest.fixture
@@ -25,11 +25,11 @@ def test_a_meter_shows_a_number_with_its_unit_and_can_show_another(desk: Desk) -
     click(desk, "Menu of meter 1")
     click(desk, "ball")
     click(desk, "kinetic energy [J]")
-    assert desk.window.measuring.meters[0].key[1] == "kinetic energy"
+    assert desk.window.dashboard.meters[0].key[1] == "kinetic energy"
     click(desk, "Menu of meter 1")
     click(desk, "Place")
     click(desk, "Top left")
-    assert desk.window.measuring.meters[0].corner == "top left"
+    assert desk.window.dashboard.meters[0].corner == "top left"
     click(desk, "Menu of meter 1")
     click(desk, "Remove the meter")
     assert not desk.world.batch(Meter).entities.size
@@ -100,10 +100,10 @@ def test_the_slider_of_a_spring_is_for_its_stiffness_and_can_be_given_other_ends
     desk.window.edits.do(AddComponent(ball, Spring(anchor_b=(0, 2), stiffness=40.0)))
     pause(desk)
     tap(desk, "m", CTRL | SHIFT)
-    slider = desk.window.measuring.sliders[0]
+    slider = desk.window.dashboard.sliders[0]
     assert (slider.changes, slider.low, slider.high) == ("Spring.stiffness", 0.0, 200.0)
     desk.window.deeds.append(
-        measuring_actions.changing(slider.entity, Slider("Spring.stiffness", ball, 10.0, 50.0))
+        dashboard_actions.changing(slider.entity, Slider("Spring.stiffness", ball, 10.0, 50.0))
     )
     desk.frames(SETTLED)
     slide(desk, "Slider 1", 1.0)

@@ -86,7 +86,7 @@ class Sandbox:
         if self._shown is not None:
             self._shown(world)
         window = self.window
-        window.measuring.begin(world, before, is_new=history is None)
+        window.dashboard.begin(world, before, is_new=history is None)
         if history is None:
             world.install(*self._systems)
         world.synchronise()  # what was done to make it is no edit

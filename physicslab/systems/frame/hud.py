@@ -67,7 +67,7 @@ class HudSystem(System):
         self._meter.note(world, elapsed)
         self._watch.follow(world)
         self._refresh(world)
-        window.measuring.follow(world, window.edits.history)
+        window.dashboard.follow(world, window.edits.history)
         if window.error_study.poll():
             self._announce(window.error_study.failure)
         taken = self._draw_over_world(world)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from physicslab.components import Trail
-from physicslab.view.controls import actions, file_actions, measuring_actions
+from physicslab.view.controls import actions, dashboard_actions, file_actions
 from physicslab.view.controls.spawning import spawn_pendulum
 from physicslab.view.controls.tools import (
     HAND,
@@ -150,13 +150,13 @@ CONTROLS: tuple[Control, ...] = (
     Control("A", "keep scales", "a", actions.toggle_scales, minor=True, group="show",
             state=lambda _, window: window.overlays.keeps_scales,
             tip="Arrows keep their scale, so that two pictures can be compared"),
-    Control("M", "graph", "m", measuring_actions.plot_selected, minor=True, group="measure",
+    Control("M", "graph", "m", dashboard_actions.plot_selected, minor=True, group="measure",
             tip="A graph against time: of what is selected, or of the energies"),
-    Control("Shift+M", "phase plot", "shift+m", measuring_actions.plot_phase, minor=True, group="measure",
+    Control("Shift+M", "phase plot", "shift+m", dashboard_actions.plot_phase, minor=True, group="measure",
             tip="The velocity of what is selected against its place"),
-    Control("Ctrl+M", "meter", "ctrl+m", measuring_actions.add_meter, minor=True, group="measure",
+    Control("Ctrl+M", "meter", "ctrl+m", dashboard_actions.add_meter, minor=True, group="measure",
             tip="A number in large figures: the speed of what is selected, or the total energy"),
-    Control("Ctrl+Shift+M", "slider", "ctrl+shift+m", measuring_actions.add_slider, minor=True,
+    Control("Ctrl+Shift+M", "slider", "ctrl+shift+m", dashboard_actions.add_slider, minor=True,
             group="measure",
             tip="Changes a number by sliding: of what is selected, or gravity"),
     Control("I", "panel at the right", "i", actions.toggle_figures, minor=True, group="show",

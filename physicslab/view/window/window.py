@@ -18,10 +18,10 @@ from physicslab.view.panels.error_study import ErrorStudy
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
+from physicslab.view.window.dashboard import Dashboard
 from physicslab.view.window.edits import Edits
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
-from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
@@ -132,7 +132,7 @@ class Window:
         The components of each body that was copied.
     band : Vector2, optional
         Where the rectangle begins that is being drawn around bodies [m].
-    measuring : Measuring
+    dashboard : Dashboard
         The graphs, meters and sliders that are shown, and what is recorded for them.
     deeds : list of callables
         What panels were clicked for; it is done when the next frame begins.
@@ -191,7 +191,7 @@ class Window:
         self.naming_refused = ""
         self.copied: list[list[Component]] = []
         self.band: Vector2 | None = None
-        self.measuring = Measuring()
+        self.dashboard = Dashboard()
         self.deeds: list[Callable[[World, Window], None]] = []
         self.source: str | Path | None = None
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)

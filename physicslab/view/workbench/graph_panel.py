@@ -9,9 +9,9 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.components import Graph
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
-from physicslab.view.controls import measuring_actions
+from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.measuring import GraphShown
+from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_plot import GraphPlot
@@ -54,7 +54,7 @@ class GraphPanels:
         """Build every graph at its place."""
         pointed: float | None = None
         bar: Rect | None = None
-        for graph in window.measuring.graphs:
+        for graph in window.dashboard.graphs:
             place = places.get(graph.entity)
             if place is not None and is_bar(place, ui.size):
                 self._put.pop(graph.entity, None)
@@ -64,16 +64,21 @@ class GraphPanels:
             pointed = hovered if hovered is not None else pointed
         if bar is not None:
             _build_bar(ui, window, bar, places)
-        window.measuring.pointed = pointed
+        window.dashboard.pointed = pointed
 
     def _build(
         self, ui: Ui, world: World, window: Window, graph: GraphShown, place: Rect | None
     ) -> float | None:
         """Build one; return the time under the cursor, if the cursor is in its plot."""
         entity = graph.entity
-        if place is not None and place != self._put.get(entity):
-            imgui.set_next_window_pos(ImVec2(place[0], place[1]))
-            imgui.set_next_window_size(ImVec2(place[2], place[3]))
+        title = _title(graph, window)
+        known = imgui.internal.find_window_by_name(f"{title}{owner_of(entity)}")
+        if known is not None and known.dock_id:
+            self._moved.add(entity)  # a place would take it out of where it is docked
+        elif place is not None and place != self._put.get(entity):
+            when = imgui.Cond_.first_use_ever if known is None else imgui.Cond_.always
+            imgui.set_next_window_pos(ImVec2(place[0], place[1]), when)
+            imgui.set_next_window_size(ImVec2(place[2], place[3]), when)
             self._put[entity] = place
         room = imgui.get_io().display_size
         least = ImVec2(
@@ -82,7 +87,6 @@ class GraphPanels:
         if place is not None:
             least = ImVec2(min(least.x, place[2]), min(least.y, place[3]))
         imgui.set_next_window_size_constraints(least, room)
-        title = _title(graph, window)
         shown, stays = imgui.begin(f"{title}{owner_of(entity)}", True, _FLAGS)
         ui.words.append(title)
         hovered: float | None = None
@@ -96,7 +100,7 @@ class GraphPanels:
             hovered = plot.build(ui, world, window, graph, height)
         imgui.end()
         if not stays:
-            window.deeds.append(measuring_actions.close_graph(graph))
+            window.deeds.append(dashboard_actions.close_graph(graph))
         return hovered
 
     def _follow_hand(self, entity: int) -> None:
@@ -107,12 +111,12 @@ class GraphPanels:
         if held and put is not None and (place.x, place.y, size.x, size.y) != tuple(map(float, put)):
             self._moved.add(entity)
         x, y = max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0)
-        if (x, y) != (place.x, place.y):
+        if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
             imgui.set_window_pos(ImVec2(x, y))
 
     def _build_head(self, ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         """Build the choice of lines, and what can be done with them."""
-        number, measuring = graph.number, window.measuring
+        number, dashboard = graph.number, window.dashboard
         row = ButtonRow()
         row.next("Lines")
         if ui.button(f"Lines of graph {number}", "What is plotted", shown="Lines"):
@@ -123,10 +127,10 @@ class GraphPanels:
         if ui.button(f"Across graph {number}", tip, shown=f"Across: {across}"):
             imgui.open_popup("across")
         row.next("Follow")
-        follows = graph.entity not in measuring.free_axes
+        follows = graph.entity not in dashboard.free_axes
         tip = "Let the axes follow what is recorded; scroll or drag in the plot to look closer"
         if ui.button(f"Follow graph {number}", tip, shown="Follow", on=follows):
-            measuring.free_axes ^= {graph.entity}
+            dashboard.free_axes ^= {graph.entity}
         row.next("More")
         if ui.button(f"More of graph {number}", "Cursors, files, place", shown="More"):
             imgui.open_popup("more")
@@ -138,19 +142,19 @@ class GraphPanels:
     @staticmethod
     def _build_lines(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         def choose(key: Key) -> None:
-            window.deeds.append(measuring_actions.toggle_line(graph, key))
+            window.deeds.append(dashboard_actions.toggle_line(graph, key))
 
         gone = [line.key for line in graph.lines if line.key[0] not in (None, *world.entity_index.row_of)]
         for key in gone:
-            if ui.item(f"Remove: {window.measuring.label(key[0])}: {key[1]}", on=True):
+            if ui.item(f"Remove: {window.dashboard.label(key[0])}: {key[1]}", on=True):
                 choose(key)
         build_quantities(ui, world, window, [line.key for line in graph.lines], choose)
 
     @staticmethod
     def _build_across(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         def choose(key: Key | None) -> None:
-            window.measuring.free_axes.discard(graph.entity)
-            window.deeds.append(measuring_actions.put_across(graph, key))
+            window.dashboard.free_axes.discard(graph.entity)
+            window.deeds.append(dashboard_actions.put_across(graph, key))
 
         if ui.item("Time [s]", on=graph.across is None):
             choose(None)
@@ -158,22 +162,22 @@ class GraphPanels:
 
     @staticmethod
     def _build_more(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
-        measuring = window.measuring
+        dashboard = window.dashboard
         for n, name in enumerate("AB"):
             if ui.item(f"Cursor {name} at the moment shown"):
-                measuring.marks[n] = world.time
-        if ui.item("No cursors", enabled=measuring.marks != [None, None]):
-            measuring.marks[:] = [None, None]
+                dashboard.marks[n] = world.time
+        if ui.item("No cursors", enabled=dashboard.marks != [None, None]):
+            dashboard.marks[:] = [None, None]
         ui.rule()
         if ui.item("Save as a table (CSV)"):
-            window.deeds.append(measuring_actions.save_table(graph))
+            window.deeds.append(dashboard_actions.save_table(graph))
         if ui.item("Save as a picture (PNG)"):
-            measuring.picture_of = graph.entity
+            dashboard.picture_of = graph.entity
         ui.rule()
         other = "left" if graph.side == "right" else "right"
         if ui.item(f"Put it at the {other}"):
             body, name = graph.across or (None, "time")
-            window.deeds.append(measuring_actions.changing(graph.entity, Graph(name, body, other)))
+            window.deeds.append(dashboard_actions.changing(graph.entity, Graph(name, body, other)))
 
 
 def _build_bar(ui: Ui, window: Window, bar: Rect, places: dict[int, Rect]) -> None:
@@ -182,7 +186,7 @@ def _build_bar(ui: Ui, window: Window, bar: Rect, places: dict[int, Rect]) -> No
         height = imgui.get_content_region_avail().y
         imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + 0.5 * (height - imgui.get_text_line_height()))
         ui.faint("Graph", wrapped=False)
-        for graph in window.measuring.graphs:
+        for graph in window.dashboard.graphs:
             place = places.get(graph.entity)
             if place is None:
                 continue
@@ -192,7 +196,7 @@ def _build_bar(ui: Ui, window: Window, bar: Rect, places: dict[int, Rect]) -> No
             if ui.button(
                 f"Open graph {graph.number}", tip, shown=f"{graph.number}", on=is_open, size=(0, height)
             ):
-                window.measuring.active = graph.entity
+                window.dashboard.active = graph.entity
 
 
 def _popup(name: str, build: Callable[[], None]) -> None:
@@ -204,6 +208,6 @@ def _popup(name: str, build: Callable[[], None]) -> None:
 def _title(graph: GraphShown, window: Window) -> str:
     """Return what a graph shows, in a few words."""
     bodies = list(dict.fromkeys(key[0] for key in graph.keys))
-    names = [window.measuring.label(body) for body in bodies]
+    names = [window.dashboard.label(body) for body in bodies]
     subject = ", ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} others"
     return drawable(f"Graph {graph.number}: {subject}" if names else f"Graph {graph.number}")

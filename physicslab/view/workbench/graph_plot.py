@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from physicslab.components.quantities import QUANTITIES
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.canvas.units import written_unit
-from physicslab.view.controls import measuring_actions
+from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.measuring import GraphShown
+from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.plot_data import line_to_show, path_to_show, range_to_show, unbroken
 from physicslab.view.window.record import Key, Record
 from physicslab.view.window.window import Window
@@ -51,7 +51,7 @@ class GraphPlot:
         implot.get_style().plot_padding = ImVec2(0.3 * ui.size, 0.3 * ui.size)
         flags = implot.Flags_.no_title | implot.Flags_.no_menus | implot.Flags_.no_legend
         flags |= implot.Flags_.no_mouse_text
-        follows = graph.entity not in window.measuring.free_axes
+        follows = graph.entity not in window.dashboard.free_axes
         implot.get_input_map().fit = -1  # a double click goes to the moment
         if not implot.begin_plot(f"##plot {graph.entity}", ImVec2(-1.0, height), flags):
             return None
@@ -100,7 +100,7 @@ class GraphPlot:
         self, axis: implot.ImAxis_, graph: GraphShown, window: Window, keys: list[Key]
     ) -> tuple[float, float]:
         """Return what an axis is to show of this run and of the one before."""
-        records = window.measuring.record, window.measuring.before
+        records = window.dashboard.record, window.dashboard.before
         state = *(record.version for record in records), *map(id, records), graph.across, tuple(keys)
         kept = self._ranges.get(axis)
         if kept is not None and kept[0] == state:
@@ -120,14 +120,14 @@ class GraphPlot:
     def _draw_lines(
         self, ui: Ui, graph: GraphShown, window: Window, axis_of: dict[Key, implot.ImAxis_]
     ) -> None:
-        measuring = window.measuring
+        dashboard = window.dashboard
         keys = set(graph.keys)
         self._drawn = {kept: drawn for kept, drawn in self._drawn.items() if kept[1] in keys}
         for n, line in enumerate(graph.lines):
             implot.set_axes(implot.ImAxis_.x1, axis_of[line.key])
             colour, name = colour_of(ui, n), line_name(graph, line.key, window)
             ui.words.append(name)
-            for is_before, record in ((True, measuring.before), (False, measuring.record)):
+            for is_before, record in ((True, dashboard.before), (False, dashboard.record)):
                 x, y = self._points(graph, line.key, record, is_before=is_before)
                 label = f"{name}##{line.entity}{' before' if is_before else ''}"
                 look = _look(colour, _FAINT if is_before else 1.0, _WEIGHT * ui.size)
@@ -162,10 +162,10 @@ class GraphPlot:
         self, ui: Ui, world: World, window: Window, graph: GraphShown, axis_of: dict[Key, implot.ImAxis_]
     ) -> None:
         """Mark the moment shown, that under the cursor, and the cursors A and B."""
-        measuring, theme = window.measuring, ui.theme
+        dashboard, theme = window.dashboard, ui.theme
         moments: list[tuple[str, float | None, Colour]] = [
-            ("", world.time, theme.faint), ("", measuring.pointed, theme.accent),
-            ("A", measuring.marks[0], theme.accent), ("B", measuring.marks[1], theme.accent),
+            ("", world.time, theme.faint), ("", dashboard.pointed, theme.accent),
+            ("A", dashboard.marks[0], theme.accent), ("B", dashboard.marks[1], theme.accent),
         ]  # fmt: skip
         for n, (name, time, colour) in enumerate(moments):
             if time is None:
@@ -177,7 +177,7 @@ class GraphPlot:
                 spec.flags = implot.ItemFlags_.no_fit
                 implot.plot_inf_lines(f"##moment {n}", np.array([time]), spec)
             else:
-                place = _draw_point(graph, measuring.record, time, colour, axis_of, f"{name}##{n}")
+                place = _draw_point(graph, dashboard.record, time, colour, axis_of, f"{name}##{n}")
             if name and place is not None:
                 _draw_letter(ui, place, name, colour)
 
@@ -185,21 +185,21 @@ class GraphPlot:
         """Set cursors by clicks, go to a moment by a double click; return the time under the cursor."""
         if not implot.is_plot_hovered():
             return None
-        measuring, io = window.measuring, imgui.get_io()
+        dashboard, io = window.dashboard, imgui.get_io()
         place = io.mouse_pos.x, io.mouse_pos.y
         if io.mouse_wheel or imgui.is_mouse_dragging(0, _CLICK):
-            measuring.free_axes.add(graph.entity)
-        time = self._time_at_mouse(measuring.record, graph)
+            dashboard.free_axes.add(graph.entity)
+        time = self._time_at_mouse(dashboard.record, graph)
         if time is None:
             return None
         if imgui.is_mouse_clicked(0):
             self._pressed = place
         if imgui.is_mouse_double_clicked(0):
-            window.deeds.append(measuring_actions.go_to(time))
+            window.deeds.append(dashboard_actions.go_to(time))
             self._pressed = None
         if imgui.is_mouse_released(0) and self._pressed is not None:
             if math.dist(place, self._pressed) <= _CLICK:
-                measuring.marks[1 if pygame.key.get_mods() & pygame.KMOD_SHIFT else 0] = time
+                dashboard.marks[1 if pygame.key.get_mods() & pygame.KMOD_SHIFT else 0] = time
             self._pressed = None
         return time
 

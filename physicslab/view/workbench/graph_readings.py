@@ -11,10 +11,10 @@ from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.canvas.units import product, quotient, written_unit
-from physicslab.view.controls import measuring_actions
+from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.measuring import GraphShown
+from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.plot_data import area_between, slope_between
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
@@ -61,7 +61,7 @@ def colour_of(ui: Ui, number: int) -> Colour:
 def line_name(graph: GraphShown, key: Key, window: Window) -> str:
     """Return what a line is called: its body too, where lines are of several."""
     alone = len({other[0] for other in graph.keys}) == 1
-    return drawable(key[1] if alone else f"{window.measuring.label(key[0])}: {key[1]}")
+    return drawable(key[1] if alone else f"{window.dashboard.label(key[0])}: {key[1]}")
 
 
 def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
@@ -69,8 +69,8 @@ def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> N
 
     Between two cursors its slope and its area are written in place of the value.
     """
-    measuring = window.measuring
-    row = measuring.record.nearest(world.time if measuring.pointed is None else measuring.pointed)
+    dashboard = window.dashboard
+    row = dashboard.record.nearest(world.time if dashboard.pointed is None else dashboard.pointed)
     if not graph.lines:
         ui.faint("Lines: choose what is plotted")
         return
@@ -97,7 +97,7 @@ def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> N
 
 def build_moment(ui: Ui, world: World, window: Window, used: float) -> None:
     """Write of which moment the values are, at the right of a row of which so much is used [px]."""
-    record, pointed = window.measuring.record, window.measuring.pointed
+    record, pointed = window.dashboard.record, window.dashboard.pointed
     row = record.nearest(world.time if pointed is None else pointed)
     if row is None:
         return
@@ -135,17 +135,17 @@ def _entry(ui: Ui, colour: Colour | None, name: str, value: str, *, wrapped: boo
 
 def _value(world: World, window: Window, key: Key, row: int | None) -> str:
     """Return a value in words: why there is none, where there is none."""
-    value = np.nan if row is None else float(window.measuring.record.values(key)[row])
+    value = np.nan if row is None else float(window.dashboard.record.values(key)[row])
     why = why_undefined(world, key[1], key[0])
     if np.isnan(value):
         return f"({why})" if why else "not recorded"
-    words, record = quantity(value, unit_of(key)), window.measuring.record
+    words, record = quantity(value, unit_of(key)), window.dashboard.record
     return f"{words} (gone)" if why == "gone" and world.time >= record.times[-1] else words
 
 
 def build_cursors(ui: Ui, window: Window, graph: GraphShown) -> None:
     """Build a button for each cursor that is set, which goes to its moment; and what clears them."""
-    marks = window.measuring.marks
+    marks = window.dashboard.marks
     if marks == [None, None]:
         return
     row = ButtonRow()
@@ -159,7 +159,7 @@ def build_cursors(ui: Ui, window: Window, graph: GraphShown) -> None:
         words = f"{name} {time:.3f} s"
         row.next(words)
         if ui.button(f"Go to {name} in graph {graph.number}", "Pause, and go to this moment", shown=words):
-            window.deeds.append(measuring_actions.go_to(time))
+            window.deeds.append(dashboard_actions.go_to(time))
     row.next("Clear")
     if ui.button(f"Clear cursors in graph {graph.number}", "Take the cursors A and B away", shown="Clear"):
         marks[:] = [None, None]
@@ -173,8 +173,8 @@ def build_cursors(ui: Ui, window: Window, graph: GraphShown) -> None:
 
 def _spans(window: Window, graph: GraphShown) -> dict[Key, str] | None:
     """Return of each line its slope and its area between the cursors in words; ``None`` without two."""
-    measuring = window.measuring
-    record, (a, b) = measuring.record, measuring.marks
+    dashboard = window.dashboard
+    record, (a, b) = dashboard.record, dashboard.marks
     first, last = (None if time is None else record.nearest(time) for time in (a, b))
     if first is None or last is None:
         return None

@@ -16,7 +16,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Group, RemoveComponent, SetField
 from physicslab.view.canvas.quantities import quantity, vector_quantity
 from physicslab.view.controls.actions import duplicate_selected
-from physicslab.view.controls.measuring_actions import plot_selected
+from physicslab.view.controls.dashboard_actions import plot_selected
 from physicslab.view.controls.tools import remove_selected
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.placing import refused_change

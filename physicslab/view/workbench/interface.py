@@ -159,7 +159,7 @@ class Interface:
             window.recovery.offered,
             window.figures,
             window.level,
-            window.measuring.state,
+            window.dashboard.state,
         )
         time = pace.paused, pace.speed, world.time if pace.paused else None
         return (

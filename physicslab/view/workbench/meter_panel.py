@@ -11,9 +11,9 @@ from physicslab.components.meter import CORNERS
 from physicslab.diagnostics.quantities import Reading, why_undefined
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.controls import measuring_actions
+from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.measuring import MeterShown
+from physicslab.view.window.dashboard import MeterShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.panel_places import Small
@@ -38,10 +38,10 @@ class MeterPanels:
     def sizes(self, ui: Ui, world: World, window: Window) -> list[Small]:
         """Return how large each meter is."""
         found, reading = [], Reading(world)
-        shown = {meter.entity: _figures_of(reading, meter.key) for meter in window.measuring.meters}
+        shown = {meter.entity: _figures_of(reading, meter.key) for meter in window.dashboard.meters}
         known = {entity: self._figures.get(entity, _WIDEST) for entity in shown}
         self._figures = {entity: max(known[entity], shown[entity], key=len) for entity in shown}
-        for meter in window.measuring.meters:
+        for meter in window.dashboard.meters:
             imgui.push_font(ui.fonts.bold, _LARGE * ui.size)
             number = imgui.calc_text_size(self._figures[meter.entity]).x
             imgui.pop_font()
@@ -54,7 +54,7 @@ class MeterPanels:
     def build(ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
         """Build every meter at its place."""
         reading = Reading(world)
-        for meter in window.measuring.meters:
+        for meter in window.dashboard.meters:
             with ui.panel(f"meter {meter.entity}", places[meter.entity], rounded=True):
                 if build_title(ui, named_key(meter.key, window), f"Meter {meter.number}"):
                     imgui.open_popup("meter")
@@ -88,13 +88,13 @@ def _build_number(ui: Ui, words: str, unit: str) -> None:
 def _build_menu(ui: Ui, world: World, window: Window, meter: MeterShown) -> None:
     def choose(key: Key) -> None:
         made = Meter(key[1], key[0], meter.corner)
-        window.deeds.append(measuring_actions.changing(meter.entity, made))
+        window.deeds.append(dashboard_actions.changing(meter.entity, made))
 
     build_quantities(ui, world, window, [meter.key], choose)
     ui.rule()
     corner = build_corners(ui, meter.corner, CORNERS)
     if corner is not None:
         made = Meter(meter.key[1], meter.key[0], corner)
-        window.deeds.append(measuring_actions.changing(meter.entity, made))
+        window.deeds.append(dashboard_actions.changing(meter.entity, made))
     if ui.item("Remove the meter"):
-        window.deeds.append(measuring_actions.removing(meter.entity))
+        window.deeds.append(dashboard_actions.removing(meter.entity))

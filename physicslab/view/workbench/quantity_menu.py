@@ -25,7 +25,7 @@ def unit_of(key: Key) -> str:
 
 def named_key(key: Key, window: Window) -> str:
     """Return what a quantity is called, with its body: ``"ball: speed"``."""
-    return f"{window.measuring.label(key[0])}: {key[1]}"
+    return f"{window.dashboard.label(key[0])}: {key[1]}"
 
 
 def build_quantities(

@@ -8,7 +8,7 @@ import pygame
 from imgui_bundle import imgui
 
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.controls import measuring_actions
+from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
@@ -31,14 +31,14 @@ class ScenePanels:
 
     def build(self, ui: Ui, world: World, window: Window, area: Rect) -> None:
         """Build all that the scene has, within a part of the window."""
-        measuring = window.measuring
-        if not measuring.is_shown:
+        dashboard = window.dashboard
+        if not dashboard.is_shown:
             return
         if not has_room(area, ui.size):
             _build_bar(ui, window, bar_at_top(area, ui.size))
             return
         small = [*self._meters.sizes(ui, world, window), *self._sliders.sizes(ui, window)]
-        found = places(area, ui.size, self._graphs.free(measuring.graphs), small, measuring.active)
+        found = places(area, ui.size, self._graphs.free(dashboard.graphs), small, dashboard.active)
         self._meters.build(ui, world, window, found)
         self._sliders.build(ui, world, window, found)
         self._graphs.build(ui, world, window, found)
@@ -50,14 +50,14 @@ class ScenePanels:
     @staticmethod
     def save_picture(window: Window, toolkit: Toolkit) -> None:
         """Write the picture of a graph that is wanted, as it is painted."""
-        entity, window.measuring.picture_of = window.measuring.picture_of, None
-        graph = next((one for one in window.measuring.graphs if one.entity == entity), None)
+        entity, window.dashboard.picture_of = window.dashboard.picture_of, None
+        graph = next((one for one in window.dashboard.graphs if one.entity == entity), None)
         picture = None if graph is None else toolkit.picture_of(owner_of(graph.entity))
         if graph is None or picture is None:
             return
         content = io.BytesIO()
         pygame.image.save(picture, content, "graph.png")
-        measuring_actions.save_picture(window.edits.world, window, graph, content.getvalue())
+        dashboard_actions.save_picture(window.edits.world, window, graph, content.getvalue())
 
 
 def _build_bar(ui: Ui, window: Window, place: Rect) -> None:

@@ -13,9 +13,9 @@ from physicslab.ecs.fields import Field
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.units import written_unit
-from physicslab.view.controls import measuring_actions
+from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.measuring import SliderShown
+from physicslab.view.window.dashboard import SliderShown
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.number_field import NumberFields, shown_number
 from physicslab.view.workbench.panel_places import Small
@@ -45,12 +45,12 @@ class SliderPanels:
         width, height = (_WIDTH + _VALUE) * ui.size, imgui.get_frame_height()
         return [
             Small(one.entity, one.corner, size_of(ui, _title(one, window), width, height))
-            for one in window.measuring.sliders
+            for one in window.dashboard.sliders
         ]
 
     def build(self, ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
         """Build every slider at its place."""
-        for slider in window.measuring.sliders:
+        for slider in window.dashboard.sliders:
             with ui.panel(f"slider {slider.entity}", places[slider.entity], rounded=True):
                 if build_title(ui, _title(slider, window), f"Slider {slider.number}"):
                     imgui.open_popup("slider")
@@ -76,10 +76,10 @@ class SliderPanels:
             moved = _rounded(moved, slider)
             self._held[slider.entity] = moved
             if moved != value:
-                window.deeds.append(measuring_actions.slide(slider, moved, held=True))
+                window.deeds.append(dashboard_actions.slide(slider, moved, held=True))
         if not held and slider.entity in self._held:
             last = self._held.pop(slider.entity)
-            window.deeds.append(measuring_actions.slide(slider, last, held=False))
+            window.deeds.append(dashboard_actions.slide(slider, last, held=False))
 
     def _build_menu(self, ui: Ui, world: World, window: Window, slider: SliderShown) -> None:
         given: dict[str, Any] = {
@@ -89,7 +89,7 @@ class SliderPanels:
 
         def change(**changes: Any) -> None:
             made = Slider(**(given | changes))  # raises where they are refused
-            window.deeds.append(measuring_actions.changing(slider.entity, made))
+            window.deeds.append(dashboard_actions.changing(slider.entity, made))
 
         for name, words in _ENDS:
             spec = next(spec for spec in Slider.FIELDS if spec.name == name)
@@ -105,7 +105,7 @@ class SliderPanels:
         if corner is not None:
             change(corner=corner)
         if ui.item("Remove the slider"):
-            window.deeds.append(measuring_actions.removing(slider.entity))
+            window.deeds.append(dashboard_actions.removing(slider.entity))
 
     def _build_end(self, ui: Ui, slider: SliderShown, spec: Field, value: float, change: Any) -> str:
         key = f"{spec.name} of slider {slider.number}"
@@ -120,7 +120,7 @@ class SliderPanels:
 def _build_choice(ui: Ui, world: World, window: Window, slider: SliderShown, change: Any) -> None:
     """Build the menus of what a slider can change: of its entity, of what is selected, and gravity."""
     if ui.item("Gravity", on=slider.changes == GRAVITY):
-        low, high = measuring_actions.usual_range(world, GRAVITY, None)
+        low, high = dashboard_actions.usual_range(world, GRAVITY, None)
         change(changes=GRAVITY, entity=None, low=low, high=high)
     there = world.entity_index.row_of
     chosen = [entity for entity in (slider.target, *window.selection.entities) if entity in there]
@@ -134,14 +134,14 @@ def _build_choice(ui: Ui, world: World, window: Window, slider: SliderShown, cha
                     continue
                 is_now = (slider.changes, slider.target) == (name, entity)
                 if ui.item(f"{_plain(name)} [{written_unit(spec.unit) or 'no unit'}]", on=is_now):
-                    low, high = measuring_actions.usual_range(world, name, entity)
+                    low, high = dashboard_actions.usual_range(world, name, entity)
                     change(changes=name, entity=entity, low=low, high=high)
 
 
 def _title(slider: SliderShown, window: Window) -> str:
     if slider.changes == GRAVITY:
         return "Gravity"
-    return f"{window.measuring.label(slider.target)}: {_plain(slider.changes)}"
+    return f"{window.dashboard.label(slider.target)}: {_plain(slider.changes)}"
 
 
 def _plain(changes: str) -> str:

@@ -90,11 +90,11 @@ def _build_line(ui: Ui, world: World, window: Window) -> None:
 
 def _mark_moments(ui: Ui, window: Window, first: int, last: int) -> None:
     """Mark the moment under the cursor in a graph, and the cursors A and B, over the time line."""
-    measuring = window.measuring
+    dashboard = window.dashboard
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
     half = 0.5 * imgui.get_style().grab_min_size
-    for time in (measuring.pointed, *measuring.marks):
-        step = None if time is None else measuring.step_at(time)
+    for time in (dashboard.pointed, *dashboard.marks):
+        step = None if time is None else dashboard.step_at(time)
         if step is None or not first <= step <= last:
             continue
         x = low.x + half + (high.x - low.x - 2.0 * half) * (step - first) / (last - first)

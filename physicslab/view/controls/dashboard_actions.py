@@ -18,7 +18,7 @@ from physicslab.files.replace import create_file
 from physicslab.history import AddComponent, Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.view.controls import actions
 from physicslab.view.controls.scene_files import new_paths
-from physicslab.view.window.measuring import GraphShown, SliderShown
+from physicslab.view.window.dashboard import GraphShown, SliderShown
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.record import Key
 from physicslab.view.window.table import table_of
@@ -119,7 +119,7 @@ def toggle_line(graph: GraphShown, key: Key) -> Deed:
     def deed(world: World, window: Window) -> None:
         body, name = key
         there = [Remove(line.entity) for line in graph.lines if line.key == key]
-        what = name if body is None else f"{name} of {window.measuring.label(body)}"
+        what = name if body is None else f"{name} of {window.dashboard.label(body)}"
         if there:
             _do(world, window, graph.entity, Group(f"took {what} from a graph", there))
         else:
@@ -202,7 +202,7 @@ def go_to(time: float) -> Deed:
     """Return what pauses and goes to the recorded moment nearest to a time [s]."""
 
     def deed(world: World, window: Window) -> None:
-        step = window.measuring.step_at(time)
+        step = window.dashboard.step_at(time)
         if step is not None:
             actions.seek(window, step)
 
@@ -213,7 +213,7 @@ def save_table(graph: GraphShown) -> Deed:
     """Return what writes a graph to a new file where the program was started, as a table."""
 
     def deed(world: World, window: Window) -> None:
-        content = table_of(graph, window.measuring).encode("utf-8")
+        content = table_of(graph, window.dashboard).encode("utf-8")
         _write(window, world, graph, ".csv", content)
 
     return deed

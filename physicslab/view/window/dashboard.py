@@ -14,9 +14,9 @@ from physicslab.history import History
 from physicslab.view.window.record import Key, Record
 from physicslab.world import World
 
-__all__ = ["INSTRUMENTS", "GraphShown", "LineShown", "Measuring", "MeterShown", "SliderShown", "carried_over"]
+__all__ = ["PANELS", "Dashboard", "GraphShown", "LineShown", "MeterShown", "SliderShown", "carried_over"]
 
-INSTRUMENTS: tuple[type[Component], ...] = (Graph, GraphLine, Meter, Slider)
+PANELS: tuple[type[Component], ...] = (Graph, GraphLine, Meter, Slider)
 """The components that are panels of the window."""
 
 
@@ -80,7 +80,7 @@ class SliderShown:
     corner: str
 
 
-class Measuring:
+class Dashboard:
     """What is measured in a window: the instruments of its world, and the samples for their lines.
 
     Samples belong to the window: they are in no scene file, and no undo takes them back. While the place of
@@ -221,7 +221,7 @@ def _all[C: Component](world: World, kind: type[C]) -> list[tuple[int, C]]:
 
 
 def _instruments(world: World) -> list[int]:
-    return sorted({int(entity) for kind in INSTRUMENTS for entity in world.batch(kind).entities})
+    return sorted({int(entity) for kind in PANELS for entity in world.batch(kind).entities})
 
 
 def carried_over(before: World, world: World, instruments: Iterable[int]) -> dict[int, int]:
@@ -234,7 +234,7 @@ def carried_over(before: World, world: World, instruments: Iterable[int]) -> dic
     """
     known = _same_entities(before, world)
     for entity in instruments:
-        parts = [before.component(entity, kind) for kind in INSTRUMENTS if before.has(entity, kind)]
+        parts = [before.component(entity, kind) for kind in PANELS if before.has(entity, kind)]
         made = [_referring(part, known) for part in parts]
         if all(part is not None for part in made):
             known[entity] = world.spawn(*made)
