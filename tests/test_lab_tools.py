@@ -1,4 +1,4 @@
-"""The tools of the lab in the window: handles, ruler, time line, undo, free-body diagrams."""
+"""The tools of the lab in the window: handles, time line, undo, free-body diagrams."""
 
 import math
 from pathlib import Path
@@ -201,17 +201,6 @@ def test_a_body_that_was_in_the_hand_is_let_go_where_another_future_begins() -> 
     desk.key("space")
     desk.frames(3)
     assert not world.has(ball, Held)
-
-
-# Ruler
-
-
-def test_the_ruler_shows_length_and_angle(desk: Desk) -> None:
-    desk.window.tool = "ruler"
-    drag(desk, Vector2(-1.0, 0.0), Vector2(2.0, 1.5))
-    assert not desk.world.entities()
-    length = float(desk.window.ruler.words.split()[0])
-    assert length == pytest.approx(math.hypot(3.0, 1.5), rel=0.01) and "26.6°" in desk.window.ruler.words
 
 
 # Free-body diagrams

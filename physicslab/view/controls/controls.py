@@ -5,8 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from physicslab.components import Trail
+from physicslab.components import Strobe, Trail
 from physicslab.view.controls import actions, dashboard_actions, file_actions
+from physicslab.view.controls.measuring import (
+    GATE,
+    NOTE,
+    PROTRACTOR,
+    RULER,
+    measuring,
+    toggle_stopwatch,
+    toggle_strobes,
+)
 from physicslab.view.controls.spawning import spawn_pendulum
 from physicslab.view.controls.tools import (
     HAND,
@@ -147,6 +156,19 @@ CONTROLS: tuple[Control, ...] = (
             state=lambda world, _: bool(world.table(Trail).handles), tip="Trails behind moving bodies"),
     Control("E", "impulses", "e", actions.toggle_impulses, group="show",
             state=lambda _, window: window.overlays.impulses, tip="Impulses at contacts, with numbers"),
+    Control("D", "ruler", "d", measuring(RULER, actions.choose_tool), minor=True, group="measure", tool=RULER,
+            tip="A length: drag; or between two bodies that are selected"),
+    Control("Y", "angle", "y", measuring(PROTRACTOR, actions.choose_tool), minor=True, group="measure",
+            tool=PROTRACTOR, tip="An angle: drag one arm from the vertex, then click the end of the other"),
+    Control("J", "gate", "j", measuring(GATE, actions.choose_tool), minor=True, group="measure", tool=GATE,
+            tip="A light gate: notes when bodies cross it"),
+    Control("W", "note", "w", measuring(NOTE, actions.choose_tool), minor=True, group="measure", tool=NOTE,
+            tip="Words at a place of the world"),
+    Control("C", "stopwatch", "c", toggle_stopwatch, minor=True, group="measure",
+            state=lambda _, window: window.shows_stopwatch, tip="The times between crossings of gates"),
+    Control("X", "strobe of all that moves", "x", toggle_strobes, minor=True, group="measure",
+            state=lambda world, _: bool(world.table(Strobe).handles),
+            tip="Pictures of all that moves, ten a second"),
     Control("A", "keep scales", "a", actions.toggle_scales, minor=True, group="show",
             state=lambda _, window: window.overlays.keeps_scales,
             tip="Arrows keep their scale, so that two pictures can be compared"),

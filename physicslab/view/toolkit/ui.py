@@ -306,15 +306,27 @@ class Ui:
         self.note(label)
         return float(new) if moved else None
 
-    def field(self, label: str, text: str, width: float = -1.0, *, wrong: bool = False) -> tuple[str, bool]:
-        """Draw a field for text, and return its text and whether it is edited."""
+    def field(
+        self, label: str, text: str, width: float = -1.0, *, wrong: bool = False, lines: int = 1
+    ) -> tuple[str, bool]:
+        """Draw a field for text, and return its text and whether it is edited.
+
+        In one of several lines Enter ends the writing, and Ctrl+Enter the line.
+        """
         self.words.append(text)
         if wrong:
             imgui.push_style_color(imgui.Col_.border, packed(self.theme.error))
             imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.5)
         imgui.set_next_item_width(width)
         flags = imgui.InputTextFlags_
-        _, text = imgui.input_text(f"##{label}", text, flags.auto_select_all)
+        if lines == 1:
+            _, text = imgui.input_text(f"##{label}", text, flags.auto_select_all)
+        else:
+            room = ImVec2(
+                width, lines * imgui.get_text_line_height() + 2.0 * imgui.get_style().frame_padding.y
+            )
+            several = flags.auto_select_all | flags.ctrl_enter_for_new_line
+            _, text = imgui.input_text_multiline(f"##{label}", text, room, several)
         self.note(label)
         if wrong:
             imgui.pop_style_var()

@@ -22,10 +22,10 @@ from physicslab.view.window.dashboard import Dashboard
 from physicslab.view.window.edits import Edits
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
+from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
-from physicslab.view.window.ruler import Ruler
 from physicslab.view.window.selection import Selection
 from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
@@ -122,8 +122,10 @@ class Window:
         Those of what is selected.
     recipe : Recipe
         What the next body is like.
-    ruler : Ruler
-        What lengths are measured with.
+    measuring : Measuring
+        What is being placed, dragged or written of instruments.
+    shows_stopwatch : bool
+        Whether the times between crossings of gates are shown.
     naming : str, optional
         The name that is being written for the scene to be saved under; ``None`` while none is.
     naming_refused : str
@@ -186,7 +188,7 @@ class Window:
         self.handles = Handles()
         self.edits: Edits
         self.recipe = Recipe()
-        self.ruler = Ruler()
+        self.measuring, self.shows_stopwatch = Measuring(), False
         self.naming: str | None = None
         self.naming_refused = ""
         self.copied: list[list[Component]] = []

@@ -19,12 +19,14 @@ from physicslab.view.workbench.history_panel import build_history
 from physicslab.view.workbench.inspector import Inspector
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
+from physicslab.view.workbench.note_panel import NotePanel
 from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
 from physicslab.view.workbench.save_panel import build_save
 from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.settings_panel import SettingsPanel
+from physicslab.view.workbench.stopwatch_panel import build_stopwatch
 from physicslab.view.workbench.transport import build_transport
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
 from physicslab.world import World
@@ -63,6 +65,7 @@ class Interface:
         self._gallery = Gallery()
         self._recipe = RecipePanel()
         self._scene_panels = ScenePanels()
+        self._note = NotePanel()
         self._next = 0.0
         self._offer_height = 0  # of the offer to restore a session [px]
         self._seen: tuple[object, ...] = ()
@@ -109,6 +112,7 @@ class Interface:
             or self._settings.finish()
             or self._recipe.finish()
             or self._scene_panels.finish()
+            or self._note.finish(self._window)
         )
 
     def build(
@@ -160,6 +164,8 @@ class Interface:
             window.figures,
             window.level,
             window.dashboard.state,
+            window.shows_stopwatch,
+            window.measuring.writing is None,
         )
         time = pace.paused, pace.speed, world.time if pace.paused else None
         return (
@@ -198,6 +204,10 @@ class Interface:
                 ui.rule()
                 self._build_counts(ui, figures)
         self._scene_panels.build(ui, world, window, self.visible)
+        if window.shows_stopwatch:
+            build_stopwatch(ui, world, window, layout.visible)
+        if window.measuring.writing is not None:
+            self._note.build(ui, window)
         if window.recovery.offered:
             self._offer_height = build_recovery(ui, window, layout.visible)
         build_error_plot(ui, window)
