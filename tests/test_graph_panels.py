@@ -117,6 +117,18 @@ def test_a_graph_that_was_moved_by_hand_stays_where_it_was_put(desk: Desk) -> No
     assert desk.ui.places["Plot of graph 2"][1] == plot[1]
 
 
+def test_the_stopwatch_opens_beside_a_graph(desk: Desk) -> None:
+    tap(desk, "m")
+    graph = next(
+        rect for rect in desk.sandbox.interface.covered if rect[0] > 500 and rect[1] > 25 and rect[3] < 400
+    )
+    tap(desk, "c")
+    button = desk.ui.places["CSV of crossings"]
+    assert button[0] < graph[0] and desk.window.shows_stopwatch
+    stopwatch = next(rect for rect in desk.sandbox.interface.covered if overlap(rect, button))
+    assert not overlap(stopwatch, graph)
+
+
 def test_no_more_points_are_drawn_than_can_be_seen(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     ball = ball_of(desk)
     tap(desk, "m")
