@@ -46,7 +46,7 @@ class Pictures:
         self._pictures: dict[str, _Picture] = {}
         self._frame = self._texture_changes = 0
         self._shown: list[_Picture] = []
-        self._of: dict[str, list[_Picture]] = {}
+        self._of: dict[str, _Picture] = {}
         self.painted = 0
 
     def take(self, data: imgui.ImDrawData) -> None:
@@ -60,7 +60,7 @@ class Pictures:
             picture = self._picture(f"{n} {commands._owner_name}", commands, data)
             if picture is not None:
                 self._shown.append(picture)
-                self._of.setdefault(commands._owner_name, []).append(picture)
+                self._of[commands._owner_name] = picture
         old = [name for name, kept in self._pictures.items() if self._frame - kept.used > _UNUSED_FRAMES]
         for name in old:
             del self._pictures[name]
@@ -72,16 +72,12 @@ class Pictures:
 
     def of(self, ending: str, paper: pygame.Color) -> pygame.Surface | None:
         """Return the window whose name ends so as it is painted, on paper; ``None`` if there is none."""
-        name = next((name for name in self._of if name.endswith(ending)), None)
-        if name is None:
+        picture = next((one for name, one in self._of.items() if name.endswith(ending)), None)
+        if picture is None:
             return None
-        parts = self._of[name]
-        whole = parts[0].surface.get_rect(topleft=parts[0].corner)
-        surface = pygame.Surface(whole.size, 0, 32)
+        surface = pygame.Surface(picture.surface.get_size(), 0, 32)
         surface.fill(paper)
-        for part in parts:
-            place = part.corner[0] - whole.left, part.corner[1] - whole.top
-            surface.blit(part.surface, place, special_flags=pygame.BLEND_PREMULTIPLIED)
+        surface.blit(picture.surface, (0, 0), special_flags=pygame.BLEND_PREMULTIPLIED)
         return surface
 
     def forget(self) -> None:
