@@ -288,3 +288,14 @@ def test_another_scene_has_no_graph_of_the_last_one(desk: Desk) -> None:
     file_actions.open_scene(desk.window, "drop")
     desk.frames(SETTLED)
     assert not desk.window.dashboard.graphs and not len(desk.window.dashboard.before)
+
+
+@pytest.mark.parametrize("name", ["a##b", "###", "x%sy", "\U0001f600 ball", "very " * 30 + "long"])
+def test_any_name_can_be_plotted(desk: Desk, name: str) -> None:
+    ball = ball_of(desk, name)
+    for key, held in (("m", 0), ("m", SHIFT), ("m", CTRL), ("m", CTRL | SHIFT)):
+        tap(desk, key, held)
+    click(desk, "Lines of graph 1")
+    desk.frames(10)
+    assert (ball, "speed") in desk.window.dashboard.graphs[0].keys
+    assert desk.window.dashboard.record.times.size > 5

@@ -8,7 +8,6 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Graph
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import GraphShown
@@ -17,7 +16,7 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_plot import GraphPlot
 from physicslab.view.workbench.graph_readings import ButtonRow, build_cursors, build_moment, build_readings
 from physicslab.view.workbench.panel_places import is_bar
-from physicslab.view.workbench.quantity_menu import build_quantities
+from physicslab.view.workbench.quantity_menu import build_quantities, shown_name
 from physicslab.world import World
 
 __all__ = ["GraphPanels", "owner_of"]
@@ -146,7 +145,7 @@ class GraphPanels:
 
         gone = [line.key for line in graph.lines if line.key[0] not in (None, *world.entity_index.row_of)]
         for key in gone:
-            if ui.item(f"Remove: {window.dashboard.label(key[0])}: {key[1]}", on=True):
+            if ui.item(f"Remove: {shown_name(window.dashboard.label(key[0]))}: {key[1]}", on=True):
                 choose(key)
         build_quantities(ui, world, window, [line.key for line in graph.lines], choose)
 
@@ -210,4 +209,4 @@ def _title(graph: GraphShown, window: Window) -> str:
     bodies = list(dict.fromkeys(key[0] for key in graph.keys))
     names = [window.dashboard.label(body) for body in bodies]
     subject = ", ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} others"
-    return drawable(f"Graph {graph.number}: {subject}" if names else f"Graph {graph.number}")
+    return shown_name(f"Graph {graph.number}: {subject}" if names else f"Graph {graph.number}")

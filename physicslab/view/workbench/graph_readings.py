@@ -7,7 +7,6 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.components.quantities import QUANTITIES
 from physicslab.diagnostics.quantities import why_undefined
-from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.canvas.units import product, quotient, written_unit
@@ -18,7 +17,7 @@ from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.plot_data import area_between, slope_between
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
-from physicslab.view.workbench.quantity_menu import unit_of
+from physicslab.view.workbench.quantity_menu import shown_name, unit_of
 from physicslab.world import World
 
 __all__ = ["ButtonRow", "build_cursors", "build_moment", "build_readings", "colour_of", "line_name"]
@@ -61,7 +60,7 @@ def colour_of(ui: Ui, number: int) -> Colour:
 def line_name(graph: GraphShown, key: Key, window: Window) -> str:
     """Return what a line is called: its body too, where lines are of several."""
     alone = len({other[0] for other in graph.keys}) == 1
-    return drawable(key[1] if alone else f"{window.dashboard.label(key[0])}: {key[1]}")
+    return key[1] if alone else shown_name(f"{window.dashboard.label(key[0])}: {key[1]}")
 
 
 def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:

@@ -19,6 +19,7 @@ from physicslab.view.window.dashboard import SliderShown
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.number_field import NumberFields, shown_number
 from physicslab.view.workbench.panel_places import Small
+from physicslab.view.workbench.quantity_menu import shown_name
 from physicslab.view.workbench.small_panel import build_corners, build_title, size_of
 from physicslab.world import World
 
@@ -128,7 +129,7 @@ def _build_choice(ui: Ui, world: World, window: Window, slider: SliderShown, cha
     for entity in dict.fromkeys((*chosen, *moving)):
         if entity is None:
             continue
-        with ui.menu(world.label(entity)) as is_open:
+        with ui.menu(shown_name(world.label(entity))) as is_open:
             for name, (kind, spec) in SLIDER_FIELDS.items() if is_open else ():
                 if not world.has(entity, kind):
                     continue
