@@ -28,7 +28,8 @@ from physicslab.ecs.fields import Field
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Group, RemoveComponent, SetField
 from physicslab.view.canvas.quantities import quantity, vector_quantity
-from physicslab.view.controls.actions import duplicate_selected, plot_selected
+from physicslab.view.controls.actions import duplicate_selected
+from physicslab.view.controls.dashboard_actions import plot_selected
 from physicslab.view.controls.tools import remove_selected
 from physicslab.view.overlay.instruments import instrument_of, readings_of
 from physicslab.view.toolkit.ui import Ui
