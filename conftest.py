@@ -37,6 +37,12 @@ settings.register_profile("thorough", deadline=None, max_examples=2500)
 settings.load_profile("physicslab")
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Declare how long the longest test of the time machine is."""
+    words = "random commands that a slow test of tests/test_history.py makes and takes back (10,000)"
+    parser.addoption("--commands", metavar="N", type=int, default=10_000, help=words)
+
+
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
     """Return how many processes run the tests: one a processor for all of them, none of its own for a few.
 

@@ -106,7 +106,7 @@ class Driver:
 
     def check(self) -> None:
         """Compare the world with what it was at this place, or note it."""
-        here, found = self.history._place, state_hash(self.history.world)
+        here, found = self.history._places.here, state_hash(self.history.world)
         if here not in self.known:
             insort(self._places, here)
         assert self.known.setdefault(here, found) == found
@@ -131,18 +131,18 @@ class Driver:
         self.check()
 
     def run(self, steps: int) -> None:
-        self.forget(self.history._place)
+        self.forget(self.history._places.here)
         with suppress(Diverged):
             self.history.step(self.rng.choice((None, None, 0.01)), steps)
         self.check()
 
     def edit(self) -> None:
         """Make an edit, which may be refused."""
-        command, here = self._command(), self.history._place
+        command, here = self._command(), self.history._places.here
         try:
             self.history.do(command)
         except (ValueError, KeyError, TypeError):
-            assert self.history._place == here
+            assert self.history._places.here == here
         else:
             self.forget(here)
         self.check()
@@ -152,7 +152,7 @@ class Driver:
         movers = self._movers()
         if not movers:
             return
-        self.forget(self.history._place)
+        self.forget(self.history._places.here)
         history, entity = self.history, self.rng.choice(movers)
         history.write(AddComponent(entity, Held((0.05, 0.0))))
         for _ in range(3):
@@ -161,6 +161,23 @@ class Driver:
             history.step()
         history.write(RemoveComponent(entity, "Held"))
         self.check()
+
+    def anything(self) -> None:
+        """Do something that is chosen at random."""
+        kind = self.rng.random()
+        if kind < 0.45:
+            self.edit()
+        elif kind < 0.75:
+            self.run(self.rng.randint(1, 4))
+        elif kind < 0.85:
+            self.undo()
+        elif kind < 0.95:
+            self.redo()
+        elif kind < 0.98:
+            self.drag()
+        else:
+            self.seek()
+            self.history.seek(self.history.steps_range[1])  # else the line would stay short
 
     def refused(self) -> None:
         """Try what no world allows: nothing is recorded, and nothing changes."""
@@ -178,9 +195,9 @@ class Driver:
     def back_to_the_start(self) -> None:
         """Undo everything."""
         while self.history.undo() is not None:
-            if self.history._place in self.known:
-                assert self.known[self.history._place] == state_hash(self.history.world)
-        assert self.history._place == 0 and state_hash(self.history.world) == self.known[0]
+            if self.history._places.here in self.known:
+                assert self.known[self.history._places.here] == state_hash(self.history.world)
+        assert self.history._places.here == 0 and state_hash(self.history.world) == self.known[0]
 
     def _movers(self) -> list[int]:
         world = self.history.world

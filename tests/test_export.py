@@ -216,7 +216,7 @@ def test_where_nothing_moves_there_is_a_frame_all_the_same(bodies: list[dict[str
 # ---- what is refused ---------------------------------------------------------------------------------------
 
 REFUSED = [
-    (["drop"], "the following arguments are required: --html"),
+    (["drop"], "one of the arguments --html --gif --mp4 is required"),
     (["drp", "--html", "x.html"], 'drp: no such file, and no built-in scene; did you mean "drop"?'),
     (["drop", "--html", ""], '--html "": must be a path, or - for stdout'),
     (["drop", "--html", "none/x.html"], "--html none/x.html: cannot be written: there is no directory"),

@@ -2,7 +2,7 @@
 
 The large numbers of the design are tried with
 
-    pytest tests/test_history.py -m slow
+    pytest tests/test_history.py -m slow --commands 100000
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from physicslab.history import (
     Spawn,
 )
 from physicslab.history import (
-    history as history_module,
+    places as places_module,
 )
 from physicslab.lab.bench.catalogue import SCENES
 from physicslab.state.masses import Diverged
@@ -51,8 +51,8 @@ BALL = (Transform((0, 1)), Velocity((0.5, 0)), Mass(2.0), Shape("circle", radius
 @pytest.fixture
 def dense(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave a key frame at every place."""
-    monkeypatch.setattr(history_module, "_RARELY", 0.0)
-    monkeypatch.setattr(history_module, "_SEEKING", 0.0)
+    monkeypatch.setattr(places_module, "_RARELY", 0.0)
+    monkeypatch.setattr(places_module, "_SEEKING", 0.0)
 
 
 def ball(history: History, name: str = "ball") -> int:
@@ -372,7 +372,7 @@ def test_an_edit_in_the_past_begins_a_branch_that_can_be_gone_back_to() -> None:
     assert history.steps_range == (0, 30) and len(history.entries) == 1
     other = state_hash(history.world)
     (branch,) = history.branches
-    assert branch.step == 20 and branch.words == ("ran 0.8 s",)
+    assert branch.step == 20 and branch.words == ("ran 0.5 s",) and branch.seconds == pytest.approx(1 / 3)
     history.switch(branch)
     assert history.step_count == 20 and history.steps_range == (0, 50)
     history.seek(50)
@@ -381,6 +381,25 @@ def test_an_edit_in_the_past_begins_a_branch_that_can_be_gone_back_to() -> None:
     history.switch(back)
     history.seek(30)
     assert state_hash(history.world) == other and history.difference is None
+
+
+def test_branches_leave_where_the_line_that_is_gone_along_leaves_them() -> None:
+    history = History(box_of_discs(6))
+    history.step(steps=50)
+    history.seek(40)
+    history.do(SetField(1, "Mass", "mass", 3.0))  # the first branch is left after step 40
+    history.step(steps=6)
+    history.seek(20)
+    history.do(SetField(1, "Mass", "mass", 2.0))  # and now both after step 20
+    first, second = history.branches
+    assert (first.step, second.step) == (20, 20)
+    assert first.words == ("ran 0.5 s",)
+    assert second.words == ("ran 0.3 s", "mass of b0: 3 kg", "ran 0.1 s")
+    history.switch(second)
+    assert [branch.step for branch in history.branches] == [40, 20] and history.step_count == 20
+    with pytest.raises(ValueError, match="no branch"):
+        history.switch(second)
+    assert history.step_count == 20
 
 
 def test_few_branches_are_kept() -> None:
@@ -423,25 +442,45 @@ def test_a_refused_write_is_no_part_of_the_run() -> None:
     before = state_hash(history.world)
     with pytest.raises(KeyError):
         history.write(Group("", [SetField(1, "Velocity", "angular", 2.0), Remove(99)]))
-    assert state_hash(history.world) == before and history._line.ticks == 3
+    assert state_hash(history.world) == before and history._places.line.ticks == 3
 
 
 # ---- memory ------------------------------------------------------------------------------------------------
+
+
+def test_edits_leave_key_frames_along_the_line_as_runs_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(places_module, "_RARELY", 10.0)
+    monkeypatch.setattr(places_module, "_SMOOTH", 0.0)
+    history = History(box_of_discs(8))
+    for k in range(300):
+        history.do(SetField(1, "Mass", "mass", 1.0 + k % 3))
+    assert len(history._places._frames._along.places) > 3
 
 
 @pytest.mark.usefixtures("dense")
 def test_key_frames_keep_to_their_budget() -> None:
     history = History(box_of_discs(8, 20), budget=400_000)
     history.step(steps=300)
-    assert history.size <= 400_000 and history._frames.spacing > 1
+    assert history.size <= 400_000 and history._places._frames.spacing > 1
     expected = bits(history.world)
     for step in range(300, 150, -1):
         history.seek(step)
         assert history.size <= 400_000
     history.seek(300)
     assert bits(history.world) == expected
-    held = {id(part): part.nbytes for frame in history._frames._frames.values() for part in frame.arrays()}
+    places = history._places._frames
+    held = {id(a): a.nbytes for k in range(301) if k in places for a in places[k].arrays()}
     assert sum(held.values()) <= history.size
+
+
+def test_key_frames_nearby_are_as_many_after_thousands_of_commands() -> None:
+    driver, counts = Driver(box_of_discs(9, 4), 9, budget=2**20), list[int]()
+    for _ in range(4):
+        for _ in range(500):
+            driver.anything()
+        frames, ticks = driver.history._places._frames, driver.history._places.line.ticks
+        counts.append(sum(k in frames and not frames.is_along(k) for k in range(ticks + 1)))
+    assert min(counts) > 0.6 * max(counts)
 
 
 # ---- random commands ---------------------------------------------------------------------------------------
@@ -493,24 +532,10 @@ TestRandomCommands.settings = settings(max_examples=10, stateful_step_count=30, 
 
 
 @pytest.mark.slow
-def test_ten_thousand_random_commands_are_taken_back() -> None:
+def test_thousands_of_random_commands_are_taken_back(pytestconfig: pytest.Config) -> None:
     driver = Driver(box_of_discs(10, 4), 10, budget=64 * 2**20)
-    rng = random.Random(11)
-    for _ in range(10_000):
-        kind = rng.random()
-        if kind < 0.45:
-            driver.edit()
-        elif kind < 0.75:
-            driver.run(rng.randint(1, 4))
-        elif kind < 0.85:
-            driver.undo()
-        elif kind < 0.95:
-            driver.redo()
-        elif kind < 0.98:
-            driver.drag()
-        else:
-            driver.seek()
-            driver.history.seek(driver.history.steps_range[1])  # else the line would stay short
+    for _ in range(pytestconfig.getoption("commands")):
+        driver.anything()
     assert driver.history.size <= 64 * 2**20
     driver.back_to_the_start()
 

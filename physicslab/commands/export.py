@@ -1,12 +1,14 @@
-"""Export a run as one page of HTML that plays it in any browser, without a network."""
+"""Export a run as a page of HTML that plays it in any browser, or as a film (GIF, MP4)."""
 
 from __future__ import annotations
 
+import argparse
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from physicslab.commands.assignments import add_assignments, assign
 from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands.films import film_size, make_film
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.numbers import STEP_LIMIT, positive_duration
 from physicslab.commands.output import Output
@@ -24,6 +26,9 @@ __all__ = ["add_arguments", "execute"]
 
 _DEFAULT_S = 10.0
 _EVERY_S = 1.0 / 60.0
+_SIZE = (960, 540)
+"""Width and height of a film [px]."""
+_MAX_RATE = 1000.0
 _LIMIT = 2_000_000
 """Poses that a page may hold, bodies times instants: some 30 MB, which a browser unpacks within seconds."""
 
@@ -32,20 +37,49 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
     add = parser.add_argument
     add("scene", metavar="SCENE", help="a built-in scene's name, or a path")
-    add("--html", metavar="FILE", required=True, help="where the page goes (- for stdout)")
+    kind = parser.add_mutually_exclusive_group(required=True).add_argument
+    kind("--html", metavar="FILE", help="one page that plays the run without a network (- for stdout)")
+    kind("--gif", metavar="FILE", help="a film that any browser and any mail shows")
+    kind("--mp4", metavar="FILE", help="a film in H.264; needs ffmpeg, which the extra video brings")
     seconds = f"how long, in the scene's time ({_DEFAULT_S:g}); the last step may be shorter"
     add("--seconds", metavar="T", type=positive_duration, default=_DEFAULT_S, help=seconds)
-    spacing = "time between the instants that the page holds (1/60; every step where steps are longer)"
-    add("--every", metavar="S", type=positive_duration, default=_EVERY_S, help=spacing)
+    spacing = "time between two instants (1/60, in a film 1/30; every step where steps are longer)"
+    add("--every", metavar="S", type=positive_duration, help=spacing)
+    rate = "pictures of a film a second, where it is not to play as fast as the run (a GIF has 50 at most)"
+    add("--fps", metavar="N", type=_rate, help=rate)
+    add("--size", metavar="WxH", type=film_size, help="width and height of a film [px] (960x540)")
     add_assignments(parser)
     parser.epilog = (
         f"A page holds bodies times instants of at most {_LIMIT:,}, positions to 7 digits. A scene of 20 "
-        "bodies takes less than 300 kB for 10 s."
+        "bodies takes less than 300 kB for 10 s. A film with --every 0.02 --fps 25 plays at half the speed."
     )
 
 
+def _rate(text: str) -> float:
+    """Return how many pictures are shown a second."""
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = 0.0
+    if not 0.0 < rate <= _MAX_RATE:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a number > 0, at most {_MAX_RATE:g} a second")
+    return rate
+
+
 def execute(arguments: Namespace) -> int:
-    """Run the scene, and write the page."""
+    """Run the scene, and write the page or the film."""
+    for option in ("gif", "mp4"):
+        path = getattr(arguments, option)
+        if path is not None:
+            arguments.size = arguments.size or _SIZE
+            make_film(f"--{option}", path, arguments)
+            return 0
+    for option in ("fps", "size"):
+        if getattr(arguments, option) is not None:
+            raise CommandError(
+                f"--{option}: is for --gif and --mp4; a page has a size and a speed of its own"
+            )
+    arguments.every = arguments.every or _EVERY_S
     output = Output("--html", arguments.html)
     if arguments.scene not in SCENES and output.is_same_as(arguments.scene):
         raise CommandError(f"--html {output.path}: is the scene itself")

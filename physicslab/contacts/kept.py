@@ -29,6 +29,8 @@ _LISTED_AGAIN = (
     near_counts.WIDE_COUNT, near_counts.DISC_BLOCKS, near_counts.BOX_BLOCKS, near_counts.UNORDERED,
 )  # fmt: skip
 """The counts that are found when pairs are listed."""
+_SMALL = 1 << 15
+"""Size [bytes] up to which arrays are compared sooner by copies than by what numpy needs for a comparison."""
 _OF_ALL, _OF_SLEEPERS = ("rest", "slowest"), ("asleep", "forces", "kept", "known")
 
 
@@ -45,6 +47,8 @@ def _same(one: _Array, other: _Array) -> bool:
     """Whether two arrays have the same bits."""
     if one.shape != other.shape or not one.flags.c_contiguous:
         return False
+    if one.nbytes <= _SMALL:
+        return one.tobytes() == other.tobytes()
     word = np.uint64 if one.dtype.itemsize % 8 == 0 else np.uint8
     a, b = one.reshape(-1).view(word), other.reshape(-1).view(word)
     some = max(1, len(a) // 50)  # as a rule a few words show that they are not

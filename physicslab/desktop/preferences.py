@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
 from physicslab.files.replace import replace_file
 from physicslab.view.canvas.theme import THEMES
+from physicslab.view.window.recent import RecentFiles
 from physicslab.view.window.window import LEVELS, Window
 
 __all__ = ["load_preferences", "save_preferences"]
@@ -30,6 +32,9 @@ def load_preferences(path: Path, window: Window) -> None:
         window.text_scale = float(scale)
     if isinstance(level, str) and level in LEVELS:
         window.level = level
+    recent = found.get("recent")
+    if isinstance(recent, list):
+        window.recent = RecentFiles(Path(path) for path in recent if isinstance(path, str) and path)
 
 
 def save_preferences(path: Path, window: Window) -> None:
@@ -40,6 +45,9 @@ def save_preferences(path: Path, window: Window) -> None:
     OSError
         If it cannot be written.
     """
-    chosen = {"colours": window.theme.name, "text": window.text_scale, "level": window.level}
+    chosen = {
+        "colours": window.theme.name, "text": window.text_scale, "level": window.level,
+        "recent": [os.fspath(path) for path in window.recent.paths],
+    }  # fmt: skip
     path.parent.mkdir(parents=True, exist_ok=True)
     replace_file(path, (json.dumps(chosen, indent=1) + "\n").encode("utf-8"))

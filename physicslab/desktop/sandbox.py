@@ -79,6 +79,7 @@ class Sandbox:
 
         A world that was shown before comes with its history.
         """
+        self.window.filming.end()
         titles, self._titles = self._titles, (world.name, world.title)
         is_again = titles == self._titles and self.window.source == self._source
         before = self.world if is_again and world is not self.world else None
@@ -111,8 +112,10 @@ class Sandbox:
         if self.window.next_world is not None:
             self._go_on_to(self.window.next_world)
         self._advance()
+        self.window.filming.advance(self.history)
         self.window.selection.follow(self.world)  # in the past steps make and remove bodies
         self.world.frame(Stage.RENDER, elapsed)
+        self.window.filming.take(self.world, self.window.canvas, self.window.room())
         self.world.frame(Stage.HUD, elapsed)
         if self._autosave is not None:
             self._keep(self._autosave)
@@ -137,6 +140,7 @@ class Sandbox:
         window = self.window
         busy = (
             window.error_study.running
+            or window.filming.running
             or window.next_world is not None
             or bool(window.deeds)
             or window.closing

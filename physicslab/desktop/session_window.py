@@ -48,6 +48,8 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     session, abandoned = _begin_session(window)
     with suppress(OSError):
         load_preferences(session_folder().with_name(_PREFERENCES), window)
+    if isinstance(window.source, Path):
+        window.recent.note(window.source)
     autosave = None if session is None else Autosave(session.path)
     window.recovery = Recovery(abandoned, None if session is None else session.path)
     sandbox: Sandbox | None = None
@@ -68,6 +70,7 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
                 autosave.save(sandbox.world)
     finally:
         window.error_study.stop()
+        window.filming.end()
         window.recovery.leave()
         with suppress(OSError):  # a window without preferences is the usual one
             save_preferences(session_folder().with_name(_PREFERENCES), window)

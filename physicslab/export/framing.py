@@ -9,7 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["frame_run"]
+from physicslab.export.recording import RunRecorder
+from physicslab.world import World
+
+__all__ = ["extent_of_run", "frame_run"]
 
 type Boxes = NDArray[np.float64]
 """A float64 array (n, 4): xmin, ymin, xmax, ymax [m]."""
@@ -25,6 +28,13 @@ _MARGIN = 0.04
 """What is left free at the rim, in sizes of what is shown."""
 _EMPTY: Box = (-5.0, -3.0, 5.0, 3.0)
 """What is shown of a world in which there is nothing [m]."""
+
+
+def extent_of_run(world: World, recorder: RunRecorder) -> Box:
+    """Return xmin, ymin, xmax, ymax [m] of what is to be seen of a run that was recorded."""
+    bounds, springs = world.physics.bounds, recorder.springs(world)
+    fixed = [[*spring["anchor_b"], *spring["anchor_b"]] for spring in springs if spring["b"] is None]
+    return frame_run(recorder.bodies(world), recorder.motion, [*fixed, *([bounds] if bounds else [])])
 
 
 def frame_run(

@@ -9,7 +9,7 @@ from importlib.resources import files
 from typing import Any
 
 from physicslab.ecs.text import printable
-from physicslab.export.framing import frame_run
+from physicslab.export.framing import extent_of_run
 from physicslab.export.packing import pack
 from physicslab.export.recording import RunRecorder
 from physicslab.world import World
@@ -56,9 +56,6 @@ def _document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> dict
     columns, bodies, springs = recorder.columns, recorder.bodies(world), recorder.springs(world)
     physics = world.physics
     bounds = None if physics.bounds is None else list(physics.bounds)
-    fixed = [[*spring["anchor_b"], *spring["anchor_b"]] for spring in springs if spring["b"] is None]
-    chosen = world.view  # what a scene opens with, where scenes have that
-    view = chosen or frame_run(bodies, recorder.motion, [*fixed, *([bounds] if bounds else [])])
     uniform = physics.gravity_mode == "linear" and "gravity" in recorder.energies
     return {
         "start": recorder.start,
@@ -68,7 +65,7 @@ def _document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> dict
         "springs": springs,
         "gravity": list(physics.gravity) if uniform else None,
         "bounds": bounds,
-        "view": view,
+        "view": world.view or extent_of_run(world, recorder),
         "notes": notes,
         "data": pack(columns),
     }

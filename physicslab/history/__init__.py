@@ -5,6 +5,7 @@ runs is data (:mod:`physicslab.history.line`). Between key frames (:mod:`physics
 are made again. A recording is a line in a file (:mod:`physicslab.history.recording`).
 """
 
+from physicslab.history.branches import Branch
 from physicslab.history.commands import (
     AddComponent,
     Command,
@@ -17,7 +18,7 @@ from physicslab.history.commands import (
     Spawn,
 )
 from physicslab.history.history import History
-from physicslab.history.seen import Branch, Difference, HistoryEntry
+from physicslab.history.seen import Difference, HistoryEntry
 
 __all__ = [
     "AddComponent", "Branch", "Command", "Difference", "Group", "History", "HistoryEntry", "Remove",

@@ -33,82 +33,100 @@ class Keyframes:
     ----------
     spacing : int
         The least distance of two along the line [ticks].
-    size : int
-        Bytes that all take.
     """
 
     def __init__(self, budget: int) -> None:
         self._budget = budget
-        self._frames: dict[int, Keyframe] = {}
-        self._along: list[int] = []
-        self._nearby: list[int] = []
-        self._uses: dict[int, int] = {}
-        self.spacing, self.size = 1, 0
-        self._size_nearby = 0
+        self._along, self._nearby = _Frames(), _Frames()
+        self.spacing = 1
 
     def __len__(self) -> int:
-        return len(self._frames)
+        return len(self._along.places) + len(self._nearby.places)
 
     def __contains__(self, place: int) -> bool:
-        return place in self._frames
+        return place in self._along.by_place or place in self._nearby.by_place
 
     def __getitem__(self, place: int) -> Keyframe:
-        return self._frames[place]
+        return self._along.by_place.get(place) or self._nearby.by_place[place]
+
+    @property
+    def size(self) -> int:
+        """Bytes that all take; what the two sets share is counted in both."""
+        return self._along.size + self._nearby.size
 
     def before(self, place: int) -> int:
         """Return the last place with a key frame that is not behind ``place``."""
-        along, nearby = (_last(places, place) for places in (self._along, self._nearby))
-        return max(along, nearby)
+        return max(self._along.last(place), self._nearby.last(place))
+
+    def is_along(self, place: int) -> bool:
+        """Whether there is one along the line at a place."""
+        return place in self._along.by_place
 
     def takes(self, place: int) -> bool:
         """Whether a key frame along the line may be added at a place: it is not too near to the last one."""
-        return place - _last(self._along, place) >= self.spacing
+        return place - self._along.last(place) >= self.spacing
 
     def add_along(self, place: int, frame: Keyframe) -> None:
         """Add one along the line."""
-        if place not in self._frames:
-            self._keep(place, frame)
-            insort(self._along, place)
-        while self.size - self._size_nearby > (1.0 - _NEARBY_SHARE) * self._budget and len(self._along) > 2:
+        if place not in self._along.by_place:
+            self._along.add(place, frame)
+        while self._along.size > (1.0 - _NEARBY_SHARE) * self._budget and len(self._along.places) > 2:
             self.spacing *= 2
             self._thin()
 
     def add_nearby(self, place: int, frame: Keyframe, around: int) -> None:
         """Add one near the place ``around``, and drop the farthest from there while they are too many."""
-        if place in self._frames:
+        if place in self:
             return
-        before = self.size
-        self._keep(place, frame)
-        self._size_nearby += self.size - before
-        insort(self._nearby, place)
-        while self._nearby and self._size_nearby > _NEARBY_SHARE * self._budget:
-            first, last = self._nearby[0], self._nearby[-1]
-            self._drop_nearby(first if around - first > last - around else last)
+        nearby = self._nearby
+        nearby.add(place, frame)
+        while nearby.places and nearby.size > _NEARBY_SHARE * self._budget:
+            first, last = nearby.places[0], nearby.places[-1]
+            nearby.drop(first if around - first > last - around else last)
 
     def cut(self, place: int) -> None:
         """Drop all behind a place: the line goes on differently from there."""
-        while self._nearby and self._nearby[-1] > place:
-            self._drop_nearby(self._nearby[-1])
-        while self._along[-1] > place:
-            self._drop(self._along.pop())
+        for frames in (self._along, self._nearby):
+            while frames.places and frames.places[-1] > place:
+                frames.drop(frames.places[-1])
 
     def _thin(self) -> None:
-        kept = [self._along[0]]
-        for place in self._along[1:]:
-            if place - kept[-1] >= self.spacing:
-                kept.append(place)
+        last = self._along.places[0]
+        for place in self._along.places[1:]:
+            if place - last >= self.spacing:
+                last = place
             else:
-                self._drop(place)
-        self._along = kept
+                self._along.drop(place)
 
-    def _drop_nearby(self, place: int) -> None:
-        del self._nearby[bisect_left(self._nearby, place)]
-        before = self.size
-        self._drop(place)
-        self._size_nearby -= before - self.size
 
-    def _keep(self, place: int, frame: Keyframe) -> None:
-        self._frames[place] = frame
+class _Frames:
+    """Some key frames, and what they take: an array that several share is counted once.
+
+    Attributes
+    ----------
+    by_place : dict of int to Keyframe
+        All of them.
+    places : list of int
+        Where they are, in order.
+    size : int
+        Bytes that they take.
+    """
+
+    def __init__(self) -> None:
+        self.by_place: dict[int, Keyframe] = {}
+        self.places: list[int] = []
+        self.size = 0
+        self._uses: dict[int, int] = {}
+
+    def last(self, place: int) -> int:
+        """Return the last place of one that is not behind ``place``; -1 where there is none."""
+        k = bisect_right(self.places, place)
+        return self.places[k - 1] if k else -1
+
+    def add(self, place: int, frame: Keyframe) -> None:
+        """Keep one at a place where there is none."""
+        self.by_place[place] = frame
+        insort(self.places, place)
         self.size += _FRAME
         for part in frame.arrays():
             uses = self._uses.get(id(part), 0)
@@ -116,8 +134,10 @@ class Keyframes:
             if not uses:
                 self.size += _bytes(part)
 
-    def _drop(self, place: int) -> None:
-        frame = self._frames.pop(place)
+    def drop(self, place: int) -> None:
+        """Let go of the one at a place."""
+        frame = self.by_place.pop(place)
+        del self.places[bisect_left(self.places, place)]
         self.size -= _FRAME
         for part in frame.arrays():
             uses = self._uses.pop(id(part)) - 1
@@ -125,12 +145,6 @@ class Keyframes:
                 self._uses[id(part)] = uses
             else:
                 self.size -= _bytes(part)
-
-
-def _last(places: list[int], place: int) -> int:
-    """Return the last of some sorted places that is not behind ``place``; -1 where there is none."""
-    k = bisect_right(places, place)
-    return places[k - 1] if k else -1
 
 
 def _bytes(part: Any) -> int:

@@ -7,6 +7,7 @@ line is the number of ticks before it.
 
 from __future__ import annotations
 
+import math
 from array import array
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
@@ -66,10 +67,11 @@ class Run:
     @property
     def words(self) -> str:
         """What it was, in plain English."""
-        if not self.steps:
-            return "moved by hand"
-        shown = f"{self.seconds:.1f}" if self.seconds >= 0.1 else f"{self.seconds:.2g}"
-        return f"ran {shown} s"
+        return _run_in_words(self.steps, self.seconds)
+
+    def words_after(self, tick: int) -> str:
+        """Return what comes after the first ``tick`` ticks, in plain English."""
+        return _run_in_words(self.steps - self.steps_before(tick), self.seconds - self.seconds_before(tick))
 
     def add_step(self, dt: float, digest: Digest) -> None:
         """Add a step of ``dt`` seconds."""
@@ -117,6 +119,12 @@ class Run:
         k = bisect_right(self._ticks_before, tick) - 1
         return self._steps_before[k] + (
             tick - self._ticks_before[k] if isinstance(self.pieces[k], Steps) else 0
+        )
+
+    def seconds_before(self, tick: int) -> float:
+        """Return how long the steps among the first ``tick`` ticks took [s]."""
+        return math.fsum(
+            piece.dt * piece.count for piece in self.between(0, tick) if isinstance(piece, Steps)
         )
 
     def between(self, start: int, end: int) -> Iterator[Piece]:
@@ -204,6 +212,21 @@ class Line:
         inside = entry.steps_before(tick - self._ticks_before[k]) if isinstance(entry, Run) else 0
         return self._steps_before[k] + inside
 
+    def seconds_before(self, tick: int) -> float:
+        """Return how long the steps among the first ``tick`` ticks took [s]."""
+        k, last = self.entry_at(tick), 0.0
+        if k < len(self.entries) and isinstance(entry := self.entries[k], Run):
+            last = entry.seconds_before(tick - self._ticks_before[k])
+        return last + math.fsum(entry.seconds for entry in self.entries[:k] if isinstance(entry, Run))
+
+    def words_after(self, tick: int) -> tuple[str, ...]:
+        """Return in words what is done after the first ``tick`` ticks; of a run, what is left of it."""
+        k = self.entry_at(tick)
+        words = [entry.words for entry in self.entries[k:]]
+        if words and isinstance(entry := self.entries[k], Run) and tick > self._ticks_before[k]:
+            words[0] = entry.words_after(tick - self._ticks_before[k])
+        return tuple(words)
+
     def tick_after(self, step: int, end: int) -> int:
         """Return the last place, at most ``end``, with no more than so many steps before it."""
         if step >= self.steps:
@@ -256,6 +279,13 @@ class Line:
                 common += _common_of_runs(one, two)
             break
         return common
+
+
+def _run_in_words(steps: int, seconds: float) -> str:
+    if not steps:
+        return "moved by hand"
+    shown = f"{seconds:.1f}" if seconds >= 0.1 else f"{seconds:.2g}"
+    return f"ran {shown} s"
 
 
 def _common_of_runs(one: Run, two: Run) -> int:

@@ -1,12 +1,10 @@
-"""What is seen of a history: its entries, its branches, and where steps made again gave other bits."""
+"""What is seen of a history: its entries, and where steps made again gave other bits."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from physicslab.history.line import Line
-
-__all__ = ["Branch", "Difference", "HistoryEntry"]
+__all__ = ["Difference", "HistoryEntry"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,32 +25,6 @@ class HistoryEntry:
     done: bool
     first_step: int
     steps: int
-
-
-@dataclass(frozen=True, slots=True)
-class Branch:
-    """What once came after a place of the line, where the line now goes on differently.
-
-    Attributes
-    ----------
-    line : Line
-        All of it, from the beginning.
-    place : int
-        Where it was left [ticks].
-    """
-
-    line: Line
-    place: int
-
-    @property
-    def step(self) -> int:
-        """After how many steps it was left."""
-        return self.line.steps_before(self.place)
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """What the edits and runs after that were."""
-        return tuple(entry.words for entry in self.line.entries[self.line.entry_at(self.place) :])
 
 
 @dataclass(frozen=True, slots=True)

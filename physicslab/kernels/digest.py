@@ -1,5 +1,7 @@
 """Short numbers that stand for many: whether columns hold the same bits."""
 
+import numpy as np
+
 from physicslab.kernels import Rows, inlined, kernel
 
 __all__ = ["digest_motion"]
@@ -16,23 +18,40 @@ def _mixed(value: int, word: int) -> int:
 
 
 @inlined
-def _digest(words: Rows) -> int:
-    """Return 32 bits that depend on each bit of the words, and on their order.
-
-    Four numbers take turns: a processor multiplies the next while the last is on its way.
-    """
-    one, two, three, four = 1, 2, 3, 4
-    n = len(words)
-    for i in range(0, n - 3, 4):
-        one, two = _mixed(one, words[i]), _mixed(two, words[i + 1])
-        three, four = _mixed(three, words[i + 2]), _mixed(four, words[i + 3])
-    for i in range(n - n % 4, n):
-        one = _mixed(one, words[i])
+def _joined(one: int, two: int, three: int, four: int) -> int:
+    """Return 32 bits that depend on each bit of four numbers."""
     mixed = _mixed(_mixed(one, two), _mixed(three, four))
     return (mixed ^ (mixed >> 32)) & 0xFFFFFFFF
 
 
+@inlined
+def _digest_two(words: Rows, others: Rows) -> tuple[int, int]:
+    """Return 32 bits for each of two columns of one length, which depend on each bit and on their order.
+
+    Four numbers of each take turns: a processor multiplies the others while one is on its way. Indices have
+    no sign, so that none is tested for counting from the end: that would take as long again.
+    """
+    a, b, c, d = 1, 2, 3, 4
+    e, f, g, h = 1, 2, 3, 4
+    n = len(words)
+    for k in range(n // 4):
+        i = np.uint64(4 * k)
+        j, o, m = i + np.uint64(1), i + np.uint64(2), i + np.uint64(3)
+        a, e = _mixed(a, words[i]), _mixed(e, others[i])
+        b, f = _mixed(b, words[j]), _mixed(f, others[j])
+        c, g = _mixed(c, words[o]), _mixed(g, others[o])
+        d, h = _mixed(d, words[m]), _mixed(h, others[m])
+    for k in range(n - n % 4, n):
+        a, e = _mixed(a, words[k]), _mixed(e, others[k])
+    return _joined(a, b, c, d), _joined(e, f, g, h)
+
+
 @kernel
 def digest_motion(position: Rows, angle: Rows, linear: Rows, angular: Rows) -> tuple[int, int, int, int]:
-    """Return 32 bits for each of four columns, whose numbers are given as the integers of their bits."""
-    return _digest(position), _digest(angle), _digest(linear), _digest(angular)
+    """Return 32 bits for each of four columns, whose numbers are given as the integers of their bits.
+
+    Columns of two numbers a body are as long as each other, and so are those of one.
+    """
+    first, third = _digest_two(position, linear)
+    second, fourth = _digest_two(angle, angular)
+    return first, second, third, fourth

@@ -112,6 +112,8 @@ class HudSystem(System):
         """Return what is not as usual, each in its colour."""
         window, theme = self._window, self._window.theme
         banners: list[tuple[str, Colour]] = []
+        if window.filming.running:
+            banners.append((window.filming.words, theme.accent))
         if window.pace.paused:
             banners.append(("PAUSED", theme.paused))
         if window.pace.speed != 1.0:

@@ -69,8 +69,9 @@ class RenderSystem(System):
         if window.band is not None:
             draw_band(camera.to_screen(window.band), window.pointer, theme, canvas)
         self._draw_instruments(world)
-        self._draw_handles(world)
-        self._draw_ghost(world)
+        if not window.filming.running:  # a film has no cursor
+            self._draw_handles(world)
+            self._draw_ghost(world)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
 
     def _draw_impulses(self, world: World) -> None:
@@ -97,7 +98,8 @@ class RenderSystem(System):
         )
         if state.hovered is not None:
             draw_selection(world, (state.hovered,), camera, theme, canvas)
-        if tool.prompts and not window.pointer_on_panel and state.dragged is None and state.writing is None:
+        idle = not (window.pointer_on_panel or window.filming.running)
+        if tool.prompts and idle and state.dragged is None and state.writing is None:
             words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)]
             draw_reading(words, window.pointer, size, theme, canvas, window.room())
 

@@ -255,6 +255,14 @@ def leave(world: World, window: Window) -> None:
         window.help = False
     elif window.shows_gallery:
         window.shows_gallery = False
+    elif window.filming.choosing:
+        window.filming.choosing = False
+    elif window.opening is not None:
+        window.opening = None
+    elif window.naming is not None:
+        window.naming = None
+    elif window.lists_history:
+        window.lists_history = False
     elif window.error_study.shown:
         window.error_study.shown = False
     elif window.selection.entities:

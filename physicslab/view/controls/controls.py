@@ -6,7 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from physicslab.components import Strobe, Trail
-from physicslab.view.controls import actions, dashboard_actions, file_actions
+from physicslab.view.controls import (
+    actions,
+    dashboard_actions,
+    file_actions,
+    film_actions,
+    history_actions,
+)
 from physicslab.view.controls.measuring import (
     GATE,
     NOTE,
@@ -118,7 +124,9 @@ CONTROLS: tuple[Control, ...] = (
     Control("Ctrl+Y", "redo", "ctrl+y", actions.redo, also=("ctrl+shift+z",), minor=True, group="edit",
             tip="Put back what was taken back last"),
     Control("U", "history", "u", actions.toggle_history, minor=True, group="edit",
-            state=lambda _, window: window.lists_history, tip="The list of all edits and runs"),
+            state=lambda _, window: window.lists_history, tip="The list of all edits, runs and branches"),
+    Control("Ctrl+B", "another branch", "ctrl+b", history_actions.next_branch, minor=True, group="edit",
+            tip="Go to what was done before the past was changed, and back"),
     Control("Ctrl+C", "copy", "ctrl+c", actions.copy_selected, minor=True, group="edit",
             tip="Keep a copy of what is selected"),
     Control("Ctrl+V", "paste", "ctrl+v", actions.paste, minor=True, group="edit",
@@ -204,8 +212,16 @@ CONTROLS: tuple[Control, ...] = (
             group="file", tip="Save the scene to a file that you name"),
     Control("Ctrl+O", "open the last scene saved", "ctrl+o", file_actions.reopen, minor=True, group="file",
             tip="Open the scene last saved"),
+    Control("Ctrl+Shift+O", "open a file", "ctrl+shift+o", file_actions.begin_open, minor=True, group="file",
+            state=lambda _, window: window.opening is not None,
+            tip="Open a file by its name, or one of the last few"),
+    Control("Ctrl+Shift+R", "save what was done", "ctrl+shift+r", history_actions.save_recording, minor=True,
+            group="file", tip="Save all edits and runs to a file that physicslab replay plays"),
     Control("F12", "screenshot", "f12", file_actions.request_screenshot, minor=True, group="file",
             tip="Save a picture of the window"),
+    Control("F9", "film", "f9", film_actions.toggle_film, minor=True, group="file",
+            state=lambda _, window: window.filming.running,
+            tip="A film of what was run, or of what comes: GIF or MP4"),
     Control("F5", "error against run time", "f5", file_actions.study_error, minor=True, group="file",
             state=lambda _, window: window.error_study.running,
             tip="Runs this scene by every method, and plots how far each is off and what it costs"),

@@ -9,13 +9,15 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable
 from physicslab.files.new_scene import save_new_scene
 from physicslab.files.scene import SceneError, load_scene, save_scene
-from physicslab.view.controls.scene_files import new_scene_paths, newest_scene
+from physicslab.view.controls.scene_files import is_recording, new_scene_paths, newest_scene
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
     "Deed",
+    "begin_open",
     "begin_save_as",
+    "open_named",
     "open_scene",
     "opening",
     "reopen",
@@ -38,6 +40,7 @@ def save(world: World, window: Window) -> None:
         window.notify(f"The scene could not be saved: {error}", 6.0, failed=True)
     else:
         window.scene_file = path
+        window.recent.note(path)
         window.unchanged = world.motion_edits
         window.notify(f"Saved {printable(str(path))}")
 
@@ -68,6 +71,7 @@ def save_under(world: World, window: Window, name: str) -> None:
         window.naming_refused = f"It could not be saved: {error}"
         return
     window.naming, window.scene_file, window.source = None, path, path
+    window.recent.note(path)
     window.unchanged = world.motion_edits
     window.notify(f"Saved {printable(str(path))}")
 
@@ -85,19 +89,46 @@ def reopen(world: World, window: Window) -> None:
         open_scene(window, path)
 
 
-def open_scene(window: Window, source: str | Path) -> None:
-    """Open a built-in scene by name, or a file; where that fails, all stays as it is."""
+def begin_open(world: World, window: Window) -> None:
+    """Let the user write the name of the file that is to be opened, or no longer."""
+    window.opening_refused = ""
+    window.opening = "" if window.opening is None else None
+
+
+def open_named(window: Window, text: str) -> None:
+    """Open the file of a name, or of the number of a line of the last few files."""
+    recent, text = window.recent.there, text.strip()
+    if not text:
+        window.opening_refused = "A name is needed"
+        return
+    try:
+        path = Path.cwd() / Path(text).expanduser()
+        if not path.exists() and text.isdecimal() and 1 <= int(text) <= len(recent):
+            path = recent[int(text) - 1]
+    except (OSError, ValueError, RuntimeError) as error:
+        window.opening_refused = f"Not opened: {error}"
+        return
+    window.opening_refused = open_scene(window, path)
+
+
+def open_scene(window: Window, source: str | Path) -> str:
+    """Open a built-in scene by name, or a file; where that fails, all stays as it is. Return why it did."""
     try:
         opened = load_scene(source)
         opened.synchronise()
     except (SceneError, InvalidValue, OSError) as error:
-        window.notify(f"Not opened: {error}", 8.0, failed=True)
-        return
-    window.next_world = opened
+        reason = f"Not opened: {error}"
+        if isinstance(source, Path) and is_recording(source):
+            reason = f"Not opened: {printable(source.name)} is a recording: physicslab replay plays it"
+        window.notify(reason, 8.0, failed=True)
+        return reason
+    window.next_world, window.opening = opened, None
     window.source = source
     if isinstance(source, Path):
         window.scene_file = source
+        window.recent.note(source)
     window.notify(f"Opened {printable(str(source)) if isinstance(source, Path) else opened.title}")
+    return ""
 
 
 def opening(source: str | Path) -> Deed:

@@ -9,10 +9,14 @@ from pathlib import Path
 
 from physicslab.files.new_scene import file_stem
 
-__all__ = ["new_paths", "new_scene_paths", "newest_scene", "scene_files"]
+__all__ = ["is_recording", "new_paths", "new_scene_paths", "newest_scene", "scene_files"]
 
 _MARK = b"physicslab-scene/"
 """What the format of a scene file begins with."""
+_HEAD = 4096
+"""Bytes at the beginning of a file in which it says what it is."""
+_RECORDING = b"physicslab-recording/"
+"""And that of a recording, which holds a scene too."""
 
 
 def new_scene_paths(directory: Path, name: str) -> Iterator[Path]:
@@ -59,10 +63,20 @@ def newest_scene(directory: Path) -> Path | None:
     return candidates[-1] if candidates else None
 
 
+def is_recording(path: Path) -> bool:
+    """Whether a file is marked as a recording; not if it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            return _RECORDING in file.read(_HEAD)
+    except (OSError, ValueError):
+        return False
+
+
 def _by_age(directory: Path) -> list[Path]:
     return sorted(filter(Path.is_file, directory.glob("*.json")), key=lambda path: path.stat().st_mtime_ns)
 
 
 def _is_marked(path: Path) -> bool:
     with path.open("rb") as file:
-        return _MARK in file.read(4096)
+        head = file.read(_HEAD)
+    return _MARK in head and _RECORDING not in head

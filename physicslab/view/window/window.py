@@ -20,10 +20,12 @@ from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
 from physicslab.view.window.dashboard import Dashboard
 from physicslab.view.window.edits import Edits
+from physicslab.view.window.filming import Filming
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.pace import Pace
+from physicslab.view.window.recent import RecentFiles
 from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.selection import Selection
@@ -130,6 +132,14 @@ class Window:
         The name that is being written for the scene to be saved under; ``None`` while none is.
     naming_refused : str
         Why the scene could not be saved under it.
+    opening : str, optional
+        The name that is being written of the file to be opened; ``None`` while none is.
+    opening_refused : str
+        Why it could not be opened.
+    filming : Filming
+        The film that is being made.
+    recent : RecentFiles
+        The files that were opened or saved last.
     copied : list
         The components of each body that was copied.
     band : Vector2, optional
@@ -191,6 +201,10 @@ class Window:
         self.measuring, self.shows_stopwatch = Measuring(), False
         self.naming: str | None = None
         self.naming_refused = ""
+        self.opening: str | None = None
+        self.opening_refused = ""
+        self.filming = Filming(lambda words, failed: self.notify(words, 6.0, failed=failed))
+        self.recent = RecentFiles()
         self.copied: list[list[Component]] = []
         self.band: Vector2 | None = None
         self.dashboard = Dashboard()

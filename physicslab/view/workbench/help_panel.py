@@ -12,7 +12,7 @@ from physicslab.view.window.window import Window
 
 __all__ = ["build_help"]
 
-_COLUMNS = (3, 2)
+_COLUMNS = (4, 3, 2)
 """How many columns there may be, if they fit; otherwise there is one."""
 _SHARE = 0.94
 """How much of the window's width they may take."""

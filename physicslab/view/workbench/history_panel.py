@@ -1,4 +1,4 @@
-"""What was done: every edit and run, the last one last; a click goes back to it."""
+"""What was done: every edit and run, the last one last, and other branches; a click goes there."""
 
 from __future__ import annotations
 
@@ -6,38 +6,67 @@ from collections.abc import Callable
 
 from imgui_bundle import ImVec2, imgui
 
+from physicslab.history import Branch
+from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import actions
+from physicslab.view.controls.history_actions import branch_words, switch
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = ["build_history"]
 
-_WIDTH, _HEIGHT = 17.0, 20.0
-"""Of the list, in heights of the text."""
+_WIDTH, _HEIGHT, _LINE = 17.0, 20.0, 1.5
+"""Of the lists, and of a line of the lower one, in heights of the text."""
+_AROUND = 5.5
+"""What else stands in the panel, in heights of the text."""
+_LETTERS = 34
+"""How much of a branch is written in its line; the rest is in its tip."""
 
 
 def build_history(ui: Ui, window: Window) -> None:
     """Build the list in a window of its own."""
     history = window.edits.history
     entries, done = history.entries, history.position
-    left, top, _, _ = window.room()
-    place = left + 0.6 * _WIDTH * ui.size, top + 0.7 * _HEIGHT * ui.size
+    left, top, _, tall = window.room()
+    height = min(_HEIGHT, tall / ui.size - _AROUND)
+    place = left + 0.6 * _WIDTH * ui.size, top + 0.5 * tall
     with ui.floating("History", place) as stays:
         if ui.button("Undo", "Take back the last edit or run (Ctrl+Z)", enabled=done > 0):
             window.deeds.append(actions.undo)
         imgui.same_line()
         if ui.button("Redo", "Put back what was taken back (Ctrl+Y)", enabled=done < len(entries)):
             window.deeds.append(actions.redo)
-        if imgui.begin_child("entries", ImVec2(_WIDTH * ui.size, _HEIGHT * ui.size)):
+        below = _LINE * (len(history.branches) + 2) if history.branches else 0.0
+        if imgui.begin_child("entries", ImVec2(_WIDTH * ui.size, max(height - below, 3.0) * ui.size)):
             if ui.selectable("As it was opened", on=done == 0, faint=False):
                 window.deeds.append(_going(0))
             for n, entry in enumerate(entries, start=1):
                 if ui.selectable(f"{n}. {entry.words}", on=n == done, faint=not entry.done):
                     window.deeds.append(_going(n))
         imgui.end_child()
+        _build_branches(ui, window)
     if not stays[0]:
         window.lists_history = False
+
+
+def _build_branches(ui: Ui, window: Window) -> None:
+    """Build a line for each branch: when it leaves what is listed above, and what was done in it."""
+    history = window.edits.history
+    if not history.branches:
+        return
+    ui.rule()
+    ui.heading("Other branches")
+    ui.tip("What was done before the past was changed; Ctrl+B goes from one to the next")
+    for n, branch in enumerate(history.branches, start=1):
+        words = branch_words(branch, history.start)
+        if ui.selectable(f"{n}. {shortened(words, _LETTERS)}"):
+            window.deeds.append(_switching(branch))
+        ui.tip(words)
+
+
+def _switching(branch: Branch) -> Callable[[World, Window], None]:
+    return lambda world, window: switch(window, branch)
 
 
 def _going(entry: int) -> Callable[[World, Window], None]:

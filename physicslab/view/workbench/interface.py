@@ -13,6 +13,7 @@ from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
+from physicslab.view.workbench.film_panel import build_film
 from physicslab.view.workbench.gallery import Gallery
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.history_panel import build_history
@@ -20,6 +21,7 @@ from physicslab.view.workbench.inspector import Inspector
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
 from physicslab.view.workbench.note_panel import NotePanel
+from physicslab.view.workbench.open_panel import build_open
 from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
@@ -160,6 +162,11 @@ class Interface:
             window.shows_gallery,
             window.naming is None,
             window.naming_refused,
+            window.filming.choosing,
+            window.filming.refused,
+            window.opening is None,
+            window.opening_refused,
+            window.edits.history.branches,
             window.recovery.offered,
             window.figures,
             window.level,
@@ -213,6 +220,10 @@ class Interface:
         build_error_plot(ui, window)
         if window.naming is not None:
             build_save(ui, window)
+        if window.filming.choosing:
+            build_film(ui, window)
+        if window.opening is not None:
+            build_open(ui, window)
         if window.shows_gallery:
             self._gallery.build(ui, window)
             if not self._gallery.is_complete:

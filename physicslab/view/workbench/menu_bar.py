@@ -14,6 +14,7 @@ from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.scene_files import scene_files
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
+from physicslab.view.workbench.open_panel import recent_label
 from physicslab.world import World
 
 __all__ = ["build_menu_bar"]
@@ -54,6 +55,20 @@ def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Windo
                 control.title, control.label, on=control.on(world, window), tip=control.tip
             ):
                 window.deeds.append(control.pressed)
+        if group == "file":
+            with ui.menu("Recent files") as shown:
+                if shown:
+                    _build_recent(ui, window)
+
+
+def _build_recent(ui: Ui, window: Window) -> None:
+    """Build a line for each of the files that were opened or saved last."""
+    there = window.recent.there
+    if not there:
+        ui.faint("None was opened or saved yet", wrapped=False)
+    for number, path in enumerate(there, start=1):
+        if ui.item(recent_label(number, path), tip=printable(str(path))):
+            window.deeds.append(file_actions.opening(path))
 
 
 def _build_scenes(ui: Ui, world: World, window: Window) -> None:

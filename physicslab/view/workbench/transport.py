@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.canvas import Rect
@@ -19,6 +21,8 @@ _SPEEDS = {"4x": 4.0, "2x": 2.0, "1x": 1.0, "1/2x": 0.5, "1/4x": 0.25, "1/8x": 0
 _HINT = "Drag: throw  ·  Left: circle  ·  Right: box  ·  Space: pause  ·  F1: keys"
 _HEIGHT, _NARROW, _WIDE = 1.9, 2.4, 5.2
 """Height of the buttons, and their widths, in heights of the text."""
+_GRAB_PADDING = 2.0
+"""What Dear ImGui leaves on each side of a slider's grab [px]."""
 _MIN_LINE = 12.0
 """Width of the time line below which the hint makes room, in heights of the text."""
 
@@ -67,6 +71,20 @@ def _build_speed(ui: Ui, pace: Pace, window: Window) -> None:
         window.deeds.append(deed)
 
 
+def _mark_branches(ui: Ui, steps: Sequence[int], first: int, last: int) -> None:
+    """Draw a mark over the time line, which was built last, for each branch: where it leaves."""
+    low, high, style = imgui.get_item_rect_min(), imgui.get_item_rect_max(), imgui.get_style()
+    rim = _GRAB_PADDING + 0.5 * style.grab_min_size
+    paper, half = imgui.get_window_draw_list(), 0.28 * ui.size
+    for n, step in enumerate(steps, start=1):
+        if not first <= step <= last:
+            continue
+        x = low.x + rim + (high.x - low.x - 2.0 * rim) * (step - first) / (last - first)
+        corners = (ImVec2(x - half, low.y), ImVec2(x + half, low.y), ImVec2(x, low.y + 1.6 * half))
+        paper.add_triangle_filled(*corners, packed(ui.theme.accent))
+        ui.places[f"Branch {n}"] = round(x - half), round(low.y), round(2 * half), round(1.6 * half)
+
+
 def _build_line(ui: Ui, world: World, window: Window) -> None:
     """Build the line of the steps that were made, to be gone through by dragging, and the hint beside it."""
     room, hint = imgui.get_content_region_avail().x, imgui.calc_text_size(_HINT).x + ui.size
@@ -78,7 +96,11 @@ def _build_line(ui: Ui, world: World, window: Window) -> None:
         "Time line", float(history.step_count), float(first), float(max(last, first + 1)),
         f"{world.time:.2f} s", width,
     )  # fmt: skip
-    ui.tip("Drag to go back in time, and forward again; what is changed there begins another future")
+    ui.tip(
+        "Drag to go back in time, and forward again; what is changed there begins another branch. "
+        "A mark is where one leaves (Ctrl+B goes there)"
+    )
+    _mark_branches(ui, [branch.step for branch in history.branches], first, max(last, first + 1))
     _mark_moments(ui, window, first, max(last, first + 1))
     if place is not None:
         step = round(place)

@@ -1,0 +1,127 @@
+"""Films of a run: GIF and MP4, drawn without a window."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from argparse import Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from physicslab.commands.assignments import assign
+from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands.measured_run import MeasuredRun
+from physicslab.commands.numbers import STEP_LIMIT
+from physicslab.commands.output import Output
+from physicslab.diagnostics.energy import Energy
+from physicslab.ecs.text import printable, shortened
+from physicslab.export.film import Film
+from physicslab.export.framing import Box, extent_of_run
+from physicslab.export.mp4 import NoEncoder
+from physicslab.export.recording import NotShown, RunRecorder
+from physicslab.files.scene import load_scene
+from physicslab.kernels.tiers import Tiers
+from physicslab.scenes import SCENES
+from physicslab.state.masses import Diverged
+from physicslab.stepping.small import is_small
+from physicslab.world import World
+
+if TYPE_CHECKING:
+    from physicslab.view.overlay.moving import MovingPicture
+
+__all__ = ["film_size", "make_film"]
+
+_EVERY_S = 1.0 / 30.0
+_SMALLEST, _LARGEST = 16, 4096
+
+
+def film_size(text: str) -> tuple[int, int]:
+    """Return width and height [px] of ``960x540``."""
+    try:
+        width, height = map(int, text.lower().split("x"))
+    except ValueError:
+        width = height = 0
+    if not all(_SMALLEST <= number <= _LARGEST for number in (width, height)):
+        allowed = f"WIDTHxHEIGHT, each from {_SMALLEST} to {_LARGEST} px"
+        raise argparse.ArgumentTypeError(f"{text!r}: must be {allowed}")
+    return width, height
+
+
+class _Filming:
+    """Adds a picture of the world to a film whenever a run is to be kept."""
+
+    def __init__(self, film: Film, picture: MovingPicture) -> None:
+        self._film, self._picture = film, picture
+
+    def write(self, world: World, energy: Energy) -> None:
+        """Add the world as it is now."""
+        self._film.write(self._picture.pixels(world))
+
+
+def make_film(option: str, path: str, arguments: Namespace) -> None:
+    """Run the scene, and write the film of it.
+
+    Raises
+    ------
+    CommandError
+        If it cannot be written, or the run fails; no file is left then.
+    """
+    output = Output(option, path)
+    label = f"{option} {shortened(printable(path), 200)}"
+    if output.to_stdout:
+        raise CommandError(f"{option} -: must be a path: a film does not go to stdout")
+    if arguments.scene not in SCENES and output.is_same_as(arguments.scene):
+        raise CommandError(f"{label}: is the scene itself")
+    world = _world(arguments)
+    dt, seconds = world.simulation.dt, arguments.seconds
+    if seconds / dt > STEP_LIMIT:
+        raise CommandError(f"--seconds {seconds:g}: must be at most {STEP_LIMIT:g} steps of dt")
+    every = max(arguments.every or _EVERY_S, dt)
+    rate = arguments.fps or 1.0 / every
+    try:
+        Film.check(path, rate)
+    except NoEncoder as error:
+        raise CommandError(f"{option}: {error}") from error
+    except ValueError as error:
+        raise CommandError(f"{label}: {error}") from error
+    name = world.name or Path(arguments.scene).stem
+    count = _run(world, name, output, every, rate, arguments)
+    size = f"{os.path.getsize(path) / 1000:,.0f} kB"
+    width, height = arguments.size
+    shown = f"{count:,} pictures of {width} x {height} px, {rate:.4g} a second"
+    print(f"{printable(path)}: {seconds:g} s of the scene, {shown}, {size}")
+
+
+def _world(arguments: Namespace) -> World:
+    world = load_scene(arguments.scene)
+    assign(world, arguments.set)
+    return world
+
+
+def _run(world: World, name: str, output: Output, every: float, rate: float, arguments: Namespace) -> int:
+    """Make the film, and return how many pictures it has."""
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
+    from physicslab.view.overlay.moving import MovingPicture
+
+    try:
+        with Tiers(is_small(world)) as tiers:
+            extent = world.view or _extent(name, every, arguments, tiers)
+            picture = MovingPicture(arguments.size, extent)
+            with Film(output.path, arguments.size, rate) as film:
+                run = MeasuredRun(world, name, tiers, recorder=_Filming(film, picture), every=every)
+                run.go(arguments.seconds, None)
+    except (Diverged, NotShown) as error:
+        raise CommandError(f"{shortened(printable(name))}: {error}; no film was written", FAILED) from error
+    except OSError as error:
+        reason = error.strerror or str(error)
+        label = shortened(printable(output.path), 200)
+        raise CommandError(f"{label}: cannot be written: {reason}", FAILED) from error
+    return film.count
+
+
+def _extent(name: str, every: float, arguments: Namespace, tiers: Tiers) -> Box:
+    """Return where a run takes place of which the scene does not say it: it is made once before."""
+    world = _world(arguments)
+    recorder = RunRecorder(world)
+    MeasuredRun(world, name, tiers, recorder=recorder, every=every).go(arguments.seconds, None)
+    return extent_of_run(world, recorder)

@@ -1,0 +1,68 @@
+"""Pictures of a world one after the other, for a film, without a window or a display."""
+
+from __future__ import annotations
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from physicslab.view.canvas.camera import Camera, Extent
+from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.theme import DARK, Theme
+from physicslab.view.overlay.instrument_marks import draw_instruments
+from physicslab.view.overlay.instruments import instruments_of
+from physicslab.view.overlay.labels import Labels
+from physicslab.view.picture.painting import draw_world
+from physicslab.world import World
+
+__all__ = ["MovingPicture", "part_of", "pixels_of"]
+
+_TEXT = 14
+"""Height of the words of instruments [px]."""
+_AROUND = 0.04
+"""Room left around what is to be seen, as a share of the picture."""
+
+
+class MovingPicture:
+    """Draws a world and what measures in it again and again, as one camera sees it.
+
+    Parameters
+    ----------
+    size : tuple of two ints
+        Width and height [px].
+    extent : Extent
+        What is to be seen of the world [m].
+    theme : Theme
+        The colours.
+    """
+
+    def __init__(self, size: tuple[int, int], extent: Extent, theme: Theme = DARK) -> None:
+        self._surface = pygame.Surface(size, 0, 32)
+        self._labels = Labels()
+        self._canvas, self._theme = PygameCanvas(self._surface), theme
+        self._camera = Camera(size, scale=100.0)
+        scale = self._camera.fitting_scale(extent, (0, 0, *size), _AROUND)
+        self._camera.look_at(extent, scale)
+
+    def pixels(self, world: World) -> NDArray[np.uint8]:
+        """Return the world as it is now: uint8 (height, width, 4), red, green, blue and one unused."""
+        with world.active():
+            draw_world(world, self._camera, self._theme, self._canvas)
+            draw_instruments(
+                world, list(instruments_of(world)), (), self._labels, (), self._camera, self._theme,
+                self._canvas, _TEXT,
+            )  # fmt: skip
+        return pixels_of(self._surface)
+
+
+def part_of(surface: pygame.Surface, rect: Rect, size: tuple[int, int]) -> NDArray[np.uint8]:
+    """Return the pixels of a part of a surface [px] in a picture of some size, as :func:`pixels_of` does."""
+    part = surface.subsurface(pygame.Rect(rect).clip(surface.get_rect()))
+    return pixels_of(part if part.get_size() == size else pygame.transform.smoothscale(part, size))
+
+
+def pixels_of(surface: pygame.Surface) -> NDArray[np.uint8]:
+    """Return the pixels of a surface: uint8 (height, width, 4), red, green, blue and one unused."""
+    width, height = surface.get_size()
+    return np.frombuffer(pygame.image.tobytes(surface, "RGBX"), np.uint8).reshape(height, width, 4)
