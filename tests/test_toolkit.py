@@ -68,6 +68,69 @@ def test_a_window_that_stands_still_paints_nothing() -> None:
     assert toolkit.painted == painted
 
 
+def test_figures_that_change_together_are_painted_in_turn_those_under_the_cursor_first() -> None:
+    toolkit = Toolkit()
+    ui, figure = Ui(toolkit.fonts, DARK), 0
+    rects = [(100 * n, 0, 90, 50) for n in range(3)]
+
+    def build() -> None:
+        ui.begin(DARK)
+        for n, rect in enumerate(rects):
+            with ui.panel(f"panel {n}", rect):
+                ui.text(str(figure))
+
+    def shown() -> list[bytes]:
+        surface = pygame.Surface(SIZE, 0, 32)
+        toolkit.draw(surface)
+        return [pygame.image.tobytes(surface.subsurface(rect), "RGB") for rect in rects]
+
+    def frames(count: int) -> list[list[bool]]:
+        """Return which panels are seen to change in each frame."""
+        seen, pictures = [], shown()
+        for _ in range(count):
+            toolkit.frame(SIZE, DARK, 15.0, 1 / 60, build)
+            before, pictures = pictures, shown()
+            seen.append([one != other for one, other in zip(before, pictures, strict=True)])
+        return seen
+
+    frames(4)
+    for pointer, first in (((-1.0, -1.0), None), ((210.0, 10.0), 2), ((110.0, 10.0), 1)):
+        toolkit.follow_pointer(pointer)
+        figure += 1
+        toolkit.refresh()
+        changes = frames(6)
+        assert [sum(changed) for changed in changes] == ([0, 1, 1, 1] if first is None else [1, 1, 1, 0]) + [
+            0
+        ] * 2
+        assert [any(column) for column in zip(*changes, strict=True)] == [True] * 3
+        assert first is None or changes[0][first]
+        assert not toolkit.unsettled
+
+
+def test_what_lies_elsewhere_and_other_colours_are_painted_at_once() -> None:
+    toolkit = Toolkit()
+    ui, theme, shift = Ui(toolkit.fonts, DARK), DARK, 0
+
+    def build() -> None:
+        ui.begin(theme)
+        for n in range(3):
+            with ui.panel(f"panel {n}", (100 * n, shift, 90, 50)):
+                ui.text("words")
+
+    def frame() -> int:
+        before = toolkit.painted
+        toolkit.frame(SIZE, theme, 15.0, 1 / 60, build)
+        return toolkit.painted - before
+
+    for _ in range(4):
+        frame()
+    shift = 20
+    toolkit.refresh()
+    assert frame() == 3
+    theme = next(other for other in THEMES if other is not DARK)
+    assert frame() == 3 and frame() == 0
+
+
 def test_two_side_by_side_do_not_mix() -> None:
     one, other = Toolkit(), Toolkit()
     alone = Toolkit()

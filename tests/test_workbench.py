@@ -616,6 +616,7 @@ def test_the_tool_in_hand_is_marked(desk: Desk) -> None:
     for tool in PALETTE:
         take_up(desk, tool)
         point(desk, desk.pixel(0, 0))
+        desk.frames(SETTLED)  # pictures that are not under the cursor are painted in turn
         marked = []
         for other in PALETTE:
             left, top, width, _ = desk.ui.places[other.title]

@@ -51,9 +51,7 @@ def _lay(pixels: Pixels, row: int, column: int, colour: int, alpha: int) -> None
 
 
 @inlined
-def _narrowed(
-    first: int, last: int, y: float, xa: float, ya: float, xb: float, yb: float
-) -> tuple[int, int]:
+def _narrowed(first: int, last: int, y: float, xa: float, ya: float, xb: float, yb: float) -> tuple[int, int]:
     """Return which columns of a row at ``y`` lie on the inner side of an edge: from ``first`` up to ``last``.
 
     Middles of pixels that lie on a left or upper edge are inside, those on others are not.

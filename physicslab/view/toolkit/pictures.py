@@ -25,52 +25,88 @@ _UNUSED_FRAMES = 120
 """A picture that was not shown for so many frames is let go of."""
 
 
+type Box = tuple[int, int, int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class _Sheet:
+    """What is to be painted: a draw list, and which part of the display it takes [px]."""
+
+    vertices: bytes
+    indices: bytes
+    commands: list[tuple[int, int, int, int, tuple[float, ...]]]
+    box: Box
+
+
 @dataclass(slots=True)
 class _Picture:
-    """What was drawn, and the surface that shows it."""
+    """What was painted, and the surface that shows it."""
 
-    content: bytes
+    sheet: _Sheet
     surface: pygame.Surface
-    corner: tuple[int, int]
     used: int
 
 
 class Pictures:
     """Paints the draw lists of a frame, each on a surface of its own, and keeps these.
 
-    Most panels are the same from frame to frame: their pictures are laid over the world as they are.
+    Most panels are the same from frame to frame: their pictures are laid over the world as they are. Where
+    figures of several change at once, their pictures are painted in turn, one a frame.
     """
 
     def __init__(self) -> None:
         self._textures: dict[int, NDArray[np.uint8]] = {}
         self._pictures: dict[str, _Picture] = {}
-        self._frame = self._texture_changes = 0
-        self._shown: list[_Picture] = []
+        self._due: dict[str, _Sheet] = {}
+        self._frame = 0
+        self._shown: list[str] = []
         self.painted = 0
 
-    def take(self, data: imgui.ImDrawData) -> None:
-        """Paint what is new of a frame of Dear ImGui; to be called after each ``imgui.render``."""
+    @property
+    def due(self) -> bool:
+        """Whether pictures are to be painted that are older than what they show."""
+        return bool(self._due)
+
+    def take(self, data: imgui.ImDrawData, pointer: tuple[float, float], *, at_once: bool) -> None:
+        """Note what there is to see; to be called after each ``imgui.render``.
+
+        What is new, lies elsewhere than before or under the pointer is painted now, or all of it at once.
+        """
         self._frame += 1
         self._follow_textures(data)
-        self._shown = []
-        for n, commands in enumerate(data.cmd_lists):
-            if commands.idx_buffer.size() == 0:
+        found = ((str(one._owner_name), _sheet(one, data)) for one in data.cmd_lists)
+        sheets = {name: sheet for name, sheet in found if sheet is not None}
+        self._shown = list(sheets)
+        self._due = {name: sheet for name, sheet in self._due.items() if name in self._shown}
+        for name, sheet in sheets.items():
+            kept = self._pictures.get(name)
+            if kept is not None:
+                kept.used = self._frame
+            if kept is not None and kept.sheet == sheet:
+                self._due.pop(name, None)
                 continue
-            picture = self._picture(f"{n} {commands._owner_name}", commands, data)
-            if picture is not None:
-                self._shown.append(picture)
+            self._due[name] = sheet
+            if at_once or kept is None or kept.sheet.box != sheet.box or _contains(sheet.box, pointer):
+                self._paint(name)
         old = [name for name, kept in self._pictures.items() if self._frame - kept.used > _UNUSED_FRAMES]
         for name in old:
             del self._pictures[name]
 
+    def paint_next(self) -> None:
+        """Paint the picture that has waited longest."""
+        if self._due:
+            self._paint(next(iter(self._due)))
+
     def show(self, surface: pygame.Surface) -> None:
         """Lay the pictures over a surface, in their order."""
-        for picture in self._shown:
-            surface.blit(picture.surface, picture.corner, special_flags=pygame.BLEND_PREMULTIPLIED)
+        for name in self._shown:
+            picture = self._pictures.get(name)
+            if picture is not None:
+                surface.blit(picture.surface, picture.sheet.box[:2], special_flags=pygame.BLEND_PREMULTIPLIED)
 
     def forget(self) -> None:
         """Let Dear ImGui know that no texture is used any more; its context can then be ended."""
-        self._shown, self._pictures, self._textures = [], {}, {}
+        self._shown, self._pictures, self._textures, self._due = [], {}, {}, {}
 
     def _follow_textures(self, data: imgui.ImDrawData) -> None:
         """Take over the letters that were added to the texture since the last frame."""
@@ -86,44 +122,32 @@ class Pictures:
             self._textures[texture.unique_id] = np.ascontiguousarray(values[:, :, -1])
             texture.set_tex_id(texture.unique_id)
             texture.set_status(imgui.ImTextureStatus.ok)
-            self._texture_changes += 1
 
-    def _picture(self, name: str, commands: imgui.ImDrawList, data: imgui.ImDrawData) -> _Picture | None:
-        """Return the picture of a draw list, painted now if it is not the one that is kept."""
-        vertices, indices, content = _arrays(commands)
-        clips = [(c.clip_rect.x, c.clip_rect.y, c.clip_rect.z, c.clip_rect.w) for c in commands.cmd_buffer]
-        content += np.array(clips).tobytes()
-        kept = self._pictures.get(name)
-        if kept is not None and kept.content == content:
-            kept.used = self._frame
-            return kept
-        box = _extent(vertices, clips, data)
-        if box is None:
-            return None
+    def _paint(self, name: str) -> None:
+        """Paint one of those that are due, unless the painter is not there yet."""
         if not _can_paint():
-            return None
-        left, top, right, bottom = box
+            return
+        sheet = self._due.pop(name)
+        left, top, right, bottom = sheet.box
         surface = pygame.Surface((right - left, bottom - top), pygame.SRCALPHA, 32, _MASKS)
-        pixels = np.frombuffer(surface.get_buffer(), np.uint32).reshape(
-            bottom - top, surface.get_pitch() // 4
-        )
-        moved, order = (
-            vertices.copy(),
-            indices.copy(),
-        )  # what is kept cannot be written, and kernels ask for more
-        moved[:, :2] -= (left, top)
-        for command, (x0, y0, x1, y1) in zip(commands.cmd_buffer, clips, strict=True):
-            x0, y0 = max(int(x0) - left, 0), max(int(y0) - top, 0)
-            x1, y1 = min(int(x1) - left, right - left), min(int(y1) - top, bottom - top)
-            if command.elem_count and x1 > x0 and y1 > y0:
+        pixels = np.frombuffer(surface.get_buffer(), np.uint32).reshape(bottom - top, -1)
+        vertices = np.frombuffer(bytearray(sheet.vertices), np.float32).reshape(-1, 5)
+        vertices[:, :2] -= (left, top)
+        indices = np.frombuffer(bytearray(sheet.indices), np.uint32)
+        for first, count, offset, texture, (x0, y0, x1, y1) in sheet.commands:
+            low, high = (max(int(x0), left), max(int(y0), top)), (min(int(x1), right), min(int(y1), bottom))
+            if low[0] < high[0] and low[1] < high[1]:
                 paint_triangles(
-                    pixels, moved, moved.view(np.uint32), order, command.idx_offset, command.elem_count,
-                    command.vtx_offset, self._textures[command.get_tex_id()], x0, y0, x1, y1,
+                    pixels, vertices, vertices.view(np.uint32), indices, first, count, offset,
+                    self._textures[texture], low[0] - left, low[1] - top, high[0] - left, high[1] - top,
                 )  # fmt: skip
         del pixels  # or the surface stays locked
         self.painted += 1
-        self._pictures[name] = picture = _Picture(content, surface, (left, top), self._frame)
-        return picture
+        self._pictures[name] = _Picture(sheet, surface, self._frame)
+
+
+def _contains(box: Box, place: tuple[float, float]) -> bool:
+    return box[0] <= place[0] < box[2] and box[1] <= place[1] < box[3]
 
 
 def _can_paint() -> bool:
@@ -134,23 +158,30 @@ def _can_paint() -> bool:
     return bool(painter.compiled)
 
 
-def _arrays(commands: imgui.ImDrawList) -> tuple[NDArray[np.float32], NDArray[np.uint32], bytes]:
-    """Return a draw list's vertices, its indices, and both as bytes."""
+def _sheet(commands: imgui.ImDrawList, data: imgui.ImDrawData) -> _Sheet | None:
+    """Return a draw list as arrays of its own; ``None`` where nothing of it lies within the display."""
+    if commands.idx_buffer.size() == 0:
+        return None
     points, corners = commands.vtx_buffer.size(), commands.idx_buffer.size()
     raw = ctypes.string_at(commands.vtx_buffer.data_address(), points * _VERTEX_BYTES)
     order = ctypes.string_at(commands.idx_buffer.data_address(), corners * 4)
-    vertices = np.frombuffer(raw, np.float32).reshape(points, 5)
-    return vertices, np.frombuffer(order, np.uint32), raw + order
+    parts = [
+        (c.idx_offset, c.elem_count, c.vtx_offset, c.get_tex_id(),
+         (c.clip_rect.x, c.clip_rect.y, c.clip_rect.z, c.clip_rect.w))
+        for c in commands.cmd_buffer if c.elem_count
+    ]  # fmt: skip
+    box = _extent(np.frombuffer(raw, np.float32).reshape(points, 5), [clip for *_, clip in parts], data)
+    return None if box is None else _Sheet(raw, order, parts, box)
 
 
 def _extent(
-    vertices: NDArray[np.float32], clips: list[tuple[float, float, float, float]], data: imgui.ImDrawData
-) -> tuple[int, int, int, int] | None:
+    vertices: NDArray[np.float32], clips: list[tuple[float, ...]], data: imgui.ImDrawData
+) -> Box | None:
     """Return which part of the display a draw list paints: left, top, right, bottom [px]."""
     width, height = int(data.display_size.x), int(data.display_size.y)
-    low, high = vertices[:, :2].min(axis=0), vertices[:, :2].max(axis=0)
-    left = max(math.floor(max(low[0], min(c[0] for c in clips))), 0)
-    top = max(math.floor(max(low[1], min(c[1] for c in clips))), 0)
-    right = min(math.ceil(min(high[0], max(c[2] for c in clips))), width)
-    bottom = min(math.ceil(min(high[1], max(c[3] for c in clips))), height)
+    x, y = vertices[:, 0], vertices[:, 1]
+    left = max(math.floor(max(x.min(), min(c[0] for c in clips))), 0)
+    top = max(math.floor(max(y.min(), min(c[1] for c in clips))), 0)
+    right = min(math.ceil(min(x.max(), max(c[2] for c in clips))), width)
+    bottom = min(math.ceil(min(y.max(), max(c[3] for c in clips))), height)
     return (left, top, right, bottom) if right > left and bottom > top else None

@@ -79,7 +79,7 @@ def apply_theme(theme: Theme, size: float) -> None:
     style.indent_spacing, style.window_title_align = round(14 * unit), ImVec2(0.0, 0.5)
     lit, lit_more = mixed(theme.key, theme.accent, 0.22), mixed(theme.key, theme.accent, 0.4)
     for kind, colour, opacity in (
-        (kinds.window_bg, theme.panel, max(theme.panel_opacity, 0.97)), (kinds.popup_bg, theme.panel, 1.0),
+        (kinds.window_bg, theme.panel, 1.0), (kinds.popup_bg, theme.panel, 1.0),
         (kinds.child_bg, theme.panel, 0.0), (kinds.menu_bar_bg, theme.panel, 1.0),
         (kinds.border, theme.outline, 1.0), (kinds.text, theme.text, 1.0),
         (kinds.text_disabled, theme.faint, 1.0), (kinds.frame_bg, theme.key, 1.0),

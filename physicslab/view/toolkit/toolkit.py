@@ -54,7 +54,7 @@ class Toolkit:
         self.covered: list[Rect] = []
         self.built = 0
         self._pictures = Pictures()
-        self._look: tuple[Theme, float] | None = None
+        self._look: tuple[Theme, float, tuple[int, int]] | None = None
         self._elapsed = 0.0
         self._unsettled = _SETTLING
         self._pointer = (_NOWHERE, _NOWHERE)
@@ -135,8 +135,8 @@ class Toolkit:
 
     @property
     def unsettled(self) -> bool:
-        """Whether panels are to be built in the next frame whatever happens."""
-        return self._unsettled > 0
+        """Whether there is something to do for panels in the next frame whatever happens."""
+        return self._unsettled > 0 or self._pictures.due
 
     def wake(self) -> None:
         """Have panels built in the next frames: something changed."""
@@ -163,14 +163,16 @@ class Toolkit:
             Calls Dear ImGui for each panel.
         """
         self._elapsed += elapsed
-        if self._look != (theme, text_size):
+        looks_new = self._look != (theme, text_size, size)
+        if looks_new:
             self._unsettled = _SETTLING
+        self._pictures.paint_next()
         if self._unsettled <= 0:
             return False
         self._unsettled -= 1
         self._enter()
-        if self._look != (theme, text_size):
-            self._look = (theme, text_size)
+        if looks_new:
+            self._look = (theme, text_size, size)
             apply_theme(theme, text_size)
         io = imgui.get_io()
         io.display_size = ImVec2(*map(float, size))
@@ -182,7 +184,7 @@ class Toolkit:
         finally:
             imgui.render()
         self.built += 1
-        self._pictures.take(imgui.get_draw_data())
+        self._pictures.take(imgui.get_draw_data(), self._pointer, at_once=looks_new)
         self.covered = _covered()
         if io.want_text_input or imgui.is_any_item_active():
             self._unsettled = max(self._unsettled, 1)  # the mark in a field blinks, a key repeats
