@@ -43,7 +43,7 @@ def _whole(number: int) -> int:
 
 @inlined
 def _lay(pixels: Pixels, row: int, column: int, colour: int, alpha: int) -> None:
-    """Lay a colour (red, green and blue from the highest byte down) of some opacity (0 to 255) over a pixel."""
+    """Lay a colour (red, green, blue from the highest byte down) of some opacity (0 to 255) over a pixel."""
     under, share = _whole(pixels[row, column]), alpha + (alpha >> 7)
     low = ((under & _EVERY_OTHER) * (256 - share) + (colour & _EVERY_OTHER) * share) >> 8
     high = ((under >> 8) & _EVERY_OTHER) * (256 - share) + ((255 << 16) | (colour >> 8 & 255)) * share
@@ -68,7 +68,7 @@ def _narrowed(first: int, last: int, y: float, xa: float, ya: float, xb: float, 
 def _slopes(
     ab: float, ac: float, xab: float, yab: float, xac: float, yac: float, area: float
 ) -> tuple[float, float]:
-    """Return how something changes per column and per row that differs by ``ab`` and ``ac`` from a to b, c."""
+    """Return how something changes per column and row that differs by ``ab``, ``ac`` from a to b, c."""
     return (ab * yac - ac * yab) / area, (ac * xab - ab * xac) / area
 
 

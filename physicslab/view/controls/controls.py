@@ -185,6 +185,8 @@ CONTROLS: tuple[Control, ...] = (
             tip="All text smaller"),
     Control("F2", "other colours", "f2", actions.next_theme, minor=True, group="window",
             tip="Colours: dark, high contrast, projector"),
+    Control("F9", "panels as at first", "f9", actions.put_panels_back, minor=True, group="window",
+            tip="Put windows that were moved or docked back where they were at first"),
     Control("F1", "all keys", "f1", actions.toggle_help, group="help",
             state=lambda _, window: window.help, tip="All keys"),
     Control("Esc", "quit", "escape", actions.leave, group="quit", click=actions.close, tip="Quit"),

@@ -26,6 +26,7 @@ _UNUSED_FRAMES = 120
 
 
 type Box = tuple[int, int, int, int]
+type Clip = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +35,7 @@ class _Sheet:
 
     vertices: bytes
     indices: bytes
-    commands: list[tuple[int, int, int, int, tuple[float, ...]]]
+    commands: list[tuple[int, int, int, int, Clip]]
     box: Box
 
 
@@ -174,14 +175,12 @@ def _sheet(commands: imgui.ImDrawList, data: imgui.ImDrawData) -> _Sheet | None:
     return None if box is None else _Sheet(raw, order, parts, box)
 
 
-def _extent(
-    vertices: NDArray[np.float32], clips: list[tuple[float, ...]], data: imgui.ImDrawData
-) -> Box | None:
+def _extent(vertices: NDArray[np.float32], clips: list[Clip], data: imgui.ImDrawData) -> Box | None:
     """Return which part of the display a draw list paints: left, top, right, bottom [px]."""
     width, height = int(data.display_size.x), int(data.display_size.y)
-    x, y = vertices[:, 0], vertices[:, 1]
-    left = max(math.floor(max(x.min(), min(c[0] for c in clips))), 0)
-    top = max(math.floor(max(y.min(), min(c[1] for c in clips))), 0)
-    right = min(math.ceil(min(x.max(), max(c[2] for c in clips))), width)
-    bottom = min(math.ceil(min(y.max(), max(c[3] for c in clips))), height)
+    xs, ys, limits = vertices[:, 0], vertices[:, 1], np.array(clips)
+    left = max(math.floor(max(xs.min(), limits[:, 0].min())), 0)
+    top = max(math.floor(max(ys.min(), limits[:, 1].min())), 0)
+    right = min(math.ceil(min(xs.max(), limits[:, 2].max())), width)
+    bottom = min(math.ceil(min(ys.max(), limits[:, 3].max())), height)
     return (left, top, right, bottom) if right > left and bottom > top else None

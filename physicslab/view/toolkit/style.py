@@ -76,6 +76,7 @@ def apply_theme(theme: Theme, size: float) -> None:
     style.window_padding = ImVec2(round(12 * unit), round(10 * unit))
     style.cell_padding = ImVec2(round(4 * unit), round(2 * unit))
     style.scrollbar_size, style.grab_min_size = round(9 * unit), round(12 * unit)
+    style.window_menu_button_position = imgui.Dir.none
     style.indent_spacing, style.window_title_align = round(14 * unit), ImVec2(0.0, 0.5)
     lit, lit_more = mixed(theme.key, theme.accent, 0.22), mixed(theme.key, theme.accent, 0.4)
     for kind, colour, opacity in (
@@ -92,7 +93,12 @@ def apply_theme(theme: Theme, size: float) -> None:
         (kinds.slider_grab, theme.accent, 1.0), (kinds.slider_grab_active, theme.accent, 1.0),
         (kinds.check_mark, theme.accent, 1.0), (kinds.separator, theme.outline, 1.0),
         (kinds.scrollbar_bg, theme.panel, 0.0), (kinds.scrollbar_grab, theme.key_rim, 1.0),
-        (kinds.tab, theme.panel, 1.0), (kinds.tab_hovered, lit, 1.0), (kinds.tab_selected, lit, 1.0),
+        (kinds.tab, theme.panel, 1.0), (kinds.tab_hovered, lit, 1.0), (kinds.tab_selected, theme.key, 1.0),
+        (kinds.tab_dimmed, theme.panel, 1.0), (kinds.tab_dimmed_selected, theme.key, 1.0),
+        (kinds.tab_selected_overline, theme.accent, 1.0),
+        (kinds.tab_dimmed_selected_overline, theme.outline, 1.0),
+        (kinds.docking_preview, theme.accent, 0.6), (kinds.docking_empty_bg, theme.background, 0.0),
+        (kinds.separator_hovered, theme.accent, 1.0), (kinds.separator_active, theme.accent, 1.0),
         (kinds.plot_histogram, theme.accent, 1.0), (kinds.text_selected_bg, theme.accent, 0.35),
         (kinds.table_row_bg_alt, theme.key, 0.35), (kinds.nav_cursor, theme.accent, 1.0),
         (kinds.resize_grip, theme.key, 0.0), (kinds.modal_window_dim_bg, theme.background, 0.6),

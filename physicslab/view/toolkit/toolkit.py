@@ -45,8 +45,10 @@ class Toolkit:
         self._plots = implot.create_context()
         self._enter()
         io = imgui.get_io()
-        io.set_ini_filename("")
+        io.set_ini_filename(None)
         io.set_log_filename("")
+        io.ini_saving_rate = 1e-3
+        io.config_flags |= imgui.ConfigFlags_.docking_enable
         flags = imgui.BackendFlags_
         io.backend_flags |= flags.renderer_has_textures | flags.renderer_has_vtx_offset
         io.config_debug_highlight_id_conflicts = False
@@ -190,6 +192,22 @@ class Toolkit:
             self._unsettled = max(self._unsettled, 1)  # the mark in a field blinks, a key repeats
         return True
 
+    def arrangement(self) -> str:
+        """Return where windows lie, in words of Dear ImGui; empty where none was moved since."""
+        self._enter()
+        io = imgui.get_io()
+        if not io.want_save_ini_settings:
+            return ""
+        io.want_save_ini_settings = False
+        return str(imgui.save_ini_settings_to_memory())
+
+    def arrange(self, arrangement: str) -> None:
+        """Dock windows and put them where they were, or each where it is at first if that is empty."""
+        self._enter()
+        imgui.internal.clear_ini_settings()
+        imgui.load_ini_settings_from_memory(arrangement)
+        self.wake()
+
     def draw(self, surface: pygame.Surface) -> None:
         """Show panels as they were built last."""
         self._pictures.show(surface)
@@ -204,17 +222,26 @@ def _covered() -> list[Rect]:
     """Return where panels lie that take the mouse, from the back to the front."""
     rects: list[Rect] = []
     for window in imgui.get_current_context().windows:
-        inert = window.flags & imgui.WindowFlags_.no_mouse_inputs
-        if (
-            window.active
-            and not window.hidden
-            and not inert
-            and not window.flags & imgui.WindowFlags_.child_window
-        ):
-            rects.append(
-                (round(window.pos.x), round(window.pos.y), round(window.size.x), round(window.size.y))
-            )
+        if window.hidden or not window.active:
+            continue
+        rect = round(window.pos.x), round(window.pos.y), round(window.size.x), round(window.size.y)
+        node = window.dock_node_as_host
+        if node is not None and node.is_dock_space():
+            rects += _beside(rect, node.central_node)
+        elif not window.flags & (imgui.WindowFlags_.no_mouse_inputs | imgui.WindowFlags_.child_window):
+            rects.append(rect)
     return rects
+
+
+def _beside(rect: Rect, middle: imgui.internal.DockNode) -> list[Rect]:
+    """Return what of a rectangle lies around its middle, with the edges that can be dragged [px]."""
+    (left, top, width, height), node = rect, middle.rect()
+    x, y, right, bottom = round(node.min.x), round(node.min.y), round(node.max.x), round(node.max.y)
+    sides = (
+        (left, top, x - left, height), (right, top, left + width - right, height),
+        (x, top, right - x, y - top), (x, bottom, right - x, top + height - bottom),
+    )  # fmt: skip
+    return [side for side in sides if side[2] > 0 and side[3] > 0]
 
 
 def _end(context: imgui.internal.Context, plots: implot.internal.Context, pictures: Pictures) -> None:

@@ -20,7 +20,13 @@ _FIXED = (
     _FLAGS.no_title_bar | _FLAGS.no_resize | _FLAGS.no_move | _FLAGS.no_collapse | _FLAGS.no_saved_settings
     | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav_focus
 )  # fmt: skip
-_FLOATING = _FLAGS.no_collapse | _FLAGS.no_saved_settings | _FLAGS.no_nav | _FLAGS.always_auto_resize
+_FLOATING = _FLAGS.no_collapse | _FLAGS.always_auto_resize
+_ONLY_SIDES = (
+    imgui.DockNodeFlags_.passthru_central_node | imgui.DockNodeFlags_.no_docking_over_central_node
+    | imgui.internal.DockNodeFlagsPrivate_.no_close_button
+)  # fmt: skip
+"""What is in the middle stays in sight, and takes the mouse."""
+_APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
 
 
@@ -42,6 +48,8 @@ class Ui:
         All that is written, in its order.
     rows : dict of str to str
         The value beside each label.
+    once : Cond_
+        When windows that come back where they were are put where they are at first.
     pictures : list of tuples
         What is laid over panels: a surface, its corner, and the part of the window in which it is seen [px].
     """
@@ -52,10 +60,12 @@ class Ui:
         self.words: list[str] = []
         self.rows: dict[str, str] = {}
         self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
+        self.once = imgui.Cond_.first_use_ever
 
-    def begin(self, theme: Theme) -> None:
-        """Forget the frame before."""
+    def begin(self, theme: Theme, *, rearranged: bool = False) -> None:
+        """Forget the frame before; ``rearranged`` puts windows back where they are at first."""
         self.theme = theme
+        self.once = imgui.Cond_.always if rearranged else imgui.Cond_.first_use_ever
         self.places, self.words, self.rows, self.pictures = {}, [], {}, []
 
     @property
@@ -81,22 +91,51 @@ class Ui:
             imgui.end()
             imgui.pop_style_var(1 if padded else 2)
 
+    def dock(self, rect: Rect) -> Rect:
+        """Let windows be docked to the sides of a part of the display; return what they leave of it [px]."""
+        imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
+        imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(0.0, 0.0))
+        imgui.set_next_window_pos(ImVec2(*rect[:2]))
+        imgui.set_next_window_size(ImVec2(*rect[2:]))
+        unseen = _FLAGS.no_background | _FLAGS.no_mouse_inputs | _FLAGS.no_docking | _FLAGS.no_nav
+        imgui.begin("sides", None, _FIXED | unseen)
+        imgui.pop_style_var(2)
+        name = imgui.get_id("sides")
+        imgui.dock_space(name, ImVec2(0.0, 0.0), _ONLY_SIDES)
+        imgui.end()
+        node = imgui.internal.dock_builder_get_central_node(name)
+        return round(node.pos.x), round(node.pos.y), round(node.size.x), round(node.size.y)
+
     @contextmanager
-    def floating(self, title: str, middle: tuple[float, float]) -> Iterator[list[bool]]:
-        """Begin a window with a title, within the display; what is yielded holds whether it stays open."""
-        room = imgui.get_io().display_size
-        imgui.set_next_window_pos(ImVec2(*middle), imgui.Cond_.appearing, ImVec2(0.5, 0.5))
+    def floating(
+        self, title: str, middle: tuple[float, float], *, docks: bool = False
+    ) -> Iterator[list[bool]]:
+        """Begin a window with a title, within the display; what is yielded holds whether it stays open.
+
+        One that ``docks`` can be docked to the sides of the world, and comes back where it was.
+        """
+        free = imgui.get_main_viewport()  # without the menu bar
+        low, room = free.work_pos, free.work_size
+        when = self.once if docks else imgui.Cond_.appearing
+        imgui.set_next_window_pos(ImVec2(*middle), when, ImVec2(0.5, 0.5))
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
-        _, stays = imgui.begin(title, True, _FLOATING)
+        _, stays = imgui.begin(title, True, _FLOATING if docks else _FLOATING | _APART)
         place, size = imgui.get_window_pos(), imgui.get_window_size()
-        within = ImVec2(max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0))
-        if (within.x, within.y) != (place.x, place.y):
+        within = ImVec2(
+            max(min(place.x, low.x + room.x - size.x), low.x),
+            max(min(place.y, low.y + room.y - size.y), low.y),
+        )
+        if (within.x, within.y) != (place.x, place.y) and not imgui.is_window_docked():
             imgui.set_window_pos(within)
         self.words.append(title)
         try:
             yield [bool(stays)]
         finally:
             imgui.end()
+
+    def extent(self, width: float, height: float) -> ImVec2:
+        """Return a size [px] for what fills a floating window: of a docked one all its room."""
+        return imgui.get_content_region_avail() if imgui.is_window_docked() else ImVec2(width, height)
 
     def picture(self, surface: pygame.Surface, corner: tuple[int, int], clip: pygame.Rect) -> None:
         """Lay a picture over a panel, as far as it lies within ``clip``."""

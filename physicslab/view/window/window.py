@@ -112,6 +112,8 @@ class Window:
         How much is shown: one of ``LEVELS``.
     text_scale : float
         How much larger than usual text is.
+    arrangement : str
+        Where windows lie and are docked, in words of the toolkit; empty where all are as at first.
     adding : bool
         Whether a click adds to what is selected: Shift or Ctrl is held.
     selection : Selection
@@ -181,6 +183,7 @@ class Window:
         self.tool = "circle"
         self.level = "Explore"
         self.text_scale = 1.0
+        self.arrangement = ""
         self.adding = False
         self.selection = Selection()
         self.handles = Handles()

@@ -20,7 +20,7 @@ _SHARE = (0.62, 0.6)
 def build_error_plot(ui: Ui, window: Window) -> None:
     """Build a mark for each run, methods joined by lines: fast to the left, right below."""
     study = window.error_study
-    with ui.floating("Error against run time", window.middle) as stays:
+    with ui.floating("Error against run time", window.middle, docks=True) as stays:
         width, height = (share * px for share, px in zip(_SHARE, window.canvas.size, strict=True))
         imgui.push_text_wrap_pos(width)
         ui.faint(f"{study.remark}. Each mark is one run: left is fast, low is right.", wrapped=False)

@@ -39,11 +39,10 @@ def _build(ui: Ui, graph: Graph, number: int, window: Window) -> bool:
     across = left + width - (number // rows + 1) * (_SIZE[0] + _GAP) * ui.size
     imgui.set_next_window_pos(
         ImVec2(max(across, left), top + (_GAP + number % rows * (_SIZE[1] + _GAP)) * ui.size),
-        imgui.Cond_.appearing,
+        ui.once,
     )
-    imgui.set_next_window_size(ImVec2(_SIZE[0] * ui.size, _SIZE[1] * ui.size), imgui.Cond_.appearing)
-    flags = imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_nav
-    shown, stays = imgui.begin(f"{graph.title}##graph {graph.number}", True, flags)
+    imgui.set_next_window_size(ImVec2(_SIZE[0] * ui.size, _SIZE[1] * ui.size), ui.once)
+    shown, stays = imgui.begin(f"{graph.title}##graph {graph.number}", True, imgui.WindowFlags_.no_collapse)
     ui.words.append(graph.title)
     if shown:
         _build_head(ui, graph, window)

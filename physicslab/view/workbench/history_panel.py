@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import imgui
 
 from physicslab.view.controls import actions
 from physicslab.view.toolkit.ui import Ui
@@ -23,13 +23,13 @@ def build_history(ui: Ui, window: Window) -> None:
     entries, done = history.entries, history.position
     left, top, _, _ = window.room()
     place = left + 0.6 * _WIDTH * ui.size, top + 0.7 * _HEIGHT * ui.size
-    with ui.floating("History", place) as stays:
+    with ui.floating("History", place, docks=True) as stays:
         if ui.button("Undo", "Take back the last edit or run (Ctrl+Z)", enabled=done > 0):
             window.deeds.append(actions.undo)
         imgui.same_line()
         if ui.button("Redo", "Put back what was taken back (Ctrl+Y)", enabled=done < len(entries)):
             window.deeds.append(actions.redo)
-        if imgui.begin_child("entries", ImVec2(_WIDTH * ui.size, _HEIGHT * ui.size)):
+        if imgui.begin_child("entries", ui.extent(_WIDTH * ui.size, _HEIGHT * ui.size)):
             if ui.selectable("As it was opened", on=done == 0, faint=False):
                 window.deeds.append(_going(0))
             for n, entry in enumerate(entries, start=1):

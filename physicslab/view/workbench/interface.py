@@ -65,6 +65,8 @@ class Interface:
         self._next = 0.0
         self._offer_height = 0  # of the offer to restore a session [px]
         self._seen: tuple[object, ...] = ()
+        self._free: Rect | None = None  # what docked windows leave of the world's room [px]
+        self._arrangement = ""
 
     @property
     def text(self) -> int:
@@ -78,12 +80,12 @@ class Interface:
 
     def room(self) -> Rect:
         """Return what is left for the world [px]."""
-        return self.layout.room
+        return self.layout.room if self._free is None else self._free
 
     @property
     def visible(self) -> Rect:
         """Where words can be drawn over the world: no panel covers it [px]."""
-        left, top, width, height = self.layout.visible
+        left, top, width, height = self.layout.visible if self._free is None else self._free
         taken = min(self._offer_height, height - 1) if self._window.recovery.offered else 0
         return left, top + taken, width, height - taken
 
@@ -125,6 +127,10 @@ class Interface:
             Time [s] since the last frame.
         """
         window = self._window
+        rearranged = window.arrangement != self._arrangement
+        if rearranged:
+            self._arrangement = window.arrangement
+            self.toolkit.arrange(window.arrangement)
         seen = self._state(world)
         if seen != self._seen or window.now >= self._next:
             if seen != self._seen:
@@ -134,10 +140,11 @@ class Interface:
             self._seen, self._next = seen, window.now + _PERIOD
 
         def build() -> None:
-            self.ui.begin(window.theme)
+            self.ui.begin(window.theme, rearranged=rearranged and not window.arrangement)
             self._build(world, figures, details, measures)
 
-        self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build)
+        if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
+            window.arrangement = self._arrangement = self.toolkit.arrangement() or self._arrangement
 
     def _state(self, world: World) -> tuple[object, ...]:
         """Return what panels show beside figures."""
@@ -169,6 +176,8 @@ class Interface:
         self, world: World, figures: WorldFigures, details: Sequence[Line], measures: Sequence[Line]
     ) -> None:
         ui, window, layout = self.ui, self._window, self.layout
+        free = ui.dock(layout.visible)
+        self._free = free if free != layout.visible else None
         build_menu_bar(ui, world, window)
         build_palette(ui, layout.palette, window)
         build_transport(ui, layout.transport, world, window)
