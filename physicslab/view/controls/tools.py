@@ -32,8 +32,8 @@ class Tool:
         How it is used.
     press, release : callable
         What happens.
-    pans : bool
-        Whether dragging moves the picture.
+    pans, drags : bool
+        Whether dragging moves the picture, and whether it is pressed at one place and let go at another.
     spawn : Spawnable, optional
         What a click on empty space makes.
     """
@@ -44,6 +44,7 @@ class Tool:
     press: Deed
     release: Deed
     pans: bool = False
+    drags: bool = False
     spawn: Spawnable | None = None
 
 
@@ -158,7 +159,9 @@ HAND = spawning(CIRCLE)
 """The tool at the start: that of a new window."""
 SPAWN_TOOLS = (HAND, *(spawning(spawn) for spawn in SPAWNS[1:]))
 """A tool for each thing there is to spawn."""
-SPRING = Tool("spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring)
+SPRING = Tool(
+    "spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring, drags=True
+)
 REMOVE = Tool("remove", "Erase", "Erase: click a body; its springs go with it.", remove, _nothing)
 SELECT = Tool(
     "select",
@@ -167,10 +170,11 @@ SELECT = Tool(
     select,
     end_select,
 )
-PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True)
+PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True, drags=True)
 RULER = Tool(
     "ruler", "Ruler", "Ruler: drag from one point to another; length, parts and angle are shown.",
     lambda _, window: window.ruler.press(window.place), lambda _, window: window.ruler.release(window.place),
+    drags=True,
 )  # fmt: skip
 _IN_PALETTE = ("circle", "box", "block", "pendulum", "chain")
 PALETTE = (SELECT, *(tool for tool in SPAWN_TOOLS if tool.name in _IN_PALETTE), SPRING, RULER, REMOVE, PAN)

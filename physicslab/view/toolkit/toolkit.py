@@ -14,14 +14,18 @@ from physicslab.view.toolkit.events import AWAY, feed
 from physicslab.view.toolkit.pictures import Pictures
 from physicslab.view.toolkit.style import Fonts, add_fonts, apply_theme
 
-__all__ = ["Toolkit"]
+__all__ = ["MENU_BAR", "Toolkit"]
 
+MENU_BAR = "##MainMenuBar"
+"""The window that Dear ImGui has the main menu in."""
 _SETTLING = 3
 """Frames that Dear ImGui takes to follow an event: sizes and hovering are those of the frame before."""
 _ONLY_WHERE_TAKEN = (
     pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL, pygame.KEYDOWN,
 )  # fmt: skip
 """Events that Dear ImGui gets only where they are for panels: Tab would go to the first field."""
+_FOR_WINDOWS = (pygame.K_F6, pygame.K_F10, pygame.K_LALT)
+"""Keys that go from panel to panel: they are never for the one that has the others."""
 _NOWHERE = -3.0e38
 """Where the mouse is said to be while it is not for panels."""
 
@@ -37,6 +41,8 @@ class Toolkit:
         Its letters.
     built : int
         How many times panels were built.
+    walked : str
+        The panel whose widgets keys go through; empty where they are the world's.
     """
 
     def __init__(self) -> None:
@@ -48,7 +54,7 @@ class Toolkit:
         io.set_ini_filename(None)
         io.set_log_filename("")
         io.ini_saving_rate = 1e-3
-        io.config_flags |= imgui.ConfigFlags_.docking_enable
+        io.config_flags |= imgui.ConfigFlags_.docking_enable | imgui.ConfigFlags_.nav_enable_keyboard
         flags = imgui.BackendFlags_
         io.backend_flags |= flags.renderer_has_textures | flags.renderer_has_vtx_offset
         io.config_debug_highlight_id_conflicts = False
@@ -61,6 +67,10 @@ class Toolkit:
         self._unsettled = _SETTLING
         self._pointer = (_NOWHERE, _NOWHERE)
         self._pressed_on: dict[int, bool] = {}  # whether each button that is held went down on a panel
+        self.walked = ""
+        self._walks = self._leaves = (
+            False  # whether keys go to another panel, or none, from the next frame on
+        )
         weakref.finalize(self, _end, self._context, self._plots, self._pictures)
 
     def _enter(self) -> None:
@@ -72,6 +82,11 @@ class Toolkit:
         """Whether keys go to a field of a panel."""
         self._enter()
         return bool(imgui.get_io().want_text_input)
+
+    @property
+    def has_keys(self) -> bool:
+        """Whether keys go to a field, an open menu, or through the widgets of panels."""
+        return bool(self.walked) or self.typing or self._has_popup()
 
     @property
     def dragging(self) -> bool:
@@ -92,8 +107,8 @@ class Toolkit:
         self._unsettled = _SETTLING
         self._enter()
         io = imgui.get_io()
-        if event.type == pygame.KEYDOWN and taken and not io.want_text_input:
-            imgui.internal.close_popup_to_level(0, True)
+        if event.type == pygame.KEYDOWN and taken and event.key == pygame.K_ESCAPE:
+            self._leave(io, event)
         elif taken or event.type not in _ONLY_WHERE_TAKEN:
             feed(io, event)
         elif event.type == pygame.MOUSEBUTTONDOWN:
@@ -101,7 +116,46 @@ class Toolkit:
             io.add_mouse_pos_event(_NOWHERE, _NOWHERE)
         elif event.type == pygame.MOUSEMOTION:
             io.add_mouse_pos_event(_NOWHERE, _NOWHERE)
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            self.walked = ""
+        elif event.type == pygame.KEYDOWN and event.key == pygame.K_TAB and self.typing:
+            self.walked = str(imgui.get_current_context().nav_window.root_window.name)
         return taken
+
+    def _leave(self, io: imgui.IO, event: pygame.Event) -> None:
+        """Close what is open, or restore what is half written and give the keys back to the world."""
+        if self._has_popup():
+            imgui.internal.close_popup_to_level(0, True)
+        else:
+            feed(io, event)
+            self._leaves = True
+
+    def walk(self, name: str = "") -> None:
+        """Let keys go through the widgets of a panel; without its name, of the next to the right or below."""
+        self._enter()
+        windows = sorted(imgui.get_current_context().windows, key=lambda one: (one.pos.x, one.pos.y))
+        names = [str(one.name) for one in windows if _has_widgets(one)]
+        after = names.index(self.walked) + 1 if self.walked in names else 0
+        self.walked = name or names[after % len(names)]
+        self._walks = True
+        self.wake()
+
+    def _follow_walk(self) -> None:
+        """Put the mark of the keys on a widget of the panel that they are to go through from now on."""
+        panel = imgui.internal.find_window_by_name(self.walked)
+        if self._walks and panel is not None and self.walked != MENU_BAR:
+            imgui.internal.focus_window(panel)
+            imgui.internal.nav_init_window(panel, True)
+            imgui.set_nav_cursor_visible(True)
+        self._walks = False
+
+    def _end_walk(self) -> None:
+        """Give the keys back to the world after Esc, and when a line of a menu was chosen."""
+        panel = imgui.get_current_context().nav_window
+        chosen = self.walked == MENU_BAR and not self._has_popup() and panel and panel.name != MENU_BAR
+        if self._leaves or chosen:
+            imgui.set_window_focus()
+            self._leaves, self.walked = False, ""
 
     def _is_for_panels(self, event: pygame.Event) -> bool:
         match event.type:
@@ -117,10 +171,10 @@ class Toolkit:
                 return self.covers(event.pos)
             case pygame.MOUSEWHEEL:
                 return self.covers(self._pointer)
-            case pygame.KEYDOWN if event.key == pygame.K_ESCAPE:
-                return self.typing or self._has_popup()
+            case pygame.KEYDOWN | pygame.KEYUP if event.key in _FOR_WINDOWS:
+                return False
             case pygame.KEYDOWN | pygame.KEYUP | pygame.TEXTINPUT:
-                return self.typing
+                return self.has_keys
             case _ if event.type in AWAY:
                 self._pressed_on.clear()
         return False
@@ -181,6 +235,7 @@ class Toolkit:
         io.delta_time = max(self._elapsed, 1e-4)
         self._elapsed = 0.0
         imgui.new_frame()
+        self._follow_walk()
         try:
             build()
         finally:
@@ -188,6 +243,7 @@ class Toolkit:
         self.built += 1
         self._pictures.take(imgui.get_draw_data(), self._pointer, at_once=looks_new)
         self.covered = _covered()
+        self._end_walk()
         if io.want_text_input or imgui.is_any_item_active():
             self._unsettled = max(self._unsettled, 1)  # the mark in a field blinks, a key repeats
         return True
@@ -216,6 +272,16 @@ class Toolkit:
     def painted(self) -> int:
         """How many pictures of panels were painted."""
         return self._pictures.painted
+
+
+def _has_widgets(window: imgui.internal.Window) -> bool:
+    """Whether a window is in sight that keys can go through the widgets of, as they cannot of a tip."""
+    flags = imgui.WindowFlags_
+    inert = flags.no_nav_inputs | flags.tooltip | flags.popup
+    nested = window.flags & flags.child_window and not window.dock_id
+    return bool(
+        window.active and not (window.hidden or nested or window.flags & inert or window.name == MENU_BAR)
+    )
 
 
 def _covered() -> list[Rect]:

@@ -50,6 +50,10 @@ class Ui:
         The value beside each label.
     once : Cond_
         When windows that come back where they were are put where they are at first.
+    keys_go_to : str
+        What is to get the keys in this frame: ``"menu"`` or ``"fields"``.
+    focused : str
+        The widget that keys go to, by its words.
     pictures : list of tuples
         What is laid over panels: a surface, its corner, and the part of the window in which it is seen [px].
     """
@@ -61,12 +65,13 @@ class Ui:
         self.rows: dict[str, str] = {}
         self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
         self.once = imgui.Cond_.first_use_ever
+        self.keys_go_to = self.focused = ""
 
     def begin(self, theme: Theme, *, rearranged: bool = False) -> None:
         """Forget the frame before; ``rearranged`` puts windows back where they are at first."""
         self.theme = theme
         self.once = imgui.Cond_.always if rearranged else imgui.Cond_.first_use_ever
-        self.places, self.words, self.rows, self.pictures = {}, [], {}, []
+        self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, [], ""
 
     @property
     def size(self) -> float:
@@ -236,7 +241,9 @@ class Ui:
     # ---- what is clicked -----------------------------------------------------------------------------------
 
     def note(self, label: str) -> None:
-        """Note where the widget is that was drawn last."""
+        """Note where the widget is that was drawn last, and whether keys go to it."""
+        if imgui.is_item_focused():
+            self.focused = label
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         self.places.setdefault(
             label, (round(low.x), round(low.y), round(high.x - low.x), round(high.y - low.y))
@@ -350,6 +357,9 @@ class Ui:
             imgui.push_style_color(imgui.Col_.border, packed(self.theme.error))
             imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.5)
         imgui.set_next_item_width(width)
+        if self.keys_go_to == "fields":
+            imgui.set_keyboard_focus_here()
+            self.keys_go_to = ""
         flags = imgui.InputTextFlags_
         _, text = imgui.input_text(f"##{label}", text, flags.auto_select_all)
         self.note(label)

@@ -114,6 +114,11 @@ class Window:
         How much larger than usual text is.
     arrangement : str
         Where windows lie and are docked, in words of the toolkit; empty where all are as at first.
+    keys_go_to : str
+        Where keys are to go from the next frame on: ``"menu"``, ``"fields"``, ``"panel"`` (the next one) or
+        nowhere else.
+    points_by_key, presses_by_key : bool
+        Whether the cursor was moved by keys, and whether the tool was pressed by one and is to be let go.
     adding : bool
         Whether a click adds to what is selected: Shift or Ctrl is held.
     selection : Selection
@@ -184,6 +189,8 @@ class Window:
         self.level = "Explore"
         self.text_scale = 1.0
         self.arrangement = ""
+        self.keys_go_to = ""
+        self.points_by_key = self.presses_by_key = False
         self.adding = False
         self.selection = Selection()
         self.handles = Handles()

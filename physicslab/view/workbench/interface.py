@@ -9,7 +9,7 @@ import pygame
 from physicslab.view.canvas.canvas import Canvas, Rect
 from physicslab.view.panels.figures import WorldFigures
 from physicslab.view.panels.panels import Line, text_size
-from physicslab.view.toolkit.toolkit import Toolkit
+from physicslab.view.toolkit.toolkit import MENU_BAR, Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
@@ -131,6 +131,7 @@ class Interface:
         if rearranged:
             self._arrangement = window.arrangement
             self.toolkit.arrange(window.arrangement)
+        self._follow_keys()
         seen = self._state(world)
         if seen != self._seen or window.now >= self._next:
             if seen != self._seen:
@@ -145,6 +146,20 @@ class Interface:
 
         if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
             window.arrangement = self._arrangement = self.toolkit.arrangement() or self._arrangement
+
+    def _follow_keys(self) -> None:
+        """Let keys go to a menu or a panel, if they are to."""
+        window = self._window
+        if window.keys_go_to == "fields" and not window.figures:
+            window.figures = True  # and in the next frame the panel is there
+            return
+        self.ui.keys_go_to, window.keys_go_to = window.keys_go_to, ""
+        if self.ui.keys_go_to == "fields":
+            self.toolkit.walk("side")
+        elif self.ui.keys_go_to == "menu":
+            self.toolkit.walk(MENU_BAR)
+        elif self.ui.keys_go_to == "panel":
+            self.toolkit.walk()
 
     def _state(self, world: World) -> tuple[object, ...]:
         """Return what panels show beside figures."""
