@@ -19,7 +19,7 @@ SIZE = (1280, 720)
 def window_of(desk: Desk, title: str) -> imgui.internal.Window:
     """Return a window of the toolkit by the beginning of its title, after the frames of an event."""
     desk.frames(SETTLED)
-    desk.sandbox.interface.toolkit._enter()
+    desk.sandbox.interface.toolkit.enter()
     windows = imgui.get_current_context().windows
     return next(window for window in windows if window.name.startswith(title) and window.active)
 

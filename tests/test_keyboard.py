@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pygame
 import pytest
 from desk import SETTLED, Desk, click, empty_world, sized, tap, write
@@ -10,7 +12,7 @@ from physicslab.components import Mass, Shape, Spring, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
 from physicslab.scenes import SCENES
-from physicslab.view.controls.tools import PALETTE, REMOVE, SPRING
+from physicslab.view.controls.tools import PALETTE, REMOVE, SPRING, Tool
 
 
 @pytest.fixture
@@ -75,7 +77,7 @@ def test_keys_of_the_world_do_nothing_while_a_menu_is_open(desk: Desk) -> None:
 def test_alt_with_another_key_is_for_the_desktop(desk: Desk) -> None:
     alt = pygame.key.key_code("left alt")
 
-    def post(kind: int, **more: object) -> None:
+    def post(kind: int, **more: Any) -> None:
         pygame.event.post(pygame.Event(kind, **more))
         desk.frames(2)
 
@@ -139,7 +141,7 @@ def test_f6_goes_from_panel_to_panel_and_escape_to_the_world(desk: Desk) -> None
     seen = []
     for _ in range(5):
         keys(desk, "f6")
-        seen.append(desk.sandbox.interface.toolkit.walked)
+        seen.append(desk.sandbox.interface._walk._panel)
     assert len(set(seen[:4])) == 4 and seen[4] == seen[0]
     assert {"palette", "side", "transport"} < set(seen)
     keys(desk, "escape", "space")
@@ -147,11 +149,11 @@ def test_f6_goes_from_panel_to_panel_and_escape_to_the_world(desk: Desk) -> None
 
 
 @pytest.mark.parametrize("tool", PALETTE, ids=lambda tool: tool.name)
-def test_every_tool_of_the_palette_is_taken_up(desk: Desk, tool: object) -> None:
+def test_every_tool_of_the_palette_is_taken_up(desk: Desk, tool: Tool) -> None:
     keys(desk, "f6")
     assert desk.ui.focused == PALETTE[0].title
-    keys(desk, *["down"] * PALETTE.index(tool), "return", "escape")  # type: ignore[arg-type]
-    assert desk.window.tool == tool.name  # type: ignore[attr-defined]
+    keys(desk, *["down"] * PALETTE.index(tool), "return", "escape")
+    assert desk.window.tool == tool.name
     assert desk.world.entities() == []
 
 

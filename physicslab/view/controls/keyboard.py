@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import pygame
 
@@ -52,7 +53,7 @@ def _cursor(window: Window) -> tuple[int, int]:
     return round(x), round(y)
 
 
-def _post(kind: int, place: tuple[int, int], **more: object) -> None:
+def _post(kind: int, place: tuple[int, int], **more: Any) -> None:
     """Post an event of the mouse, as the mouse itself does."""
     pygame.event.post(pygame.Event(kind, pos=place, touch=False, by_key=True, **more))
 

@@ -21,8 +21,6 @@ _VERTEX_BYTES = 20
 """Place, place in the texture and colour: what ``ImDrawVert`` takes."""
 _MASKS = (0x00FF0000, 0x0000FF00, 0x000000FF, 0xFF000000)
 """Where red, green, blue and alpha are in a pixel."""
-_UNUSED_FRAMES = 120
-"""A picture that was not shown for so many frames is let go of."""
 
 
 type Box = tuple[int, int, int, int]
@@ -39,13 +37,13 @@ class _Sheet:
     box: Box
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class _Picture:
-    """What was painted, and the surface that shows it."""
+    """What was painted, the surface that shows it, and how many were painted before."""
 
     sheet: _Sheet
     surface: pygame.Surface
-    used: int
+    number: int
 
 
 class Pictures:
@@ -57,57 +55,46 @@ class Pictures:
 
     def __init__(self) -> None:
         self._textures: dict[int, NDArray[np.uint8]] = {}
+        self._sheets: dict[str, _Sheet] = {}
         self._pictures: dict[str, _Picture] = {}
-        self._due: dict[str, _Sheet] = {}
-        self._frame = 0
-        self._shown: list[str] = []
         self.painted = 0
 
     @property
-    def due(self) -> bool:
-        """Whether pictures are to be painted that are older than what they show."""
-        return bool(self._due)
+    def due(self) -> list[str]:
+        """The names of those that show what was there earlier."""
+        return [name for name, one in self._pictures.items() if one.sheet is not self._sheets[name]]
 
     def take(self, data: imgui.ImDrawData, pointer: tuple[float, float], *, at_once: bool) -> None:
         """Note what there is to see; to be called after each ``imgui.render``.
 
         What is new, lies elsewhere than before or under the pointer is painted now, or all of it at once.
         """
-        self._frame += 1
         self._follow_textures(data)
         found = ((str(one._owner_name), _sheet(one, data)) for one in data.cmd_lists)
-        sheets = {name: sheet for name, sheet in found if sheet is not None}
-        self._shown = list(sheets)
-        self._due = {name: sheet for name, sheet in self._due.items() if name in self._shown}
-        for name, sheet in sheets.items():
-            kept = self._pictures.get(name)
-            if kept is not None:
-                kept.used = self._frame
+        self._sheets = {name: sheet for name, sheet in found if sheet is not None}
+        before, self._pictures = self._pictures, {}
+        for name, sheet in self._sheets.items():
+            kept = before.get(name)
             if kept is not None and kept.sheet == sheet:
-                self._due.pop(name, None)
-                continue
-            self._due[name] = sheet
-            if at_once or kept is None or kept.sheet.box != sheet.box or _contains(sheet.box, pointer):
+                self._sheets[name] = kept.sheet
+            elif at_once or kept is None or kept.sheet.box != sheet.box or _contains(sheet.box, pointer):
                 self._paint(name)
-        old = [name for name, kept in self._pictures.items() if self._frame - kept.used > _UNUSED_FRAMES]
-        for name in old:
-            del self._pictures[name]
+                continue
+            self._pictures[name] = kept
 
     def paint_next(self) -> None:
-        """Paint the picture that has waited longest."""
-        if self._due:
-            self._paint(next(iter(self._due)))
+        """Paint the picture that is the oldest of those that are due."""
+        if due := self.due:
+            self._paint(min(due, key=lambda name: self._pictures[name].number))
 
     def show(self, surface: pygame.Surface) -> None:
         """Lay the pictures over a surface, in their order."""
-        for name in self._shown:
-            picture = self._pictures.get(name)
-            if picture is not None:
-                surface.blit(picture.surface, picture.sheet.box[:2], special_flags=pygame.BLEND_PREMULTIPLIED)
+        for picture in self._pictures.values():
+            surface.blit(picture.surface, picture.sheet.box[:2], special_flags=pygame.BLEND_PREMULTIPLIED)
 
     def forget(self) -> None:
         """Let Dear ImGui know that no texture is used any more; its context can then be ended."""
-        self._shown, self._pictures, self._textures, self._due = [], {}, {}, {}
+        self._sheets, self._pictures, self._textures = {}, {}, {}
 
     def _follow_textures(self, data: imgui.ImDrawData) -> None:
         """Take over the letters that were added to the texture since the last frame."""
@@ -125,10 +112,10 @@ class Pictures:
             texture.set_status(imgui.ImTextureStatus.ok)
 
     def _paint(self, name: str) -> None:
-        """Paint one of those that are due, unless the painter is not there yet."""
+        """Paint what there is to see under a name, unless the painter is not there yet."""
         if not _can_paint():
             return
-        sheet = self._due.pop(name)
+        sheet = self._sheets[name]
         left, top, right, bottom = sheet.box
         surface = pygame.Surface((right - left, bottom - top), pygame.SRCALPHA, 32, _MASKS)
         pixels = np.frombuffer(surface.get_buffer(), np.uint32).reshape(bottom - top, -1)
@@ -143,8 +130,8 @@ class Pictures:
                     self._textures[texture], low[0] - left, low[1] - top, high[0] - left, high[1] - top,
                 )  # fmt: skip
         del pixels  # or the surface stays locked
+        self._pictures[name] = _Picture(sheet, surface, self.painted)
         self.painted += 1
-        self._pictures[name] = _Picture(sheet, surface, self._frame)
 
 
 def _contains(box: Box, place: tuple[float, float]) -> bool:

@@ -6,7 +6,7 @@ import importlib.util
 from dataclasses import dataclass
 from pathlib import Path
 
-from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from imgui_bundle import ImVec2, imgui, implot
 
 from physicslab.view.canvas.theme import Colour, Theme, mixed
 
@@ -47,11 +47,6 @@ def packed(colour: Colour, opacity: float = 1.0) -> int:
     """Return a colour as draw lists take it."""
     red, green, blue = colour
     return red | green << 8 | blue << 16 | round(255 * opacity) << 24
-
-
-def _vector(colour: Colour, opacity: float = 1.0) -> ImVec4:
-    red, green, blue = colour
-    return ImVec4(red / 255, green / 255, blue / 255, opacity)
 
 
 def bar_height(text: int) -> int:
@@ -103,7 +98,7 @@ def apply_theme(theme: Theme, size: float) -> None:
         (kinds.table_row_bg_alt, theme.key, 0.35), (kinds.nav_cursor, theme.accent, 1.0),
         (kinds.resize_grip, theme.key, 0.0), (kinds.modal_window_dim_bg, theme.background, 0.6),
     ):  # fmt: skip
-        style.set_color_(kind, _vector(colour, opacity))
+        style.set_color_(kind, imgui.color_convert_u32_to_float4(packed(colour, opacity)))
     plot, colours = implot.get_style(), implot.Col_
     plot.fit_padding = ImVec2(0.0, 0.08)  # or a line that stays at its largest lies under the frame
     for name, colour, opacity in (
@@ -113,4 +108,4 @@ def apply_theme(theme: Theme, size: float) -> None:
         (colours.axis_text, theme.faint, 1.0), (colours.axis_grid, theme.axis, 1.0),
         (colours.inlay_text, theme.text, 1.0), (colours.title_text, theme.text, 1.0),
     ):  # fmt: skip
-        plot.set_color_(name, _vector(colour, opacity))
+        plot.set_color_(name, imgui.color_convert_u32_to_float4(packed(colour, opacity)))

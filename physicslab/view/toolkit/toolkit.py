@@ -14,10 +14,8 @@ from physicslab.view.toolkit.events import AWAY, feed
 from physicslab.view.toolkit.pictures import Pictures
 from physicslab.view.toolkit.style import Fonts, add_fonts, apply_theme
 
-__all__ = ["MENU_BAR", "Toolkit"]
+__all__ = ["Toolkit"]
 
-MENU_BAR = "##MainMenuBar"
-"""The window that Dear ImGui has the main menu in."""
 _SETTLING = 3
 """Frames that Dear ImGui takes to follow an event: sizes and hovering are those of the frame before."""
 _ONLY_WHERE_TAKEN = (
@@ -41,15 +39,17 @@ class Toolkit:
         Its letters.
     built : int
         How many times panels were built.
-    walked : str
-        The panel whose widgets keys go through; empty where they are the world's.
+    pictures : Pictures
+        What is shown of them.
+    walked : bool
+        Whether keys go through the widgets of a panel.
     """
 
     def __init__(self) -> None:
         self._context = imgui.create_context()
         imgui.set_current_context(self._context)
         self._plots = implot.create_context()
-        self._enter()
+        self.enter()
         io = imgui.get_io()
         io.set_ini_filename(None)
         io.set_log_filename("")
@@ -61,32 +61,30 @@ class Toolkit:
         self.fonts: Fonts = add_fonts()
         self.covered: list[Rect] = []
         self.built = 0
-        self._pictures = Pictures()
+        self.pictures = Pictures()
         self._look: tuple[Theme, float, tuple[int, int]] | None = None
         self._elapsed = 0.0
         self._unsettled = _SETTLING
         self._pointer = (_NOWHERE, _NOWHERE)
         self._pressed_on: dict[int, bool] = {}  # whether each button that is held went down on a panel
-        self.walked = ""
-        self._walks = self._leaves = (
-            False  # whether keys go to another panel, or none, from the next frame on
-        )
-        weakref.finalize(self, _end, self._context, self._plots, self._pictures)
+        self.walked = False
+        weakref.finalize(self, _end, self._context, self._plots, self.pictures)
 
-    def _enter(self) -> None:
+    def enter(self) -> None:
+        """Make its context the one that calls of Dear ImGui and ImPlot are for."""
         imgui.set_current_context(self._context)
         implot.set_current_context(self._plots)
 
     @property
     def typing(self) -> bool:
         """Whether keys go to a field of a panel."""
-        self._enter()
+        self.enter()
         return bool(imgui.get_io().want_text_input)
 
     @property
     def has_keys(self) -> bool:
         """Whether keys go to a field, an open menu, or through the widgets of panels."""
-        return bool(self.walked) or self.typing or self._has_popup()
+        return self.walked or self.typing or self.has_popup()
 
     @property
     def dragging(self) -> bool:
@@ -104,11 +102,13 @@ class Toolkit:
         A button that goes down on a panel belongs to it until it is let go, and so it is with the world.
         """
         taken = self._is_for_panels(event)
-        self._unsettled = _SETTLING
-        self._enter()
+        self.enter()
         io = imgui.get_io()
-        if event.type == pygame.KEYDOWN and taken and event.key == pygame.K_ESCAPE:
-            self._leave(io, event)
+        if event.type == pygame.MOUSEMOTION and not taken and not imgui.is_mouse_pos_valid():
+            return False  # it was in the world before, too
+        self._unsettled = _SETTLING
+        if taken and event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE and self.has_popup():
+            imgui.internal.close_popup_to_level(0, True)
         elif taken or event.type not in _ONLY_WHERE_TAKEN:
             feed(io, event)
         elif event.type == pygame.MOUSEBUTTONDOWN:
@@ -116,51 +116,12 @@ class Toolkit:
             io.add_mouse_pos_event(_NOWHERE, _NOWHERE)
         elif event.type == pygame.MOUSEMOTION:
             io.add_mouse_pos_event(_NOWHERE, _NOWHERE)
-        if event.type == pygame.MOUSEBUTTONDOWN:
-            self.walked = ""
-        elif event.type == pygame.KEYDOWN and event.key == pygame.K_TAB and self.typing:
-            self.walked = str(imgui.get_current_context().nav_window.root_window.name)
         return taken
-
-    def _leave(self, io: imgui.IO, event: pygame.Event) -> None:
-        """Close what is open, or restore what is half written and give the keys back to the world."""
-        if self._has_popup():
-            imgui.internal.close_popup_to_level(0, True)
-        else:
-            feed(io, event)
-            self._leaves = True
-
-    def walk(self, name: str = "") -> None:
-        """Let keys go through the widgets of a panel; without its name, of the next to the right or below."""
-        self._enter()
-        windows = sorted(imgui.get_current_context().windows, key=lambda one: (one.pos.x, one.pos.y))
-        names = [str(one.name) for one in windows if _has_widgets(one)]
-        after = names.index(self.walked) + 1 if self.walked in names else 0
-        self.walked = name or names[after % len(names)]
-        self._walks = True
-        self.wake()
-
-    def _follow_walk(self) -> None:
-        """Put the mark of the keys on a widget of the panel that they are to go through from now on."""
-        panel = imgui.internal.find_window_by_name(self.walked)
-        if self._walks and panel is not None and self.walked != MENU_BAR:
-            imgui.internal.focus_window(panel)
-            imgui.internal.nav_init_window(panel, True)
-            imgui.set_nav_cursor_visible(True)
-        self._walks = False
-
-    def _end_walk(self) -> None:
-        """Give the keys back to the world after Esc, and when a line of a menu was chosen."""
-        panel = imgui.get_current_context().nav_window
-        chosen = self.walked == MENU_BAR and not self._has_popup() and panel and panel.name != MENU_BAR
-        if self._leaves or chosen:
-            imgui.set_window_focus()
-            self._leaves, self.walked = False, ""
 
     def _is_for_panels(self, event: pygame.Event) -> bool:
         match event.type:
             case pygame.MOUSEBUTTONDOWN:
-                on_panel = self.covers(event.pos) or self._has_popup()
+                on_panel = self.covers(event.pos) or self.has_popup()
                 self._pressed_on[event.button] = on_panel
                 return on_panel
             case pygame.MOUSEBUTTONUP:
@@ -183,16 +144,16 @@ class Toolkit:
         """Note where the cursor is [px]: events of the wheel do not say so."""
         self._pointer = place
 
-    def _has_popup(self) -> bool:
+    def has_popup(self) -> bool:
         """Whether a menu is open: a click beside it closes it, and does nothing else."""
-        self._enter()
+        self.enter()
         flags = imgui.PopupFlags_
         return bool(imgui.is_popup_open("", flags.any_popup_id | flags.any_popup_level))
 
     @property
     def unsettled(self) -> bool:
         """Whether there is something to do for panels in the next frame whatever happens."""
-        return self._unsettled > 0 or self._pictures.due
+        return self._unsettled > 0 or bool(self.pictures.due)
 
     def wake(self) -> None:
         """Have panels built in the next frames: something changed."""
@@ -222,11 +183,11 @@ class Toolkit:
         looks_new = self._look != (theme, text_size, size)
         if looks_new:
             self._unsettled = _SETTLING
-        self._pictures.paint_next()
+        self.pictures.paint_next()
         if self._unsettled <= 0:
             return False
         self._unsettled -= 1
-        self._enter()
+        self.enter()
         if looks_new:
             self._look = (theme, text_size, size)
             apply_theme(theme, text_size)
@@ -235,22 +196,20 @@ class Toolkit:
         io.delta_time = max(self._elapsed, 1e-4)
         self._elapsed = 0.0
         imgui.new_frame()
-        self._follow_walk()
         try:
             build()
         finally:
             imgui.render()
         self.built += 1
-        self._pictures.take(imgui.get_draw_data(), self._pointer, at_once=looks_new)
+        self.pictures.take(imgui.get_draw_data(), self._pointer, at_once=looks_new)
         self.covered = _covered()
-        self._end_walk()
         if io.want_text_input or imgui.is_any_item_active():
             self._unsettled = max(self._unsettled, 1)  # the mark in a field blinks, a key repeats
         return True
 
     def arrangement(self) -> str:
         """Return where windows lie, in words of Dear ImGui; empty where none was moved since."""
-        self._enter()
+        self.enter()
         io = imgui.get_io()
         if not io.want_save_ini_settings:
             return ""
@@ -259,29 +218,10 @@ class Toolkit:
 
     def arrange(self, arrangement: str) -> None:
         """Dock windows and put them where they were, or each where it is at first if that is empty."""
-        self._enter()
+        self.enter()
         imgui.internal.clear_ini_settings()
         imgui.load_ini_settings_from_memory(arrangement)
         self.wake()
-
-    def draw(self, surface: pygame.Surface) -> None:
-        """Show panels as they were built last."""
-        self._pictures.show(surface)
-
-    @property
-    def painted(self) -> int:
-        """How many pictures of panels were painted."""
-        return self._pictures.painted
-
-
-def _has_widgets(window: imgui.internal.Window) -> bool:
-    """Whether a window is in sight that keys can go through the widgets of, as they cannot of a tip."""
-    flags = imgui.WindowFlags_
-    inert = flags.no_nav_inputs | flags.tooltip | flags.popup
-    nested = window.flags & flags.child_window and not window.dock_id
-    return bool(
-        window.active and not (window.hidden or nested or window.flags & inert or window.name == MENU_BAR)
-    )
 
 
 def _covered() -> list[Rect]:

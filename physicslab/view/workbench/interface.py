@@ -9,7 +9,7 @@ import pygame
 from physicslab.view.canvas.canvas import Canvas, Rect
 from physicslab.view.panels.figures import WorldFigures
 from physicslab.view.panels.panels import Line, text_size
-from physicslab.view.toolkit.toolkit import MENU_BAR, Toolkit
+from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
@@ -26,6 +26,7 @@ from physicslab.view.workbench.recovery_panel import build_recovery
 from physicslab.view.workbench.save_panel import build_save
 from physicslab.view.workbench.settings_panel import SettingsPanel
 from physicslab.view.workbench.transport import build_transport
+from physicslab.view.workbench.walk import Walk
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
 from physicslab.world import World
 
@@ -57,6 +58,7 @@ class Interface:
     def __init__(self, window: Window) -> None:
         self._window = window
         self.toolkit = Toolkit()
+        self._walk = Walk(self.toolkit)
         self.ui = Ui(self.toolkit.fonts, window.theme)
         self._inspector = Inspector()
         self._settings = SettingsPanel()
@@ -96,6 +98,7 @@ class Interface:
         """
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self.toolkit.follow_pointer(event.pos)
+        self._walk.follow(event)
         taken = self.toolkit.take(event)
         if event.type == pygame.MOUSEBUTTONDOWN and not taken:
             refusal = self._finish_fields()
@@ -142,9 +145,11 @@ class Interface:
 
         def build() -> None:
             self.ui.begin(window.theme, rearranged=rearranged and not window.arrangement)
+            self._walk.mark()
             self._build(world, figures, details, measures)
 
         if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
+            self._walk.end()
             window.arrangement = self._arrangement = self.toolkit.arrangement() or self._arrangement
 
     def _follow_keys(self) -> None:
@@ -154,12 +159,7 @@ class Interface:
             window.figures = True  # and in the next frame the panel is there
             return
         self.ui.keys_go_to, window.keys_go_to = window.keys_go_to, ""
-        if self.ui.keys_go_to == "fields":
-            self.toolkit.walk("side")
-        elif self.ui.keys_go_to == "menu":
-            self.toolkit.walk(MENU_BAR)
-        elif self.ui.keys_go_to == "panel":
-            self.toolkit.walk()
+        self._walk.begin(self.ui.keys_go_to)
 
     def _state(self, world: World) -> tuple[object, ...]:
         """Return what panels show beside figures."""
@@ -242,7 +242,7 @@ class Interface:
 
     def draw(self, canvas: Canvas) -> None:
         """Show panels as they were built last."""
-        canvas.paint(self.toolkit.draw)
+        canvas.paint(self.toolkit.pictures.show)
         if self.ui.pictures:
             canvas.paint(self.ui.show_pictures)
 
