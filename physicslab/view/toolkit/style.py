@@ -66,7 +66,7 @@ def apply_theme(theme: Theme, size: float) -> None:
     style.frame_rounding = style.grab_rounding = style.tab_rounding = 5 * unit
     style.window_border_size = style.popup_border_size = 1.0
     style.frame_padding = ImVec2(round(8 * unit), _padding(size))
-    style.item_spacing = ImVec2(round(8 * unit), round(6 * unit))
+    style.item_spacing = ImVec2(round(8 * unit), round(4 * unit))
     style.item_inner_spacing = ImVec2(round(6 * unit), round(4 * unit))
     style.window_padding = ImVec2(round(12 * unit), round(10 * unit))
     style.cell_padding = ImVec2(round(4 * unit), round(2 * unit))

@@ -27,6 +27,8 @@ _ONLY_SIDES = (
 )  # fmt: skip
 """What is in the middle stays in sight, and takes the mouse."""
 _APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
+_TITLE = 6.0
+"""Height of what a floating window has above what fills it, at most, in heights of the text."""
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
 
 
@@ -54,6 +56,8 @@ class Ui:
         What is to get the keys in this frame: ``"menu"`` or ``"fields"``.
     focused : str
         The widget that keys go to, by its words.
+    room : Rect
+        What of the window is left for the world; what opens lies within it [px].
     pictures : list of tuples
         What is laid over panels: a surface, its corner, and the part of the window in which it is seen [px].
     """
@@ -66,10 +70,11 @@ class Ui:
         self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
         self.once = imgui.Cond_.first_use_ever
         self.keys_go_to = self.focused = ""
+        self.room: Rect = (0, 0, 1 << 20, 1 << 20)
 
-    def begin(self, theme: Theme, *, rearranged: bool = False) -> None:
+    def begin(self, theme: Theme, room: Rect = (0, 0, 1 << 20, 1 << 20), *, rearranged: bool = False) -> None:
         """Forget the frame before; ``rearranged`` puts windows back where they are at first."""
-        self.theme = theme
+        self.theme, self.room = theme, room
         self.once = imgui.Cond_.always if rearranged else imgui.Cond_.first_use_ever
         self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, [], ""
 
@@ -138,9 +143,19 @@ class Ui:
         finally:
             imgui.end()
 
+    def fitted(self, width: float, height: float) -> tuple[float, float]:
+        """Return a size for what is in a floating window, so that it lies over no other panel [px]."""
+        _, _, across, down = self.room
+        around = 2.0 * imgui.get_style().window_padding.x + self.size
+        return max(min(width, across - around), 1.0), max(
+            min(height, down - around - _TITLE * self.size), 1.0
+        )
+
     def extent(self, width: float, height: float) -> ImVec2:
         """Return a size [px] for what fills a floating window: of a docked one all its room."""
-        return imgui.get_content_region_avail() if imgui.is_window_docked() else ImVec2(width, height)
+        if imgui.is_window_docked():
+            return imgui.get_content_region_avail()
+        return ImVec2(*self.fitted(width, height))
 
     def picture(self, surface: pygame.Surface, corner: tuple[int, int], clip: pygame.Rect) -> None:
         """Lay a picture over a panel, as far as it lies within ``clip``."""
@@ -311,6 +326,11 @@ class Ui:
         self.note(label)
         self.tip(tip)
         return bool(changed)
+
+    def checkbox_width(self, label: str) -> float:
+        """Return how wide a box to tick is with its words [px]."""
+        gap = imgui.get_style().item_inner_spacing.x
+        return float(imgui.get_frame_height() + gap + imgui.calc_text_size(label).x)
 
     def choice(
         self, label: str, chosen: str, choices: Sequence[str], tip: str = "", width: float = -1.0

@@ -22,14 +22,15 @@ def build_history(ui: Ui, window: Window) -> None:
     history = window.edits.history
     entries, done = history.entries, history.position
     left, top, _, _ = window.room()
-    place = left + 0.6 * _WIDTH * ui.size, top + 0.7 * _HEIGHT * ui.size
+    width, height = ui.fitted(_WIDTH * ui.size, _HEIGHT * ui.size)
+    place = left + 0.5 * width + ui.size, top + 0.5 * height + 4.0 * ui.size
     with ui.floating("History", place, docks=True) as stays:
         if ui.button("Undo", "Take back the last edit or run (Ctrl+Z)", enabled=done > 0):
             window.deeds.append(actions.undo)
         imgui.same_line()
         if ui.button("Redo", "Put back what was taken back (Ctrl+Y)", enabled=done < len(entries)):
             window.deeds.append(actions.redo)
-        if imgui.begin_child("entries", ui.extent(_WIDTH * ui.size, _HEIGHT * ui.size)):
+        if imgui.begin_child("entries", ui.extent(width, height)):
             if ui.selectable("As it was opened", on=done == 0, faint=False):
                 window.deeds.append(_going(0))
             for n, entry in enumerate(entries, start=1):

@@ -144,7 +144,7 @@ class Interface:
             self._seen, self._next = seen, window.now + _PERIOD
 
         def build() -> None:
-            self.ui.begin(window.theme, rearranged=rearranged and not window.arrangement)
+            self.ui.begin(window.theme, self.layout.visible, rearranged=rearranged and not window.arrangement)
             self._walk.mark()
             self._build(world, figures, details, measures)
 
@@ -211,9 +211,10 @@ class Interface:
                     ui.gap(0.3)
                     ui.rule()
                     build_figures(ui, measures if window.level == "Measure" else [*measures, *details])
-                ui.gap(0.3)
-                ui.rule()
-                self._build_counts(ui, figures)
+                if window.level != "Explore" or not window.selection.entities:
+                    ui.gap(0.3)
+                    ui.rule()
+                    self._build_counts(ui, figures)
         if window.graphs:
             build_graphs(ui, window)
         if window.recovery.offered:
