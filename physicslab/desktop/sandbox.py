@@ -6,7 +6,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from physicslab.components import Held
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Held, Transform
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.rescue import save_last_good
 from physicslab.files.scene import SceneError
@@ -23,6 +26,11 @@ from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
 
 __all__ = ["Sandbox"]
+
+_REST_AFTER, _REST_PERIOD = 1.0, 0.1
+"""How long [s] nothing is done and nothing moves before pictures are fewer, and the time between two then."""
+_PARTS = 10.0
+"""A motion is seen from a tenth of a pixel on."""
 
 
 class Sandbox:
@@ -65,6 +73,8 @@ class Sandbox:
         self._autosave = autosave
         self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
+        self._rested = self._undrawn = 0.0  # how long nothing has moved, or was drawn [s]
+        self._places = np.empty((0, 3))
         self._titles = "", ""
         self.interface = Interface(window)
         window.room = self.interface.room
@@ -100,18 +110,42 @@ class Sandbox:
         window.go_home(world)
         window.unchanged = world.motion_edits
 
-    def frame(self, elapsed: float) -> None:
-        """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last."""
+    def frame(self, elapsed: float) -> bool:
+        """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last.
+
+        While nothing in it moves it is drawn a few times a second; return whether it was.
+        """
         self.window.pace.begin(elapsed)
         self.world.frame(Stage.INPUT, elapsed)
         if self.window.next_world is not None:
             self._go_on_to(self.window.next_world)
         self._advance()
         self.window.selection.follow(self.world)  # in the past steps make and remove bodies
-        self.world.frame(Stage.RENDER, elapsed)
-        self.world.frame(Stage.HUD, elapsed)
+        self._undrawn += elapsed
+        drawn = not self._rests(elapsed) or self._undrawn > _REST_PERIOD
+        if drawn:
+            self._places = self._places_now()
+            self.world.frame(Stage.RENDER, self._undrawn)
+            self.world.frame(Stage.HUD, self._undrawn)
+            self._undrawn = 0.0
         if self._autosave is not None:
             self._keep(self._autosave)
+        return drawn
+
+    def _rests(self, elapsed: float) -> bool:
+        """Whether only the clock changes in the picture: for a while nothing has moved or was done."""
+        window = self.window
+        shown = window.notice or len(window.sparks) or window.error_study.running
+        done = window.touched or window.hand.entity is not None
+        still = not (shown or done) and np.array_equal(self._places, self._places_now())
+        self._rested = self._rested + elapsed if still else 0.0
+        return self._rested > _REST_AFTER and not self.interface.toolkit.unsettled
+
+    def _places_now(self) -> NDArray[np.float64]:
+        """Return where all bodies are, in parts of pixels too small to be seen."""
+        transform = self.world.table(Transform)
+        turned = np.column_stack((transform["position"], transform["angle"]))
+        return np.round(turned * (_PARTS * self.window.camera.scale))
 
     def _go_on_to(self, world: World) -> None:
         """Show another world; the one that is left can be had back if there are unsaved edits in it."""

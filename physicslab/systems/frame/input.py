@@ -69,8 +69,10 @@ class InputSystem(System):
         """Do what the events since the last frame call for."""
         window = self._window
         window.now += elapsed
+        events = pygame.event.get()
+        window.touched = bool(events or window.deeds)
         self._do_deeds(world)
-        for event in pygame.event.get():
+        for event in events:
             taken = self._interface.take(event)
             self._do_deeds(world)  # what was written in a field is done before the click beside it
             self._follow_alt(world, event)

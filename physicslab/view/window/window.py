@@ -96,6 +96,8 @@ class Window:
         The mode that gravity goes back to after planet mode.
     spawned : int
         How many bodies were made by hand; what comes next varies with it.
+    touched : bool
+        Whether the user did anything since the frame before.
     wants_screenshot : bool
         Whether a picture of the window is to be kept as soon as it is drawn.
     closing : bool
@@ -180,7 +182,7 @@ class Window:
         self.pointer_on_panel = self.has_pointed = False
         self.gravity_before = "linear"
         self.spawned = 0
-        self.wants_screenshot = False
+        self.touched = self.wants_screenshot = False
         self.closing = False
         self.error = ""
         self.help = self.lists_history = self.shows_gallery = False
