@@ -10,7 +10,7 @@ from desk import FRAME, Desk, bits, click, click_at, empty_world, fill, tap, wri
 from random_edits import state_hash
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
-from physicslab.diagnostics.free_body import forces_on, net_force
+from physicslab.diagnostics.free_body import applied_forces, contact_forces, forces_on, net_force
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
@@ -273,6 +273,18 @@ def test_a_block_that_slides_has_friction_against_its_motion() -> None:
     rubbed = sum(one.force.x for one in forces if one.kind == "friction")
     assert rubbed == pytest.approx(-0.3 * 2.0 * 9.81, rel=1e-3)
     assert net_force(forces).x == pytest.approx(-0.3 * 2.0 * 9.81, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["sandbox", "slope", "newtons_cradle", "spring_chain", "two_planets"])
+def test_the_forces_on_all_bodies_are_those_on_each(name: str) -> None:
+    world = load_scene(name)
+    world.run(seconds=0.7)
+    total = applied_forces(world) + contact_forces(world)
+    for entity in world.batch(Velocity, Mass).entities.tolist():
+        forces = forces_on(world, entity)
+        largest = max((one.force.magnitude for one in forces), default=0.0)
+        row = world.entity_index.row_of[entity]
+        assert total[row].tolist() == pytest.approx(list(net_force(forces)), abs=1e-9 * largest)
 
 
 # The first view

@@ -52,6 +52,7 @@ __all__ = [
     "toggle_impulses",
     "toggle_pause",
     "toggle_planets",
+    "toggle_scales",
     "toggle_slow_motion",
     "toggle_trails",
     "undo",
@@ -147,6 +148,13 @@ def toggle_arrows(world: World, window: Window) -> None:
 def toggle_impulses(world: World, window: Window) -> None:
     """Show or hide what contacts do: impulses, friction cones and their numbers."""
     window.overlays.toggle_impulses(world, window.camera)
+
+
+def toggle_scales(world: World, window: Window) -> None:
+    """Let the scales of all arrows stay as they are, or follow what is shown again."""
+    window.overlays.toggle_scales()
+    kept = window.overlays.keeps_scales
+    window.notify("Arrows keep their scale" if kept else "The scale of arrows follows what is shown")
 
 
 def toggle_trails(world: World, window: Window) -> None:

@@ -90,7 +90,7 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
             (Sample(FORCE), FORCE.name, overlays.force.words),
             (Sample(CONTACT_NORMAL, CONTACT_NORMAL.width), CONTACT_NORMAL.name, "direction only"),
         ]
-        remarks.append("Force: gravity, springs, drag; no contacts.")
+        remarks.append("Select a body to see each of the forces on it.")
     if overlays.impulses:
         rows += [
             (Sample(NORMAL_IMPULSE, IMPACT_WIDTH), "Normal, impact", overlays.impact.words),
@@ -131,13 +131,14 @@ def _laid_out(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: 
     """Return the legend, so wide [px]; with names alone where that is 0."""
     rows, remarks = _rows(overlays)
     pad, sample_length = round(0.7 * size), 2.4 * size
+    kept = "scale, kept" if overlays.keeps_scales else "scale"
     label, value = TextStyle(size - 1, theme.text), TextStyle(size - 1, theme.faint)
     row_height = canvas.text_size("Ag", label)[1]
     inset, is_brief = round(pad + sample_length + 0.6 * size), not width
     if is_brief:
         rows = list({name: (sample, name, "") for sample, name, _ in rows}.values())
         width = inset + max(canvas.text_size(name, label)[0] for _, name, _ in rows) + pad
-    lines = [] if is_brief else [Line("Arrows", "scale", "heading")]
+    lines = [] if is_brief else [Line("Arrows", kept, "heading")]
     heading = lay_out(lines, 0, 0, width, size, canvas, theme)
     texts, samples, y = list(heading.texts), [], heading.rect[3] - pad
     for sample, name, scale in rows:

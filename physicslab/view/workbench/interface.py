@@ -167,6 +167,7 @@ class Interface:
         shown = (
             window.help,
             window.error_study.shown,
+            window.error_study.share if window.error_study.running else None,
             window.lists_history,
             window.shows_gallery,
             window.naming is None,
@@ -219,8 +220,7 @@ class Interface:
             build_graphs(ui, window)
         if window.recovery.offered:
             self._offer_height = build_recovery(ui, window, layout.visible)
-        if window.error_study.shown:
-            build_error_plot(ui, window)
+        build_error_plot(ui, window)
         if window.naming is not None:
             build_save(ui, window)
         if window.shows_gallery:
