@@ -125,8 +125,8 @@ class Sandbox:
         drawn = not self._rests(elapsed) or self._undrawn > _REST_PERIOD
         if drawn:
             self._places = self._places_now()
-            self.world.frame(Stage.RENDER, self._undrawn)
-            self.world.frame(Stage.HUD, self._undrawn)
+            self.world.frame(Stage.RENDER, elapsed)
+            self.world.frame(Stage.HUD, elapsed)
             self._undrawn = 0.0
         if self._autosave is not None:
             self._keep(self._autosave)

@@ -88,10 +88,8 @@ def _triangle(
     ua, va, packed = width * vertices[a, 2], height * vertices[a, 3], _whole(colours[a, 4])
     colour = (packed & 255) << 16 | (packed & 0xFF00) | (packed >> 16 & 255)
     opacity = float(packed >> 24)
-    ox, oy = _slopes(
-        (_whole(colours[b, 4]) >> 24) - opacity, (_whole(colours[c, 4]) >> 24) - opacity,
-        xab, yab, xac, yac, area,
-    )  # fmt: skip
+    of_b, of_c = _whole(colours[b, 4]) >> 24, _whole(colours[c, 4]) >> 24
+    ox, oy = _slopes(of_b - opacity, of_c - opacity, xab, yab, xac, yac, area)
     ux, uy = _slopes(width * vertices[b, 2] - ua, width * vertices[c, 2] - ua, xab, yab, xac, yac, area)
     vx, vy = _slopes(height * vertices[b, 3] - va, height * vertices[c, 3] - va, xab, yab, xac, yac, area)
     uniform = ox == 0.0 and oy == 0.0 and ux == 0.0 and uy == 0.0 and vx == 0.0 and vy == 0.0

@@ -23,7 +23,6 @@ _MASKS = (0x00FF0000, 0x0000FF00, 0x000000FF, 0xFF000000)
 """Where red, green, blue and alpha are in a pixel."""
 
 
-type Box = tuple[int, int, int, int]
 type Clip = tuple[float, float, float, float]
 
 
@@ -34,7 +33,7 @@ class _Sheet:
     vertices: bytes
     indices: bytes
     commands: list[tuple[int, int, int, int, Clip]]
-    box: Box
+    box: pygame.Rect
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,14 +69,15 @@ class Pictures:
         What is new, lies elsewhere than before or under the pointer is painted now, or all of it at once.
         """
         self._follow_textures(data)
-        found = ((str(one._owner_name), _sheet(one, data)) for one in data.cmd_lists)
-        self._sheets = {name: sheet for name, sheet in found if sheet is not None}
+        lists = [one for one in data.cmd_lists if one.idx_buffer.size()]
+        sheets = {str(one._owner_name): _sheet(one, data) for one in lists}
+        self._sheets = {name: sheet for name, sheet in sheets.items() if sheet.box}
         before, self._pictures = self._pictures, {}
         for name, sheet in self._sheets.items():
             kept = before.get(name)
             if kept is not None and kept.sheet == sheet:
                 self._sheets[name] = kept.sheet
-            elif at_once or kept is None or kept.sheet.box != sheet.box or _contains(sheet.box, pointer):
+            elif at_once or kept is None or kept.sheet.box != sheet.box or sheet.box.collidepoint(pointer):
                 self._paint(name)
                 continue
             self._pictures[name] = kept
@@ -90,7 +90,7 @@ class Pictures:
     def show(self, surface: pygame.Surface) -> None:
         """Lay the pictures over a surface, in their order."""
         for picture in self._pictures.values():
-            surface.blit(picture.surface, picture.sheet.box[:2], special_flags=pygame.BLEND_PREMULTIPLIED)
+            surface.blit(picture.surface, picture.sheet.box, special_flags=pygame.BLEND_PREMULTIPLIED)
 
     def forget(self) -> None:
         """Let Dear ImGui know that no texture is used any more; its context can then be ended."""
@@ -116,26 +116,22 @@ class Pictures:
         if not _can_paint():
             return
         sheet = self._sheets[name]
-        left, top, right, bottom = sheet.box
-        surface = pygame.Surface((right - left, bottom - top), pygame.SRCALPHA, 32, _MASKS)
-        pixels = np.frombuffer(surface.get_buffer(), np.uint32).reshape(bottom - top, -1)
+        box = sheet.box
+        surface = pygame.Surface(box.size, pygame.SRCALPHA, 32, _MASKS)
+        pixels = np.frombuffer(surface.get_buffer(), np.uint32).reshape(box.h, -1)
         vertices = np.frombuffer(bytearray(sheet.vertices), np.float32).reshape(-1, 5)
-        vertices[:, :2] -= (left, top)
+        vertices[:, :2] -= box.topleft
         indices = np.frombuffer(bytearray(sheet.indices), np.uint32)
         for first, count, offset, texture, (x0, y0, x1, y1) in sheet.commands:
-            low, high = (max(int(x0), left), max(int(y0), top)), (min(int(x1), right), min(int(y1), bottom))
-            if low[0] < high[0] and low[1] < high[1]:
-                paint_triangles(
-                    pixels, vertices, vertices.view(np.uint32), indices, first, count, offset,
-                    self._textures[texture], low[0] - left, low[1] - top, high[0] - left, high[1] - top,
-                )  # fmt: skip
+            clip = pygame.Rect(int(x0), int(y0), int(x1) - int(x0), int(y1) - int(y0)).clip(box)
+            clip.move_ip(-box.x, -box.y)
+            paint_triangles(
+                pixels, vertices, vertices.view(np.uint32), indices, first, count, offset,
+                self._textures[texture], clip.left, clip.top, clip.right, clip.bottom,
+            )  # fmt: skip
         del pixels  # or the surface stays locked
         self._pictures[name] = _Picture(sheet, surface, self.painted)
         self.painted += 1
-
-
-def _contains(box: Box, place: tuple[float, float]) -> bool:
-    return box[0] <= place[0] < box[2] and box[1] <= place[1] < box[3]
 
 
 def _can_paint() -> bool:
@@ -146,10 +142,8 @@ def _can_paint() -> bool:
     return bool(painter.compiled)
 
 
-def _sheet(commands: imgui.ImDrawList, data: imgui.ImDrawData) -> _Sheet | None:
-    """Return a draw list as arrays of its own; ``None`` where nothing of it lies within the display."""
-    if commands.idx_buffer.size() == 0:
-        return None
+def _sheet(commands: imgui.ImDrawList, data: imgui.ImDrawData) -> _Sheet:
+    """Return a draw list as arrays of its own."""
     points, corners = commands.vtx_buffer.size(), commands.idx_buffer.size()
     raw = ctypes.string_at(commands.vtx_buffer.data_address(), points * _VERTEX_BYTES)
     order = ctypes.string_at(commands.idx_buffer.data_address(), corners * 4)
@@ -158,16 +152,10 @@ def _sheet(commands: imgui.ImDrawList, data: imgui.ImDrawData) -> _Sheet | None:
          (c.clip_rect.x, c.clip_rect.y, c.clip_rect.z, c.clip_rect.w))
         for c in commands.cmd_buffer if c.elem_count
     ]  # fmt: skip
-    box = _extent(np.frombuffer(raw, np.float32).reshape(points, 5), [clip for *_, clip in parts], data)
-    return None if box is None else _Sheet(raw, order, parts, box)
-
-
-def _extent(vertices: NDArray[np.float32], clips: list[Clip], data: imgui.ImDrawData) -> Box | None:
-    """Return which part of the display a draw list paints: left, top, right, bottom [px]."""
-    width, height = int(data.display_size.x), int(data.display_size.y)
-    xs, ys, limits = vertices[:, 0], vertices[:, 1], np.array(clips)
-    left = max(math.floor(max(xs.min(), limits[:, 0].min())), 0)
-    top = max(math.floor(max(ys.min(), limits[:, 1].min())), 0)
-    right = min(math.ceil(min(xs.max(), limits[:, 2].max())), width)
-    bottom = min(math.ceil(min(ys.max(), limits[:, 3].max())), height)
-    return (left, top, right, bottom) if right > left and bottom > top else None
+    places, limits = np.frombuffer(raw, np.float32).reshape(points, 5), np.array([part[4] for part in parts])
+    left = math.floor(max(places[:, 0].min(), limits[:, 0].min()))
+    top = math.floor(max(places[:, 1].min(), limits[:, 1].min()))
+    right = math.ceil(min(places[:, 0].max(), limits[:, 2].max()))
+    bottom = math.ceil(min(places[:, 1].max(), limits[:, 3].max()))
+    box = pygame.Rect(left, top, max(right - left, 0), max(bottom - top, 0))
+    return _Sheet(raw, order, parts, box.clip((0, 0, data.display_size.x, data.display_size.y)))

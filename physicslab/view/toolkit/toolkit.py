@@ -53,7 +53,6 @@ class Toolkit:
         io = imgui.get_io()
         io.set_ini_filename(None)
         io.set_log_filename("")
-        io.ini_saving_rate = 1e-3
         io.config_flags |= imgui.ConfigFlags_.docking_enable | imgui.ConfigFlags_.nav_enable_keyboard
         flags = imgui.BackendFlags_
         io.backend_flags |= flags.renderer_has_textures | flags.renderer_has_vtx_offset
@@ -208,12 +207,8 @@ class Toolkit:
         return True
 
     def arrangement(self) -> str:
-        """Return where windows lie, in words of Dear ImGui; empty where none was moved since."""
+        """Return where windows lie, in words of Dear ImGui."""
         self.enter()
-        io = imgui.get_io()
-        if not io.want_save_ini_settings:
-            return ""
-        io.want_save_ini_settings = False
         return str(imgui.save_ini_settings_to_memory())
 
     def arrange(self, arrangement: str) -> None:

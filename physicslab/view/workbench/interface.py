@@ -150,7 +150,7 @@ class Interface:
 
         if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
             self._walk.end()
-            window.arrangement = self._arrangement = self.toolkit.arrangement() or self._arrangement
+            window.arrangement = self._arrangement = self.toolkit.arrangement()
 
     def _follow_keys(self) -> None:
         """Let keys go to a menu or a panel, if they are to."""
