@@ -2,8 +2,8 @@
 
 ``uv run python benchmarks/panel_frames.py [SCENE] [--frames N]`` shows one scene twice, and lets both make
 frames in turn, so that what else the machine does meets both. It prints the median, the 95th and the 99th
-percentile [ms] of each, and ends with what panels add to the 95th: at most 2 ms are allowed. Exit code 1
-says that it was more.
+percentile [ms] of each, by the clock and in time of the processor, and ends with what panels add to the 95th:
+at most 2 ms are allowed. Exit code 1 says that it was more by both.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from physicslab.kernels.warm import load_all
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.window.window import Window
 
+PERCENTILES = (50, 95, 99)
 ALLOWED = 2.0
 """What panels may add to the 95th percentile [ms]."""
 
@@ -68,21 +69,25 @@ def main() -> int:
     compile_kernels(KERNELS)
     pygame.display.init()
     windows = {"without panels": without_panels(options.scene), "with panels": with_panels(options.scene)}
-    spent = np.zeros((options.frames, len(windows)))
+    spent = np.zeros((options.frames, len(windows), 2))
     freeze()
     for n in range(-WARM_UP, options.frames):
         for k, sandbox in enumerate(windows.values()):
-            start = time.perf_counter_ns()
+            wall, cpu = time.perf_counter_ns(), time.process_time_ns()
             sandbox.frame(FRAME)
+            cpu, wall = time.process_time_ns() - cpu, time.perf_counter_ns() - wall
             if n >= 0:
-                spent[n, k] = (time.perf_counter_ns() - start) / 1e6
-    median, p95, p99 = np.percentile(spent, (50, 95, 99), axis=0)
-    print(f"{options.scene:16}  median     p95     p99   ms")
+                spent[n, k] = wall / 1e6, cpu / 1e6
+    found = np.percentile(spent, PERCENTILES, axis=0)
+    print(f"{options.scene:16}  median     p95     p99   ms; CPU: median     p95     p99")
     for k, name in enumerate(windows):
-        print(f"{name:16}{median[k]:8.2f}{p95[k]:8.2f}{p99[k]:8.2f}")
-    added = p95[1] - p95[0]
-    print(f"panels add {added:.2f} ms to the 95th percentile; {ALLOWED:g} are allowed")
-    return int(added > ALLOWED)
+        wall_ms, cpu_ms = ("".join(f"{one:8.2f}" for one in found[:, k, clock]) for clock in (0, 1))
+        print(f"{name:16}{wall_ms}          {cpu_ms}")
+    added = found[1, 1] - found[1, 0]
+    print(
+        f"panels add {added[0]:.2f} ms to the 95th percentile, {added[1]:.2f} ms of CPU; {ALLOWED:g} may be"
+    )
+    return int(min(added) > ALLOWED)
 
 
 if __name__ == "__main__":
