@@ -70,7 +70,7 @@ def test_keys_of_the_world_do_nothing_while_a_menu_is_open(desk: Desk) -> None:
         keys(desk, "escape", "escape")
         desk.window.selection.take(ball)
         desk.window.closing = False
-    assert desk.world.entities() == [ball] and desk.window.graphs == []
+    assert desk.world.entities() == [ball] and not desk.window.dashboard.graphs
     assert (desk.world.physics, desk.window.grid, desk.window.pace.slow_motion) == before
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Held, Transform
+from physicslab.components import Gate, Held, Transform
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.rescue import save_last_good
 from physicslab.files.scene import SceneError
@@ -19,8 +19,7 @@ from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
-from physicslab.view.window.graphs import Graph
-from physicslab.view.window.ruler import Ruler
+from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.window import Left, Window
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
@@ -75,13 +74,13 @@ class Sandbox:
         self._rescued: tuple[World, float] | None = None
         self._rested = self._undrawn = 0.0  # how long nothing has moved, or was drawn [s]
         self._places = np.empty((0, 3))
-        self._titles = "", ""
+        self._titles, self._source = ("", ""), window.source
+        self.world = world
         self.interface = Interface(window)
         window.room = self.interface.room
         hud = HudSystem(window, self.interface)
         self._systems = InputSystem(window, self.interface), RenderSystem(window), hud
         self.show(world)
-        self._source = window.source
         if autosave is not None:
             autosave.finish(world)
 
@@ -90,13 +89,16 @@ class Sandbox:
 
         A world that was shown before comes with its history.
         """
-        self.world = world
         titles, self._titles = self._titles, (world.name, world.title)
+        is_again = titles == self._titles and self.window.source == self._source
+        before = self.world if is_again and world is not self.world else None
+        self.world = world
         if self._shown is not None:
             self._shown(world)
+        window = self.window
+        window.dashboard.begin(world, before, is_new=history is None)
         if history is None:
             world.install(*self._systems)
-        window = self.window
         world.synchronise()  # what was done to make it is no edit
         self.history = history or History(world)
         window.follow_history(self.history)
@@ -104,8 +106,8 @@ class Sandbox:
         window.overlays.forget()
         window.sparks.clear()
         window.selection.clear()
-        window.graphs = [graph for graph in window.graphs if _goes_on(graph, titles, self._titles)]
-        window.naming, window.ruler = None, Ruler()
+        window.naming, window.measuring = None, Measuring()
+        window.shows_stopwatch = bool(len(world.batch(Gate)))
         window.error, window.next_world = "", None
         window.go_home(world)
         window.unchanged = world.motion_edits
@@ -116,6 +118,8 @@ class Sandbox:
         While nothing in it moves it is drawn a few times a second; return whether it was.
         """
         self.window.pace.begin(elapsed)
+        if self.window.next_world is None:
+            self._source = self.window.source  # another, once the scene was saved under another name
         self.world.frame(Stage.INPUT, elapsed)
         if self.window.next_world is not None:
             self._go_on_to(self.window.next_world)
@@ -156,10 +160,9 @@ class Sandbox:
         window.left = Left(self.history, self._source, window.unchanged) if edited else None
         if back is not None and back.history.world is world:
             self.show(world, back.history)
-            self._source, window.source, window.unchanged = back.source, back.source, back.unchanged
+            window.source, window.unchanged = back.source, back.unchanged
             return
         self.show(world)
-        self._source = window.source
         if edited:
             window.notify(f"{window.notice} - Ctrl+Z at its start brings back what was edited before", 6.0)
 
@@ -226,9 +229,3 @@ class Sandbox:
             return f"The last good state is shown; it could not be saved: {error}."
         self._rescued = self.world, self.world.time
         return f"The last good state is shown, and saved as {path.name}."
-
-
-def _goes_on(graph: Graph, before: tuple[str, str], now: tuple[str, str]) -> bool:
-    """Whether a graph stays where another world is shown: it does if that is the same scene once more."""
-    graph.restart()
-    return before == now

@@ -82,6 +82,14 @@ class Component:
         It is called on a new component, so it may read every field; a write is tried on a new one first.
         """
 
+    def references(self) -> dict[str, str]:
+        """Return, by the names of fields that hold an entity, which component that one must have.
+
+        Override it where a scene file is to be refused that refers to another. An instrument, a component
+        that is not ``physical``, is left out of a file where what it refers to is gone.
+        """
+        return {}
+
     def values(self) -> dict[str, Any]:
         """Return every field's present value by name."""
         return {spec.name: getattr(self, spec.name) for spec in self.FIELDS}
@@ -124,6 +132,7 @@ def component[T](cls: type[T]) -> type[T]:
     ``bool``                a flag                                     bool (n,)
     ``int | None``          an entity, or none                         int64 (n,), 0 for none
     ``str`` with choices    one word of a fixed list                   int64 (n,), 1 + index in the list
+    ``str``                 a text, empty or to be seen                int64 (n,), a code, 0 for empty
     ======================  =========================================  ===============================
 
     A row whose entity lacks the component is all zeros. Reading gives plain Python values; writing checks the
@@ -234,11 +243,11 @@ def _described(cls: type) -> tuple[Field, ...]:
 def _kind_of(hint: Any, described: Field) -> Kind:
     kinds: dict[Any, Kind] = {
         float: "number", Derived: "number", int: "whole", Vector: "vector", bool: "flag",
-        int | None: "entity",
+        int | None: "entity", str: "text",
     }  # fmt: skip
     if described.choices:
         return "choice"
     if hint not in kinds:
-        allowed = "float, int, bool, Vector, Derived, int | None, or str with choices"
+        allowed = "float, int, bool, Vector, Derived, int | None, or str"
         raise TypeError(f"no column holds {hint!r}; use {allowed}")
     return kinds[hint]

@@ -13,8 +13,10 @@ from physicslab.view.controls import actions
 from physicslab.view.controls.controls import KEYS, RELEASES
 from physicslab.view.controls.file_actions import open_scene
 from physicslab.view.controls.keyboard import open_menu
+from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
 from physicslab.view.controls.spawning import spawn_box
-from physicslab.view.controls.tools import TOOLS, Tool
+from physicslab.view.controls.tool import Tool
+from physicslab.view.controls.tools import TOOLS
 
 if TYPE_CHECKING:
     from physicslab.view.window.window import Window
@@ -124,6 +126,7 @@ class InputSystem(System):
 
     def _press(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
+        follow_pointer(world, self._window)
         self._window.adding = bool(pygame.key.get_mods() & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL))
         if event.button == pygame.BUTTON_LEFT:
             if self._takes_handle(world, event.pos):
@@ -138,14 +141,18 @@ class InputSystem(System):
     def _takes_handle(self, world: World, pixel: tuple[float, float]) -> bool:
         """Take the handle of what is selected that lies under the cursor; return whether there is one."""
         window = self._window
+        if take_end(world, window):
+            return True
         return window.handled is not None and window.handles.press(
             world, window.handled, window.camera, pixel
         )
 
     def _release(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
+        follow_pointer(world, self._window)
         if event.button == pygame.BUTTON_LEFT:
             self._window.handles.release(self._window.edits)
+            let_instrument_go(world, self._window)
         if event.button == pygame.BUTTON_LEFT and self._tool is not None:
             self._tool.release(world, self._window)
             self._tool = None
@@ -158,6 +165,7 @@ class InputSystem(System):
         if not event.buttons[0]:  # let go where no report came from, as over another window
             window.hand.drop(world)
             window.handles.release(window.edits)
+            let_instrument_go(world, window)
             if self._tool is not None:
                 window.spring_tool.cancel()
                 self._tool = None
@@ -170,6 +178,7 @@ class InputSystem(System):
         if window.handles.dragged is not None and window.handled is not None:
             snaps = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
             window.handles.drag(window.edits, window.handled, window.camera, window.place, snaps=snaps)
+        follow_pointer(world, window)
 
     def _wheel(self, world: World, event: pygame.Event) -> None:
         notches = getattr(event, "precise_y", event.y)
@@ -179,4 +188,5 @@ class InputSystem(System):
         """Let go of everything while another window has the focus."""
         self._window.hand.drop(world)
         self._window.spring_tool.cancel()
+        let_instrument_go(world, self._window)
         self._panning, self._tool = 0, None

@@ -12,7 +12,9 @@ from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.view.canvas.theme import THEMES
+from physicslab.view.controls.measuring import nudged
 from physicslab.view.controls.tools import HAND, Tool
+from physicslab.view.overlay.instruments import instruments_of
 from physicslab.view.panels.laws import has_gravity
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -31,7 +33,6 @@ __all__ = [
     "next_theme",
     "nudger",
     "paste",
-    "plot_selected",
     "put_panels_back",
     "redo",
     "reduce",
@@ -71,6 +72,7 @@ _NO_GRAVITY = "This world was made without GravitySystem: no law of gravity acts
 def choose_tool(window: Window, tool: Tool) -> None:
     """Let the left mouse button do something else."""
     window.spring_tool.cancel()
+    window.measuring.cancel()
     window.tool = tool.name
     window.notify(tool.usage, 5.0)
 
@@ -107,6 +109,7 @@ def clear(world: World, window: Window) -> None:
     """Remove everything."""
     window.hand.drop(world)
     window.spring_tool.cancel()
+    window.measuring.cancel()
     removed = [Remove(entity) for entity in world.entities()]
     if removed:
         window.edits.do(Group("cleared everything", removed))
@@ -253,6 +256,8 @@ def toggle_help(world: World, window: Window) -> None:
 
 def leave(world: World, window: Window) -> None:
     """Leave the help, the plot, what is selected or the tool if there is one, else the window."""
+    if window.measuring.cancel():
+        return
     if window.help:
         window.help = False
     elif window.shows_gallery:
@@ -270,16 +275,6 @@ def leave(world: World, window: Window) -> None:
 def close(world: World, window: Window) -> None:
     """Close the window."""
     window.closing = True
-
-
-def plot_selected(world: World, window: Window) -> None:
-    """Plot the motion of what is selected; where nothing is, the energies of the world."""
-    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
-    for entity in bodies:
-        moves = world.has(entity, Velocity)
-        window.plot(f"Motion of {world.label(entity)}", entity, ("x", "y", "speed") if moves else ("x", "y"))
-    if not bodies:
-        window.plot("Energies", None, ("kinetic energy", "potential energy", "total energy"))
 
 
 def duplicate_selected(world: World, window: Window) -> None:
@@ -340,7 +335,9 @@ def select_all(world: World, window: Window) -> None:
 
 def select_next(world: World, window: Window) -> None:
     """Select the body after the one that is selected, in their order."""
-    bodies = sorted(world.batch(Transform).entities.tolist())
+    bodies = sorted(
+        {*world.batch(Transform).entities.tolist(), *(one.entity for one in instruments_of(world))}
+    )
     now = window.selection.entities[-1] if window.selection.entities else 0
     if bodies:
         window.selection.take(next((entity for entity in bodies if entity > now), bodies[0]))
@@ -352,10 +349,11 @@ def nudger(across: int, up: int) -> Callable[[World, Window], None]:
     def nudge(world: World, window: Window) -> None:
         by = Vector2(across, up) / window.camera.scale
         bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
-        moves = [
+        moves: list[Command] = [
             SetField(entity, "Transform", "position", world.component(entity, Transform).position + by)
             for entity in bodies
         ]
+        moves += filter(None, (nudged(world, entity, by) for entity in window.selection.entities))
         if moves:
             window.edits.do(Group(f"moved {len(moves)}", moves))
 

@@ -5,8 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from physicslab.components import Trail
-from physicslab.view.controls import actions, file_actions, keyboard
+from physicslab.components import Strobe, Trail
+from physicslab.view.controls import actions, dashboard_actions, file_actions, keyboard
+from physicslab.view.controls.measuring import (
+    GATE,
+    NOTE,
+    PROTRACTOR,
+    RULER,
+    measuring,
+    toggle_stopwatch,
+    toggle_strobes,
+)
 from physicslab.view.controls.spawning import spawn_pendulum
 from physicslab.view.controls.tools import (
     HAND,
@@ -149,11 +158,31 @@ CONTROLS: tuple[Control, ...] = (
             state=lambda world, _: bool(world.table(Trail).handles), tip="Trails behind moving bodies"),
     Control("E", "impulses", "e", actions.toggle_impulses, group="show",
             state=lambda _, window: window.overlays.impulses, tip="Impulses at contacts, with numbers"),
+    Control("D", "ruler", "d", measuring(RULER, actions.choose_tool), minor=True, group="measure", tool=RULER,
+            tip="A length: drag; or between two bodies that are selected"),
+    Control("Y", "angle", "y", measuring(PROTRACTOR, actions.choose_tool), minor=True, group="measure",
+            tool=PROTRACTOR, tip="An angle: drag one arm from the vertex, then click the end of the other"),
+    Control("J", "gate", "j", measuring(GATE, actions.choose_tool), minor=True, group="measure", tool=GATE,
+            tip="A light gate: notes when bodies cross it"),
+    Control("W", "note", "w", measuring(NOTE, actions.choose_tool), minor=True, group="measure", tool=NOTE,
+            tip="Words at a place of the world"),
+    Control("C", "stopwatch", "c", toggle_stopwatch, minor=True, group="measure",
+            state=lambda _, window: window.shows_stopwatch, tip="The times between crossings of gates"),
+    Control("X", "strobe of all that moves", "x", toggle_strobes, minor=True, group="measure",
+            state=lambda world, _: bool(world.table(Strobe).handles),
+            tip="Pictures of all that moves, ten a second"),
     Control("A", "keep scales", "a", actions.toggle_scales, minor=True, group="show",
             state=lambda _, window: window.overlays.keeps_scales,
             tip="Arrows keep their scale, so that two pictures can be compared"),
-    Control("M", "graph", "m", actions.plot_selected, minor=True, group="show",
+    Control("M", "graph", "m", dashboard_actions.plot_selected, minor=True, group="measure",
             tip="A graph against time: of what is selected, or of the energies"),
+    Control("Shift+M", "phase plot", "shift+m", dashboard_actions.plot_phase, minor=True, group="measure",
+            tip="The velocity of what is selected against its place"),
+    Control("Ctrl+M", "meter", "ctrl+m", dashboard_actions.add_meter, minor=True, group="measure",
+            tip="A number in large figures: the speed of what is selected, or the total energy"),
+    Control("Ctrl+Shift+M", "slider", "ctrl+shift+m", dashboard_actions.add_slider, minor=True,
+            group="measure",
+            tip="Changes a number by sliding: of what is selected, or gravity"),
     Control("I", "panel at the right", "i", actions.toggle_figures, minor=True, group="show",
             state=lambda _, window: window.figures, tip="What is selected, or the world in figures"),
     Control("H", "grid", "h", actions.toggle_grid, minor=True, group="show",

@@ -92,6 +92,16 @@ class Pictures:
         for picture in self._pictures.values():
             surface.blit(picture.surface, picture.sheet.box, special_flags=pygame.BLEND_PREMULTIPLIED)
 
+    def of(self, ending: str, paper: pygame.Color) -> pygame.Surface | None:
+        """Return the window whose name ends so as it is painted, on paper; ``None`` if there is none."""
+        picture = next((one for name, one in self._pictures.items() if name.endswith(ending)), None)
+        if picture is None:
+            return None
+        surface = pygame.Surface(picture.surface.get_size(), 0, 32)
+        surface.fill(paper)
+        surface.blit(picture.surface, (0, 0), special_flags=pygame.BLEND_PREMULTIPLIED)
+        return surface
+
     def forget(self) -> None:
         """Let Dear ImGui know that no texture is used any more; its context can then be ended."""
         self._sheets, self._pictures, self._textures = {}, {}, {}

@@ -218,6 +218,11 @@ class Toolkit:
         imgui.load_ini_settings_from_memory(arrangement)
         self.wake()
 
+    def picture_of(self, ending: str) -> pygame.Surface | None:
+        """Return a panel as it was painted last, by the end of its name; ``None`` if it is not shown."""
+        assert self._look is not None
+        return self.pictures.of(ending, pygame.Color(*self._look[0].panel))
+
 
 def _covered() -> list[Rect]:
     """Return where panels lie that take the mouse, from the back to the front."""

@@ -86,12 +86,13 @@ class Ui:
     # ---- panels --------------------------------------------------------------------------------------------
 
     @contextmanager
-    def panel(self, name: str, rect: Rect, *, padded: bool = True) -> Iterator[None]:
-        """Begin a panel that stays where it is put."""
+    def panel(self, name: str, rect: Rect, *, padded: bool = True, rounded: bool = False) -> Iterator[None]:
+        """Begin a panel that stays where it is put; its corners are round where it lies over the world."""
         left, top, width, height = rect
         imgui.set_next_window_pos(ImVec2(left, top))
         imgui.set_next_window_size(ImVec2(max(width, 1), max(height, 1)))
-        imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+        if not rounded:
+            imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
         if not padded:
             imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(6.0, 6.0))
         imgui.begin(name, None, _FIXED)
@@ -99,7 +100,7 @@ class Ui:
             yield
         finally:
             imgui.end()
-            imgui.pop_style_var(1 if padded else 2)
+            imgui.pop_style_var(2 - padded - rounded)
 
     def dock(self, rect: Rect) -> Rect:
         """Let windows be docked to the sides of a part of the display; return what they leave of it [px]."""
@@ -366,12 +367,18 @@ class Ui:
         """Draw a slider with words on it, and return the new value if it was moved."""
         self.words.append(shown)
         imgui.set_next_item_width(width)
-        moved, new = imgui.slider_float(f"##{label}", value, low, high, shown.replace("%", "%%"))
+        flags = imgui.SliderFlags_.no_input  # Ctrl-click would make a field of it, without units
+        moved, new = imgui.slider_float(f"##{label}", value, low, high, shown.replace("%", "%%"), flags)
         self.note(label)
         return float(new) if moved else None
 
-    def field(self, label: str, text: str, width: float = -1.0, *, wrong: bool = False) -> tuple[str, bool]:
-        """Draw a field for text, and return its text and whether it is edited."""
+    def field(
+        self, label: str, text: str, width: float = -1.0, *, wrong: bool = False, lines: int = 1
+    ) -> tuple[str, bool]:
+        """Draw a field for text, and return its text and whether it is edited.
+
+        In one of several lines Enter ends the writing, and Ctrl+Enter the line.
+        """
         self.words.append(text)
         if wrong:
             imgui.push_style_color(imgui.Col_.border, packed(self.theme.error))
@@ -381,7 +388,14 @@ class Ui:
             imgui.set_keyboard_focus_here()
             self.keys_go_to = ""
         flags = imgui.InputTextFlags_
-        _, text = imgui.input_text(f"##{label}", text, flags.auto_select_all)
+        if lines == 1:
+            _, text = imgui.input_text(f"##{label}", text, flags.auto_select_all)
+        else:
+            room = ImVec2(
+                width, lines * imgui.get_text_line_height() + 2.0 * imgui.get_style().frame_padding.y
+            )
+            several = flags.auto_select_all | flags.ctrl_enter_for_new_line
+            _, text = imgui.input_text_multiline(f"##{label}", text, room, several)
         self.note(label)
         if wrong:
             imgui.pop_style_var()

@@ -18,14 +18,14 @@ from physicslab.view.panels.error_study import ErrorStudy
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
+from physicslab.view.window.dashboard import Dashboard
 from physicslab.view.window.edits import Edits
-from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
+from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
-from physicslab.view.window.ruler import Ruler
 from physicslab.view.window.selection import Selection
 from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
@@ -131,8 +131,10 @@ class Window:
         Those of what is selected.
     recipe : Recipe
         What the next body is like.
-    ruler : Ruler
-        What lengths are measured with.
+    measuring : Measuring
+        What is being placed, dragged or written of instruments.
+    shows_stopwatch : bool
+        Whether the times between crossings of gates are shown.
     naming : str, optional
         The name that is being written for the scene to be saved under; ``None`` while none is.
     naming_refused : str
@@ -141,8 +143,8 @@ class Window:
         The components of each body that was copied.
     band : Vector2, optional
         Where the rectangle begins that is being drawn around bodies [m].
-    graphs : list of Graph
-        What is plotted.
+    dashboard : Dashboard
+        The graphs, meters and sliders that are shown, and what is recorded for them.
     deeds : list of callables
         What panels were clicked for; it is done when the next frame begins.
     source : str or path, optional
@@ -198,12 +200,12 @@ class Window:
         self.handles = Handles()
         self.edits: Edits
         self.recipe = Recipe()
-        self.ruler = Ruler()
+        self.measuring, self.shows_stopwatch = Measuring(), False
         self.naming: str | None = None
         self.naming_refused = ""
         self.copied: list[list[Component]] = []
         self.band: Vector2 | None = None
-        self.graphs: list[Graph] = []
+        self.dashboard = Dashboard()
         self.deeds: list[Callable[[World, Window], None]] = []
         self.source: str | Path | None = None
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
@@ -244,11 +246,6 @@ class Window:
         """Show a message for a while; ``failed`` marks what could not be done."""
         self.notice_failed = failed
         self._notice, self._notice_until = words, self.now + seconds
-
-    def plot(self, title: str, entity: int | None, names: tuple[str, ...]) -> None:
-        """Plot quantities of the world or of a body, in a graph of their own."""
-        number = 1 + max((graph.number for graph in self.graphs), default=0)
-        self.graphs.append(Graph(number, title, entity, {name: Series() for name in names}))
 
     def follow_history(self, history: History) -> None:
         """Let edits, and what the hand does, go to the history of the world that is shown."""

@@ -4,19 +4,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from imgui_bundle import imgui
 
-from physicslab.components import Drag, Held, Mass, Material, Name, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import (
+    Drag,
+    Held,
+    Mass,
+    Material,
+    Name,
+    Shape,
+    Spring,
+    Strobe,
+    Trail,
+    Transform,
+    Velocity,
+)
 from physicslab.diagnostics.free_body import forces_on, net_force
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Group, RemoveComponent, SetField
 from physicslab.view.canvas.quantities import quantity, vector_quantity
-from physicslab.view.controls.actions import duplicate_selected, plot_selected
+from physicslab.view.controls.actions import duplicate_selected
+from physicslab.view.controls.dashboard_actions import plot_selected
 from physicslab.view.controls.tools import remove_selected
+from physicslab.view.overlay.instruments import instrument_of, readings_of
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.window import Window
@@ -60,6 +75,8 @@ class Inspector:
         for kind in sorted(kinds, key=lambda kind: _ORDER.get(kind, len(_ORDER))):
             self._build_component(ui, world, window, kind)
         if len(chosen) == 1:
+            for label, value in readings_of(world, first):
+                ui.row(label, value)
             self._build_now(ui, world, first, is_brief=window.level == "Explore")
             if window.level != "Explore" or window.overlays.arrows:
                 self._build_forces(ui, world, first)
@@ -86,7 +103,7 @@ class Inspector:
         for spec in rows:
             if spec.kind == "vector":
                 self._build_vector(ui, world, window, kind, spec, getattr(held, spec.name))
-            elif spec.kind == "number":
+            elif spec.kind in ("number", "whole", "text"):
                 self._build_number(ui, world, window, kind, spec, getattr(held, spec.name))
             elif spec.kind == "flag" and ui.checkbox(
                 _label(spec), bool(getattr(held, spec.name)), spec.meaning
@@ -94,18 +111,20 @@ class Inspector:
                 self._set(window, kind, spec, not getattr(held, spec.name))
 
     def _build_number(
-        self, ui: Ui, world: World, window: Window, kind: type[Component], spec: Field, value: float
+        self, ui: Ui, world: World, window: Window, kind: type[Component], spec: Field, value: float | str
     ) -> None:
         key = f"{kind.__name__}.{spec.name}"
 
-        def commit(new: float) -> None:
+        def commit(new: Any) -> None:
+            new = int(new) if spec.kind == "whole" and float(new).is_integer() else new
             spec.check(new)
             held = world.component(window.selection.entities[-1], kind)
             kind(**(held.given() | {spec.name: new}))  # some fields depend on others: a radius is above 0
             self._set(window, kind, spec, new)
 
         width = imgui.get_content_region_avail().x
-        self._numbers.label(ui, key, _label(spec), _LABELS * width, value, spec.meaning, commit)
+        dragged = None if isinstance(value, str) else value
+        self._numbers.label(ui, key, _label(spec), _LABELS * width, dragged, spec.meaning, commit)
         imgui.same_line()
         room = imgui.get_content_region_avail().x - _unit_width(spec)
         refusal = self._numbers.build(ui, key, value, spec, room, commit)
@@ -208,7 +227,7 @@ class Inspector:
 
     def _build_optional(self, ui: Ui, world: World, window: Window, entity: int) -> None:
         """Build a box to tick for each component that the body may have or not."""
-        if world.has(entity, Spring) and not world.has(entity, Transform):
+        if not world.has(entity, Transform):
             return
         ui.gap(0.2)
         ui.rule()
@@ -270,7 +289,9 @@ def _kind(world: World, entity: int) -> str:
     if world.has(entity, Shape):
         shape = "circle" if world.component(entity, Shape).kind == "circle" else "box"
     else:
-        shape = "point" if world.has(entity, Transform) else "spring"
+        one = instrument_of(world, entity)
+        made = "spring" if one is None else one.kind.__name__.lower()
+        shape = "point" if world.has(entity, Transform) else made
     if not world.has(entity, Transform):
         return shape
     if not world.has(entity, Velocity):
@@ -282,7 +303,7 @@ def _is_shown(spec: Field, held: Component) -> bool:
     """Whether a field has a row: sizes of the other kind of shape and what cannot change have none."""
     if isinstance(held, Shape):
         return spec.name in Shape.SIZES[held.kind]
-    return spec.kind in ("number", "vector", "flag") and not spec.fixed
+    return spec.kind in ("number", "whole", "vector", "flag", "text") and not spec.fixed
 
 
 def _label(spec: Field) -> str:
@@ -315,4 +336,5 @@ _SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
     (Mass, "Has mass", "A body that can move and has none is infinitely heavy"),
     (Drag, "Air resistance", "A force against its motion"),
     (Trail, "Leaves a trail", "Shows where it was"),
+    (Strobe, "Strobe pictures", "Its outline stays where it was every 0.1 s"),
 )

@@ -14,17 +14,19 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
 from physicslab.view.workbench.gallery import Gallery
-from physicslab.view.workbench.graph_panel import build_graphs
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.history_panel import build_history
 from physicslab.view.workbench.inspector import Inspector
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
+from physicslab.view.workbench.note_panel import NotePanel
 from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
 from physicslab.view.workbench.save_panel import build_save
+from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.settings_panel import SettingsPanel
+from physicslab.view.workbench.stopwatch_panel import build_stopwatch
 from physicslab.view.workbench.transport import build_transport
 from physicslab.view.workbench.walk import Walk
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
@@ -64,6 +66,8 @@ class Interface:
         self._settings = SettingsPanel()
         self._gallery = Gallery()
         self._recipe = RecipePanel()
+        self._scene_panels = ScenePanels()
+        self._note = NotePanel()
         self._next = 0.0
         self._offer_height = 0  # of the offer to restore a session [px]
         self._seen: tuple[object, ...] = ()
@@ -108,7 +112,13 @@ class Interface:
 
     def _finish_fields(self) -> str:
         """Take over what is half written in a field, and return why it is refused; empty where it is not."""
-        return self._inspector.finish(self._window) or self._settings.finish() or self._recipe.finish()
+        return (
+            self._inspector.finish(self._window)
+            or self._settings.finish()
+            or self._recipe.finish()
+            or self._scene_panels.finish()
+            or self._note.finish(self._window)
+        )
 
     def build(
         self,
@@ -175,7 +185,9 @@ class Interface:
             window.recovery.offered,
             window.figures,
             window.level,
-            len(window.graphs),
+            window.dashboard.state,
+            window.shows_stopwatch,
+            window.measuring.writing is None,
         )
         time = pace.paused, pace.speed, world.time if pace.paused else None
         return (
@@ -216,8 +228,11 @@ class Interface:
                     ui.gap(0.3)
                     ui.rule()
                     self._build_counts(ui, figures)
-        if window.graphs:
-            build_graphs(ui, window)
+        self._scene_panels.build(ui, world, window, self.visible)
+        if window.shows_stopwatch:
+            build_stopwatch(ui, world, window, self.visible)
+        if window.measuring.writing is not None:
+            self._note.build(ui, window)
         if window.recovery.offered:
             self._offer_height = build_recovery(ui, window, layout.visible)
         build_error_plot(ui, window)
@@ -246,6 +261,7 @@ class Interface:
         canvas.paint(self.toolkit.pictures.show)
         if self.ui.pictures:
             canvas.paint(self.ui.show_pictures)
+        self._scene_panels.save_picture(self._window, self.toolkit)
 
     @property
     def covered(self) -> list[Rect]:

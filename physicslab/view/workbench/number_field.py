@@ -1,9 +1,10 @@
-"""Fields for numbers: typed with units, or changed by dragging their label."""
+"""Fields for numbers, typed with units or changed by dragging their label, and for texts."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import pygame
 from imgui_bundle import ImVec2, imgui
@@ -22,8 +23,11 @@ _FINER, _COARSER = 0.1, 10.0
 _ONLY_MOUSE = imgui.ItemFlags_.no_nav | imgui.ItemFlags_.no_tab_stop
 _PART = 6
 """Characters that the field of a part of a vector has room for."""
+_LINES_SHOWN = 3
+"""Lines that a field of several shows at once."""
 
-type Commit = Callable[[float], None]
+type Commit = Callable[[Any], None]
+"""Takes what was written: a number, or the text of a field for text."""
 
 
 def shown_number(value: float, figures: int = 6) -> str:
@@ -43,6 +47,12 @@ def shown_vector_part(value: float) -> str:
     """
     shorter = (shown_number(value, figures) for figures in range(4, 1, -1))
     return next((text for text in shorter if len(text) <= _PART), shown_number(value, 3))
+
+
+def _shown(value: float | str, spec: Field) -> str:
+    if isinstance(value, str):
+        return value
+    return shown_vector_part(value) if spec.kind == "vector" else shown_number(value)
 
 
 @dataclass(slots=True)
@@ -77,21 +87,19 @@ class NumberFields:
         self._edited = self._dragged = None
 
     def build(
-        self, ui: Ui, key: str, value: float, spec: Field, width: float, commit: Commit, zero: str = ""
+        self, ui: Ui, key: str, value: float | str, spec: Field, width: float, commit: Commit, zero: str = ""
     ) -> str:
         """Build one field, and return why what was written in it is refused; empty while it is not.
 
         ``zero`` is shown in place of 0 where that has a meaning of its own.
 
         ``commit`` is called once Enter or Tab is pressed, or the field is left; it raises
-        :class:`InvalidValue` for a number that the field cannot hold.
+        :class:`InvalidValue` for what the field cannot hold.
         """
         draft = self._drafts.get(key)
-        shown = shown_vector_part(value) if spec.kind == "vector" else shown_number(value)
-        shown = zero if zero and value == 0.0 else shown
-        text, active = ui.field(
-            key, draft.text if draft else shown, width, wrong=bool(draft and draft.refusal)
-        )
+        shown = zero if zero and value == 0.0 else _shown(value, spec)
+        wrong, lines = bool(draft and draft.refusal), min(spec.lines, _LINES_SHOWN)
+        text, active = ui.field(key, draft.text if draft else shown, width, wrong=wrong, lines=lines)
         if active:
             if self._edited is not None and self._edited.key != key:
                 self.finish()  # Tab went on from there
@@ -112,7 +120,8 @@ class NumberFields:
         if edited is None or draft is None or draft.text == edited.shown:
             return ""  # the number may have more figures than the field shows
         try:
-            edited.commit(evaluate(draft.text, edited.spec.unit))
+            text, spec = draft.text, edited.spec
+            edited.commit(text if spec.kind == "text" else evaluate(text, spec.unit))
         except InvalidText as error:
             draft.refusal = str(error)
         except InvalidValue as error:
