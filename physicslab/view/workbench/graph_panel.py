@@ -75,7 +75,7 @@ class GraphPanels:
         """Build one; return the time under the cursor, if the cursor is in its plot."""
         entity = graph.entity
         title = _title(graph, window)
-        known = imgui.internal.find_window_by_name(f"{title}{owner_of(entity)}")
+        known = imgui.internal.find_window_by_name(f"{title} {owner_of(entity)}")
         if known is not None and known.dock_id and ui.once != imgui.Cond_.always:
             self._moved.add(entity)  # a place would take it out of where it is docked
         elif place is not None and place != self._put.get(entity):
@@ -90,7 +90,7 @@ class GraphPanels:
         if place is not None:
             least = ImVec2(min(least.x, place[2]), min(least.y, place[3]))
         imgui.set_next_window_size_constraints(least, room)
-        shown, stays = imgui.begin(f"{title}{owner_of(entity)}", True, _FLAGS)
+        shown, stays = imgui.begin(f"{title} {owner_of(entity)}", True, _FLAGS)
         ui.words.append(title)
         hovered: float | None = None
         self._follow_hand(entity)
