@@ -167,7 +167,7 @@ def click_at(desk: Desk, place: Place, button: str = "left") -> None:
 def bring_into_sight(desk: Desk, label: str) -> None:
     """Turn the wheel over the panel at the right until a widget of it is in sight."""
     left, top, width, height = desk.sandbox.interface.layout.side
-    if label in MENUS or desk.sandbox.interface.toolkit._has_popup():
+    if label in MENUS or desk.sandbox.interface.toolkit.has_popup():
         return
     for _ in range(200):
         x, y, _, down = desk.ui.places[label]

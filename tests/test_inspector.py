@@ -343,6 +343,7 @@ def test_derived_figures_are_those_of_mechanics() -> None:
     body = circle(world, (0, 0), radius=0.5, mass=2.0, velocity=(3.0, 4.0), angular_velocity=2.0)
     desk = Desk(world)
     desk.key("space")
+    desk.window.level = "Measure"
     desk.window.selection.take(body)
     desk.frames(SETTLED)
     inertia = 0.5 * 2.0 * 0.25

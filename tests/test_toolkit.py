@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import pygame
 import pytest
-from desk import SETTLED, button_down, empty_world, middle_of, sized, tap
+from desk import SETTLED, button_down, empty_world, middle_of, point, sized, tap
 from imgui_bundle import imgui, implot
 from numpy.typing import NDArray
 
@@ -38,22 +38,22 @@ def built(toolkit: Toolkit, words: str, frames: int = 4) -> Ui:
 
 def picture(toolkit: Toolkit) -> NDArray[np.uint8]:
     surface = pygame.Surface(SIZE, 0, 32)
-    toolkit.draw(surface)
+    toolkit.pictures.show(surface)
     return pygame.surfarray.array3d(surface)
 
 
 def test_an_idle_toolkit_builds_and_paints_nothing() -> None:
     toolkit = Toolkit()
     built(toolkit, "idle", 10)
-    before = toolkit.built, toolkit.painted
+    before = toolkit.built, toolkit.pictures.painted
     built(toolkit, "idle", 50)
-    assert (toolkit.built, toolkit.painted) == before
+    assert (toolkit.built, toolkit.pictures.painted) == before
     toolkit.refresh()
     built(toolkit, "idle", 50)
-    assert (toolkit.built, toolkit.painted) == (before[0] + 1, before[1]), "the same picture is kept"
+    assert (toolkit.built, toolkit.pictures.painted) == (before[0] + 1, before[1]), "the same picture is kept"
     toolkit.refresh()
     built(toolkit, "other", 50)
-    assert toolkit.painted > before[1]
+    assert toolkit.pictures.painted > before[1]
 
 
 def test_a_window_that_stands_still_paints_nothing() -> None:
@@ -63,9 +63,72 @@ def test_a_window_that_stands_still_paints_nothing() -> None:
     tap(desk, "space")
     desk.frames(40)
     toolkit = desk.sandbox.interface.toolkit
-    painted = toolkit.painted
+    painted = toolkit.pictures.painted
     desk.frames(100)
-    assert toolkit.painted == painted
+    assert toolkit.pictures.painted == painted
+
+
+def test_figures_that_change_together_are_painted_in_turn_those_under_the_cursor_first() -> None:
+    toolkit = Toolkit()
+    ui, figure = Ui(toolkit.fonts, DARK), 0
+    rects = [(100 * n, 0, 90, 50) for n in range(3)]
+
+    def build() -> None:
+        ui.begin(DARK)
+        for n, rect in enumerate(rects):
+            with ui.panel(f"panel {n}", rect):
+                ui.text(str(figure))
+
+    def shown() -> list[bytes]:
+        surface = pygame.Surface(SIZE, 0, 32)
+        toolkit.pictures.show(surface)
+        return [pygame.image.tobytes(surface.subsurface(rect), "RGB") for rect in rects]
+
+    def frames(count: int) -> list[list[bool]]:
+        """Return which panels are seen to change in each frame."""
+        seen, pictures = [], shown()
+        for _ in range(count):
+            toolkit.frame(SIZE, DARK, 15.0, 1 / 60, build)
+            before, pictures = pictures, shown()
+            seen.append([one != other for one, other in zip(before, pictures, strict=True)])
+        return seen
+
+    frames(4)
+    for pointer, first in (((-1.0, -1.0), None), ((210.0, 10.0), 2), ((110.0, 10.0), 1)):
+        toolkit.follow_pointer(pointer)
+        figure += 1
+        toolkit.refresh()
+        changes = frames(6)
+        assert [sum(changed) for changed in changes] == ([0, 1, 1, 1] if first is None else [1, 1, 1, 0]) + [
+            0
+        ] * 2
+        assert [any(column) for column in zip(*changes, strict=True)] == [True] * 3
+        assert first is None or changes[0][first]
+        assert not toolkit.unsettled
+
+
+def test_what_lies_elsewhere_and_other_colours_are_painted_at_once() -> None:
+    toolkit = Toolkit()
+    ui, theme, shift = Ui(toolkit.fonts, DARK), DARK, 0
+
+    def build() -> None:
+        ui.begin(theme)
+        for n in range(3):
+            with ui.panel(f"panel {n}", (100 * n, shift, 90, 50)):
+                ui.text("words")
+
+    def frame() -> int:
+        before = toolkit.pictures.painted
+        toolkit.frame(SIZE, theme, 15.0, 1 / 60, build)
+        return toolkit.pictures.painted - before
+
+    for _ in range(4):
+        frame()
+    shift = 20
+    toolkit.refresh()
+    assert frame() == 3
+    theme = next(other for other in THEMES if other is not DARK)
+    assert frame() == 3 and frame() == 0
 
 
 def test_two_side_by_side_do_not_mix() -> None:
@@ -184,3 +247,21 @@ def test_panels_give_what_is_covered_from_back_to_front() -> None:
     inside: Callable[[int, int], bool] = lambda x, y: toolkit.covers((x, y))  # noqa: E731
     assert inside(0, 0) and inside(99, 49) and inside(159, 69)
     assert not inside(100, 10) and not inside(10, 50) and not inside(160, 70)
+
+
+def test_the_cursor_in_the_world_has_no_panel_built() -> None:
+    desk = sized((640, 480))
+    toolkit = desk.sandbox.interface.toolkit
+    left, top, *_ = desk.sandbox.interface.room()
+    tap(desk, "space")
+
+    def built_by(places: list[tuple[int, int]]) -> int:
+        before = toolkit.built
+        for place in places:
+            point(desk, place)
+        return toolkit.built - before
+
+    desk.frames(20)
+    assert built_by([middle_of(desk, "Play"), (left + 40, top + 40)]) >= 2, "on panels, and once beside them"
+    desk.frames(20)
+    assert built_by([(left + 40 + n, top + 40 + n) for n in range(8)]) <= 2, "but for those of each 0.2 s"

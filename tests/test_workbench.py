@@ -616,6 +616,7 @@ def test_the_tool_in_hand_is_marked(desk: Desk) -> None:
     for tool in PALETTE:
         take_up(desk, tool)
         point(desk, desk.pixel(0, 0))
+        desk.frames(SETTLED)  # pictures that are not under the cursor are painted in turn
         marked = []
         for other in PALETTE:
             left, top, width, _ = desk.ui.places[other.title]
@@ -738,11 +739,11 @@ def test_panels_of_an_idle_window_are_built_a_few_times_a_second(
     monkeypatch.setattr(Control, "on", watched)
     toolkit = desk.sandbox.interface.toolkit
     desk.frames(10)
-    built, painted = toolkit.built, toolkit.painted
+    built, painted = toolkit.built, toolkit.pictures.painted
     desk.frames(60)
     assert toolkit.built - built <= 6 and not looked
     tap(desk, "space")
     desk.frames(30)
-    painted = toolkit.painted
+    painted = toolkit.pictures.painted
     desk.frames(60)
-    assert toolkit.painted == painted, "nothing changes while time stands still"
+    assert toolkit.pictures.painted == painted, "nothing changes while time stands still"

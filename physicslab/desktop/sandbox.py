@@ -6,7 +6,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from physicslab.components import Gate, Held
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Gate, Held, Transform
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.rescue import save_last_good
 from physicslab.files.scene import SceneError
@@ -22,6 +25,11 @@ from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
 
 __all__ = ["Sandbox"]
+
+_REST_AFTER, _REST_PERIOD = 1.0, 0.1
+"""How long [s] nothing is done and nothing moves before pictures are fewer, and the time between two then."""
+_PARTS = 10.0
+"""A motion is seen from a tenth of a pixel on."""
 
 
 class Sandbox:
@@ -64,6 +72,8 @@ class Sandbox:
         self._autosave = autosave
         self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
+        self._rested = self._undrawn = 0.0  # how long nothing has moved, or was drawn [s]
+        self._places = np.empty((0, 3))
         self._titles, self._source = ("", ""), window.source
         self.world = world
         self.interface = Interface(window)
@@ -103,8 +113,11 @@ class Sandbox:
         window.go_home(world)
         window.unchanged = world.motion_edits
 
-    def frame(self, elapsed: float) -> None:
-        """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last."""
+    def frame(self, elapsed: float) -> bool:
+        """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last.
+
+        While nothing in it moves it is drawn a few times a second; return whether it was.
+        """
         self.window.pace.begin(elapsed)
         if self.window.next_world is None:
             self._source = self.window.source  # another, once the scene was saved under another name
@@ -114,11 +127,32 @@ class Sandbox:
         self._advance()
         self.window.filming.advance(self.history)
         self.window.selection.follow(self.world)  # in the past steps make and remove bodies
-        self.world.frame(Stage.RENDER, elapsed)
-        self.window.filming.take(self.world, self.window.canvas, self.window.room())
-        self.world.frame(Stage.HUD, elapsed)
+        self._undrawn += elapsed
+        drawn = not self._rests(elapsed) or self._undrawn > _REST_PERIOD
+        if drawn:
+            self._places = self._places_now()
+            self.world.frame(Stage.RENDER, elapsed)
+            self.window.filming.take(self.world, self.window.canvas, self.window.room())
+            self.world.frame(Stage.HUD, elapsed)
+            self._undrawn = 0.0
         if self._autosave is not None:
             self._keep(self._autosave)
+        return drawn
+
+    def _rests(self, elapsed: float) -> bool:
+        """Whether only the clock changes in the picture: for a while nothing has moved or was done."""
+        window = self.window
+        shown = window.notice or len(window.sparks) or window.error_study.running or window.filming.running
+        done = window.touched or window.hand.entity is not None
+        still = not (shown or done) and np.array_equal(self._places, self._places_now())
+        self._rested = self._rested + elapsed if still else 0.0
+        return self._rested > _REST_AFTER and not self.interface.toolkit.unsettled
+
+    def _places_now(self) -> NDArray[np.float64]:
+        """Return where all bodies are, in parts of pixels too small to be seen."""
+        transform = self.world.table(Transform)
+        turned = np.column_stack((transform["position"], transform["angle"]))
+        return np.round(turned * (_PARTS * self.window.camera.scale))
 
     def _go_on_to(self, world: World) -> None:
         """Show another world; the one that is left can be had back if there are unsaved edits in it."""

@@ -107,14 +107,14 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
     display.show()  # the time that the first frame took, with all that it loads, is not made up for
     elapsed = 0.0
     while not window.closing:
-        sandbox.frame(elapsed)
+        drawn = sandbox.frame(elapsed)
         compiling.advance(window.theme)
         window.pace.max_dt = compiling.time_for_steps(window.config.max_dt)
         display.title = _title(sandbox.world)
         if window.wants_screenshot:
             window.wants_screenshot = False
             _keep_screenshot(display, window)
-        elapsed = display.show()
+        elapsed = display.show() if drawn or not compiling.finished else display.wait()
         if compiling.finished and sandbox.is_still():
             display.rest(_STILL)
 

@@ -3,7 +3,8 @@
 Pictures hold premultiplied colours, so that they can be laid over anything later: a pixel is alpha, red,
 green and blue from the highest byte down, each colour multiplied by alpha already. Vertices are those of
 Dear ImGui: place [px], place in the texture (0 to 1) and a colour, in 20 bytes. The texture holds the
-coverage of letters alone.
+coverage of letters alone. A triangle has one colour, that of its first vertex; its opacity may differ from
+vertex to vertex, as it does along soft edges.
 
 Pixel (row, column) is covered where its middle is inside; of two triangles with an edge in common only one
 paints what lies on it (the rule of left and upper edges, as graphics processors have it).
@@ -35,107 +36,40 @@ _EVERY_OTHER = 0x00FF00FF
 
 
 @inlined
-def _laid(under: int, red: int, green: int, blue: int, alpha: int) -> int:
-    """Return a premultiplied pixel with a plain colour of some opacity (0 to 255) laid over it."""
-    rest, share = 256 - alpha - (alpha >> 7), alpha + (alpha >> 7)
-    low = ((under & _EVERY_OTHER) * rest + ((red << 16) | blue) * share) >> 8
-    high = ((under >> 8) & _EVERY_OTHER) * rest + ((255 << 16) | green) * share
-    return (low & _EVERY_OTHER) | (high & (_EVERY_OTHER << 8))
-
-
-@inlined
 def _whole(number: int) -> int:
     """Return a number of any type as a signed one: of signed and unsigned ones arithmetic makes fractions."""
     return np.int64(number)  # type: ignore[return-value]
 
 
 @inlined
-def _texel(coverage: Coverage, u: float, v: float) -> int:
-    """Return the coverage at a place in the texture (0 to 1)."""
-    height, width = coverage.shape
-    row = min(max(int(v * height), 0), height - 1)
-    column = min(max(int(u * width), 0), width - 1)
-    return _whole(coverage[row, column])
+def _lay(pixels: Pixels, row: int, column: int, colour: int, alpha: int) -> None:
+    """Lay a colour (red, green, blue from the highest byte down) of some opacity (0 to 255) over a pixel."""
+    under, share = _whole(pixels[row, column]), alpha + (alpha >> 7)
+    low = ((under & _EVERY_OTHER) * (256 - share) + (colour & _EVERY_OTHER) * share) >> 8
+    high = ((under >> 8) & _EVERY_OTHER) * (256 - share) + ((255 << 16) | (colour >> 8 & 255)) * share
+    pixels[row, column] = (low & _EVERY_OTHER) | (high & (_EVERY_OTHER << 8))
 
 
 @inlined
-def _is_upright(vertices: Vertices, colours: Colours, a: int, b: int, c: int, d: int) -> bool:
-    """Whether four vertices are the corners of a rectangle along the axes, of one colour."""
-    placed = (
-        vertices[a, 1] == vertices[b, 1]
-        and vertices[b, 0] == vertices[c, 0]
-        and vertices[c, 1] == vertices[d, 1]
-        and vertices[d, 0] == vertices[a, 0]
-    )
-    colour = colours[a, 4]
-    alike = colours[b, 4] == colour and colours[c, 4] == colour and colours[d, 4] == colour
-    # The texture lies along the axes, too: that of a line lies across it.
-    laid = (
-        vertices[a, 3] == vertices[b, 3]
-        and vertices[b, 2] == vertices[c, 2]
-        and vertices[c, 3] == vertices[d, 3]
-        and vertices[d, 2] == vertices[a, 2]
-    )
-    return bool(placed and alike and laid)
+def _narrowed(first: int, last: int, y: float, xa: float, ya: float, xb: float, yb: float) -> tuple[int, int]:
+    """Return which columns of a row at ``y`` lie on the inner side of an edge: from ``first`` up to ``last``.
+
+    Middles of pixels that lie on a left or upper edge are inside, those on others are not.
+    """
+    slope = ya - yb
+    weight = (xb - xa) * (y - ya) + slope * (0.5 - xa)  # of column 0: above 0 inside
+    if slope == 0.0:
+        return (first, last) if weight > 0.0 or (weight == 0.0 and xb > xa) else (first, first)
+    crossing = math.ceil(-weight / slope)
+    return (max(first, crossing), last) if slope > 0.0 else (first, min(last, crossing))
 
 
 @inlined
-def _rectangle(
-    pixels: Pixels, vertices: Vertices, a: int, c: int, colour: int, coverage: Coverage,
-    left: int, top: int, right: int, bottom: int,
-) -> None:  # fmt: skip
-    """Paint a rectangle from corner a to corner c, plain or as a part of the texture: most are letters."""
-    red, green, blue, alpha = colour & 255, (colour >> 8) & 255, (colour >> 16) & 255, colour >> 24
-    xa, ya, xc, yc = vertices[a, 0], vertices[a, 1], vertices[c, 0], vertices[c, 1]
-    ua, va, uc, vc = vertices[a, 2], vertices[a, 3], vertices[c, 2], vertices[c, 3]
-    # Lines of plots have their corners in any order.
-    first, last = max(left, math.ceil(min(xa, xc) - 0.5)), min(right, math.ceil(max(xa, xc) - 0.5))
-    upper, lower = max(top, math.ceil(min(ya, yc) - 0.5)), min(bottom, math.ceil(max(ya, yc) - 0.5))
-    plain = ua == uc and va == vc
-    across = 0.0 if plain else (uc - ua) / (xc - xa)
-    down = 0.0 if plain else (vc - va) / (yc - ya)
-    opaque = (255 << 24) | (red << 16) | (green << 8) | blue
-    for row in range(upper, lower):
-        v = va + (row + 0.5 - ya) * down
-        for column in range(first, last):
-            share = alpha
-            if not plain:
-                share = alpha * _texel(coverage, ua + (column + 0.5 - xa) * across, v) // 255
-            if share == 255:
-                pixels[row, column] = opaque
-            elif share > 0:
-                pixels[row, column] = _laid(_whole(pixels[row, column]), red, green, blue, share)
-
-
-@inlined
-def _weight(x: float, y: float, xa: float, ya: float, xb: float, yb: float) -> float:
-    """Return twice the signed area of a triangle: of a point and an edge."""
-    return (xb - xa) * (y - ya) - (yb - ya) * (x - xa)
-
-
-@inlined
-def _from(weight: float, slope: float, first: float) -> float:
-    """Return the first column at which a weight that rises along a row is not negative."""
-    return max(first, math.ceil(-weight / slope)) if slope > 0.0 else first
-
-
-@inlined
-def _until(weight: float, slope: float, last: float) -> float:
-    """Return the column before which a weight that falls along a row is positive."""
-    return min(last, math.ceil(-weight / slope)) if slope < 0.0 else last
-
-
-@inlined
-def _leaves_out(weight: float, slope: float, rise: float) -> bool:
-    """Whether a row lies outside of a level edge, or on it where another triangle paints it."""
-    return slope == 0.0 and (weight < 0.0 or (weight == 0.0 and rise < 0.0))
-
-
-@inlined
-def _mixed(p: int, q: int, r: int, shift: int, wp: float, wq: float, wr: float) -> int:
-    """Return one channel of a colour between three."""
-    mixed = ((p >> shift) & 255) * wp + ((q >> shift) & 255) * wq + ((r >> shift) & 255) * wr
-    return min(max(int(mixed + 0.5), 0), 255)
+def _slopes(
+    ab: float, ac: float, xab: float, yab: float, xac: float, yac: float, area: float
+) -> tuple[float, float]:
+    """Return how something changes per column and row that differs by ``ab``, ``ac`` from a to b, c."""
+    return (ab * yac - ac * yab) / area, (ac * xab - ab * xac) / area
 
 
 @inlined
@@ -143,76 +77,51 @@ def _triangle(
     pixels: Pixels, vertices: Vertices, colours: Colours, a: int, b: int, c: int, coverage: Coverage,
     left: int, top: int, right: int, bottom: int,
 ) -> None:  # fmt: skip
-    """Paint one triangle, its colour and texture interpolated between its corners."""
-    xa, ya, xb, yb = (
-        float(vertices[a, 0]),
-        float(vertices[a, 1]),
-        float(vertices[b, 0]),
-        float(vertices[b, 1]),
-    )
-    xc, yc = float(vertices[c, 0]), float(vertices[c, 1])
-    area = _weight(xc, yc, xa, ya, xb, yb)
+    """Paint one triangle, its opacity and its place in the texture interpolated between its corners."""
+    xa, ya, xb, yb = vertices[a, 0], vertices[a, 1], vertices[b, 0], vertices[b, 1]
+    xc, yc = vertices[c, 0], vertices[c, 1]
+    xab, yab, xac, yac = float(xb - xa), float(yb - ya), float(xc - xa), float(yc - ya)
+    area = xab * yac - xac * yab
     if area == 0.0:
         return
-    if area < 0.0:  # so that weights are positive inside
-        b, c, xb, yb, xc, yc, area = c, b, xc, yc, xb, yb, -area
-    ca, cb, cc = _whole(colours[a, 4]), _whole(colours[b, 4]), _whole(colours[c, 4])
-    ua, va = float(vertices[a, 2]), float(vertices[a, 3])
-    ub, vb, uc, vc = (
-        float(vertices[b, 2]),
-        float(vertices[b, 3]),
-        float(vertices[c, 2]),
-        float(vertices[c, 3]),
-    )
-    flat = ua == ub and ub == uc and va == vb and vb == vc
-    whole = _texel(coverage, ua, va)
-    low, high = float(max(left, int(min(xa, xb, xc)))), float(min(right, math.ceil(max(xa, xb, xc)) + 1))
-    for row in range(max(top, int(min(ya, yb, yc))), min(bottom, math.ceil(max(ya, yb, yc)) + 1)):
+    height, width = coverage.shape
+    ua, va, packed = width * vertices[a, 2], height * vertices[a, 3], _whole(colours[a, 4])
+    colour = (packed & 255) << 16 | (packed & 0xFF00) | (packed >> 16 & 255)
+    opacity = float(packed >> 24)
+    of_b, of_c = _whole(colours[b, 4]) >> 24, _whole(colours[c, 4]) >> 24
+    ox, oy = _slopes(of_b - opacity, of_c - opacity, xab, yab, xac, yac, area)
+    ux, uy = _slopes(width * vertices[b, 2] - ua, width * vertices[c, 2] - ua, xab, yab, xac, yac, area)
+    vx, vy = _slopes(height * vertices[b, 3] - va, height * vertices[c, 3] - va, xab, yab, xac, yac, area)
+    uniform = ox == 0.0 and oy == 0.0 and ux == 0.0 and uy == 0.0 and vx == 0.0 and vy == 0.0
+    alpha = int(opacity) * _whole(coverage[min(int(va), height - 1), min(int(ua), width - 1)]) // 255
+    if area < 0.0:  # so that the inner side is the same of all edges
+        xb, yb, xc, yc = xc, yc, xb, yb
+    low, high = max(left, math.floor(min(xa, xb, xc))), min(right, math.ceil(max(xa, xb, xc)))
+    for row in range(max(top, math.floor(min(ya, yb, yc))), min(bottom, math.ceil(max(ya, yb, yc)))):
         y = row + 0.5
-        wa, wb, wc = (
-            _weight(0.5, y, xb, yb, xc, yc),
-            _weight(0.5, y, xc, yc, xa, ya),
-            _weight(0.5, y, xa, ya, xb, yb),
-        )
-        sa, sb, sc = yb - yc, yc - ya, ya - yb  # how weights change from column to column
-        if _leaves_out(wa, sa, xc - xb) or _leaves_out(wb, sb, xa - xc) or _leaves_out(wc, sc, xb - xa):
+        first, last = _narrowed(low, high, y, xa, ya, xb, yb)
+        first, last = _narrowed(first, last, y, xb, yb, xc, yc)
+        first, last = _narrowed(first, last, y, xc, yc, xa, ya)
+        if uniform and alpha == 255:
+            for column in range(first, last):
+                pixels[row, column] = (255 << 24) | colour
             continue
-        first = _from(wa, sa, _from(wb, sb, _from(wc, sc, low)))
-        last = _until(wa, sa, _until(wb, sb, _until(wc, sc, high)))
-        for column in range(int(first), int(last)):
-            pa, pb = (wa + sa * column) / area, (wb + sb * column) / area
-            pc = 1.0 - pa - pb
-            share = (
-                whole if flat else _texel(coverage, ua * pa + ub * pb + uc * pc, va * pa + vb * pb + vc * pc)
-            )
-            alpha = _mixed(ca, cb, cc, 24, pa, pb, pc) * share // 255
+        for column in range(first, last):
+            if not uniform:
+                across, down = column + 0.5 - xa, y - ya
+                u = min(max(int(ua + ux * across + uy * down), 0), width - 1)
+                v = min(max(int(va + vx * across + vy * down), 0), height - 1)
+                alpha = int(min(max(opacity + ox * across + oy * down, 0.0), 255.0) + 0.5)
+                alpha = alpha * _whole(coverage[v, u]) // 255
             if alpha > 0:
-                red, green = _mixed(ca, cb, cc, 0, pa, pb, pc), _mixed(ca, cb, cc, 8, pa, pb, pc)
-                blue = _mixed(ca, cb, cc, 16, pa, pb, pc)
-                pixels[row, column] = _laid(_whole(pixels[row, column]), red, green, blue, alpha)
-
-
-@inlined
-def _corner(indices: Indices, k: int, offset: int) -> int:
-    """Return which vertex an index means."""
-    return offset + _whole(indices[k])
+                _lay(pixels, row, column, colour, alpha)
 
 
 @kernel
 def paint_triangles(
-    pixels: Pixels,
-    vertices: Vertices,
-    colours: Colours,
-    indices: Indices,
-    first: int,
-    count: int,
-    offset: int,
-    coverage: Coverage,
-    left: int,
-    top: int,
-    right: int,
-    bottom: int,
-) -> None:
+    pixels: Pixels, vertices: Vertices, colours: Colours, indices: Indices, first: int, count: int,
+    offset: int, coverage: Coverage, left: int, top: int, right: int, bottom: int,
+) -> None:  # fmt: skip
     """Paint triangles in their order, within a rectangle.
 
     Parameters
@@ -230,19 +139,7 @@ def paint_triangles(
     left, top, right, bottom : int
         What may be painted [px]; it lies within the picture.
     """
-    k, end = first, first + count
-    while k + 2 < end:
-        a, b, c = (
-            _corner(indices, k, offset),
-            _corner(indices, k + 1, offset),
-            _corner(indices, k + 2, offset),
-        )
-        if k + 5 < end and indices[k + 3] == indices[k] and indices[k + 4] == indices[k + 2]:
-            d = _corner(indices, k + 5, offset)
-            if _is_upright(vertices, colours, a, b, c, d):
-                colour = _whole(colours[a, 4])
-                _rectangle(pixels, vertices, a, c, colour, coverage, left, top, right, bottom)
-                k += 6
-                continue
+    for k in range(first, first + count - 2, 3):
+        a, b = offset + _whole(indices[k]), offset + _whole(indices[k + 1])
+        c = offset + _whole(indices[k + 2])
         _triangle(pixels, vertices, colours, a, b, c, coverage, left, top, right, bottom)
-        k += 3

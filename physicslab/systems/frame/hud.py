@@ -32,8 +32,6 @@ _PERIODS = {"figures": 0.2, "costs": 0.2, "advice": 0.25}
 """Time [s] between two readings: figures that change faster cannot be read."""
 _MESSAGE_WIDTH = 0.7
 """How wide a message beside the scale bar may be, as a share of what is left for the world."""
-_LEGEND_WIDTH = 19.5
-"""Width of the legend, in heights of the text."""
 
 
 class HudSystem(System):
@@ -155,7 +153,7 @@ class HudSystem(System):
         below = shown[-1][1] + shown[-1][3] + margin if shown else top + margin
         advice = self._draw_advice(world, middle, below, bottom, width - 2 * margin)
         taken += [*shown, *([] if advice is None else [advice])]
-        legend = legend_of(window.overlays, round(_LEGEND_WIDTH * size), size, canvas, theme)
+        legend = legend_of(window.overlays, (width - 2 * margin, height), size, canvas, theme)
         if legend is not None:
             legend = legend.moved(left + margin, top + margin)
             legend.draw(canvas, theme)

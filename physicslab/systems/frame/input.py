@@ -12,6 +12,7 @@ from physicslab.systems.system import Stage, System, at
 from physicslab.view.controls import actions
 from physicslab.view.controls.controls import KEYS, RELEASES
 from physicslab.view.controls.file_actions import open_scene
+from physicslab.view.controls.keyboard import open_menu
 from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
 from physicslab.view.controls.spawning import spawn_box
 from physicslab.view.controls.tool import Tool
@@ -26,6 +27,7 @@ __all__ = ["InputSystem"]
 
 _BY_PRINT = ("+", "-", ".", ",", "[", "]")
 """Keys that go by what they print: on other keyboards they are elsewhere, or need AltGr."""
+_PRESSES = (pygame.KEYDOWN, pygame.MOUSEBUTTONDOWN, pygame.MOUSEWHEEL)
 _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
 """With these keys held, another key is meant for the desktop: Alt+Tab is no slow motion."""
 
@@ -48,6 +50,7 @@ class InputSystem(System):
         self._window = window
         self._interface = interface
         self._panning = 0  # the button that drags the picture
+        self._alt_alone = False  # whether Alt went down, and nothing else since
         self._tool: Tool | None = None  # what the left button was pressed with
         self._handlers: dict[int, Callable[[World, pygame.Event], None]] = {
             pygame.KEYDOWN: self._key,
@@ -68,10 +71,13 @@ class InputSystem(System):
         """Do what the events since the last frame call for."""
         window = self._window
         window.now += elapsed
+        events = pygame.event.get()
+        window.touched = bool(events or window.deeds)
         self._do_deeds(world)
-        for event in pygame.event.get():
+        for event in events:
             taken = self._interface.take(event)
             self._do_deeds(world)  # what was written in a field is done before the click beside it
+            self._follow_alt(world, event)
             handler = self._handlers.get(event.type)
             if taken:
                 window.pointer = getattr(event, "pos", window.pointer)
@@ -100,6 +106,14 @@ class InputSystem(System):
         other_use = mod & _OTHER_USE and name not in _BY_PRINT
         if action is not None and not other_use:
             action(world, self._window)
+
+    def _follow_alt(self, world: World, event: pygame.Event) -> None:
+        """Open the menus where Alt is pressed and let go alone: with other keys it is for the desktop."""
+        is_alt = getattr(event, "key", None) == pygame.K_LALT
+        if event.type == pygame.KEYUP and is_alt and self._alt_alone:
+            open_menu(world, self._window)
+        if event.type in (*_PRESSES, pygame.KEYUP, pygame.WINDOWFOCUSLOST):
+            self._alt_alone = is_alt and event.type == pygame.KEYDOWN
 
     def _drop(self, world: World, event: pygame.Event) -> None:
         """Open a scene file that was dropped on the window."""
@@ -147,6 +161,7 @@ class InputSystem(System):
 
     def _motion(self, world: World, event: pygame.Event) -> None:
         window = self._window
+        window.points_by_key = getattr(event, "by_key", False)
         if not event.buttons[0]:  # let go where no report came from, as over another window
             window.hand.drop(world)
             window.handles.release(window.edits)

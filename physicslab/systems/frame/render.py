@@ -10,7 +10,7 @@ from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.overlay.free_body import draw_free_body
-from physicslab.view.overlay.ghost import draw_ghost
+from physicslab.view.overlay.ghost import draw_cursor, draw_ghost
 from physicslab.view.overlay.handle_marks import draw_handles, draw_reading
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
@@ -72,6 +72,8 @@ class RenderSystem(System):
         if not window.filming.running:  # a film has no cursor
             self._draw_handles(world)
             self._draw_ghost(world)
+            if window.points_by_key:
+                draw_cursor(window.pointer, theme.accent, canvas)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
 
     def _draw_impulses(self, world: World) -> None:

@@ -91,12 +91,16 @@ class Display:
         return self._next + self._period - time.perf_counter()
 
     def show(self) -> float:
-        """Show what was drawn, wait until the next frame is due, and return the time since the last [s].
+        """Show what was drawn, wait until the next frame is due, and return the time since the last [s]."""
+        pygame.display.flip()
+        return self.wait()
+
+    def wait(self) -> float:
+        """Wait until the next frame is due, and return the time since the last [s].
 
         The waits aim at fixed times and not at fixed lengths, and are not rounded to milliseconds as those of
         ``pygame.time.Clock.tick`` are: that would make 62.5 frames a second of 60, and a hitch of every 25th.
         """
-        pygame.display.flip()
         now = time.perf_counter()
         self._next = max(self._next + self._period, now)
         time.sleep(max(self._next - now, 0.0))

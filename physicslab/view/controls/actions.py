@@ -33,6 +33,7 @@ __all__ = [
     "next_theme",
     "nudger",
     "paste",
+    "put_panels_back",
     "redo",
     "reduce",
     "seek",
@@ -240,6 +241,12 @@ def toggle_gallery(world: World, window: Window) -> None:
 def toggle_history(world: World, window: Window) -> None:
     """Show the list of edits and runs, or no longer."""
     window.lists_history = not window.lists_history
+
+
+def put_panels_back(world: World, window: Window) -> None:
+    """Put every window back where it is at first, and undock it."""
+    window.arrangement = ""
+    window.notify("Windows are where they were at first")
 
 
 def toggle_help(world: World, window: Window) -> None:

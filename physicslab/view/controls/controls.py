@@ -12,6 +12,7 @@ from physicslab.view.controls import (
     file_actions,
     film_actions,
     history_actions,
+    keyboard,
 )
 from physicslab.view.controls.measuring import (
     GATE,
@@ -135,8 +136,10 @@ CONTROLS: tuple[Control, ...] = (
             tip="Select all bodies"),
     Control("N", "next body", "n", actions.select_next, minor=True, group="edit",
             tip="Select the next body"),
-    Control("Arrows", "move what is selected", "left", actions.nudger(-1, 0), minor=True, group="edit",
-            tip="Move what is selected by a pixel"),
+    Control("Arrows", "move what is selected", "left", keyboard.ARROWS["left"], minor=True, group="edit",
+            tip="Move what is selected by a pixel; where nothing is, the cursor"),
+    Control("Enter", "edit, or click", "return", keyboard.enter, also=("enter",), minor=True, group="edit",
+            tip="Edit the numbers of what is selected; where nothing is, click with the tool at the cursor"),
     Control("R", "clear all", "r", actions.clear, group="edit", tip="Remove everything"),
     Control("Space", "pause", "space", actions.toggle_pause, group="time",
             state=lambda _, window: window.pace.paused, tip="Pause or resume"),
@@ -233,6 +236,12 @@ CONTROLS: tuple[Control, ...] = (
             tip="All text smaller"),
     Control("F2", "other colours", "f2", actions.next_theme, minor=True, group="window",
             tip="Colours: dark, high contrast, projector"),
+    Control("F6", "next panel", "f6", keyboard.walk, minor=True, group="window",
+            tip="Go through the buttons and fields of the next panel with Tab and arrows; Esc goes back"),
+    Control("F10", "menus", "f10", keyboard.open_menu, minor=True, group="window",
+            tip="Open the menus: arrows, Enter, Esc. So does Alt alone"),
+    Control("F7", "panels as at first", "f7", actions.put_panels_back, minor=True, group="window",
+            tip="Put windows that were moved or docked back where they were at first"),
     Control("F1", "all keys", "f1", actions.toggle_help, group="help",
             state=lambda _, window: window.help, tip="All keys"),
     Control("Esc", "quit", "escape", actions.leave, group="quit", click=actions.close, tip="Quit"),
@@ -246,7 +255,7 @@ KEYS: dict[str, Action] = {
     if key and control.action is not None
 }
 """What each key does when it goes down, by its name in SDL."""
-KEYS |= {"right": actions.nudger(1, 0), "up": actions.nudger(0, 1), "down": actions.nudger(0, -1)}
+KEYS |= keyboard.ARROWS
 
 RELEASES: dict[str, Action] = {
     control.key: control.release for control in CONTROLS if control.release is not None

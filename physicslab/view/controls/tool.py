@@ -26,8 +26,8 @@ class Tool:
         How it is used.
     press, release : callable
         What happens.
-    pans : bool
-        Whether dragging moves the picture.
+    pans, drags : bool
+        Whether dragging moves the picture, and whether it is pressed at one place and let go at another.
     spawn : Spawnable, optional
         What a click on empty space makes.
     prompts : tuple of str
@@ -40,5 +40,6 @@ class Tool:
     press: Deed
     release: Deed
     pans: bool = False
+    drags: bool = False
     spawn: Spawnable | None = None
     prompts: tuple[str, ...] = ()

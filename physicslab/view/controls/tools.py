@@ -134,7 +134,9 @@ HAND = spawning(CIRCLE)
 """The tool at the start: that of a new window."""
 SPAWN_TOOLS = (HAND, *(spawning(spawn) for spawn in SPAWNS[1:]))
 """A tool for each thing there is to spawn."""
-SPRING = Tool("spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring)
+SPRING = Tool(
+    "spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring, drags=True
+)
 REMOVE = Tool("remove", "Erase", "Erase: click a body; its springs go with it.", remove, _nothing)
 SELECT = Tool(
     "select",
@@ -143,7 +145,7 @@ SELECT = Tool(
     select,
     end_select,
 )
-PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True)
+PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True, drags=True)
 _IN_PALETTE = ("circle", "box", "block", "pendulum", "chain")
 PALETTE = (
     SELECT,

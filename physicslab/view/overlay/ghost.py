@@ -10,11 +10,19 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
 from physicslab.view.canvas.theme import Colour
 
-__all__ = ["draw_ghost"]
+__all__ = ["draw_cursor", "draw_ghost"]
 
 _CORNERS = 40
 """Straight lines that a circle is drawn as."""
 _OPACITY = 0.65
+_ARM = 9.0
+"""Length of the arms of the cross that shows the cursor [px]."""
+
+
+def draw_cursor(pixel: tuple[float, float], colour: Colour, canvas: Canvas) -> None:
+    """Draw a cross where the cursor is that keys move."""
+    arms = np.array(((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)))
+    canvas.lines(pixel + 0.3 * _ARM * arms, pixel + _ARM * arms, colour, 1.6)
 
 
 def draw_ghost(

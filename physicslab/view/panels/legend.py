@@ -25,6 +25,11 @@ from physicslab.view.panels.panels import Line, Panel, lay_out
 
 __all__ = ["Legend", "legend_of"]
 
+_WIDTH = 19.5
+"""Of the legend, in heights of the text."""
+_MAX_SHARE = 0.3
+"""Of the world's room that it may take with all its words."""
+
 
 @dataclass(frozen=True, slots=True)
 class Sample:
@@ -102,26 +107,50 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
     return rows, remarks
 
 
-def legend_of(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: Theme) -> Legend | None:
-    """Return the legend of the overlays that are on, its corner at the origin; ``None`` if none is."""
+def legend_of(
+    overlays: Overlays, room: tuple[int, int], size: int, canvas: Canvas, theme: Theme
+) -> Legend | None:
+    """Return the legend of the overlays that are on, its corner at the origin; ``None`` if none is.
+
+    Where it would be too wide for the room [px], or take too much of it, scales and remarks are left out, and
+    words become as small as they must.
+    """
     if not (overlays.arrows or overlays.impulses):
         return None
+    width = round(_WIDTH * size)
+    legend = _laid_out(overlays, width, size, canvas, theme)
+    if width <= room[0] and width * legend.panel.rect[3] <= _MAX_SHARE * room[0] * room[1]:
+        return legend
+    brief = _laid_out(overlays, 0, size, canvas, theme)
+    if brief.panel.rect[2] <= room[0]:
+        return brief
+    return _laid_out(overlays, 0, max(size * room[0] // brief.panel.rect[2], 8), canvas, theme)
+
+
+def _laid_out(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: Theme) -> Legend:
+    """Return the legend, so wide [px]; with names alone where that is 0."""
     rows, remarks = _rows(overlays)
-    pad = round(0.7 * size)
-    scale = "scale, kept" if overlays.keeps_scales else "scale"
-    heading = lay_out([Line("Arrows", scale, "heading")], 0, 0, width, size, canvas, theme)
+    pad, sample_length = round(0.7 * size), 2.4 * size
+    kept = "scale, kept" if overlays.keeps_scales else "scale"
     label, value = TextStyle(size - 1, theme.text), TextStyle(size - 1, theme.faint)
     row_height = canvas.text_size("Ag", label)[1]
+    inset, is_brief = round(pad + sample_length + 0.6 * size), not width
+    if is_brief:
+        rows = list({name: (sample, name, "") for sample, name, _ in rows}.values())
+        width = inset + max(canvas.text_size(name, label)[0] for _, name, _ in rows) + pad
+    lines = [] if is_brief else [Line("Arrows", kept, "heading")]
+    heading = lay_out(lines, 0, 0, width, size, canvas, theme)
     texts, samples, y = list(heading.texts), [], heading.rect[3] - pad
-    sample_length = 2.4 * size
     for sample, name, scale in rows:
-        texts.append((name, (round(pad + sample_length + 0.6 * size), y), label, "left"))
-        texts.append((scale, (width - pad, y), value, "right"))
+        texts.append((name, (inset, y), label, "left"))
+        if scale:
+            texts.append((scale, (width - pad, y), value, "right"))
         samples.append((sample, (float(pad), y + 0.5 * row_height), sample_length))
         y += row_height
-    remarked = lay_out(_remarks(remarks), 0, y - pad // 2, width, size, canvas, theme)
+    remarked = lay_out([] if is_brief else _remarks(remarks), 0, y - pad // 2, width, size, canvas, theme)
     texts += remarked.texts
-    return Legend(Panel((0, 0, width, y - pad // 2 + remarked.rect[3]), tuple(texts)), tuple(samples))
+    height = y + pad if is_brief else y - pad // 2 + remarked.rect[3]
+    return Legend(Panel((0, 0, width, height), tuple(texts)), tuple(samples))
 
 
 def _remarks(words: Sequence[str]) -> list[Line]:

@@ -19,11 +19,7 @@ _KEYS = {
     pygame.K_y: imgui.Key.y, pygame.K_z: imgui.Key.z,
 }  # fmt: skip
 """The keys that matter to text and menus."""
-_HELD = (
-    (pygame.KMOD_CTRL, imgui.Key.mod_ctrl),
-    (pygame.KMOD_SHIFT, imgui.Key.mod_shift),
-    (pygame.KMOD_ALT, imgui.Key.mod_alt),
-)
+_HELD = {getattr(pygame, f"KMOD_{key}"): imgui.Key[f"mod_{key.lower()}"] for key in ("CTRL", "SHIFT", "ALT")}
 AWAY = (pygame.WINDOWFOCUSLOST, pygame.WINDOWMINIMIZED, pygame.WINDOWHIDDEN)
 """Events after which no button counts as held."""
 
@@ -41,7 +37,7 @@ def feed(io: imgui.IO, event: pygame.Event) -> None:
             io.add_mouse_wheel_event(-across, float(getattr(event, "precise_y", event.y)))
         case pygame.KEYDOWN | pygame.KEYUP:
             mod = getattr(event, "mod", 0)
-            for mask, key in _HELD:
+            for mask, key in _HELD.items():
                 io.add_key_event(key, bool(mod & mask))
             if event.key in _KEYS:
                 io.add_key_event(_KEYS[event.key], event.type == pygame.KEYDOWN)

@@ -6,7 +6,7 @@ import importlib.util
 from dataclasses import dataclass
 from pathlib import Path
 
-from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from imgui_bundle import ImVec2, imgui, implot
 
 from physicslab.view.canvas.theme import Colour, Theme, mixed
 
@@ -49,11 +49,6 @@ def packed(colour: Colour, opacity: float = 1.0) -> int:
     return red | green << 8 | blue << 16 | round(255 * opacity) << 24
 
 
-def _vector(colour: Colour, opacity: float = 1.0) -> ImVec4:
-    red, green, blue = colour
-    return ImVec4(red / 255, green / 255, blue / 255, opacity)
-
-
 def bar_height(text: int) -> int:
     """Return how high buttons and the menu bar are [px], for text of a height [px]."""
     return text + 2 * _padding(text)
@@ -71,15 +66,16 @@ def apply_theme(theme: Theme, size: float) -> None:
     style.frame_rounding = style.grab_rounding = style.tab_rounding = 5 * unit
     style.window_border_size = style.popup_border_size = 1.0
     style.frame_padding = ImVec2(round(8 * unit), _padding(size))
-    style.item_spacing = ImVec2(round(8 * unit), round(6 * unit))
+    style.item_spacing = ImVec2(round(8 * unit), round(4 * unit))
     style.item_inner_spacing = ImVec2(round(6 * unit), round(4 * unit))
     style.window_padding = ImVec2(round(12 * unit), round(10 * unit))
     style.cell_padding = ImVec2(round(4 * unit), round(2 * unit))
     style.scrollbar_size, style.grab_min_size = round(9 * unit), round(12 * unit)
+    style.window_menu_button_position = imgui.Dir.none
     style.indent_spacing, style.window_title_align = round(14 * unit), ImVec2(0.0, 0.5)
     lit, lit_more = mixed(theme.key, theme.accent, 0.22), mixed(theme.key, theme.accent, 0.4)
     for kind, colour, opacity in (
-        (kinds.window_bg, theme.panel, max(theme.panel_opacity, 0.97)), (kinds.popup_bg, theme.panel, 1.0),
+        (kinds.window_bg, theme.panel, 1.0), (kinds.popup_bg, theme.panel, 1.0),
         (kinds.child_bg, theme.panel, 0.0), (kinds.menu_bar_bg, theme.panel, 1.0),
         (kinds.border, theme.outline, 1.0), (kinds.text, theme.text, 1.0),
         (kinds.text_disabled, theme.faint, 1.0), (kinds.frame_bg, theme.key, 1.0),
@@ -92,12 +88,17 @@ def apply_theme(theme: Theme, size: float) -> None:
         (kinds.slider_grab, theme.accent, 1.0), (kinds.slider_grab_active, theme.accent, 1.0),
         (kinds.check_mark, theme.accent, 1.0), (kinds.separator, theme.outline, 1.0),
         (kinds.scrollbar_bg, theme.panel, 0.0), (kinds.scrollbar_grab, theme.key_rim, 1.0),
-        (kinds.tab, theme.panel, 1.0), (kinds.tab_hovered, lit, 1.0), (kinds.tab_selected, lit, 1.0),
+        (kinds.tab, theme.panel, 1.0), (kinds.tab_hovered, lit, 1.0), (kinds.tab_selected, theme.key, 1.0),
+        (kinds.tab_dimmed, theme.panel, 1.0), (kinds.tab_dimmed_selected, theme.key, 1.0),
+        (kinds.tab_selected_overline, theme.accent, 1.0),
+        (kinds.tab_dimmed_selected_overline, theme.outline, 1.0),
+        (kinds.docking_preview, theme.accent, 0.6), (kinds.docking_empty_bg, theme.background, 0.0),
+        (kinds.separator_hovered, theme.accent, 1.0), (kinds.separator_active, theme.accent, 1.0),
         (kinds.plot_histogram, theme.accent, 1.0), (kinds.text_selected_bg, theme.accent, 0.35),
         (kinds.table_row_bg_alt, theme.key, 0.35), (kinds.nav_cursor, theme.accent, 1.0),
         (kinds.resize_grip, theme.key, 0.0), (kinds.modal_window_dim_bg, theme.background, 0.6),
     ):  # fmt: skip
-        style.set_color_(kind, _vector(colour, opacity))
+        style.set_color_(kind, imgui.color_convert_u32_to_float4(packed(colour, opacity)))
     plot, colours = implot.get_style(), implot.Col_
     plot.fit_padding = ImVec2(0.0, 0.08)  # or a line that stays at its largest lies under the frame
     for name, colour, opacity in (
@@ -107,4 +108,4 @@ def apply_theme(theme: Theme, size: float) -> None:
         (colours.axis_text, theme.faint, 1.0), (colours.axis_grid, theme.axis, 1.0),
         (colours.inlay_text, theme.text, 1.0), (colours.title_text, theme.text, 1.0),
     ):  # fmt: skip
-        plot.set_color_(name, _vector(colour, opacity))
+        plot.set_color_(name, imgui.color_convert_u32_to_float4(packed(colour, opacity)))

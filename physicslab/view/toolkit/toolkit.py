@@ -22,6 +22,8 @@ _ONLY_WHERE_TAKEN = (
     pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.MOUSEWHEEL, pygame.KEYDOWN,
 )  # fmt: skip
 """Events that Dear ImGui gets only where they are for panels: Tab would go to the first field."""
+_FOR_WINDOWS = (pygame.K_F6, pygame.K_F10, pygame.K_LALT)
+"""Keys that go from panel to panel: they are never for the one that has the others."""
 _NOWHERE = -3.0e38
 """Where the mouse is said to be while it is not for panels."""
 
@@ -37,39 +39,51 @@ class Toolkit:
         Its letters.
     built : int
         How many times panels were built.
+    pictures : Pictures
+        What is shown of them.
+    walked : bool
+        Whether keys go through the widgets of a panel.
     """
 
     def __init__(self) -> None:
         self._context = imgui.create_context()
         imgui.set_current_context(self._context)
         self._plots = implot.create_context()
-        self._enter()
+        self.enter()
         io = imgui.get_io()
-        io.set_ini_filename("")
+        io.set_ini_filename(None)
         io.set_log_filename("")
+        io.config_flags |= imgui.ConfigFlags_.docking_enable | imgui.ConfigFlags_.nav_enable_keyboard
         flags = imgui.BackendFlags_
         io.backend_flags |= flags.renderer_has_textures | flags.renderer_has_vtx_offset
         io.config_debug_highlight_id_conflicts = False
         self.fonts: Fonts = add_fonts()
         self.covered: list[Rect] = []
         self.built = 0
-        self._pictures = Pictures()
-        self._look: tuple[Theme, float] | None = None
+        self.pictures = Pictures()
+        self._look: tuple[Theme, float, tuple[int, int]] | None = None
         self._elapsed = 0.0
         self._unsettled = _SETTLING
         self._pointer = (_NOWHERE, _NOWHERE)
         self._pressed_on: dict[int, bool] = {}  # whether each button that is held went down on a panel
-        weakref.finalize(self, _end, self._context, self._plots, self._pictures)
+        self.walked = False
+        weakref.finalize(self, _end, self._context, self._plots, self.pictures)
 
-    def _enter(self) -> None:
+    def enter(self) -> None:
+        """Make its context the one that calls of Dear ImGui and ImPlot are for."""
         imgui.set_current_context(self._context)
         implot.set_current_context(self._plots)
 
     @property
     def typing(self) -> bool:
         """Whether keys go to a field of a panel."""
-        self._enter()
+        self.enter()
         return bool(imgui.get_io().want_text_input)
+
+    @property
+    def has_keys(self) -> bool:
+        """Whether keys go to a field, an open menu, or through the widgets of panels."""
+        return self.walked or self.typing or self.has_popup()
 
     @property
     def dragging(self) -> bool:
@@ -87,10 +101,12 @@ class Toolkit:
         A button that goes down on a panel belongs to it until it is let go, and so it is with the world.
         """
         taken = self._is_for_panels(event)
-        self._unsettled = _SETTLING
-        self._enter()
+        self.enter()
         io = imgui.get_io()
-        if event.type == pygame.KEYDOWN and taken and not io.want_text_input:
+        if event.type == pygame.MOUSEMOTION and not taken and not imgui.is_mouse_pos_valid():
+            return False  # it was in the world before, too
+        self._unsettled = _SETTLING
+        if taken and event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE and self.has_popup():
             imgui.internal.close_popup_to_level(0, True)
         elif taken or event.type not in _ONLY_WHERE_TAKEN:
             feed(io, event)
@@ -104,7 +120,7 @@ class Toolkit:
     def _is_for_panels(self, event: pygame.Event) -> bool:
         match event.type:
             case pygame.MOUSEBUTTONDOWN:
-                on_panel = self.covers(event.pos) or self._has_popup()
+                on_panel = self.covers(event.pos) or self.has_popup()
                 self._pressed_on[event.button] = on_panel
                 return on_panel
             case pygame.MOUSEBUTTONUP:
@@ -115,10 +131,10 @@ class Toolkit:
                 return self.covers(event.pos)
             case pygame.MOUSEWHEEL:
                 return self.covers(self._pointer)
-            case pygame.KEYDOWN if event.key == pygame.K_ESCAPE:
-                return self.typing or self._has_popup()
+            case pygame.KEYDOWN | pygame.KEYUP if event.key in _FOR_WINDOWS:
+                return False
             case pygame.KEYDOWN | pygame.KEYUP | pygame.TEXTINPUT:
-                return self.typing
+                return self.has_keys
             case _ if event.type in AWAY:
                 self._pressed_on.clear()
         return False
@@ -127,16 +143,16 @@ class Toolkit:
         """Note where the cursor is [px]: events of the wheel do not say so."""
         self._pointer = place
 
-    def _has_popup(self) -> bool:
+    def has_popup(self) -> bool:
         """Whether a menu is open: a click beside it closes it, and does nothing else."""
-        self._enter()
+        self.enter()
         flags = imgui.PopupFlags_
         return bool(imgui.is_popup_open("", flags.any_popup_id | flags.any_popup_level))
 
     @property
     def unsettled(self) -> bool:
-        """Whether panels are to be built in the next frame whatever happens."""
-        return self._unsettled > 0
+        """Whether there is something to do for panels in the next frame whatever happens."""
+        return self._unsettled > 0 or bool(self.pictures.due)
 
     def wake(self) -> None:
         """Have panels built in the next frames: something changed."""
@@ -163,14 +179,16 @@ class Toolkit:
             Calls Dear ImGui for each panel.
         """
         self._elapsed += elapsed
-        if self._look != (theme, text_size):
+        looks_new = self._look != (theme, text_size, size)
+        if looks_new:
             self._unsettled = _SETTLING
+        self.pictures.paint_next()
         if self._unsettled <= 0:
             return False
         self._unsettled -= 1
-        self._enter()
-        if self._look != (theme, text_size):
-            self._look = (theme, text_size)
+        self.enter()
+        if looks_new:
+            self._look = (theme, text_size, size)
             apply_theme(theme, text_size)
         io = imgui.get_io()
         io.display_size = ImVec2(*map(float, size))
@@ -182,42 +200,54 @@ class Toolkit:
         finally:
             imgui.render()
         self.built += 1
-        self._pictures.take(imgui.get_draw_data())
+        self.pictures.take(imgui.get_draw_data(), self._pointer, at_once=looks_new)
         self.covered = _covered()
         if io.want_text_input or imgui.is_any_item_active():
             self._unsettled = max(self._unsettled, 1)  # the mark in a field blinks, a key repeats
         return True
 
-    def draw(self, surface: pygame.Surface) -> None:
-        """Show panels as they were built last."""
-        self._pictures.show(surface)
+    def arrangement(self) -> str:
+        """Return where windows lie, in words of Dear ImGui."""
+        self.enter()
+        return str(imgui.save_ini_settings_to_memory())
+
+    def arrange(self, arrangement: str) -> None:
+        """Dock windows and put them where they were, or each where it is at first if that is empty."""
+        self.enter()
+        imgui.internal.clear_ini_settings()
+        imgui.load_ini_settings_from_memory(arrangement)
+        self.wake()
 
     def picture_of(self, ending: str) -> pygame.Surface | None:
         """Return a panel as it was painted last, by the end of its name; ``None`` if it is not shown."""
         assert self._look is not None
-        return self._pictures.of(ending, pygame.Color(*self._look[0].panel))
-
-    @property
-    def painted(self) -> int:
-        """How many pictures of panels were painted."""
-        return self._pictures.painted
+        return self.pictures.of(ending, pygame.Color(*self._look[0].panel))
 
 
 def _covered() -> list[Rect]:
     """Return where panels lie that take the mouse, from the back to the front."""
     rects: list[Rect] = []
     for window in imgui.get_current_context().windows:
-        inert = window.flags & imgui.WindowFlags_.no_mouse_inputs
-        if (
-            window.active
-            and not window.hidden
-            and not inert
-            and not window.flags & imgui.WindowFlags_.child_window
-        ):
-            rects.append(
-                (round(window.pos.x), round(window.pos.y), round(window.size.x), round(window.size.y))
-            )
+        if window.hidden or not window.active:
+            continue
+        rect = round(window.pos.x), round(window.pos.y), round(window.size.x), round(window.size.y)
+        node = window.dock_node_as_host
+        if node is not None and node.is_dock_space():
+            rects += _beside(rect, node.central_node)
+        elif not window.flags & (imgui.WindowFlags_.no_mouse_inputs | imgui.WindowFlags_.child_window):
+            rects.append(rect)
     return rects
+
+
+def _beside(rect: Rect, middle: imgui.internal.DockNode) -> list[Rect]:
+    """Return what of a rectangle lies around its middle, with the edges that can be dragged [px]."""
+    (left, top, width, height), node = rect, middle.rect()
+    x, y, right, bottom = round(node.min.x), round(node.min.y), round(node.max.x), round(node.max.y)
+    sides = (
+        (left, top, x - left, height), (right, top, left + width - right, height),
+        (x, top, right - x, y - top), (x, bottom, right - x, top + height - bottom),
+    )  # fmt: skip
+    return [side for side in sides if side[2] > 0 and side[3] > 0]
 
 
 def _end(context: imgui.internal.Context, plots: implot.internal.Context, pictures: Pictures) -> None:

@@ -20,7 +20,15 @@ _FIXED = (
     _FLAGS.no_title_bar | _FLAGS.no_resize | _FLAGS.no_move | _FLAGS.no_collapse | _FLAGS.no_saved_settings
     | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav_focus
 )  # fmt: skip
-_FLOATING = _FLAGS.no_collapse | _FLAGS.no_saved_settings | _FLAGS.no_nav | _FLAGS.always_auto_resize
+_FLOATING = _FLAGS.no_collapse | _FLAGS.always_auto_resize
+_ONLY_SIDES = (
+    imgui.DockNodeFlags_.passthru_central_node | imgui.DockNodeFlags_.no_docking_over_central_node
+    | imgui.internal.DockNodeFlagsPrivate_.no_close_button
+)  # fmt: skip
+"""What is in the middle stays in sight, and takes the mouse."""
+_APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
+_TITLE = 6.0
+"""Height of what a floating window has above what fills it, at most, in heights of the text."""
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
 
 
@@ -42,6 +50,14 @@ class Ui:
         All that is written, in its order.
     rows : dict of str to str
         The value beside each label.
+    once : Cond_
+        When windows that come back where they were are put where they are at first.
+    keys_go_to : str
+        What is to get the keys in this frame: ``"menu"`` or ``"fields"``.
+    focused : str
+        The widget that keys go to, by its words.
+    room : Rect
+        What of the window is left for the world; what opens lies within it [px].
     pictures : list of tuples
         What is laid over panels: a surface, its corner, and the part of the window in which it is seen [px].
     """
@@ -52,11 +68,15 @@ class Ui:
         self.words: list[str] = []
         self.rows: dict[str, str] = {}
         self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
+        self.once = imgui.Cond_.first_use_ever
+        self.keys_go_to = self.focused = ""
+        self.room: Rect = (0, 0, 1 << 20, 1 << 20)
 
-    def begin(self, theme: Theme) -> None:
-        """Forget the frame before."""
-        self.theme = theme
-        self.places, self.words, self.rows, self.pictures = {}, [], {}, []
+    def begin(self, theme: Theme, room: Rect = (0, 0, 1 << 20, 1 << 20), *, rearranged: bool = False) -> None:
+        """Forget the frame before; ``rearranged`` puts windows back where they are at first."""
+        self.theme, self.room = theme, room
+        self.once = imgui.Cond_.always if rearranged else imgui.Cond_.first_use_ever
+        self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, [], ""
 
     @property
     def size(self) -> float:
@@ -82,22 +102,61 @@ class Ui:
             imgui.end()
             imgui.pop_style_var(2 - padded - rounded)
 
+    def dock(self, rect: Rect) -> Rect:
+        """Let windows be docked to the sides of a part of the display; return what they leave of it [px]."""
+        imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
+        imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(0.0, 0.0))
+        imgui.set_next_window_pos(ImVec2(*rect[:2]))
+        imgui.set_next_window_size(ImVec2(*rect[2:]))
+        unseen = _FLAGS.no_background | _FLAGS.no_mouse_inputs | _FLAGS.no_docking | _FLAGS.no_nav
+        imgui.begin("sides", None, _FIXED | unseen)
+        imgui.pop_style_var(2)
+        name = imgui.get_id("sides")
+        imgui.dock_space(name, ImVec2(0.0, 0.0), _ONLY_SIDES)
+        imgui.end()
+        node = imgui.internal.dock_builder_get_central_node(name)
+        return round(node.pos.x), round(node.pos.y), round(node.size.x), round(node.size.y)
+
     @contextmanager
-    def floating(self, title: str, middle: tuple[float, float]) -> Iterator[list[bool]]:
-        """Begin a window with a title, within the display; what is yielded holds whether it stays open."""
-        room = imgui.get_io().display_size
-        imgui.set_next_window_pos(ImVec2(*middle), imgui.Cond_.appearing, ImVec2(0.5, 0.5))
+    def floating(
+        self, title: str, middle: tuple[float, float], *, docks: bool = False
+    ) -> Iterator[list[bool]]:
+        """Begin a window with a title, within the display; what is yielded holds whether it stays open.
+
+        One that ``docks`` can be docked to the sides of the world, and comes back where it was.
+        """
+        free = imgui.get_main_viewport()  # without the menu bar
+        low, room = free.work_pos, free.work_size
+        when = self.once if docks else imgui.Cond_.appearing
+        imgui.set_next_window_pos(ImVec2(*middle), when, ImVec2(0.5, 0.5))
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
-        _, stays = imgui.begin(title, True, _FLOATING)
+        _, stays = imgui.begin(title, True, _FLOATING if docks else _FLOATING | _APART)
         place, size = imgui.get_window_pos(), imgui.get_window_size()
-        within = ImVec2(max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0))
-        if (within.x, within.y) != (place.x, place.y):
+        within = ImVec2(
+            max(min(place.x, low.x + room.x - size.x), low.x),
+            max(min(place.y, low.y + room.y - size.y), low.y),
+        )
+        if (within.x, within.y) != (place.x, place.y) and not imgui.is_window_docked():
             imgui.set_window_pos(within)
         self.words.append(title)
         try:
             yield [bool(stays)]
         finally:
             imgui.end()
+
+    def fitted(self, width: float, height: float) -> tuple[float, float]:
+        """Return a size for what is in a floating window, so that it lies over no other panel [px]."""
+        _, _, across, down = self.room
+        around = 2.0 * imgui.get_style().window_padding.x + self.size
+        return max(min(width, across - around), 1.0), max(
+            min(height, down - around - _TITLE * self.size), 1.0
+        )
+
+    def extent(self, width: float, height: float) -> ImVec2:
+        """Return a size [px] for what fills a floating window: of a docked one all its room."""
+        if imgui.is_window_docked():
+            return imgui.get_content_region_avail()
+        return ImVec2(*self.fitted(width, height))
 
     def picture(self, surface: pygame.Surface, corner: tuple[int, int], clip: pygame.Rect) -> None:
         """Lay a picture over a panel, as far as it lies within ``clip``."""
@@ -198,7 +257,9 @@ class Ui:
     # ---- what is clicked -----------------------------------------------------------------------------------
 
     def note(self, label: str) -> None:
-        """Note where the widget is that was drawn last."""
+        """Note where the widget is that was drawn last, and whether keys go to it."""
+        if imgui.is_item_focused():
+            self.focused = label
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         self.places.setdefault(
             label, (round(low.x), round(low.y), round(high.x - low.x), round(high.y - low.y))
@@ -267,6 +328,11 @@ class Ui:
         self.tip(tip)
         return bool(changed)
 
+    def checkbox_width(self, label: str) -> float:
+        """Return how wide a box to tick is with its words [px]."""
+        gap = imgui.get_style().item_inner_spacing.x
+        return float(imgui.get_frame_height() + gap + imgui.calc_text_size(label).x)
+
     def choice(
         self, label: str, chosen: str, choices: Sequence[str], tip: str = "", width: float = -1.0
     ) -> str:
@@ -318,6 +384,9 @@ class Ui:
             imgui.push_style_color(imgui.Col_.border, packed(self.theme.error))
             imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.5)
         imgui.set_next_item_width(width)
+        if self.keys_go_to == "fields":
+            imgui.set_keyboard_focus_here()
+            self.keys_go_to = ""
         flags = imgui.InputTextFlags_
         if lines == 1:
             _, text = imgui.input_text(f"##{label}", text, flags.auto_select_all)

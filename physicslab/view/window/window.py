@@ -98,6 +98,8 @@ class Window:
         The mode that gravity goes back to after planet mode.
     spawned : int
         How many bodies were made by hand; what comes next varies with it.
+    touched : bool
+        Whether the user did anything since the frame before.
     wants_screenshot : bool
         Whether a picture of the window is to be kept as soon as it is drawn.
     closing : bool
@@ -114,6 +116,13 @@ class Window:
         How much is shown: one of ``LEVELS``.
     text_scale : float
         How much larger than usual text is.
+    arrangement : str
+        Where windows lie and are docked, in words of the toolkit; empty where all are as at first.
+    keys_go_to : str
+        Where keys are to go from the next frame on: ``"menu"``, ``"fields"``, ``"panel"`` (the next one) or
+        nowhere else.
+    points_by_key, presses_by_key : bool
+        Whether the cursor was moved by keys, and whether the tool was pressed by one and is to be let go.
     adding : bool
         Whether a click adds to what is selected: Shift or Ctrl is held.
     selection : Selection
@@ -185,7 +194,7 @@ class Window:
         self.pointer_on_panel = self.has_pointed = False
         self.gravity_before = "linear"
         self.spawned = 0
-        self.wants_screenshot = False
+        self.touched = self.wants_screenshot = False
         self.closing = False
         self.error = ""
         self.help = self.lists_history = self.shows_gallery = False
@@ -193,6 +202,9 @@ class Window:
         self.tool = "circle"
         self.level = "Explore"
         self.text_scale = 1.0
+        self.arrangement = ""
+        self.keys_go_to = ""
+        self.points_by_key = self.presses_by_key = False
         self.adding = False
         self.selection = Selection()
         self.handles = Handles()

@@ -67,7 +67,7 @@ class Gallery:
         columns = max(int(_SHARE * width / ((_CARD[0] + 0.6) * size)), 1)
         inner = ImVec2(columns * (_CARD[0] + 0.6) * size + 1.5 * size, _SHARE * height - 4.0 * size)
         self._missing = False
-        with ui.floating("Scenes", (left + 0.5 * width, top + 0.5 * height)) as stays:
+        with ui.floating("Scenes", (left + 0.5 * width, top + 0.5 * height), docks=True) as stays:
             if imgui.begin_child("cards", inner):
                 clip = _visible()
                 for n, card in enumerate(self._cards):

@@ -21,7 +21,7 @@ from physicslab.world import World
 
 __all__ = ["GraphPanels", "owner_of"]
 
-_FLAGS = imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_nav
+_FLAGS = imgui.WindowFlags_.no_collapse
 _LEAST_PLOT = 6.0
 """Height of a plot at least, in heights of the text: what is below the rest can be scrolled to."""
 _LEAST = (12.0, 9.0)
@@ -40,6 +40,10 @@ class GraphPanels:
         self._put: dict[int, Rect] = {}
         self._moved: set[int] = set()
         self._plots: dict[int, GraphPlot] = {}
+
+    def put_back(self) -> None:
+        """Let every graph be put where it is at first, those that were moved or docked too."""
+        self._put, self._moved = {}, set()
 
     def free(self, graphs: tuple[GraphShown, ...]) -> dict[int, str]:
         """Return the graphs that are put beside each other, and the side of each."""
@@ -71,8 +75,8 @@ class GraphPanels:
         """Build one; return the time under the cursor, if the cursor is in its plot."""
         entity = graph.entity
         title = _title(graph, window)
-        known = imgui.internal.find_window_by_name(f"{title}{owner_of(entity)}")
-        if known is not None and known.dock_id:
+        known = imgui.internal.find_window_by_name(f"{title} {owner_of(entity)}")
+        if known is not None and known.dock_id and ui.once != imgui.Cond_.always:
             self._moved.add(entity)  # a place would take it out of where it is docked
         elif place is not None and place != self._put.get(entity):
             when = imgui.Cond_.first_use_ever if known is None else imgui.Cond_.always
@@ -86,7 +90,7 @@ class GraphPanels:
         if place is not None:
             least = ImVec2(min(least.x, place[2]), min(least.y, place[3]))
         imgui.set_next_window_size_constraints(least, room)
-        shown, stays = imgui.begin(f"{title}{owner_of(entity)}", True, _FLAGS)
+        shown, stays = imgui.begin(f"{title} {owner_of(entity)}", True, _FLAGS)
         ui.words.append(title)
         hovered: float | None = None
         self._follow_hand(entity)

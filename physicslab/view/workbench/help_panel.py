@@ -24,7 +24,7 @@ def build_help(ui: Ui, window: Window) -> None:
     lines = [(_keys(control), f"{control.does}{_GAP}") for control in CONTROLS]
     room = _SHARE * window.canvas.size[0]
     columns = next((n for n in _COLUMNS if _width(lines, n) <= room), 1)
-    with ui.floating("Keys and buttons", window.middle) as stays:
+    with ui.floating("Keys and buttons", window.middle, docks=True) as stays:
         rows = -(-len(lines) // columns)
         if imgui.begin_table("keys", 2 * columns, imgui.TableFlags_.sizing_fixed_fit):
             for n in range(rows):

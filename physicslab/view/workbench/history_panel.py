@@ -18,8 +18,6 @@ __all__ = ["build_history"]
 
 _WIDTH, _HEIGHT, _LINE = 17.0, 20.0, 1.5
 """Of the lists, and of a line of the lower one, in heights of the text."""
-_AROUND = 5.5
-"""What else stands in the panel, in heights of the text."""
 _LETTERS = 34
 """How much of a branch is written in its line; the rest is in its tip."""
 
@@ -28,17 +26,18 @@ def build_history(ui: Ui, window: Window) -> None:
     """Build the list in a window of its own."""
     history = window.edits.history
     entries, done = history.entries, history.position
-    left, top, _, tall = window.room()
-    height = min(_HEIGHT, tall / ui.size - _AROUND)
-    place = left + 0.6 * _WIDTH * ui.size, top + 0.5 * tall
-    with ui.floating("History", place) as stays:
+    left, top, _, _ = window.room()
+    width, height = ui.fitted(_WIDTH * ui.size, _HEIGHT * ui.size)
+    place = left + 0.5 * width + ui.size, top + 0.5 * height + 4.0 * ui.size
+    with ui.floating("History", place, docks=True) as stays:
         if ui.button("Undo", "Take back the last edit or run (Ctrl+Z)", enabled=done > 0):
             window.deeds.append(actions.undo)
         imgui.same_line()
         if ui.button("Redo", "Put back what was taken back (Ctrl+Y)", enabled=done < len(entries)):
             window.deeds.append(actions.redo)
-        below = _LINE * (len(history.branches) + 2) if history.branches else 0.0
-        if imgui.begin_child("entries", ImVec2(_WIDTH * ui.size, max(height - below, 3.0) * ui.size)):
+        below = _LINE * (len(history.branches) + 2) * ui.size if history.branches else 0.0
+        room = ui.extent(width, height)
+        if imgui.begin_child("entries", ImVec2(room.x, max(room.y - below, 3.0 * ui.size))):
             if ui.selectable("As it was opened", on=done == 0, faint=False):
                 window.deeds.append(_going(0))
             for n, entry in enumerate(entries, start=1):

@@ -44,6 +44,8 @@ _LEFT_OUT = (Name, Held)
 """Components without rows of their own: a name is the title, a hand is seen."""
 _OPTIONAL: tuple[type[Component], ...] = (Velocity, Mass, Material, Drag, Trail)
 """Components that can be added and removed here."""
+_SECOND_COLUMN = 0.52
+"""Where the second column of boxes to tick begins, as a share of the panel's width."""
 _LABELS = 0.36
 """Share of the panel's width that labels take."""
 _AXES = ("x", "y")
@@ -75,7 +77,7 @@ class Inspector:
         if len(chosen) == 1:
             for label, value in readings_of(world, first):
                 ui.row(label, value)
-            self._build_now(ui, world, first)
+            self._build_now(ui, world, first, is_brief=window.level == "Explore")
             if window.level != "Explore" or window.overlays.arrows:
                 self._build_forces(ui, world, first)
             self._build_optional(ui, world, window, first)
@@ -181,8 +183,8 @@ class Inspector:
     # ---- what follows from them ----------------------------------------------------------------------------
 
     @staticmethod
-    def _build_now(ui: Ui, world: World, entity: int) -> None:
-        """Write what follows from the fields: it cannot be changed."""
+    def _build_now(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
+        """Write what follows from the fields: it cannot be changed. Where it is brief, parts are left out."""
         if not world.has(entity, Velocity):
             return
         velocity = world.component(entity, Velocity)
@@ -199,12 +201,13 @@ class Inspector:
         mass = world.component(entity, Mass)
         row = world.entity_index.row_of[entity]
         ui.row("Momentum", quantity(mass.mass * speed, "kg m/s"))
-        ui.row("as a vector", vector_quantity(mass.mass * velocity.linear, "kg m/s"), lesser=True)
+        if not is_brief:
+            ui.row("as a vector", vector_quantity(mass.mass * velocity.linear, "kg m/s"), lesser=True)
         energy = 0.5 * mass.mass * speed**2
         inverse = float(world.bodies.inverse_inertia[row])
         spin = 0.5 * velocity.angular**2 / inverse if inverse > 0.0 else 0.0
         ui.row("Kinetic energy", quantity(energy + spin, "J"))
-        if spin and np.isfinite(spin):
+        if spin and np.isfinite(spin) and not is_brief:
             ui.row("of turning", quantity(spin, "J"), lesser=True)
 
     @staticmethod
@@ -228,7 +231,10 @@ class Inspector:
             return
         ui.gap(0.2)
         ui.rule()
-        for kind, words, tip in _SWITCHES:
+        width = imgui.get_content_region_avail().x
+        for n, (kind, words, tip) in enumerate(_SWITCHES):
+            if n % 2 and _SECOND_COLUMN * width + ui.checkbox_width(words) <= width:
+                imgui.same_line(_SECOND_COLUMN * width + imgui.get_style().window_padding.x)
             if ui.checkbox(words, world.has(entity, kind), tip):
                 window.deeds.append(_switching(entity, kind))
 

@@ -30,6 +30,7 @@ from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.settings_panel import SettingsPanel
 from physicslab.view.workbench.stopwatch_panel import build_stopwatch
 from physicslab.view.workbench.transport import build_transport
+from physicslab.view.workbench.walk import Walk
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
 from physicslab.world import World
 
@@ -61,6 +62,7 @@ class Interface:
     def __init__(self, window: Window) -> None:
         self._window = window
         self.toolkit = Toolkit()
+        self._walk = Walk(self.toolkit)
         self.ui = Ui(self.toolkit.fonts, window.theme)
         self._inspector = Inspector()
         self._settings = SettingsPanel()
@@ -71,6 +73,8 @@ class Interface:
         self._next = 0.0
         self._offer_height = 0  # of the offer to restore a session [px]
         self._seen: tuple[object, ...] = ()
+        self._free: Rect | None = None  # what docked windows leave of the world's room [px]
+        self._arrangement = ""
 
     @property
     def text(self) -> int:
@@ -84,12 +88,12 @@ class Interface:
 
     def room(self) -> Rect:
         """Return what is left for the world [px]."""
-        return self.layout.room
+        return self.layout.room if self._free is None else self._free
 
     @property
     def visible(self) -> Rect:
         """Where words can be drawn over the world: no panel covers it [px]."""
-        left, top, width, height = self.layout.visible
+        left, top, width, height = self.layout.visible if self._free is None else self._free
         taken = min(self._offer_height, height - 1) if self._window.recovery.offered else 0
         return left, top + taken, width, height - taken
 
@@ -100,6 +104,7 @@ class Interface:
         """
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self.toolkit.follow_pointer(event.pos)
+        self._walk.follow(event)
         taken = self.toolkit.take(event)
         if event.type == pygame.MOUSEBUTTONDOWN and not taken:
             refusal = self._finish_fields()
@@ -137,6 +142,11 @@ class Interface:
             Time [s] since the last frame.
         """
         window = self._window
+        rearranged = window.arrangement != self._arrangement
+        if rearranged:
+            self._arrangement = window.arrangement
+            self.toolkit.arrange(window.arrangement)
+        self._follow_keys()
         seen = self._state(world)
         if seen != self._seen or window.now >= self._next:
             if seen != self._seen:
@@ -146,10 +156,22 @@ class Interface:
             self._seen, self._next = seen, window.now + _PERIOD
 
         def build() -> None:
-            self.ui.begin(window.theme)
+            self.ui.begin(window.theme, self.layout.visible, rearranged=rearranged and not window.arrangement)
+            self._walk.mark()
             self._build(world, figures, details, measures)
 
-        self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build)
+        if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
+            self._walk.end()
+            window.arrangement = self._arrangement = self.toolkit.arrangement()
+
+    def _follow_keys(self) -> None:
+        """Let keys go to a menu or a panel, if they are to."""
+        window = self._window
+        if window.keys_go_to == "fields" and not window.figures:
+            window.figures = True  # and in the next frame the panel is there
+            return
+        self.ui.keys_go_to, window.keys_go_to = window.keys_go_to, ""
+        self._walk.begin(self.ui.keys_go_to)
 
     def _state(self, world: World) -> tuple[object, ...]:
         """Return what panels show beside figures."""
@@ -189,6 +211,8 @@ class Interface:
         self, world: World, figures: WorldFigures, details: Sequence[Line], measures: Sequence[Line]
     ) -> None:
         ui, window, layout = self.ui, self._window, self.layout
+        free = ui.dock(layout.visible)
+        self._free = free if free != layout.visible else None
         build_menu_bar(ui, world, window)
         build_palette(ui, layout.palette, window)
         build_transport(ui, layout.transport, world, window)
@@ -207,12 +231,13 @@ class Interface:
                     ui.gap(0.3)
                     ui.rule()
                     build_figures(ui, measures if window.level == "Measure" else [*measures, *details])
-                ui.gap(0.3)
-                ui.rule()
-                self._build_counts(ui, figures)
+                if window.level != "Explore" or not window.selection.entities:
+                    ui.gap(0.3)
+                    ui.rule()
+                    self._build_counts(ui, figures)
         self._scene_panels.build(ui, world, window, self.visible)
         if window.shows_stopwatch:
-            build_stopwatch(ui, world, window, layout.visible)
+            build_stopwatch(ui, world, window, self.visible)
         if window.measuring.writing is not None:
             self._note.build(ui, window)
         if window.recovery.offered:
@@ -244,7 +269,7 @@ class Interface:
 
     def draw(self, canvas: Canvas) -> None:
         """Show panels as they were built last."""
-        canvas.paint(self.toolkit.draw)
+        canvas.paint(self.toolkit.pictures.show)
         if self.ui.pictures:
             canvas.paint(self.ui.show_pictures)
         self._scene_panels.save_picture(self._window, self.toolkit)

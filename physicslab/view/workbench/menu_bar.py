@@ -30,6 +30,8 @@ def build_menu_bar(ui: Ui, world: World, window: Window) -> None:
     """Build the menus, and the title of the scene at the right."""
     if not imgui.begin_main_menu_bar():
         return
+    if ui.keys_go_to == "menu":
+        _begin_walk(next(iter(_MENUS)))
     for name, groups in _MENUS.items():
         with ui.menu(name) as shown:
             if shown:
@@ -44,6 +46,14 @@ def build_menu_bar(ui: Ui, world: World, window: Window) -> None:
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + room)
         ui.faint(title, wrapped=False)
     imgui.end_main_menu_bar()
+
+
+def _begin_walk(menu: str) -> None:
+    """Put the mark of the keys on a menu."""
+    bar = imgui.internal
+    bar.focus_window(bar.get_current_window())
+    bar.set_nav_id(imgui.get_id(menu), bar.NavLayer.menu, 0, bar.ImRect())
+    imgui.set_nav_cursor_visible(True)
 
 
 def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Window) -> None:

@@ -20,6 +20,7 @@ _DRAG = 0.005
 """Share of its size by which a number changes a pixel; of numbers below one, share of one."""
 _FINER, _COARSER = 0.1, 10.0
 """What Shift and Ctrl make of that."""
+_ONLY_MOUSE = imgui.ItemFlags_.no_nav | imgui.ItemFlags_.no_tab_stop
 _PART = 6
 """Characters that the field of a part of a vector has room for."""
 _LINES_SHOWN = 3
@@ -85,14 +86,18 @@ class NumberFields:
         self._drafts.clear()
         self._edited = self._dragged = None
 
-    def build(self, ui: Ui, key: str, value: float | str, spec: Field, width: float, commit: Commit) -> str:
+    def build(
+        self, ui: Ui, key: str, value: float | str, spec: Field, width: float, commit: Commit, zero: str = ""
+    ) -> str:
         """Build one field, and return why what was written in it is refused; empty while it is not.
+
+        ``zero`` is shown in place of 0 where that has a meaning of its own.
 
         ``commit`` is called once Enter or Tab is pressed, or the field is left; it raises
         :class:`InvalidValue` for what the field cannot hold.
         """
         draft = self._drafts.get(key)
-        shown = _shown(value, spec)
+        shown = zero if zero and value == 0.0 else _shown(value, spec)
         wrong, lines = bool(draft and draft.refusal), min(spec.lines, _LINES_SHOWN)
         text, active = ui.field(key, draft.text if draft else shown, width, wrong=wrong, lines=lines)
         if active:
@@ -131,7 +136,9 @@ class NumberFields:
     ) -> None:
         """Build a label; dragging it to the side changes its number, Shift finer, Ctrl coarser."""
         corner = imgui.get_cursor_screen_pos()
+        imgui.push_item_flag(_ONLY_MOUSE, True)
         imgui.invisible_button(f"drag {key}", ImVec2(width, imgui.get_frame_height()))
+        imgui.pop_item_flag()
         ui.note(f"label {key}")
         ui.words.append(words)
         drawn = (

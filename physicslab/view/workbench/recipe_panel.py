@@ -18,6 +18,8 @@ __all__ = ["RecipePanel"]
 
 _LABELS = 0.42
 """Share of the panel's width that labels take."""
+_ZERO = {"size": "in turn"}
+"""What 0 means where it is no number: sizes that differ from one body to the next."""
 
 
 class RecipePanel:
@@ -47,9 +49,10 @@ class RecipePanel:
         key = f"new {spec.name}"
         self._numbers.label(ui, key, spec.name.capitalize(), _LABELS * width, value, spec.meaning, commit)
         imgui.same_line()
-        unit = "" if spec.unit == "1" else spec.unit.replace("^2", "²")
+        zero = _ZERO.get(spec.name, "")
+        unit = "" if spec.unit == "1" or (zero and not value) else spec.unit.replace("^2", "²")
         room = imgui.get_content_region_avail().x - imgui.calc_text_size(unit).x - (8.0 if unit else 0.0)
-        refusal = self._numbers.build(ui, key, value, spec, room, commit)
+        refusal = self._numbers.build(ui, key, value, spec, room, commit, zero)
         if unit:
             imgui.same_line(0.0, 0.4 * ui.size)
             ui.faint(unit, wrapped=False)

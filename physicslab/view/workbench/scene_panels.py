@@ -32,6 +32,8 @@ class ScenePanels:
     def build(self, ui: Ui, world: World, window: Window, area: Rect) -> None:
         """Build all that the scene has, within a part of the window."""
         dashboard = window.dashboard
+        if ui.once == imgui.Cond_.always:
+            self._graphs.put_back()
         if not dashboard.is_shown:
             return
         if not has_room(area, ui.size):

@@ -1,0 +1,83 @@
+"""Without a mouse: keys move the cursor, click, and go to menus and panels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pygame
+
+from physicslab.view.controls.actions import nudger
+from physicslab.view.controls.tools import TOOLS
+from physicslab.view.window.window import Window
+from physicslab.world import World
+
+__all__ = ["ARROWS", "enter", "open_menu", "walk"]
+
+_STEP = 10
+"""How far an arrow moves the cursor [px]; with Shift held by one."""
+
+
+def open_menu(world: World, window: Window) -> None:
+    """Open the first menu."""
+    window.keys_go_to = "menu"
+
+
+def walk(world: World, window: Window) -> None:
+    """Let keys go through the buttons and fields of the next panel."""
+    window.keys_go_to = "panel"
+
+
+def enter(world: World, window: Window) -> None:
+    """Go to the first field of what is selected; where nothing is, click with the tool at the cursor.
+
+    A tool that is dragged is pressed by one Enter and let go by the next.
+    """
+    if window.selection.entities and not window.presses_by_key:
+        window.keys_go_to = "fields"
+        return
+    place, tool = _cursor(window), TOOLS[window.tool]
+    if not window.presses_by_key:
+        _post(pygame.MOUSEBUTTONDOWN, place, button=pygame.BUTTON_LEFT)
+    if window.presses_by_key or not tool.drags:
+        _post(pygame.MOUSEBUTTONUP, place, button=pygame.BUTTON_LEFT)
+    window.presses_by_key = tool.drags and not window.presses_by_key
+
+
+def _cursor(window: Window) -> tuple[int, int]:
+    """Return where the cursor is [px]; where it was not in the world yet, that is the middle of it."""
+    left, top, width, height = window.room()
+    x, y = window.pointer
+    inside = left <= x < left + width and top <= y < top + height
+    x, y = window.pointer if inside and window.has_pointed else window.middle
+    return round(x), round(y)
+
+
+def _post(kind: int, place: tuple[int, int], **more: Any) -> None:
+    """Post an event of the mouse, as the mouse itself does."""
+    pygame.event.post(pygame.Event(kind, pos=place, touch=False, by_key=True, **more))
+
+
+def _arrow(across: int, down: int, step: int) -> Callable[[World, Window], None]:
+    """Return what moves all that is selected by a pixel; where nothing is, the cursor by a step."""
+    nudge = nudger(across, -down)
+
+    def move(world: World, window: Window) -> None:
+        if window.selection.entities and not window.presses_by_key:
+            nudge(world, window)
+            return
+        left, top, width, height = window.room()
+        x, y = _cursor(window)
+        x = min(max(x + step * across, left), left + width - 1)
+        y = min(max(y + step * down, top), top + height - 1)
+        _post(pygame.MOUSEMOTION, (x, y), rel=(0, 0), buttons=(int(window.presses_by_key), 0, 0))
+
+    return move
+
+
+ARROWS = {
+    f"{held}{name}": _arrow(across, down, step)
+    for name, across, down in (("left", -1, 0), ("right", 1, 0), ("up", 0, -1), ("down", 0, 1))
+    for held, step in (("", _STEP), ("shift+", 1))
+}
+"""What each arrow does, alone and with Shift held, by its name in SDL."""

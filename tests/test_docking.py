@@ -1,0 +1,182 @@
+"""Windows are docked to the sides of the world by dragging their titles, and are there at the next start."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pygame
+import pytest
+from desk import SETTLED, Desk, Place, button_down, button_up, click_at, point, sized, tap
+from imgui_bundle import imgui
+
+from physicslab.components import Transform
+from physicslab.desktop.preferences import load_preferences, save_preferences
+from physicslab.view.canvas.canvas import Rect
+
+SIZE = (1280, 720)
+GRAPH = "###graph"
+"""What is in the name of every graph's window."""
+
+
+def window_of(desk: Desk, title: str) -> imgui.internal.Window:
+    """Return a window of the toolkit by a part of its name, after the frames of an event."""
+    desk.frames(SETTLED)
+    desk.sandbox.interface.toolkit.enter()
+    windows = imgui.get_current_context().windows
+    return next(window for window in windows if title in window.name and window.active)
+
+
+def rect_of(desk: Desk, title: str) -> pygame.Rect:
+    window = window_of(desk, title)
+    return pygame.Rect(round(window.pos.x), round(window.pos.y), round(window.size.x), round(window.size.y))
+
+
+def bodies(desk: Desk) -> list[int]:
+    return [entity for entity in desk.world.entities() if desk.world.has(entity, Transform)]
+
+
+def drag(desk: Desk, start: Place, end: Place) -> None:
+    point(desk, start)
+    button_down(desk, start)
+    for n in range(1, 9):
+        way = (start[0] + (end[0] - start[0]) * n // 8, start[1] + (end[1] - start[1]) * n // 8)
+        point(desk, way, (1, 0, 0))
+    button_up(desk, end)
+    desk.frames(SETTLED)
+
+
+def dock(desk: Desk, title: str, to: Place) -> None:
+    rect = rect_of(desk, title)
+    drag(desk, (rect.left + 40, rect.top + 10), to)
+
+
+def left_of(room: Rect) -> Place:
+    """Return where the mark is on which a window is dropped to be docked at the left."""
+    return room[0] + 18, room[1] + room[3] // 2
+
+
+def below(room: Rect) -> Place:
+    return room[0] + room[2] // 2, room[1] + room[3] - 18
+
+
+@pytest.fixture
+def desk() -> Desk:
+    desk = sized(SIZE)
+    tap(desk, "u")
+    tap(desk, "m")
+    return desk
+
+
+def test_the_usual_layout_leaves_the_world_all_its_room(desk: Desk) -> None:
+    interface = desk.sandbox.interface
+    assert interface.room() == interface.layout.room and interface.visible == interface.layout.visible
+
+
+def test_a_window_is_docked_beside_the_world_and_the_world_makes_room(desk: Desk) -> None:
+    interface, room = desk.sandbox.interface, desk.sandbox.interface.room()
+    dock(desk, "History", left_of(room))
+    left, top, width, height = interface.room()
+    beside = rect_of(desk, "History")
+    assert (top, height, left + width) == (room[1], room[3], room[0] + room[2])
+    assert beside.left == room[0] and beside.right <= left < room[0] + room[2] // 2
+    dock(desk, GRAPH, below(room))
+    lower = rect_of(desk, GRAPH)
+    left, top, width, height = interface.room()
+    assert lower.top >= top + height > room[1] and lower.bottom == room[1] + room[3]
+    world, panels = pygame.Rect(interface.room()), [pygame.Rect(rect) for rect in interface.covered]
+    assert not any(world.colliderect(panel) for panel in panels)
+    assert sum(panel.w * panel.h for panel in panels) == SIZE[0] * SIZE[1] - world.w * world.h
+
+
+def test_clicks_beside_what_is_docked_are_the_worlds_and_on_it_they_are_not(desk: Desk) -> None:
+    dock(desk, "History", left_of(desk.sandbox.interface.room()))
+    tap(desk, "m")
+    point(desk, rect_of(desk, GRAPH).center)
+    click_at(desk, rect_of(desk, "History").center)
+    assert bodies(desk) == []
+    left, top, _, height = desk.sandbox.interface.room()
+    click_at(desk, (left + 20, top + height // 2))
+    assert len(bodies(desk)) == 1
+    place = desk.world.component(bodies(desk)[0], Transform).position
+    assert desk.window.camera.to_screen(place)[0] == pytest.approx(left + 20, abs=2)
+
+
+def test_windows_are_tabs_of_each_other(desk: Desk) -> None:
+    dock(desk, "History", left_of(desk.sandbox.interface.room()))
+    dock(desk, GRAPH, rect_of(desk, "History").center)
+    assert window_of(desk, GRAPH).dock_id == window_of(desk, "History").dock_id != 0
+    assert rect_of(desk, GRAPH) == rect_of(desk, "History")
+
+
+def test_no_window_can_be_docked_over_the_world(desk: Desk) -> None:
+    room = desk.sandbox.interface.room()
+    dock(desk, "History", (room[0] + room[2] // 2, room[1] + room[3] // 2))
+    assert window_of(desk, "History").dock_id == 0 and desk.sandbox.interface.room() == room
+
+
+def test_closing_what_is_docked_gives_its_room_back_and_opening_takes_it_again(desk: Desk) -> None:
+    room = desk.sandbox.interface.room()
+    dock(desk, "History", left_of(room))
+    smaller = desk.sandbox.interface.room()
+    for expected in (room, smaller):
+        tap(desk, "u")
+        assert desk.sandbox.interface.room() == expected
+
+
+def test_the_edge_between_a_docked_window_and_the_world_can_be_dragged(desk: Desk) -> None:
+    dock(desk, "History", left_of(desk.sandbox.interface.room()))
+    left, top, width, height = desk.sandbox.interface.room()
+    drag(desk, (left - 1, top + height // 2), (left + 79, top + height // 2))
+    assert desk.sandbox.interface.room() == (left + 80, top, width - 80, height)
+    assert bodies(desk) == []
+
+
+def test_what_is_docked_is_docked_at_the_next_start_and_a_key_puts_it_back(
+    desk: Desk, tmp_path: Path
+) -> None:
+    usual = desk.sandbox.interface.room()
+    dock(desk, "History", left_of(usual))
+    chosen = desk.sandbox.interface.room()
+    save_preferences(tmp_path / "preferences.json", desk.window)
+    again = sized(SIZE)
+    load_preferences(tmp_path / "preferences.json", again.window)
+    tap(again, "u")
+    assert again.sandbox.interface.room() == chosen
+    tap(again, "f7")
+    assert again.sandbox.interface.room() == usual and window_of(again, "History").dock_id == 0
+    save_preferences(tmp_path / "preferences.json", again.window)
+    last = sized(SIZE)
+    load_preferences(tmp_path / "preferences.json", last.window)
+    tap(last, "u")
+    assert last.sandbox.interface.room() == usual
+
+
+def test_a_window_that_was_docked_in_a_large_window_is_within_a_small_one(desk: Desk) -> None:
+    room = desk.sandbox.interface.room()
+    drag(desk, (rect_of(desk, "History").left + 40, rect_of(desk, "History").top + 10), (900, 640))
+    small = sized((640, 480))
+    small.window.arrangement = desk.window.arrangement
+    tap(small, "u")
+    assert pygame.Rect(0, 0, 640, 480).contains(rect_of(small, "History"))
+    assert desk.sandbox.interface.room() == room
+
+
+BROKEN = (
+    "no words of it", "[Window][History]\nPos=a,b\nSize=-1,-1\nDockId=0xFFFFFFFF,9999\n",
+    "[Window][History]\nPos=2000000000,-2000000000\nSize=2000000000,2000000000\n",
+    "[Docking][Data]\nDockNode ID=0x1 Parent=0x2\nDockNode ID=0x2 Parent=0x1\n",
+    "[Docking][Data]\nDockSpace ID=0x1AD5562B Window=0xFE9B5E5A Split=X\nDockNode ID=0x1 Parent=0x1AD5562B\n",
+    "\x00[[[]]\n[Window\n]",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("text", BROKEN)
+def test_a_broken_arrangement_does_no_harm(text: str) -> None:
+    desk = sized(SIZE)
+    desk.window.arrangement = text
+    tap(desk, "u")
+    _, _, width, height = desk.sandbox.interface.room()
+    assert width > 0 and height > 0
+    assert pygame.Rect(0, 0, *SIZE).contains(rect_of(desk, "History"))
+    tap(desk, "f7")
+    assert desk.sandbox.interface.room() == desk.sandbox.interface.layout.room

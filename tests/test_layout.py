@@ -1,0 +1,66 @@
+"""Panels and what lies over the world: all of it fits, at every size of the window and of its text."""
+
+from __future__ import annotations
+
+import pygame
+import pytest
+from desk import SETTLED, Desk, empty_world, fill, sized, tap
+from imgui_bundle import imgui
+
+from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import load_scene
+from physicslab.prefabs import circle
+
+SIZES = [(800, 600), (1280, 720), (1920, 1080)]
+
+
+def scrolls(desk: Desk) -> bool:
+    """Whether the panel at the right has more than it can show."""
+    desk.sandbox.interface.toolkit.enter()
+    return bool(imgui.internal.find_window_by_name("side").scroll_max.y > 0.0)
+
+
+def test_the_numbers_of_a_body_fit_the_usual_window() -> None:
+    world = empty_world()
+    ball = circle(world, (0, 0), velocity=Vector2(1.0, 2.0), angular_velocity=3.0)
+    desk = sized((1280, 720), world)
+    desk.window.selection.take(ball)
+    desk.frames(SETTLED)
+    assert "Kinetic energy" in desk.ui.rows and "Delete" in desk.ui.places and not scrolls(desk)
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.75, 2.0])
+@pytest.mark.parametrize("size", SIZES)
+def test_the_legend_lies_in_the_world_beside_the_panels(size: tuple[int, int], scale: float) -> None:
+    desk = sized(size, load_scene("stack"), scale)
+    for keys in ("e", "v", "e"):
+        tap(desk, keys)
+        desk.frames(20)
+        visible = pygame.Rect(desk.sandbox.interface.visible)
+        panels = {tuple(rect) for rect in desk.sandbox.interface.covered}
+        over = [pygame.Rect(rect) for rect in desk.window.overlays.covered if tuple(rect) not in panels]
+        legend = min(over, key=lambda rect: (rect.top, rect.left))
+        assert visible.contains(legend), "none of it is under a panel"
+        assert legend.w * legend.h <= 0.5 * visible.w * visible.h, "most of the world is seen"
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.75])
+@pytest.mark.parametrize("size", SIZES)
+def test_the_history_opens_over_the_world_and_over_no_panel(size: tuple[int, int], scale: float) -> None:
+    desk = sized(size, None, scale)
+    before = {tuple(rect) for rect in desk.sandbox.interface.covered}
+    tap(desk, "u")
+    desk.frames(SETTLED)
+    (opened,) = (rect for rect in desk.sandbox.interface.covered if tuple(rect) not in before)
+    assert pygame.Rect(desk.sandbox.interface.visible).contains(pygame.Rect(opened))
+
+
+def test_a_size_of_zero_is_written_as_what_it_means() -> None:
+    desk = sized((1280, 720))
+    assert "in turn" in desk.ui.words and desk.window.recipe.size == 0.0
+    fill(desk, "new size", "0.2")
+    assert desk.window.recipe.size == 0.2 and "0.2" in desk.ui.words and "in turn" not in desk.ui.words
+    fill(desk, "new size", "0")
+    assert desk.window.recipe.size == 0.0 and "in turn" in desk.ui.words
+    fill(desk, "new friction", "0")
+    assert desk.window.recipe.friction == 0.0 and desk.ui.words.count("in turn") == 1
