@@ -31,14 +31,13 @@ _OPTIONAL: tuple[type[Component], ...] = (Velocity, Mass, Material, Drag, Trail)
 """Components that can be added and removed here."""
 _LABELS = 0.36
 """Share of the panel's width that labels take."""
-_AXES = ("x", "y")
 
 
 class Inspector:
     """The rows of what is selected. One body: all its fields; several: what they have in common."""
 
     def __init__(self) -> None:
-        self._numbers = NumberFields()
+        self._numbers = NumberFields(_LABELS)
         self._shown: tuple[object, ...] = ()
 
     def build(self, ui: Ui, world: World, window: Window) -> None:
@@ -83,7 +82,7 @@ class Inspector:
         ui.gap(0.2)
         for spec in rows:
             if spec.kind == "vector":
-                self._build_vector(ui, world, window, kind, spec, getattr(held, spec.name))
+                self._build_vector(ui, window, kind, spec, getattr(held, spec.name))
             elif spec.kind == "number":
                 self._build_number(ui, world, window, kind, spec, getattr(held, spec.name))
             elif spec.kind == "flag" and ui.checkbox(
@@ -94,51 +93,24 @@ class Inspector:
     def _build_number(
         self, ui: Ui, world: World, window: Window, kind: type[Component], spec: Field, value: float
     ) -> None:
-        key = f"{kind.__name__}.{spec.name}"
-
         def commit(new: float) -> None:
             spec.check(new)
             held = world.component(window.selection.entities[-1], kind)
             kind(**(held.given() | {spec.name: new}))  # some fields depend on others: a radius is above 0
             self._set(window, kind, spec, new)
 
-        width = imgui.get_content_region_avail().x
-        self._numbers.label(ui, key, _label(spec), _LABELS * width, value, spec.meaning, commit)
-        imgui.same_line()
-        room = imgui.get_content_region_avail().x - _unit_width(spec)
-        refusal = self._numbers.build(ui, key, value, spec, room, commit)
-        self._finish(ui, spec, refusal)
+        self._numbers.row(ui, f"{kind.__name__}.{spec.name}", _label(spec), spec, value, commit)
 
     def _build_vector(
-        self, ui: Ui, world: World, window: Window, kind: type[Component], spec: Field, value: Vector2
+        self, ui: Ui, window: Window, kind: type[Component], spec: Field, value: Vector2
     ) -> None:
-        width = imgui.get_content_region_avail().x
-        self._numbers.label(
-            ui, f"{kind.__name__}.{spec.name}", _label(spec), _LABELS * width, None, spec.meaning, _ignore
+        def commit(axis: int, new: float) -> None:
+            spec.check((value.x, new) if axis else (new, value.y))
+            self._set_part(window, kind, spec, axis, new)
+
+        self._numbers.vector_row(
+            ui, f"{kind.__name__}.{spec.name}", _label(spec), spec, (value.x, value.y), commit
         )
-        refusals = []
-        room = width - _LABELS * width - _unit_width(spec) - 2 * imgui.get_style().item_spacing.x
-        for axis, name in enumerate(_AXES):
-
-            def commit(new: float, axis: int = axis) -> None:
-                parts = [value.x, value.y]
-                parts[axis] = new
-                spec.check(tuple(parts))
-                self._set_part(window, kind, spec, axis, new)
-
-            imgui.same_line()
-            key = f"{kind.__name__}.{spec.name}.{name}"
-            refusals.append(self._numbers.build(ui, key, (value.x, value.y)[axis], spec, 0.5 * room, commit))
-        self._finish(ui, spec, next(filter(None, refusals), ""))
-
-    @staticmethod
-    def _finish(ui: Ui, spec: Field, refusal: str) -> None:
-        """Write the unit beside a field, and below it why what is written there is refused."""
-        if spec.unit != "1":
-            imgui.same_line(0.0, 0.4 * ui.size)
-            ui.faint(_unit(spec), wrapped=False)
-        if refusal:
-            ui.text(refusal, ui.theme.error, wrapped=True)
 
     @staticmethod
     def _set(window: Window, kind: type[Component], spec: Field, value: object) -> None:
@@ -281,18 +253,6 @@ def _is_shown(spec: Field, held: Component) -> bool:
 
 def _label(spec: Field) -> str:
     return _NAMES.get(spec.name, spec.name.replace("_", " ").capitalize())
-
-
-def _unit(spec: Field) -> str:
-    return spec.unit.replace("^2", "²").replace("^3", "³")
-
-
-def _unit_width(spec: Field) -> float:
-    return float(imgui.calc_text_size(_unit(spec)).x) + 8.0 if spec.unit != "1" else 0.0
-
-
-def _ignore(value: float) -> None:
-    """Drop a number: the label of a vector cannot be dragged."""
 
 
 _ORDER: dict[type[Component], int] = {

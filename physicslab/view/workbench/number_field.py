@@ -1,7 +1,9 @@
-"""Fields for numbers: typed with units, or changed by dragging their label."""
+"""Rows of numbers: a label, a field that is typed into with units, the unit, and why a number is refused."""
 
 from __future__ import annotations
 
+import contextlib
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -21,8 +23,13 @@ _FINER, _COARSER = 0.1, 10.0
 """What Shift and Ctrl make of that."""
 _PART = 6
 """Characters that the field of a part of a vector has room for."""
+_VARIOUS = "various"
+"""What a field shows of several bodies whose numbers differ."""
+_LARGEST_ANGLE = 1e5
+"""Larger angles are not shown in degrees as well [°]."""
 
 type Commit = Callable[[float], None]
+type CommitPart = Callable[[int, float], None]
 
 
 def shown_number(value: float, figures: int = 6) -> str:
@@ -63,9 +70,16 @@ class _Target:
 
 
 class NumberFields:
-    """The fields of a panel; what is half written in one is kept from frame to frame."""
+    """The rows of numbers of a panel; what is half written in one is kept from frame to frame.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    share : float
+        Share of the panel's width that labels take.
+    """
+
+    def __init__(self, share: float = 0.42) -> None:
+        self._share = share
         self._drafts: dict[str, _Draft] = {}
         self._edited: _Target | None = None
         self._dragged: tuple[str, float] | None = None
@@ -75,14 +89,58 @@ class NumberFields:
         self._drafts.clear()
         self._edited = self._dragged = None
 
-    def build(self, ui: Ui, key: str, value: float, spec: Field, width: float, commit: Commit) -> str:
-        """Build one field, and return why what was written in it is refused; empty while it is not.
+    def row(
+        self, ui: Ui, key: str, words: str, spec: Field, value: float | None, commit: Commit, *,
+        drags: bool = True,
+    ) -> None:  # fmt: skip
+        """Build the row of one number.
 
-        ``commit`` is called once Enter or Tab is pressed, or the field is left; it raises
-        :class:`InvalidValue` for a number that the field cannot hold.
+        Parameters
+        ----------
+        key : str
+            What the field is found by; its label is found by ``"label " + key``.
+        words : str
+            What is written on the label.
+        spec : Field
+            The unit, and what is shown as the tip.
+        value : float, optional
+            The number in SI; ``None`` where bodies differ in it.
+        commit : callable
+            Called with the new number once Enter or Tab is pressed or the field is left; it raises
+            :class:`InvalidValue` for one that cannot be.
+        drags : bool
+            Whether dragging the label changes the number.
         """
+        self.label(ui, key, words, spec, value if drags else None, commit)
+        unit = _unit_shown(spec, value)
+        room = imgui.get_content_region_avail().x - _width(ui, unit)
+        refusal = self._field(ui, key, value, spec, room, commit)
+        _finish(ui, unit, refusal)
+
+    def vector_row(
+        self, ui: Ui, key: str, words: str, spec: Field, value: tuple[float | None, float | None],
+        commit: CommitPart,
+    ) -> None:  # fmt: skip
+        """Build the row of a vector: a field for each part; ``commit`` is called with its number as well."""
+        self.label(ui, key, words, spec)
+        unit = _unit_shown(spec, None)
+        gap = imgui.get_style().item_spacing.x
+        room = 0.5 * (imgui.get_content_region_avail().x - _width(ui, unit) - gap)
+        refusals = []
+        for axis, name in enumerate(("x", "y")):
+
+            def commit_part(new: float, axis: int = axis) -> None:
+                commit(axis, new)
+
+            if axis:
+                imgui.same_line()
+            refusals.append(self._field(ui, f"{key}.{name}", value[axis], spec, room, commit_part))
+        _finish(ui, unit, next(filter(None, refusals), ""))
+
+    def _field(self, ui: Ui, key: str, value: float | None, spec: Field, width: float, commit: Commit) -> str:
+        """Build one field, and return why what was written in it is refused; empty while it is not."""
         draft = self._drafts.get(key)
-        shown = shown_vector_part(value) if spec.kind == "vector" else shown_number(value)
+        shown = _shown(value, spec)
         text, active = ui.field(
             key, draft.text if draft else shown, width, wrong=bool(draft and draft.refusal)
         )
@@ -106,7 +164,7 @@ class NumberFields:
         if edited is None or draft is None or draft.text == edited.shown:
             return ""  # the number may have more figures than the field shows
         try:
-            edited.commit(evaluate(draft.text, edited.spec.unit))
+            edited.commit(_as_field(evaluate(draft.text, edited.spec.unit), edited.spec))
         except InvalidText as error:
             draft.refusal = str(error)
         except InvalidValue as error:
@@ -117,39 +175,72 @@ class NumberFields:
         return draft.refusal
 
     def label(
-        self, ui: Ui, key: str, words: str, width: float, value: float | None, tip: str, commit: Commit
-    ) -> None:
-        """Build a label; dragging it to the side changes its number, Shift finer, Ctrl coarser."""
-        corner = imgui.get_cursor_screen_pos()
+        self, ui: Ui, key: str, words: str, spec: Field, value: float | None = None,
+        commit: Commit | None = None,
+    ) -> None:  # fmt: skip
+        """Build the label of a row, and stay in its line.
+
+        Where there is a number, dragging the label to the side changes it, Shift finer, Ctrl coarser.
+        """
+        width, corner = self._share * imgui.get_content_region_avail().x, imgui.get_cursor_screen_pos()
         imgui.invisible_button(f"drag {key}", ImVec2(width, imgui.get_frame_height()))
         ui.note(f"label {key}")
         ui.words.append(words)
-        drawn = (
-            ui.theme.accent
-            if value is not None and (imgui.is_item_hovered() or imgui.is_item_active())
-            else ui.theme.faint
-        )
+        drags = value is not None and commit is not None
+        lit = drags and (imgui.is_item_hovered() or imgui.is_item_active())
         place = ImVec2(corner.x, corner.y + 0.5 * (imgui.get_frame_height() - imgui.get_font_size()))
-        imgui.get_window_draw_list().add_text(place, packed(drawn), words)
-        if value is None:
-            ui.tip(tip)
-            return
+        drawn = packed(ui.theme.accent if lit else ui.theme.faint)
+        imgui.get_window_draw_list().add_text(place, drawn, words)
+        if value is None or commit is None:
+            ui.tip(spec.meaning)
+        else:
+            self._drag(ui, key, value, spec, commit)
+        imgui.same_line()
+
+    def _drag(self, ui: Ui, key: str, value: float, spec: Field, commit: Commit) -> None:
+        """Change a number while its label is dragged."""
         if imgui.is_item_active() and imgui.is_mouse_dragging(0, 2.0):
             if self._dragged is None or self._dragged[0] != key:
                 self._dragged = key, value
             held = pygame.key.get_mods()
             factor = _FINER if held & pygame.KMOD_SHIFT else _COARSER if held & pygame.KMOD_CTRL else 1.0
             moved = imgui.get_mouse_drag_delta(0, 2.0).x
-            self._commit(self._dragged[1] + moved * factor * _DRAG * max(abs(self._dragged[1]), 1.0), commit)
+            new = self._dragged[1] + moved * factor * _DRAG * max(abs(self._dragged[1]), 1.0)
+            with contextlib.suppress(InvalidValue):  # at the end of its range a drag does nothing more
+                commit(float(f"{new:.6g}"))
         elif self._dragged is not None and self._dragged[0] == key:
             self._dragged = None
         else:
-            ui.tip(f"{tip}\nDrag to change; Shift: finer, Ctrl: coarser" if tip else "")
+            tip = "Drag to change; Shift: finer, Ctrl: coarser"
+            ui.tip(f"{spec.meaning}\n{tip}" if spec.meaning else tip)
 
-    @staticmethod
-    def _commit(value: float, commit: Commit) -> None:
-        """Hand over what a drag gives, to six figures; where the field cannot hold it, nothing happens."""
-        try:
-            commit(float(f"{value:.6g}"))
-        except InvalidValue:
-            return
+
+def _shown(value: float | None, spec: Field) -> str:
+    if value is None:
+        return _VARIOUS
+    return shown_vector_part(value) if spec.kind == "vector" else shown_number(value)
+
+
+def _as_field(value: float, spec: Field) -> float:
+    """Return a number as a field takes it: a whole one has no fraction."""
+    return round(value) if spec.kind == "whole" and value == round(value) else value
+
+
+def _unit_shown(spec: Field, value: float | None) -> str:
+    """Return what stands beside a field: its unit; after an angle, what it is in degrees."""
+    unit = spec.unit.replace("^2", "²").replace("^3", "³") if spec.unit != "1" else ""
+    degrees = math.degrees(value) if value is not None and spec.unit == "rad" else math.inf
+    return f"{unit} = {degrees + 0.0:.4g}°" if abs(degrees) < _LARGEST_ANGLE else unit
+
+
+def _width(ui: Ui, unit: str) -> float:
+    return float(imgui.calc_text_size(unit).x) + 0.6 * ui.size if unit else 0.0
+
+
+def _finish(ui: Ui, unit: str, refusal: str) -> None:
+    """Write the unit beside a field, and below it why what is written there is refused."""
+    if unit:
+        imgui.same_line(0.0, 0.4 * ui.size)
+        ui.faint(unit, wrapped=False)
+    if refusal:
+        ui.text(refusal, ui.theme.error, wrapped=True)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from imgui_bundle import imgui
-
 from physicslab.ecs.fields import Field
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.recipe import Recipe
@@ -15,9 +13,6 @@ from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
 
 __all__ = ["RecipePanel"]
-
-_LABELS = 0.42
-"""Share of the panel's width that labels take."""
 
 
 class RecipePanel:
@@ -43,18 +38,8 @@ class RecipePanel:
             spec.check(new)
             window.deeds.append(_changing(spec.name, new))
 
-        width, value = imgui.get_content_region_avail().x, getattr(window.recipe, spec.name)
-        key = f"new {spec.name}"
-        self._numbers.label(ui, key, spec.name.capitalize(), _LABELS * width, value, spec.meaning, commit)
-        imgui.same_line()
-        unit = "" if spec.unit == "1" else spec.unit.replace("^2", "²")
-        room = imgui.get_content_region_avail().x - imgui.calc_text_size(unit).x - (8.0 if unit else 0.0)
-        refusal = self._numbers.build(ui, key, value, spec, room, commit)
-        if unit:
-            imgui.same_line(0.0, 0.4 * ui.size)
-            ui.faint(unit, wrapped=False)
-        if refusal:
-            ui.text(refusal, ui.theme.error, wrapped=True)
+        value = getattr(window.recipe, spec.name)
+        self._numbers.row(ui, f"new {spec.name}", spec.name.capitalize(), spec, value, commit)
 
 
 def _changing(name: str, value: float) -> Callable[[World, Window], None]:
