@@ -11,6 +11,7 @@ import esper
 
 from physicslab.components import Name
 from physicslab.components.name import why_no_id
+from physicslab.components.naming import plain_name
 from physicslab.ecs.batch import Batch
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -243,10 +244,12 @@ class State:
         raise KeyError(f"no entity has the id {name!r}")
 
     def label(self, entity: int) -> str:
-        """Return the entity's id if it has one, else ``entity <number>``."""
+        """Return the entity's id if it has one, else what it is and its number: ``circle 3``."""
         with self.active():
+            if not esper.entity_exists(entity):
+                return f"entity {entity}"
             named = esper.try_component(entity, Name)
-        return named.id if named is not None else f"entity {entity}"
+            return named.id if named is not None else plain_name(entity, esper.components_for_entity(entity))
 
     def label_of_row(self, row: int) -> str:
         """Return the label of the entity of a row; row 0 is the world itself."""

@@ -110,7 +110,8 @@ def _free_place(
         near = overlapping(own, 0, fixed).tolist()
         return [m for m in near if overlap(fixed, m, own, 0)[0] > _FREE * size]
 
-    waiting, order = [(0.0, 0, np.clip(begin, low, high))], itertools.count(1)
+    waiting: list[tuple[float, int, Numbers]] = [(0.0, 0, np.clip(begin, low, high))]
+    order = itertools.count(1)
     seen: set[tuple[int, int]] = set()
     for _ in range(_TRIES):
         if not waiting:
@@ -126,9 +127,10 @@ def _free_place(
                 seen.add(key)
                 heapq.heappush(waiting, (float(np.hypot(*(found - begin))), next(order), found))
     share = np.linspace(0.0, 1.0, _GRID)
-    grid = low + np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2) * (high - low)
+    grid: Numbers = low + np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2) * (high - low)
     nearest = np.argsort(np.hypot(*(grid - begin).T), kind="stable")
-    return next((grid[k] for k in nearest if not hits(grid[k])), None)
+    free = next((int(k) for k in nearest if not hits(grid[k])), None)
+    return None if free is None else grid[free].copy()
 
 
 def _put(
