@@ -5,6 +5,7 @@ from physicslab.components.held import Held
 from physicslab.components.mass import Mass
 from physicslab.components.material import Material
 from physicslab.components.name import Name
+from physicslab.components.note import Note
 from physicslab.components.shape import Shape
 from physicslab.components.spring import Spring
 from physicslab.components.trail import Trail
@@ -17,6 +18,7 @@ __all__ = [
     "Mass",
     "Material",
     "Name",
+    "Note",
     "Shape",
     "Spring",
     "Trail",

@@ -8,6 +8,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from physicslab.ecs.fields import REQUIRED, Field, Kind
+from physicslab.ecs.texts import text_of
 from physicslab.ecs.vector import Vector2
 
 __all__ = ["ABSENT", "Derived", "Maker", "Vector", "accessor", "maker"]
@@ -81,6 +82,7 @@ def accessor(spec: Field, column: int, *, validated: bool) -> property:
         "flag": lambda self: self._views[column][self._row],
         "entity": lambda self: self._views[column][self._row] or None,
         "choice": lambda self: spec.choices[self._views[column][self._row] - 1],
+        "text": lambda self: text_of(self._views[column][self._row]),
     }
 
     def read_vector(self: Any) -> Vector2:

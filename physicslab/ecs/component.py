@@ -124,6 +124,7 @@ def component[T](cls: type[T]) -> type[T]:
     ``bool``                a flag                                     bool (n,)
     ``int | None``          an entity, or none                         int64 (n,), 0 for none
     ``str`` with choices    one word of a fixed list                   int64 (n,), 1 + index in the list
+    ``str``                 a text, empty or to be seen                int64 (n,), a code, 0 for empty
     ======================  =========================================  ===============================
 
     A row whose entity lacks the component is all zeros. Reading gives plain Python values; writing checks the
@@ -234,11 +235,11 @@ def _described(cls: type) -> tuple[Field, ...]:
 def _kind_of(hint: Any, described: Field) -> Kind:
     kinds: dict[Any, Kind] = {
         float: "number", Derived: "number", int: "whole", Vector: "vector", bool: "flag",
-        int | None: "entity",
+        int | None: "entity", str: "text",
     }  # fmt: skip
     if described.choices:
         return "choice"
     if hint not in kinds:
-        allowed = "float, int, bool, Vector, Derived, int | None, or str with choices"
+        allowed = "float, int, bool, Vector, Derived, int | None, or str"
         raise TypeError(f"no column holds {hint!r}; use {allowed}")
     return kinds[hint]

@@ -10,11 +10,15 @@ from typing import Any, Literal
 
 import numpy as np
 
+from physicslab.ecs.text import has_width, is_line
+from physicslab.ecs.texts import code_of
 from physicslab.ecs.vector import Vector2
 
-__all__ = ["COORDINATE_LIMIT", "LENGTH_LIMIT", "REQUIRED", "Field", "InvalidValue", "Kind", "field"]
+__all__ = [
+    "COORDINATE_LIMIT", "LENGTH_LIMIT", "REQUIRED", "TEXT_LIMIT", "Field", "InvalidValue", "Kind", "field",
+]  # fmt: skip
 
-Kind = Literal["number", "whole", "vector", "flag", "entity", "choice"]
+Kind = Literal["number", "whole", "vector", "flag", "entity", "choice", "text"]
 
 _SHOWN_LIMIT = 100
 """Characters of a value that a message shows."""
@@ -22,6 +26,8 @@ COORDINATE_LIMIT = 1e300
 """The largest coordinate [m]: the difference of two is finite, and the product of one with a usual number."""
 LENGTH_LIMIT = 1e150
 """The largest extent, arm or length of a spring [m]: the squares of two can be added."""
+TEXT_LIMIT = 200
+"""Characters of a text whose field gives no ``limit`` of its own."""
 REQUIRED: Any = object()
 """The default of a field that has none."""
 
@@ -70,7 +76,8 @@ class Field:
     minimum, maximum, above : float
         Inclusive bounds, and an exclusive lower one.
     limit : float
-        How large a number, or each part of a vector, the engine can hold.
+        How large a number, or each part of a vector, the engine can hold; how many characters a text may
+        have, ``TEXT_LIMIT`` where it is infinite.
     choices : tuple of str
         The words that a choice field takes, and those that a flag takes beside true and false.
     derived : str
@@ -79,6 +86,8 @@ class Field:
         Whether the field cannot change once the component is made.
     owner : str
         The component or section that has the field.
+    lines : int
+        How many lines a text may have.
     """
 
     name: str
@@ -94,6 +103,7 @@ class Field:
     fixed: bool = False
     owner: str = ""
     limit: float = math.inf
+    lines: int = 1
 
     @property
     def allowed(self) -> str:
@@ -106,6 +116,9 @@ class Field:
                 return "".join(f'"{choice}", ' for choice in self.choices) + "true or false"
             case "entity":
                 return "an entity or null"
+            case "text":
+                where = "on one line" if self.lines == 1 else f"of at most {self.lines} lines"
+                return f"a text {where}, at most {self.longest} characters, that can be seen, or empty"
             case "vector":
                 each = f", at most {self.limit:g} each" if self.limit < math.inf else ""
                 return f"two finite numbers [x, y]{unit}{each}"
@@ -122,6 +135,11 @@ class Field:
         return words + unit + upper + (" or null" if self.derived else "")
 
     @property
+    def longest(self) -> int:
+        """How many characters a text may have."""
+        return int(self.limit) if self.limit < math.inf else TEXT_LIMIT
+
+    @property
     def lowest(self) -> float:
         """The smallest finite number in the field's range."""
         return max(self.minimum, math.nextafter(self.above, math.inf), -_FINITE_LIMIT)
@@ -134,7 +152,8 @@ class Field:
     def check(self, value: object) -> Any:
         """Return ``value`` as a column stores it, or raise :class:`InvalidValue`.
 
-        Vectors come back as a pair of floats, choices as their code (1, 2, ...), no entity as 0.
+        Vectors come back as a pair of floats, choices as their code (1, 2, ...), no entity as 0,
+        texts as the code of :mod:`physicslab.ecs.texts`.
         """
         stored = _CONVERSIONS[self.kind](self, value)
         if stored is None:
@@ -154,6 +173,7 @@ def field(
     derived: str = "",
     fixed: bool = False,
     limit: float = math.inf,
+    lines: int = 1,
 ) -> Any:
     """Describe one field of a component; :class:`Field` describes the values.
 
@@ -161,8 +181,9 @@ def field(
     the field is required. A ``derived`` field that is given as ``None`` is kept up to date by the world.
     """
     return Field(
-        "", "number", default, unit, meaning, minimum, maximum, above, choices, derived, fixed, limit=limit
-    )
+        "", "number", default, unit, meaning, minimum, maximum, above, choices, derived, fixed,
+        limit=limit, lines=lines,
+    )  # fmt: skip
 
 
 _FINITE_LIMIT = float(np.finfo(np.float64).max)
@@ -228,6 +249,14 @@ def _choice(field: Field, value: object) -> int | None:
     return field.choices.index(value) + 1 if isinstance(value, str) and value in field.choices else None
 
 
+def _text(field: Field, value: object) -> int | None:
+    if not isinstance(value, str) or len(value) > field.longest or value.count("\n") >= field.lines:
+        return None
+    if not all(map(is_line, value.split("\n"))) or (value and not has_width(value)):
+        return None
+    return code_of(value)
+
+
 _CONVERSIONS: Mapping[Kind, Callable[[Field, object], Any]] = {
     "number": _number,
     "whole": _whole,
@@ -235,5 +264,6 @@ _CONVERSIONS: Mapping[Kind, Callable[[Field, object], Any]] = {
     "flag": _flag,
     "entity": _entity,
     "choice": _choice,
+    "text": _text,
 }
 """How each kind of field turns a value into what its column stores; ``None`` for one that it cannot hold."""

@@ -20,6 +20,7 @@ _DTYPES: Mapping[Kind, type] = {
     "flag": np.bool_,
     "entity": np.int64,
     "choice": np.int64,
+    "text": np.int64,
 }
 
 

@@ -11,6 +11,7 @@ from typing import Any, Protocol, runtime_checkable
 from physicslab.components import Name
 from physicslab.ecs.component import COMPONENTS, Component, Field
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.text import shortened
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
@@ -263,10 +264,12 @@ def _changed(config: type[PhysicsConfig] | type[SimulationConfig], changes: Mapp
 
 
 def shown_value(value: Any) -> str:
-    """Return a value as people read it.
+    r"""Return a value as people read it, on one line.
 
     >>> shown_value(0.1 + 0.2), shown_value((0, -9.81)), shown_value(None), shown_value(True)
     ('0.3', '(0, -9.81)', 'as computed', 'yes')
+    >>> shown_value("one\ntwo")
+    'one two'
     """
     if value is None:
         return "as computed"
@@ -274,7 +277,7 @@ def shown_value(value: Any) -> str:
         return "yes" if value else "no"
     if isinstance(value, Vector2 | tuple | list):
         return f"({', '.join(map(shown_value, value))})"
-    return f"{value:.6g}" if isinstance(value, float | int) else str(value)
+    return f"{value:.6g}" if isinstance(value, float | int) else shortened(" ".join(str(value).split()))
 
 
 def _with_article(noun: str) -> str:

@@ -12,6 +12,7 @@ from physicslab.systems.system import Stage, System, at
 from physicslab.view.controls import actions
 from physicslab.view.controls.controls import KEYS, RELEASES
 from physicslab.view.controls.file_actions import open_scene
+from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.spawning import spawn_box
 from physicslab.view.controls.tools import TOOLS, Tool
 
@@ -112,6 +113,10 @@ class InputSystem(System):
         self._window.pointer = event.pos
         self._window.adding = bool(pygame.key.get_mods() & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL))
         if event.button == pygame.BUTTON_LEFT:
+            if self._window.picking is not None:
+                picking, self._window.picking = self._window.picking, None
+                picking(world, self._window, body_at(world, self._window.camera, event.pos))
+                return
             if self._takes_handle(world, event.pos):
                 return
             self._tool = TOOLS[self._window.tool]
@@ -143,6 +148,7 @@ class InputSystem(System):
         if not event.buttons[0]:  # let go where no report came from, as over another window
             window.hand.drop(world)
             window.handles.release(window.edits)
+            window.pins.release(window.edits)
             if self._tool is not None:
                 window.spring_tool.cancel()
                 self._tool = None
@@ -156,6 +162,8 @@ class InputSystem(System):
             snaps = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
             window.handles.drag(window.edits, window.handled, window.camera, window.place, snaps=snaps)
 
+        window.pins.drag(window.edits, window.place, paused=window.pace.paused)
+
     def _wheel(self, world: World, event: pygame.Event) -> None:
         notches = getattr(event, "precise_y", event.y)
         actions.zoom(self._window, notches)
@@ -163,5 +171,6 @@ class InputSystem(System):
     def _leave(self, world: World, event: pygame.Event) -> None:
         """Let go of everything while another window has the focus."""
         self._window.hand.drop(world)
+        self._window.pins.release(self._window.edits)
         self._window.spring_tool.cancel()
         self._panning, self._tool = 0, None

@@ -60,16 +60,30 @@ class RenderSystem(System):
         if overlays.impulses:
             self._draw_impulses(world)
         draw_selection(world, window.selection.entities, camera, theme, canvas)
-        if overlays.arrows and len(window.selection.entities) == 1:
-            size = text_size(canvas, window.text_scale) - 1
-            draw_free_body(world, window.selection.entities[0], overlays, camera, theme, canvas, size)
+        self._draw_forces(world)
         if window.band is not None:
             draw_band(camera.to_screen(window.band), window.pointer, theme, canvas)
         size = text_size(canvas, window.text_scale)
         window.ruler.draw(camera, window.place, size, theme, canvas)
         self._draw_handles(world)
+        if window.pins.words:
+            draw_reading(window.pins.words, window.pointer, size, theme, canvas)
         self._draw_ghost(world)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
+
+    def _draw_forces(self, world: World) -> None:
+        """Measure the forces on what is selected where they are shown, and draw them with the arrows."""
+        window, overlays = self._window, self._window.overlays
+        chosen = window.selection.entities
+        shown = len(chosen) == 1 and (overlays.arrows or (window.figures and window.level != "Explore"))
+        window.measured.follow(world, chosen[0] if shown else None, window.now, paused=window.pace.paused)
+        if overlays.arrows and window.measured.forces:
+            size = text_size(window.canvas, window.text_scale) - 1
+            moved = window.measured.moved(world, chosen[0])
+            draw_free_body(
+                window.measured.forces, moved, world.time, overlays, window.camera, window.theme,
+                window.canvas, size,
+            )  # fmt: skip
 
     def _draw_impulses(self, world: World) -> None:
         """Draw impulses; resting contacts have numbers where they are selected or under the cursor."""

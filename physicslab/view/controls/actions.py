@@ -244,6 +244,9 @@ def leave(world: World, window: Window) -> None:
         window.shows_gallery = False
     elif window.error_study.shown:
         window.error_study.shown = False
+    elif window.picking is not None:
+        window.picking = None
+        window.notify("Nothing was chosen")
     elif window.selection.entities:
         window.selection.clear()
     elif window.tool != HAND.name:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from physicslab.components import Transform, Velocity
-from physicslab.history import Group, Remove, Spawn
-from physicslab.view.controls.picking import body_at
+from physicslab.components import Spring, Transform, Velocity
+from physicslab.history import Group, Remove, RemoveComponent, Spawn
+from physicslab.view.controls.picking import body_at, spring_at
 from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawnable
+from physicslab.view.window.pins import pin_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -53,14 +54,23 @@ def _nothing(world: World, window: Window) -> None:
 
 def let_go(world: World, window: Window) -> None:
     """Let go of what is held."""
+    window.pins.release(window.edits)
     window.hand.release(world, window.place, window.now, window.pace.paused)
 
 
 def take_hold(world: World, window: Window) -> bool:
-    """Take hold of the body under the cursor, and select it; return whether there is one."""
-    entity = body_at(world, window.camera, window.pointer)
+    """Take hold of the body under the cursor, or of the end of a spring, and select it.
+
+    Return whether there is one; of a spring that is not held at its end, it is selected alone.
+    """
+    pin = pin_at(world, window.camera, window.pointer)
+    entity = body_at(world, window.camera, window.pointer) if pin is None else None
     if entity is None:
-        return False
+        window.pins.dragged = pin
+        spring = spring_at(world, window.camera, window.pointer) if pin is None else pin
+        if spring is not None:
+            window.selection.take(spring, add=window.adding)
+        return spring is not None
     window.selection.take(entity, add=window.adding)
     if not window.hand.take(world, entity, window.place, window.now) and not window.pace.paused:
         window.notify(f"{world.label(entity)} stays where it is: it is fixed")
@@ -93,10 +103,15 @@ def end_select(world: World, window: Window) -> None:
 
 
 def remove(world: World, window: Window) -> None:
-    """Remove the body under the cursor; its springs go with it."""
+    """Remove the body under the cursor, with the springs that end at it; or else the spring there, alone."""
     entity = body_at(world, window.camera, window.pointer)
+    spring = spring_at(world, window.camera, window.pointer) if entity is None else None
+    if spring is not None and world.has(spring, Transform):  # a body carries it
+        window.edits.do(RemoveComponent(spring, Spring.__name__))
+        return
+    entity = spring if entity is None else entity
     if entity is None:
-        window.notify("Nothing to remove: put the cursor on a body, or select one")
+        window.notify("Nothing to remove: put the cursor on a body or a spring, or select one")
         return
     remove_entities(world, window, (entity,))
 
@@ -115,7 +130,7 @@ def remove_entities(world: World, window: Window, entities: Sequence[int]) -> No
         if window.hand.entity == entity:
             window.hand.drop(world)
     removed = [Remove(entity) for entity in entities]
-    window.edits.do(removed[0] if len(removed) == 1 else Group(f"removed {len(removed)} bodies", removed))
+    window.edits.do(removed[0] if len(removed) == 1 else Group(f"removed {len(removed)}", removed))
     window.selection.follow(world)
 
 
@@ -159,7 +174,9 @@ HAND = spawning(CIRCLE)
 SPAWN_TOOLS = (HAND, *(spawning(spawn) for spawn in SPAWNS[1:]))
 """A tool for each thing there is to spawn."""
 SPRING = Tool("spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring)
-REMOVE = Tool("remove", "Erase", "Erase: click a body; its springs go with it.", remove, _nothing)
+REMOVE = Tool(
+    "remove", "Erase", "Erase: click a body, whose springs go with it, or a spring.", remove, _nothing
+)
 SELECT = Tool(
     "select",
     "Select",

@@ -22,7 +22,9 @@ from physicslab.view.window.edits import Edits
 from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
+from physicslab.view.window.measured import Measured
 from physicslab.view.window.pace import Pace
+from physicslab.view.window.pins import Pins
 from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.ruler import Ruler
@@ -122,6 +124,12 @@ class Window:
         Those of what is selected.
     recipe : Recipe
         What the next body is like.
+    measured : Measured
+        The forces on what is selected.
+    pins : Pins
+        The fixed end of a spring that is dragged.
+    picking : callable, optional
+        What is done with the body that is clicked next, or with none where there is none.
     ruler : Ruler
         What lengths are measured with.
     naming : str, optional
@@ -186,6 +194,9 @@ class Window:
         self.handles = Handles()
         self.edits: Edits
         self.recipe = Recipe()
+        self.measured = Measured()
+        self.pins = Pins()
+        self.picking: Callable[[World, Window, int | None], None] | None = None
         self.ruler = Ruler()
         self.naming: str | None = None
         self.naming_refused = ""

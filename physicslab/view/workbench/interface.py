@@ -160,6 +160,8 @@ class Interface:
             window.tool,
             window.selection.entities,
             world.motion_edits,
+            world.revision,
+            window.measured.number,
             window.canvas.size,
             shown,
             time,

@@ -1,4 +1,4 @@
-"""Rows of numbers: a label, a field that is typed into with units, the unit, and why a number is refused."""
+"""Rows of numbers and texts: a label, a field that is typed into, the unit, and why a value is refused."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import contextlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import pygame
 from imgui_bundle import ImVec2, imgui
@@ -28,7 +29,10 @@ _VARIOUS = "various"
 _LARGEST_ANGLE = 1e5
 """Larger angles are not shown in degrees as well [°]."""
 
-type Commit = Callable[[float], None]
+_LINES_SHOWN = 4
+"""Lines of a longer text that a field shows at one time."""
+
+type Commit = Callable[[Any], None]
 type CommitPart = Callable[[int, float], None]
 
 
@@ -90,10 +94,10 @@ class NumberFields:
         self._edited = self._dragged = None
 
     def row(
-        self, ui: Ui, key: str, words: str, spec: Field, value: float | None, commit: Commit, *,
+        self, ui: Ui, key: str, words: str, spec: Field, value: float | str | None, commit: Commit, *,
         drags: bool = True,
     ) -> None:  # fmt: skip
-        """Build the row of one number.
+        """Build the row of one number or text.
 
         Parameters
         ----------
@@ -103,16 +107,17 @@ class NumberFields:
             What is written on the label.
         spec : Field
             The unit, and what is shown as the tip.
-        value : float, optional
-            The number in SI; ``None`` where bodies differ in it.
+        value : float or str, optional
+            The number in SI, or the text; ``None`` where entities differ in it.
         commit : callable
-            Called with the new number once Enter or Tab is pressed or the field is left; it raises
+            Called with the new one once Enter or Tab is pressed or the field is left; it raises
             :class:`InvalidValue` for one that cannot be.
         drags : bool
             Whether dragging the label changes the number.
         """
-        self.label(ui, key, words, spec, value if drags else None, commit)
-        unit = _unit_shown(spec, value)
+        number = None if isinstance(value, str) else value
+        self.label(ui, key, words, spec, number if drags else None, commit)
+        unit = _unit_shown(spec, number)
         room = imgui.get_content_region_avail().x - _width(ui, unit)
         refusal = self._field(ui, key, value, spec, room, commit)
         _finish(ui, unit, refusal)
@@ -137,13 +142,14 @@ class NumberFields:
             refusals.append(self._field(ui, f"{key}.{name}", value[axis], spec, room, commit_part))
         _finish(ui, unit, next(filter(None, refusals), ""))
 
-    def _field(self, ui: Ui, key: str, value: float | None, spec: Field, width: float, commit: Commit) -> str:
+    def _field(
+        self, ui: Ui, key: str, value: float | str | None, spec: Field, width: float, commit: Commit
+    ) -> str:
         """Build one field, and return why what was written in it is refused; empty while it is not."""
         draft = self._drafts.get(key)
         shown = _shown(value, spec)
-        text, active = ui.field(
-            key, draft.text if draft else shown, width, wrong=bool(draft and draft.refusal)
-        )
+        wrong, lines = bool(draft and draft.refusal), min(spec.lines, _LINES_SHOWN)
+        text, active = ui.field(key, draft.text if draft else shown, width, wrong=wrong, lines=lines)
         if active:
             if self._edited is not None and self._edited.key != key:
                 self.finish()  # Tab went on from there
@@ -164,7 +170,7 @@ class NumberFields:
         if edited is None or draft is None or draft.text == edited.shown:
             return ""  # the number may have more figures than the field shows
         try:
-            edited.commit(_as_field(evaluate(draft.text, edited.spec.unit), edited.spec))
+            edited.commit(_as_field(draft.text, edited.spec))
         except InvalidText as error:
             draft.refusal = str(error)
         except InvalidValue as error:
@@ -215,14 +221,19 @@ class NumberFields:
             ui.tip(f"{spec.meaning}\n{tip}" if spec.meaning else tip)
 
 
-def _shown(value: float | None, spec: Field) -> str:
+def _shown(value: float | str | None, spec: Field) -> str:
     if value is None:
         return _VARIOUS
+    if isinstance(value, str):
+        return value
     return shown_vector_part(value) if spec.kind == "vector" else shown_number(value)
 
 
-def _as_field(value: float, spec: Field) -> float:
-    """Return a number as a field takes it: a whole one has no fraction."""
+def _as_field(text: str, spec: Field) -> float | str:
+    """Return what was written as a field takes it; raise ``InvalidText`` where that is no number."""
+    if spec.kind == "text":
+        return text
+    value = evaluate(text, spec.unit)
     return round(value) if spec.kind == "whole" and value == round(value) else value
 
 

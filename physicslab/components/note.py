@@ -1,0 +1,23 @@
+"""Words at a place of the world."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from physicslab.ecs.component import Component, Vector, component, field
+from physicslab.ecs.fields import LENGTH_LIMIT
+
+
+@component
+class Note(Component):
+    """A text that stands in the world and takes no part in the motion."""
+
+    physical: ClassVar[bool] = False
+    text: str = field(default="", limit=400, lines=8, meaning="what is written there")
+    place: Vector = field(
+        default=(0.0, 0.0),
+        unit="m",
+        limit=LENGTH_LIMIT,
+        meaning="where it is, in the frame of the body that it goes with, or a point of the world",
+    )
+    body: int | None = field(default=None, meaning="the body that it goes with; none: it stays where it is")
