@@ -14,6 +14,8 @@ __all__ = ["Period", "SpringState", "period_of", "spring_state"]
 _STRING = 0.005
 """Share of its length by which weight stretches a spring that is a string: what hangs on it is a pendulum."""
 _HALVES = 60
+_ROUNDING = 1e-12
+"""Share of its length by which a spring is no longer than at rest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +63,10 @@ def spring_state(world: World, entity: int) -> SpringState | None:
     way = end - start
     length = way.magnitude
     extension = length - spring.rest_length
-    lengthening = (end_speed - start_speed).dot(way / length) if length > 0.0 else 0.0
+    if abs(extension) < _ROUNDING * length:
+        extension = 0.0
+    apart = end_speed - start_speed
+    lengthening = apart.dot(way / length) if length > 0.0 else 0.0
     force = spring.stiffness * extension + spring.damping * lengthening
     return SpringState(start, end, length, extension, force, 0.5 * spring.stiffness * extension**2)
 

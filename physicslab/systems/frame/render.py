@@ -14,6 +14,7 @@ from physicslab.view.overlay.handle_marks import draw_handles, draw_reading
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.selection_marks import draw_band, draw_selection
+from physicslab.view.overlay.snap_marks import draw_snap_marks
 from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.panels.panels import text_size
 from physicslab.view.picture.painting import draw_world
@@ -69,6 +70,10 @@ class RenderSystem(System):
         if window.pins.words:
             draw_reading(window.pins.words, window.pointer, size, theme, canvas)
         self._draw_ghost(world)
+        snapping = window.snapping
+        if snapping.place is not None:
+            marks = [(mark.axis, mark.at) for mark in snapping.marks]
+            draw_snap_marks(marks, snapping.place, camera, theme, canvas)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
 
     def _draw_forces(self, world: World) -> None:

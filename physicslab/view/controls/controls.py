@@ -120,6 +120,12 @@ CONTROLS: tuple[Control, ...] = (
             tip="Select the next body"),
     Control("Arrows", "move what is selected", "left", actions.nudger(-1, 0), minor=True, group="edit",
             tip="Move what is selected by a pixel"),
+    Control("Shift+Arrows", "turn what is selected", "shift+left", actions.turner(1), minor=True,
+            group="edit", tip="Turn what is selected by a degree; by 15 degrees where angles snap"),
+    Control("K", "snap", "k", actions.toggle_snapping, minor=True, group="edit",
+            state=lambda _, window: window.snapping.on,
+            tip="Places and sizes snap to the grid and to other bodies, angles to 15 degrees; also while "
+                "Alt or Ctrl is held"),
     Control("R", "clear all", "r", actions.clear, group="edit", tip="Remove everything"),
     Control("Space", "pause", "space", actions.toggle_pause, group="time",
             state=lambda _, window: window.pace.paused, tip="Pause or resume"),
@@ -198,6 +204,7 @@ KEYS: dict[str, Action] = {
     if key and control.action is not None
 }
 """What each key does when it goes down, by its name in SDL."""
+KEYS |= {"shift+right": actions.turner(-1)}
 KEYS |= {"right": actions.nudger(1, 0), "up": actions.nudger(0, 1), "down": actions.nudger(0, -1)}
 
 RELEASES: dict[str, Action] = {

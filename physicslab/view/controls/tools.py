@@ -55,7 +55,7 @@ def _nothing(world: World, window: Window) -> None:
 def let_go(world: World, window: Window) -> None:
     """Let go of what is held."""
     window.pins.release(window.edits)
-    window.hand.release(world, window.place, window.now, window.pace.paused)
+    window.hand.release(world, window.target, window.now, window.pace.paused)
 
 
 def take_hold(world: World, window: Window) -> bool:

@@ -37,7 +37,7 @@ def draw_selection(
     canvas: Canvas,
     colour: Colour | None = None,
 ) -> None:
-    """Draw a line around each of these bodies, or along a spring; in a colour, or that of what is selected."""
+    """Draw a line around each body, or along a spring; in a colour, or that of what is selected."""
     for entity in entities:
         if world.has(entity, Transform):
             corners = camera.project(_outline(world, entity, _GAP / camera.scale))

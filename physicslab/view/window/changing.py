@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
 
-from physicslab.components import Drag, Held, Material, Name, Shape, Spring, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Material, Name, Shape, Spring, Trail, Transform, Velocity
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
 from physicslab.ecs.text import in_words
@@ -110,8 +110,8 @@ def plain_kind(kind: type[Component]) -> str:
 
 
 def _meaning(kind: type[Component]) -> str:
-    """Return what a component means: the first sentence of its description."""
-    return (kind.__doc__ or "").strip().split("\n")[0].split(": ")[0].rstrip(".")
+    """Return what a component means; without plain words for it, the first sentence of its description."""
+    return _MEANINGS.get(kind) or (kind.__doc__ or "").strip().split("\n")[0].split(": ")[0].rstrip(".")
 
 
 def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable[[int], Component]]]:
@@ -148,6 +148,17 @@ _PLAIN: dict[type[Component], str] = {
     Transform: "place", Velocity: "motion", Material: "surface", Drag: "air resistance",
 }  # fmt: skip
 """What components are called that a plainer name fits."""
+_MEANINGS: dict[type[Component], str] = {
+    Transform: "where it is, and how far it is turned",
+    Velocity: "it can move; without it, it stays where it is",
+    Mass: "forces move it; what moves without mass is infinitely heavy",
+    Shape: "it can touch others",
+    Material: "how much it bounces, and how rough it is",
+    Drag: "it is slowed by what it moves through, as by air",
+    Spring: "it hangs on a point that can be dragged",
+    Trail: "where it was is shown",
+}
+"""What components mean to the body that has them."""
 
 
 # ---- names, and ends of springs ------------------------------------------------------------------------

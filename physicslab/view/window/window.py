@@ -29,6 +29,7 @@ from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.ruler import Ruler
 from physicslab.view.window.selection import Selection
+from physicslab.view.window.snapping import Snapping
 from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
 
@@ -126,6 +127,8 @@ class Window:
         What the next body is like.
     measured : Measured
         The forces on what is selected.
+    snapping : Snapping
+        Whether places, sizes and angles snap, and where to.
     pins : Pins
         The fixed end of a spring that is dragged.
     picking : callable, optional
@@ -196,6 +199,7 @@ class Window:
         self.recipe = Recipe()
         self.measured = Measured()
         self.pins = Pins()
+        self.snapping = Snapping()
         self.picking: Callable[[World, Window, int | None], None] | None = None
         self.ruler = Ruler()
         self.naming: str | None = None
@@ -229,6 +233,11 @@ class Window:
     def place(self) -> Vector2:
         """The point of the world under the cursor [m]."""
         return self.camera.to_world(self.pointer)
+
+    @property
+    def target(self) -> Vector2:
+        """Where what the cursor moves or makes goes [m]: its place, or where that has snapped to."""
+        return self.place if self.snapping.place is None else self.snapping.place
 
     @property
     def notice(self) -> str:

@@ -20,7 +20,7 @@ from physicslab.world import World
 
 __all__ = ["ComponentRows"]
 
-_VARIOUS, _NONE = "various", "none"
+_VARIOUS = "various"
 _MAX_LISTED = 60
 """How many entities a list shows; others are clicked in the world."""
 
@@ -105,22 +105,23 @@ class ComponentRows:
             return
         (entity,), end = window.selection.entities, values[0]
         self._numbers.label(ui, key, _label(spec), spec)
-        now = _NONE if end is None else world.label(end)
+        none = _ABSENT.get(key, "none")
+        now = none if end is None else world.label(end)
         room = imgui.get_content_region_avail().x - 3.6 * ui.size
-        chosen = ui.choice(key, now, lambda: _names(world, entity), width=room)
+        chosen = ui.choice(key, now, lambda: _names(world, entity, none), width=room)
         imgui.same_line()
         if ui.button(f"{key} click", "Click the body in the world", shown="Click"):
             window.picking = lambda world, window, picked: set_end(window, entity, kind, spec.name, picked)
             window.notify("Click the body; empty space for none", 6.0)
         if chosen != now:
-            picked = None if chosen == _NONE else _numbered(world, chosen)
+            picked = None if chosen == none else _numbered(world, chosen)
             window.deeds.insert(0, lambda _, window: set_end(window, entity, kind, spec.name, picked))
 
 
-def _names(world: World, entity: int) -> list[str]:
+def _names(world: World, entity: int, none: str) -> list[str]:
     """Return the names of what has a place, but for one entity, after the word for none."""
     bodies = [other for other in world.batch(Transform).entities.tolist() if other != entity]
-    return [_NONE, *(world.label(other) for other in sorted(bodies)[:_MAX_LISTED])]
+    return [none, *(world.label(other) for other in sorted(bodies)[:_MAX_LISTED])]
 
 
 def _numbered(world: World, name: str) -> int | None:
@@ -174,3 +175,5 @@ _NAMES = {
     ("Drag", "linear"): "Drag of v", ("Drag", "quadratic"): "Drag of v²", ("Trail", "length"): "Trail of",
 }  # fmt: skip
 """Plainer names for the labels, by component and field."""
+_ABSENT = {"Spring.a": "itself", "Spring.b": "a fixed point"}
+"""What the absence of an entity means, by component and field."""

@@ -107,7 +107,7 @@ class Inspector:
                 window.deeds.append(_switching(chosen, kind, on=on))
         with ui.list("Add ...", "Properties that it may have and has not") as shown:
             for words, (meaning, make) in (changing.addable(world, chosen) if shown else {}).items():
-                if ui.item(words, tip=meaning, shown=f"{words}: {meaning}"):
+                if ui.item(f"add {words}", tip=meaning, shown=f"{words}: {meaning}"):
                     window.deeds.append(_giving(chosen, make))
         imgui.same_line()
         with ui.list("Take away ...", "Properties that it has") as shown:
@@ -132,7 +132,7 @@ class Inspector:
         imgui.same_line()
         if ui.button("Plot", "Its speed and place against time"):
             window.deeds.append(plot_selected)
-        imgui.same_line()
+        ui.same_line_if_room("Done")
         if ui.button("Done", "Select nothing (Esc)"):
             window.deeds.append(lambda _, window: window.selection.clear())
 
