@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import pygame
@@ -291,7 +291,7 @@ def test_what_is_made_snaps_to_the_grid_on_request(way: str) -> None:
     desk = opened(world)
     desk.window.tool = "circle"
     if way == "menu":
-        desk.key("k")
+        desk.key("j")
         desk.frames(2)
     with holding({"alt": pygame.KMOD_LALT, "ctrl": pygame.KMOD_LCTRL, "menu": 0}[way]):
         click_at(desk, desk.pixel(1.03, 0.98))
@@ -349,7 +349,7 @@ def test_shift_and_arrows_turn_what_is_selected() -> None:
     desk = opened(world, body)
     tap(desk, "left", pygame.KMOD_LSHIFT)
     assert math.degrees(world.component(body, Transform).angle) == pytest.approx(1.0)
-    desk.key("k")
+    desk.key("j")
     desk.frames(2)
     tap(desk, "right", pygame.KMOD_LSHIFT)
     assert math.degrees(world.component(body, Transform).angle) == pytest.approx(-14.0)
@@ -391,6 +391,38 @@ def test_a_text_is_typed_into_a_name_key_by_key() -> None:
     body = circle(world, (0, 0))
     desk = opened(world, body)
     click(desk, "Name")
-    write(desk, "k1")
+    write(desk, "j1")
     tap(desk, "return")
-    assert world.label(body) == "k1" and not desk.window.snapping.on, "keys for fields are theirs"
+    assert world.label(body) == "j1" and not desk.window.snapping.on, "keys for fields are theirs"
+
+
+SETTINGS: dict[str, tuple[str, str, Callable[[World], float], float]] = {
+    "dt": ("10 ms", "3 m", lambda world: world.simulation.dt, 0.01),
+    "substeps": ("2*4", "8.5", lambda world: world.simulation.substeps, 8),
+    "linear_damping": ("6/min", "1 m", lambda world: world.physics.linear_damping, 0.1),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("key", SETTINGS)
+def test_settings_take_expressions_with_units(key: str) -> None:
+    text, wrong, read, expected = SETTINGS[key]
+    desk = opened(empty_world())
+    desk.window.level = "Engineer"
+    desk.frames(SETTLED)
+    fill(desk, key, text)
+    assert read(desk.world) == pytest.approx(expected)
+    fill(desk, key, wrong)
+    assert read(desk.world) == pytest.approx(expected)
+    assert any("this is in" in words or words.startswith("must be") for words in desk.ui.words)
+
+
+def test_what_is_made_next_takes_expressions_with_units() -> None:
+    desk = opened(empty_world())
+    desk.window.tool = "circle"
+    desk.frames(SETTLED)
+    fill(desk, "new size", "1 ft")
+    fill(desk, "new density", "1e3 g/(2 m^2)")
+    assert (desk.window.recipe.size, desk.window.recipe.density) == pytest.approx((0.3048, 0.5))
+    fill(desk, "new density", "2 kg")
+    assert desk.window.recipe.density == pytest.approx(0.5)
+    assert "'2 kg' is in kg; this is in kg/m^2" in desk.ui.words

@@ -245,7 +245,7 @@ class Ui:
         """
         label, words = drawable(label), drawable(label if shown is None else shown)
         self.words.append(words)
-        chosen, _ = imgui.menu_item(f"{words}##{label}", keys, on, enabled)
+        chosen, _ = imgui.menu_item(label if shown is None else f"{words}##{label}", keys, on, enabled)
         self.note(label)
         self.tip(tip)
         return bool(chosen)
