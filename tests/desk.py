@@ -18,7 +18,7 @@ from physicslab.world import World
 
 FRAME = 1.0 / 60.0
 BUTTONS = {"left": 1, "middle": 2, "right": 3}
-MENUS = ("File", "Scenes", "Edit", "World", "View", "Help")
+MENUS = ("File", "Scenes", "Edit", "World", "Instruments", "View", "Help")
 SETTLED = 4
 """Frames after which panels show what an event has done, and its deed is done."""
 

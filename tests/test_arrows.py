@@ -12,6 +12,8 @@ from recording import RecordingCanvas
 from test_hud import MeasuringCanvas
 
 from physicslab.components import Velocity
+from physicslab.diagnostics.free_body import applied_forces
+from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.view.canvas.theme import DARK, Colour
@@ -90,12 +92,31 @@ def test_a_zoom_leaves_the_scale_as_it_was() -> None:
     assert shaft["end"][0, 0] - shaft["start"][0, 0] == pytest.approx(2.0 / before * 50.0)
 
 
-def test_forces_are_those_of_the_last_substep() -> None:
+def test_scales_are_kept_on_request() -> None:
+    world = empty_world(gravity=(0, 0))
+    ball = circle(world, (0, 0), velocity=(2.0, 0.0))
+    desk, canvas = shown(world, "v")
+    before = desk.window.overlays.velocity.per_metre
+    desk.key("a")
+    world.component(ball, Velocity).linear = Vector2(200.0, 0.0)
+    desk.frames(8)
+    assert desk.window.overlays.velocity.per_metre == before
+    desk.key("v")
+    desk.key("v")
+    canvas.calls.clear()
+    desk.frames(8)
+    assert desk.window.overlays.velocity.per_metre == before and "scale, kept" in canvas.words
+    desk.key("a")
+    desk.frames(8)
+    assert desk.window.overlays.velocity.per_metre > 10.0 * before
+
+
+def test_forces_are_those_of_the_present_state() -> None:
     world = load_scene("spring_chain")
     desk, canvas = shown(world, "v", frames=30, paused=False)
     rows = world.batch(Velocity).rows
     rows = rows[world.bodies.inverse_mass[rows] > 0.0]
-    force = world.bodies.force[rows] * (1.0, -1.0) * desk.window.camera.scale
+    force = applied_forces(world)[rows] * (1.0, -1.0) * desk.window.camera.scale
     force /= desk.window.overlays.force.per_metre
     length = np.hypot(force[:, 0], force[:, 1])
     drawn = (length >= MIN_LENGTH) & (length <= max_length(canvas))
@@ -103,6 +124,29 @@ def test_forces_are_those_of_the_last_substep() -> None:
     spans = shafts["end"] - shafts["start"]
     for span in force[drawn]:
         assert np.isclose(spans, span, atol=1e-9).all(axis=1).any()
+
+
+def test_what_rests_has_no_net_force_and_what_slides_has_that_of_its_acceleration() -> None:
+    world = empty_world()
+    box(world, (0, -0.5), width=10, height=1, static=True, friction=0.5)
+    box(world, (-1, 0.25), width=0.5, height=0.5, mass=2.0, friction=0.5)
+    box(world, (1, 0.25), width=0.5, height=0.5, mass=2.0, friction=0.5, velocity=(3, 0))
+    desk, canvas = shown(world, "v", frames=12, paused=False)
+    scale = desk.window.camera.scale / desk.window.overlays.force.per_metre
+    shaft = lines_in(canvas, DARK.force)[0]
+    assert len(shaft["end"]) == 1
+    span = shaft["end"][0] - shaft["start"][0]
+    assert span == pytest.approx(np.array((-0.5 * 2.0 * 9.81 * scale, 0.0)), rel=1e-2, abs=0.5)
+
+
+def test_forces_are_shown_after_an_edit_in_pause_too() -> None:
+    world = empty_world()
+    circle(world, (0, 0))
+    desk, canvas = shown(world, "v", frames=8)
+    circle(world, (2, 0))
+    canvas.calls.clear()
+    desk.frames(8)
+    assert len(lines_in(canvas, DARK.force)[0]["start"]) == 2
 
 
 def test_normals_stand_on_contacts_and_point_into_the_body() -> None:

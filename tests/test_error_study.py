@@ -22,12 +22,13 @@ def run(asked: str, integrator: str, cpu_ms: float | None, error: float | None) 
     failure = "" if error is not None else "it fell over"
     return {
         "asked": asked, "integrator": integrator, "cpu_ms": cpu_ms, "error": error,
-        "step": "0.01 s", "failure": failure,
+        "step": "0.01 s", "substeps": 8, "tolerance": 1e-9, "failure": failure,
     }  # fmt: skip
 
 
 FOUND = {
     "kind": "an estimate",
+    "estimate": {"twins": [{"name": "nudged", "spread": {"position": 3e-12}}]},
     "seconds": 5.0,
     "reference": "the tightest method",
     "rows": [
@@ -40,8 +41,9 @@ FOUND = {
 
 PROGRAM = """
 import json, pathlib, sys, time
-scene, option, report = sys.argv[1:]
-assert option == "--json" and json.loads(pathlib.Path(scene).read_text())["format"] == "physicslab-scene/1"
+scene, shown, option, report = sys.argv[1:]
+assert (shown, option) == ("--progress", "--json")
+assert json.loads(pathlib.Path(scene).read_text())["format"] == "physicslab-scene/1"
 {deed}
 """
 
@@ -90,12 +92,12 @@ def test_the_key_measures_in_another_process_and_shows_the_plot(
     words = desk.ui.words
     assert {"Error against run time", "rk4", "auto: exact"} <= set(words)
     assert "leapfrog" not in words and "leapfrog" not in lines
-    assert any("an estimate; distances after 5 s from the tightest method" in shown for shown in words)
+    assert any("after 5 s" in shown and "Compared with the tightest method" in shown for shown in words)
     samples = desk.window.error_study.samples
-    assert {name: len(costs) for name, (costs, _) in lines.items()} == Counter(s.integrator for s in samples)
+    assert {name: len(costs) for name, (costs, _) in lines.items()} == Counter(s.name for s in samples)
     for name, (costs, errors) in lines.items():
         assert costs == sorted(costs) and all(error > 0.0 for error in errors), "logarithms are drawn"
-        runs = {(s.cpu_ms, s.error) for s in samples if s.integrator == name}
+        runs = {(s.cpu_ms, s.error) for s in samples if s.name == name}
         assert all((cost, error) in runs or error < 1e-16 for cost, error in zip(costs, errors, strict=True))
     desk.key("escape")
     desk.frames()
@@ -153,3 +155,44 @@ def test_the_real_laboratory_measures_a_scene(name: str) -> None:
         time.sleep(0.1)
     assert study.failure == ""
     assert {sample.integrator for sample in study.samples} >= {"leapfrog", "rk4", "dop853"}
+
+
+def test_while_it_is_measured_a_bar_shows_how_far_it_is_and_a_button_stops_it(tmp_path: Path) -> None:
+    written = "sys.stderr.write('\\racc: 7 %\\x1b[K\\racc: 42 %\\x1b[K'); sys.stderr.flush(); time.sleep(600)"
+    desk, _ = desk_with(tmp_path, written)
+    desk.key("f5")
+    until = time.monotonic() + 60.0
+    while desk.window.error_study.share == 0.0 and time.monotonic() < until:
+        time.sleep(0.02)
+        desk.frames()
+    desk.frames(SETTLED)
+    assert desk.ui.rows["Measuring this scene with every method"] == "42%"
+    click(desk, "Stop")
+    assert [desk.window.error_study.running] == [False]
+
+
+def test_a_run_of_the_table_can_be_used_and_taken_back(tmp_path: Path) -> None:
+    desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text({json.dumps({'scenes': [FOUND]})!r})")
+    measured(desk)
+    desk.frames(2 * SETTLED)
+    desk.key("space")
+    desk.frames()
+    before = desk.world.simulation
+    click(desk, "Use run 3")  # by time, the second is rk4's faster one, the third its slower one
+    after = desk.world.simulation
+    assert (after.integrator, after.substeps, after.tolerance) == ("rk4", 8, 1e-9)
+    assert after.dt == before.dt
+    desk.key("z", pygame.KMOD_LCTRL)
+    desk.frames()
+    assert desk.world.simulation == before
+
+
+@pytest.mark.parametrize("grown, chaotic", [(0.0, False), (5e-8, False), (0.2, True)])
+def test_a_chaotic_scene_is_called_so(tmp_path: Path, grown: float, chaotic: bool) -> None:
+    rows = [run("rk4", "rk4", 0.1, 1e-3), run("leapfrog", "leapfrog", 10.0, 1e-7)]
+    twins = {"twins": [{"name": "nudged", "spread": {"position": grown}}]}
+    report = json.dumps({"scenes": [FOUND | {"rows": rows, "estimate": twins}]})
+    desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text({report!r})")
+    measured(desk)
+    desk.frames(SETTLED)
+    assert any("This scene is chaotic" in words for words in desk.ui.words) is chaotic

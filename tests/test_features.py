@@ -270,6 +270,7 @@ def test_v_shows_velocity_force_and_contact_normals() -> None:
     world = empty_world()
     box(world, (0, -0.5), width=10, height=1, static=True)
     ball = circle(world, (0, 0.25), radius=0.25, velocity=(1, 0))
+    circle(world, (3, 2), radius=0.25)  # the net force on the other is none
     desk, canvas = watched(world, "v")
     last_frame(desk, canvas)
     legend = 2  # lines of its sample of each kind: a shaft and a head

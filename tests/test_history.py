@@ -285,6 +285,22 @@ def test_an_edit_at_the_place_that_is_sought_is_done_and_one_that_was_taken_back
 
 
 @pytest.mark.usefixtures("dense")
+@pytest.mark.parametrize("seconds", [1.0, 4.0])
+def test_contacts_are_counted_at_once_where_a_place_is_gone_back_to(seconds: float) -> None:
+    world = load_scene("stack")
+    history = History(world)
+    for _ in range(round(seconds / world.simulation.dt)):
+        history.step()
+    before = world.contacts.count
+    assert before > 9
+    history.do(Spawn([Transform((50.0, 5.0))]))
+    for _ in range(3):
+        history.step()
+    history.undo()
+    history.undo()
+    assert world.contacts.count == before
+
+
 def test_names_are_those_of_the_place() -> None:
     history = History(box_of_discs(4))
     history.step(steps=2)

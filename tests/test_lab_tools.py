@@ -1,4 +1,4 @@
-"""The tools of the lab in the window: handles, graphs, ruler, time line, undo, free-body diagrams."""
+"""The tools of the lab in the window: handles, graphs, time line, undo, free-body diagrams."""
 
 import math
 from pathlib import Path
@@ -10,7 +10,7 @@ from desk import FRAME, Desk, bits, click, click_at, empty_world, fill, tap, wri
 from random_edits import state_hash
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
-from physicslab.diagnostics.free_body import forces_on, net_force
+from physicslab.diagnostics.free_body import applied_forces, contact_forces, forces_on, net_force
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
@@ -203,7 +203,7 @@ def test_a_body_that_was_in_the_hand_is_let_go_where_another_future_begins() -> 
     assert not world.has(ball, Held)
 
 
-# Graphs and ruler
+# Graphs
 
 
 def test_a_graph_follows_a_body_and_is_written_as_a_table(desk: Desk, tmp_path: Path) -> None:
@@ -231,14 +231,6 @@ def test_a_graph_records_nothing_again_in_the_past(desk: Desk) -> None:
     actions.seek(desk.window, 3)
     desk.frames(3)
     assert np.array_equal(graph.chosen["kinetic energy"].times, before)
-
-
-def test_the_ruler_shows_length_and_angle(desk: Desk) -> None:
-    desk.window.tool = "ruler"
-    drag(desk, Vector2(-1.0, 0.0), Vector2(2.0, 1.5))
-    assert not desk.world.entities()
-    length = float(desk.window.ruler.words.split()[0])
-    assert length == pytest.approx(math.hypot(3.0, 1.5), rel=0.01) and "26.6°" in desk.window.ruler.words
 
 
 # Free-body diagrams
@@ -273,6 +265,18 @@ def test_a_block_that_slides_has_friction_against_its_motion() -> None:
     rubbed = sum(one.force.x for one in forces if one.kind == "friction")
     assert rubbed == pytest.approx(-0.3 * 2.0 * 9.81, rel=1e-3)
     assert net_force(forces).x == pytest.approx(-0.3 * 2.0 * 9.81, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["sandbox", "slope", "newtons_cradle", "spring_chain", "two_planets"])
+def test_the_forces_on_all_bodies_are_those_on_each(name: str) -> None:
+    world = load_scene(name)
+    world.run(seconds=0.7)
+    total = applied_forces(world) + contact_forces(world)
+    for entity in world.batch(Velocity, Mass).entities.tolist():
+        forces = forces_on(world, entity)
+        largest = max((one.force.magnitude for one in forces), default=0.0)
+        row = world.entity_index.row_of[entity]
+        assert total[row].tolist() == pytest.approx(list(net_force(forces)), abs=1e-9 * largest)
 
 
 # The first view

@@ -17,7 +17,7 @@ from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.view.overlay.impacts import SHOWN
-from physicslab.view.overlay.impulses import LABELLED
+from physicslab.view.overlay.impulses import CROWD, LABELLED, LABELLED_IN_CROWD
 from physicslab.view.overlay.labels import Label, Labels
 from physicslab.world import World
 
@@ -161,10 +161,33 @@ def test_only_the_strongest_have_their_numbers() -> None:
     for n in range(20):
         circle(world, (0.6 * n - 5.7, 0.2), radius=0.2, mass=10.0 + n)
     desk, canvas = shown(world, "e", frames=30, paused=False)
-    numbers = [words for words in canvas.words if words.startswith("normal ") and words.endswith(" N s")]
+    numbers = [words for words in canvas.words if words.startswith("normal ") and " N s" in words]
     assert 1 <= len(numbers) <= LABELLED
     assert len(lines_in(canvas, DARK.normal_impulse)[0]["start"]) == 20
     assert desk.window.overlays.covered
+
+
+def test_a_crowd_of_impacts_has_few_numbers() -> None:
+    world = empty_world(gravity=(0, 0))
+    for n in range(2 * CROWD):
+        circle(world, (0.2 * n - 6.0, 2.0), radius=0.05, velocity=(0, -1), restitution=1)
+        circle(world, (0.2 * n - 6.0, 1.8), radius=0.05, velocity=(0, 1), restitution=1)
+    _, canvas = shown(world, "e", frames=12, paused=False)
+    assert len(lines_in(canvas, DARK.normal_impulse)[0]["start"]) == 2 * CROWD
+    numbers = [words for words in canvas.words if words.startswith("impact at")]
+    assert 1 <= len(numbers) <= LABELLED_IN_CROWD
+
+
+def test_the_points_of_a_pair_are_written_together_as_a_force() -> None:
+    world = empty_world()
+    box(world, (0, -0.5), width=10, height=1, static=True)
+    block = box(world, (0, 0.25), width=0.8, height=0.5, mass=3.0)
+    desk, canvas = shown(world, "e", frames=30, paused=False)
+    desk.window.selection.take(block)
+    canvas.calls.clear()
+    desk.frames()
+    (words,) = [words for words in canvas.words if words.startswith("normal ")]
+    assert words == f"normal 29.43 N ({29.43 / 240:.4f} N s)"
 
 
 def test_labels_lie_apart_and_stay_where_they_are() -> None:

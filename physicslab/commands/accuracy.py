@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 from physicslab.commands.command_error import FAILED, CommandError
@@ -17,11 +17,12 @@ from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
 from physicslab.lab.accuracy.contacts.study import ContactStudy, study_case
 from physicslab.lab.accuracy.contacts.tables import contact_summary, contact_text
-from physicslab.lab.accuracy.document import document
+from physicslab.lab.accuracy.document import document, trust_document
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import DEFAULT_S, SceneStudy, study_scene
 from physicslab.lab.accuracy.study import Study, study
-from physicslab.lab.accuracy.tables import left_out_text, scene_text, study_text, summary_text
+from physicslab.lab.accuracy.tables import left_out_text, scene_text, study_text, summary_text, trust_text
+from physicslab.lab.accuracy.trust import TrustRow, assess_problem
 from physicslab.lab.case import Job
 from physicslab.scenes import SCENES
 
@@ -41,6 +42,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_lab_arguments(parser, "problem", what, "draw a work-precision plot of each problem, as PNG")
     seconds = f"how long scenes are run, in their time ({DEFAULT_S:g})"
     parser.add_argument("--seconds", metavar="T", type=positive_duration, default=DEFAULT_S, help=seconds)
+    words = "print the estimate of the error of each problem, as run --trust makes it, beside its true error"
+    parser.add_argument("--trust", action="store_true", help=words)
     parser.epilog = (
         f"families: {', '.join(PROBLEMS.families)}; of contact cases, by other engines as well where "
         f"installed: {', '.join(CONTACTS.families)}, or {_CONTACTS} for all; --list names "
@@ -59,6 +62,9 @@ def execute(arguments: Namespace) -> int:
     if sparse:
         problems, contacts = list(PROBLEMS.values()), CONTACTS
     run = LabRun("accuracy", arguments, "accuracy")
+    if arguments.trust:
+        _trust(run, problems)
+        return 0
     jobs: list[tuple[float, Job[Study | ContactStudy | SceneStudy]]] = [
         *((1.0, study(problem, sparse=sparse)) for problem in problems),
         *((1.0, study_case(case, sparse=sparse)) for case in contacts.values()),
@@ -96,6 +102,18 @@ def execute(arguments: Namespace) -> int:
         if found.rows[0].failure:
             raise CommandError(f"{found.name}: {found.rows[0].failure}", FAILED)
     return 0
+
+
+def _trust(run: LabRun, problems: Sequence[Problem]) -> None:
+    """Write how good the estimates of errors are, for the problems that are one world each."""
+    rows: list[TrustRow] = []
+    results: Iterator[TrustRow] = run.results(
+        [(1.0, assess_problem(problem)) for problem in problems if problem.search is None]
+    )
+    for row in results:
+        rows.append(row)
+    run.show(trust_text(rows))
+    run.write(trust_document(rows))
 
 
 def _other(scenes: dict[str, None], contacts: dict[str, ContactCase], name: str) -> Problem | None:

@@ -30,6 +30,8 @@ def add_lab_arguments(parser: ArgumentParser, kind: str, what: str, plot: str = 
     parser.add_argument("names", metavar=kind.upper(), nargs="*", help=what)
     parser.add_argument("--list", action="store_true", help=f"print the name of every {kind} and stop")
     parser.add_argument("--json", metavar="FILE", help="write everything that was measured (- for stdout)")
+    words = "write to stderr how far it is, where that is no terminal too"
+    parser.add_argument("--progress", action="store_true", help=words)
     if plot:
         parser.add_argument("--plot", metavar="DIR", help=plot)
 
@@ -86,6 +88,7 @@ class LabRun:
     def __init__(self, label: str, arguments: Namespace, example: str = "") -> None:
         self._label = label
         self._json = None if arguments.json is None else Output("--json", arguments.json)
+        self._progress: bool = arguments.progress
         self._quiet = self._json is not None and self._json.to_stdout
         plot = getattr(arguments, "plot", None)
         self._pictures = None if plot is None else picture_directory(plot, f"{example}.png")
@@ -97,7 +100,7 @@ class LabRun:
 
     def results[Result](self, jobs: Sequence[tuple[float, Job[Result]]]) -> Iterator[Result]:
         """Yield the result of each job, and show on the terminal how far all are."""
-        progress = Progress(self._label, sys.stderr)
+        progress = Progress(self._label, sys.stderr, always=self._progress)
         try:
             for found in run_jobs(jobs):
                 if isinstance(found, float):

@@ -13,7 +13,7 @@ _INTERVAL_S = 0.1
 
 
 class Progress:
-    """Keeps one line of a terminal up to date; writes nothing to a file, or in the first second.
+    """Keeps one line of a terminal up to date; writes nothing in the first second.
 
     Parameters
     ----------
@@ -21,15 +21,23 @@ class Progress:
         What is under way.
     stream : text stream or None
         Usually stderr, which a program may be started without.
+    always : bool
+        Whether it is kept in a file or a pipe as well, for a program that reads it.
     clock : callable, optional
         Returns the time [s].
     """
 
     def __init__(
-        self, label: str, stream: TextIO | None, clock: Callable[[], float] = time.monotonic
+        self,
+        label: str,
+        stream: TextIO | None,
+        clock: Callable[[], float] = time.monotonic,
+        *,
+        always: bool = False,
     ) -> None:
         self._label, self._stream, self._clock = label, stream, clock
-        self._next = clock() + _DELAY_S if stream is not None and stream.isatty() else float("inf")
+        seen = stream is not None and (always or stream.isatty())
+        self._next = clock() + _DELAY_S if seen else float("inf")
         self._shown = False
 
     def show(self, share: float) -> None:

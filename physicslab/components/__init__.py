@@ -1,26 +1,34 @@
-"""The components of a body, one file each. Presence decides what an entity is."""
+"""The components of bodies and of what is measured with, one file each. Presence decides what a thing is."""
 
 from physicslab.components.drag import Drag
+from physicslab.components.gate import Gate
 from physicslab.components.held import Held
 from physicslab.components.mass import Mass
 from physicslab.components.material import Material
 from physicslab.components.name import Name
 from physicslab.components.note import Note
+from physicslab.components.protractor import Protractor
+from physicslab.components.ruler import Ruler
 from physicslab.components.shape import Shape
 from physicslab.components.spring import Spring
+from physicslab.components.strobe import Strobe
 from physicslab.components.trail import Trail
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 
 __all__ = [
     "Drag",
+    "Gate",
     "Held",
     "Mass",
     "Material",
     "Name",
     "Note",
+    "Protractor",
+    "Ruler",
     "Shape",
     "Spring",
+    "Strobe",
     "Trail",
     "Transform",
     "Velocity",

@@ -1,4 +1,8 @@
-"""Words at a place of the world."""
+"""Words at a place of the world.
+
+Instruments have points. Each is two fields: where it is, and the body that it goes with, ``place`` and
+``place_body``; without a body it is a point of the world.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +17,7 @@ class Note(Component):
     """A text that stands in the world and takes no part in the motion."""
 
     physical: ClassVar[bool] = False
+    POINTS: ClassVar[tuple[str, ...]] = ("place",)
     text: str = field(default="", limit=400, lines=8, meaning="what is written there")
     place: Vector = field(
         default=(0.0, 0.0),
@@ -20,4 +25,4 @@ class Note(Component):
         limit=LENGTH_LIMIT,
         meaning="where it is, in the frame of the body that it goes with, or a point of the world",
     )
-    body: int | None = field(default=None, meaning="the body that it goes with; none: it stays where it is")
+    place_body: int | None = field(default=None, meaning="the body that it goes with; none: it stays")

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from physicslab.components import Held
+from physicslab.components import Gate, Held
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.rescue import save_last_good
 from physicslab.files.scene import SceneError
@@ -17,7 +17,7 @@ from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
 from physicslab.view.window.graphs import Graph
-from physicslab.view.window.ruler import Ruler
+from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.window import Left, Window
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
@@ -95,7 +95,8 @@ class Sandbox:
         window.sparks.clear()
         window.selection.clear()
         window.graphs = [graph for graph in window.graphs if _goes_on(graph, titles, self._titles)]
-        window.naming, window.ruler = None, Ruler()
+        window.naming, window.measuring = None, Measuring()
+        window.shows_stopwatch = bool(len(world.batch(Gate)))
         window.error, window.next_world = "", None
         window.go_home(world)
         window.unchanged = world.motion_edits

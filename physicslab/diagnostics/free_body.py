@@ -1,4 +1,4 @@
-"""The forces on one body by name: what a free-body diagram shows."""
+"""The forces on one body by name, as a free-body diagram shows them, and their sum on every body."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from physicslab.state.masses import quiet
 from physicslab.stepping.forces import forces_by_system
 from physicslab.world import World
 
-__all__ = ["NamedForce", "forces_on", "net_force"]
+__all__ = ["NamedForce", "applied_forces", "contact_forces", "forces_on", "net_force"]
 
 type Kind = Literal["field", "normal", "friction"]
 
@@ -78,6 +78,33 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
 def net_force(forces: tuple[NamedForce, ...]) -> Vector2:
     """Return the sum of forces [N]."""
     return sum((one.force for one in forces), Vector2())
+
+
+def applied_forces(world: World) -> NDArray[np.float64]:
+    """Return the sum of all forces but those of contacts on each row (n, 2) [N], at the present state."""
+    return sum(_fields(world).values(), np.zeros_like(world.bodies.force))
+
+
+def contact_forces(world: World) -> NDArray[np.float64]:
+    """Return what contacts and bounds exert on each row (n, 2) [N], as :func:`forces_on` has it."""
+    contacts = world.contacts
+    contacts.sync()
+    total = np.zeros_like(world.bodies.force)
+    pairs = np.flatnonzero(contacts.manifolds["count"][: contacts.recorded] > 0)
+    if not len(pairs) or contacts.impulse_dt <= 0.0:
+        return total
+    near = contacts.manifolds[pairs]
+    normal, tangent = np.zeros(len(pairs)), np.zeros(len(pairs))
+    for k in range(2):
+        points, used = contacts.points[2 * pairs + k], k < near["count"]
+        normal += np.where(used, points["normal_impulse"], 0.0)
+        tangent += np.where(used, points["tangent_impulse"], 0.0)
+    x, y = near["normal_x"], near["normal_y"]
+    on_b = np.stack((normal * x - tangent * y, normal * y + tangent * x), axis=1) / contacts.impulse_dt
+    np.add.at(total, near["b"], on_b)
+    bodies = near["entity_a"] > 0  # the others are the world's bounds
+    np.subtract.at(total, near["a"][bodies], on_b[bodies])
+    return total
 
 
 @quiet

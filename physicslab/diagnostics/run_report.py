@@ -225,6 +225,18 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         )
     if report["interpreted"]:
         lines.append(f"  slower      {', '.join(report['interpreted'])}: computed by Python, call by call")
+    if "trust" in report:
+        lines.append(f"  trust       {_trust_words(report['trust'])}")
     lines += [f"  advice      {words}" for words in (ModelWarning(**found) for found in report["advice"])]
     lines += [f"  left out    {left['name']}: {left['reason']}" for left in report["left_out"]]
     return "\n".join(lines)
+
+
+def _trust_words(report: Mapping[str, Any]) -> str:
+    """Return what can be relied on, on a line."""
+    if report["digits"] is None:
+        return f"cannot be measured: {report['failure']}"
+    words = f"{report['digits']:.1f} digits of every position at the end, fewest of {report['worst']}"
+    if report["horizon_s"] is None:
+        return f"{words}; no rounding grows to another future"
+    return f"{words}; one of many possible futures {report['horizon_s']:.3g} s after the start"

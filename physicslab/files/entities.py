@@ -23,6 +23,7 @@ from physicslab.files.checks import (
     shown,
     suggestion,
 )
+from physicslab.state.attached import INSTRUMENTS
 
 __all__ = ["UNSAVED", "check_contacts", "check_entities", "check_ids", "check_rests"]
 
@@ -73,6 +74,8 @@ def check_entities(
         for component in components:
             if isinstance(component, Spring):
                 _check_ends(component, number, entities, where)
+            elif isinstance(component, INSTRUMENTS):
+                _check_points(component, entities, where)
         made.append((entity.get("id"), components))
     return made
 
@@ -195,6 +198,15 @@ def _check_inertia(mass: Mass, shape: Shape, where: str) -> None:
     if not math.isfinite(mass.mass * sum(size * size for size in sizes.values())):
         allowed = f"smaller: the moment of inertia is not finite with Mass.mass = {mass.mass:g} kg"
         raise refusal(f"{where}: Shape.{largest}", sizes[largest], allowed)
+
+
+def _check_points(part: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:
+    """Refuse a point of an instrument that goes with what has no place."""
+    for name in type(part).POINTS:  # type: ignore[attr-defined]
+        body = getattr(part, f"{name}_body")
+        if body is not None and "Transform" not in entities[body - 1]:
+            place = f"{where}: {type(part).__name__}.{name}_body"
+            raise refusal(place, entities[body - 1].get("id"), "the id of an entity with a Transform")
 
 
 def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any]], where: str) -> None:

@@ -153,7 +153,10 @@ class Contacts:
 
     @property
     def count(self) -> int:
-        """How many near pairs have points."""
+        """How many near pairs have points; until they are listed again, how many did before."""
+        if self.stale:
+            self.sync()
+            return int(np.count_nonzero(self.manifolds["count"][: self.recorded]))
         return int(self.active + self.wide.filled + self.sleeping_count)
 
     def changed(self) -> None:

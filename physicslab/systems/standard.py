@@ -5,11 +5,13 @@ from __future__ import annotations
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.drag import DragSystem
+from physicslab.systems.gate import GateSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.spring import SpringSystem
+from physicslab.systems.strobe import StrobeSystem
 from physicslab.systems.system import System
 from physicslab.systems.trail import TrailSystem
 
@@ -25,6 +27,8 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     SleepSystem,
     ResolveSystem,
     TrailSystem,
+    StrobeSystem,
+    GateSystem,
 )
 
 

@@ -13,9 +13,10 @@ from physicslab.lab.accuracy.figures import record
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
+from physicslab.lab.accuracy.trust import TrustRow
 from physicslab.lab.document import finite, lab_document
 
-__all__ = ["document"]
+__all__ = ["document", "trust_document"]
 
 
 def document(
@@ -29,6 +30,24 @@ def document(
         contacts=[contact_document(study) for study in contacts],
         scenes=[_scene(study) for study in scenes],
         left_out=[asdict(left) for left in LEFT_OUT],
+    )
+
+
+def trust_document(rows: Sequence[TrustRow]) -> dict[str, Any]:
+    """Return estimates of errors beside true errors."""
+    return lab_document(
+        "trust",
+        problems=[
+            {
+                "name": row.problem.name,
+                "measure": row.problem.measure,
+                "integrator": row.integrator,
+                "estimate": finite(row.estimate),
+                "error": finite(row.error),
+                "ratio": finite(row.ratio),
+            }
+            for row in rows
+        ],
     )
 
 
@@ -101,7 +120,8 @@ def _row(problem: Problem, row: Row) -> dict[str, Any]:
 
 def _scene(study: SceneStudy) -> dict[str, Any]:
     estimate = asdict(study.estimate)
-    del estimate["reference"]
+    for name in ("reference", "bodies", "end", "distances"):
+        del estimate[name]
     return {
         "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.tightest,
         "estimate": estimate, "rows": [_scene_row(row) for row in study.rows],

@@ -90,6 +90,12 @@ class Estimate:
         Why the scene itself could not be run.
     reference : array of floats, optional
         Where bodies end [m] with rigid contacts (n, 2), if contacts are soft and no step was left to these.
+    bodies : list of str
+        The bodies that can move.
+    end : array of floats, optional
+        Where they end [m] in the scene itself (n, 2).
+    distances : dict of str to array of floats
+        How far each ends from there [m] in a twin (n,), by the name of the twin.
     """
 
     error: Spread | None = None
@@ -99,6 +105,9 @@ class Estimate:
     twins: list[TwinResult] = field(default_factory=list)
     failure: str = ""
     reference: NDArray[np.float64] | None = None
+    bodies: list[str] = field(default_factory=list)
+    end: NDArray[np.float64] | None = None
+    distances: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
 class OutOfTime(ArithmeticError):
@@ -118,11 +127,13 @@ def estimate_error(load: Callable[[], World], seconds: float) -> Iterator[float 
     scene, found = load(), Estimate()
     document = with_ids(write_scene(scene))
     scene.synchronise()
-    run = _Runs([entity["id"] for entity in document["entities"] if "Velocity" in entity], seconds)
+    found.bodies = [entity["id"] for entity in document["entities"] if "Velocity" in entity]
+    run = _Runs(found.bodies, seconds)
     own, found.failure = attempt(partial(run.end, load()))
     if own is None:
         yield found
         return
+    found.end = own[:, :2]
     soft = not scene.event_driven or _something_rests(load(), seconds)
     ends: dict[str, _End] = {}
     for i, twin in enumerate(TWINS):
@@ -132,6 +143,7 @@ def estimate_error(load: Callable[[], World], seconds: float) -> Iterator[float 
             if twin.name == "rigid" and twin.name in ends and not any(steps_not_rigid(world)):
                 found.reference = ends[twin.name][:, :2]
         yield (i + 1) / (len(TWINS) + 1)
+    found.distances = {name: np.hypot(*(end - own)[:, :2].T) for name, end in ends.items()}
     _summarise(found)
     if found.error is not None:
         found.order, found.order_reason = _order(

@@ -51,6 +51,10 @@ class SceneRow:
         The method that was chosen.
     step : str
         Its step, or its tolerance; empty for one that has neither.
+    substeps : int
+        Into how many each step was divided.
+    tolerance : float
+        The error of a step that was allowed to a method that chooses its steps.
     evaluations : int
         Force evaluations.
     cpu_s : float
@@ -70,6 +74,8 @@ class SceneRow:
     reason: str
     asked: str
     step: str
+    substeps: int
+    tolerance: float
     evaluations: int = 0
     cpu_s: float = 0.0
     half_step: float | None = None
@@ -202,7 +208,10 @@ def _row(
     if method.integrator.chooses_steps:
         tolerance = tolerance_for(world, world.schedule.forces)
         step = "" if method.integrator.name == "exact" else f"tol {tolerance:g}"
-    row = SceneRow(method.integrator.name, method.reason, simulation.integrator, step)
+    row = SceneRow(
+        method.integrator.name, method.reason, simulation.integrator, step,
+        simulation.substeps, simulation.tolerance,
+    )  # fmt: skip
     _, row.failure = attempt(partial(_fill, row, load, simulation, best, seconds))
     return row
 

@@ -9,10 +9,11 @@ from physicslab.lab.accuracy.estimate import Spread
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
+from physicslab.lab.accuracy.trust import TrustRow
 from physicslab.lab.accuracy.verdict import Verdict
 from physicslab.lab.table import cell, table
 
-__all__ = ["left_out_text", "scene_text", "study_text", "summary_text"]
+__all__ = ["left_out_text", "scene_text", "study_text", "summary_text", "trust_text"]
 
 _HEAD = ("method", "order", "measured", "dt or tol", "steps", "forces", "CPU ms", "ms / s", "error", "energy",
          "momentum", "ang. mom.", "omega dt", "overlap", "hits", "verdict")  # fmt: skip
@@ -167,3 +168,24 @@ def _best_verdict(study: Study) -> Verdict:
 def left_out_text() -> str:
     """Return which reference problems are not there, and why."""
     return "\n".join(["not computed:", *(f"  {left.name}: {left.reason}" for left in LEFT_OUT)])
+
+
+def trust_text(rows: Sequence[TrustRow]) -> str:
+    """Return a line for each problem: estimate, true error, and the second over the first."""
+    head = ("problem", "method", "estimate", "true error", "true / estimate", "measured as")
+    lines = [
+        (
+            row.problem.name, row.integrator, cell(row.estimate, ".1e"), cell(row.error, ".1e"),
+            cell(row.ratio, ".2g"), row.problem.measure,
+        )
+        for row in rows
+    ]  # fmt: skip
+    ratios = [row.ratio for row in rows if row.ratio is not None]
+    if not ratios:
+        return table([head, *lines], words=(0, 1, 5))
+    near = sum(0.1 <= ratio <= 10.0 for ratio in ratios)
+    closing = (
+        f"within a factor of 10: {near} of {len(ratios)} ({near / len(ratios):.0%}); "
+        f"the true error is at most {max(ratios):.2g} times the estimate"
+    )
+    return "\n".join([table([head, *lines], words=(0, 1, 5)), "", closing])

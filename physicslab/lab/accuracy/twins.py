@@ -152,7 +152,9 @@ def _nudge(document: Document, world: World) -> World | None:
     for entity in twin["entities"]:
         if "Velocity" not in entity:
             continue
-        for name, fields in (("Transform", ("position", "angle")), ("Velocity", ("linear", "angular"))):
+        turns = not entity.get("Mass", {}).get("fixed_rotation", False)
+        speeds = ("linear", "angular") if turns else ("linear",)
+        for name, fields in (("Transform", ("position", "angle")), ("Velocity", speeds)):
             part = entity.setdefault(name, {})
             for field in fields:
                 value = part.get(field, 0.0 if field.startswith("ang") else [0.0, 0.0])

@@ -146,9 +146,9 @@ class HudSystem(System):
         canvas, theme, room = window.canvas, window.theme, self._interface.visible
         left, top, width, height = room
         middle, margin = left + width // 2, round(0.6 * size)
-        if window.grid:
-            draw_axis_numbers(window.camera, room, size, canvas, theme)
         bar = draw_scale_bar(window.camera, left + width, top + height - margin, size, canvas, theme)
+        if window.grid:
+            draw_axis_numbers(window.camera, room, bar[0], size, canvas, theme)
         taken = [bar, *self._draw_messages(bar)]
         bottom = min(rect[1] for rect in taken) - margin
         banners = self._banners(world)

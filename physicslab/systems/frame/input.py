@@ -12,10 +12,12 @@ from physicslab.systems.system import Stage, System, at
 from physicslab.view.controls import actions
 from physicslab.view.controls.controls import KEYS, RELEASES
 from physicslab.view.controls.file_actions import open_scene
+from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.snapping import follow_snapping
 from physicslab.view.controls.spawning import spawn_box
-from physicslab.view.controls.tools import TOOLS, Tool
+from physicslab.view.controls.tool import Tool
+from physicslab.view.controls.tools import TOOLS
 
 if TYPE_CHECKING:
     from physicslab.view.window.window import Window
@@ -120,6 +122,7 @@ class InputSystem(System):
 
     def _press(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
+        follow_pointer(world, self._window)
         self._window.adding = bool(pygame.key.get_mods() & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL))
         self._follow_snapping(world)
         if event.button == pygame.BUTTON_LEFT:
@@ -139,6 +142,8 @@ class InputSystem(System):
     def _takes_handle(self, world: World, pixel: tuple[float, float]) -> bool:
         """Take the handle of what is selected that lies under the cursor; return whether there is one."""
         window = self._window
+        if take_end(world, window):
+            return True
         return window.handled is not None and window.handles.press(
             world, window.handled, window.camera, pixel
         )
@@ -146,8 +151,10 @@ class InputSystem(System):
     def _release(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
         self._follow_snapping(world)
+        follow_pointer(world, self._window)
         if event.button == pygame.BUTTON_LEFT:
             self._window.handles.release(self._window.edits)
+            let_instrument_go(world, self._window)
         if event.button == pygame.BUTTON_LEFT and self._tool is not None:
             self._tool.release(world, self._window)
             self._tool = None
@@ -160,6 +167,7 @@ class InputSystem(System):
             window.hand.drop(world)
             window.handles.release(window.edits)
             window.pins.release(window.edits)
+            let_instrument_go(world, window)
             if self._tool is not None:
                 window.spring_tool.cancel()
                 self._tool = None
@@ -174,8 +182,8 @@ class InputSystem(System):
             rounds = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
             snaps = rounds or (window.snapping.active and window.handles.dragged == "angle")
             window.handles.drag(window.edits, window.handled, window.camera, window.target, snaps=snaps)
-
         window.pins.drag(window.edits, window.target, paused=window.pace.paused)
+        follow_pointer(world, window)
 
     def _wheel(self, world: World, event: pygame.Event) -> None:
         notches = getattr(event, "precise_y", event.y)
@@ -186,4 +194,5 @@ class InputSystem(System):
         self._window.hand.drop(world)
         self._window.pins.release(self._window.edits)
         self._window.spring_tool.cancel()
+        let_instrument_go(world, self._window)
         self._panning, self._tool = 0, None

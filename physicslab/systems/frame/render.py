@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from physicslab.components import Transform
 from physicslab.systems.system import Stage, System, at
+from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.overlay.free_body import draw_free_body
@@ -13,6 +14,8 @@ from physicslab.view.overlay.ghost import draw_ghost
 from physicslab.view.overlay.handle_marks import draw_handles, draw_reading
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.view.overlay.impulses import draw_impulses
+from physicslab.view.overlay.instrument_marks import draw_instruments
+from physicslab.view.overlay.instruments import instruments_of
 from physicslab.view.overlay.selection_marks import draw_band, draw_selection
 from physicslab.view.overlay.snap_marks import draw_snap_marks
 from physicslab.view.overlay.vectors import draw_vectors
@@ -64,10 +67,10 @@ class RenderSystem(System):
         self._draw_forces(world)
         if window.band is not None:
             draw_band(camera.to_screen(window.band), window.pointer, theme, canvas)
-        size = text_size(canvas, window.text_scale)
-        window.ruler.draw(camera, window.place, size, theme, canvas)
+        self._draw_instruments(world)
         self._draw_handles(world)
         if window.pins.words:
+            size = text_size(canvas, window.text_scale)
             draw_reading(window.pins.words, window.pointer, size, theme, canvas)
         self._draw_ghost(world)
         snapping = window.snapping
@@ -97,6 +100,26 @@ class RenderSystem(System):
         written = {*window.selection.entities, *(() if hovered is None else (hovered,))}
         size = text_size(window.canvas, window.text_scale) - 2
         draw_impulses(world, window.overlays, written, window.camera, window.theme, window.canvas, size)
+
+    def _draw_instruments(self, world: World) -> None:
+        """Draw what measures, what is being placed of it, and beside the cursor what to do next."""
+        window = self._window
+        camera, theme, canvas, state = window.camera, window.theme, window.canvas, window.measuring
+        tool = TOOLS[window.tool]
+        preview = state.preview(spot_of(world, window)) if state.spots else None
+        shown = [*instruments_of(world, state.overrides), *([] if preview is None else [preview])]
+        if state.writing is not None:
+            shown = [one for one in shown if one.entity != state.writing.entity]
+        size, chosen = text_size(canvas, window.text_scale), window.selection.entities
+        covered = window.overlays.covered
+        state.rects = draw_instruments(
+            world, shown, chosen, state.labels, covered, camera, theme, canvas, size
+        )
+        if state.hovered is not None:
+            draw_selection(world, (state.hovered,), camera, theme, canvas)
+        if tool.prompts and not window.pointer_on_panel and state.dragged is None and state.writing is None:
+            words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)]
+            draw_reading(words, window.pointer, size, theme, canvas, window.room())
 
     def _draw_handles(self, world: World) -> None:
         """Draw the handles of what is selected while time stands still, and the number that one has given."""

@@ -12,7 +12,9 @@ from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.view.canvas.theme import THEMES
+from physicslab.view.controls.measuring import nudged
 from physicslab.view.controls.tools import HAND, Tool
+from physicslab.view.overlay.instruments import instruments_of
 from physicslab.view.panels.laws import has_gravity
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -51,6 +53,7 @@ __all__ = [
     "toggle_impulses",
     "toggle_pause",
     "toggle_planets",
+    "toggle_scales",
     "toggle_slow_motion",
     "toggle_snapping",
     "toggle_trails",
@@ -71,6 +74,7 @@ _NO_GRAVITY = "This world was made without GravitySystem: no law of gravity acts
 def choose_tool(window: Window, tool: Tool) -> None:
     """Let the left mouse button do something else."""
     window.spring_tool.cancel()
+    window.measuring.cancel()
     window.tool = tool.name
     window.notify(tool.usage, 5.0)
 
@@ -107,6 +111,7 @@ def clear(world: World, window: Window) -> None:
     """Remove everything."""
     window.hand.drop(world)
     window.spring_tool.cancel()
+    window.measuring.cancel()
     removed = [Remove(entity) for entity in world.entities()]
     if removed:
         window.edits.do(Group("cleared everything", removed))
@@ -148,6 +153,13 @@ def toggle_arrows(world: World, window: Window) -> None:
 def toggle_impulses(world: World, window: Window) -> None:
     """Show or hide what contacts do: impulses, friction cones and their numbers."""
     window.overlays.toggle_impulses(world, window.camera)
+
+
+def toggle_scales(world: World, window: Window) -> None:
+    """Let the scales of all arrows stay as they are, or follow what is shown again."""
+    window.overlays.toggle_scales()
+    kept = window.overlays.keeps_scales
+    window.notify("Arrows keep their scale" if kept else "The scale of arrows follows what is shown")
 
 
 def toggle_trails(world: World, window: Window) -> None:
@@ -246,6 +258,8 @@ def toggle_help(world: World, window: Window) -> None:
 
 def leave(world: World, window: Window) -> None:
     """Leave the help, the plot, what is selected or the tool if there is one, else the window."""
+    if window.measuring.cancel():
+        return
     if window.help:
         window.help = False
     elif window.shows_gallery:
@@ -336,7 +350,9 @@ def select_all(world: World, window: Window) -> None:
 
 def select_next(world: World, window: Window) -> None:
     """Select the body after the one that is selected, in their order."""
-    bodies = sorted(world.batch(Transform).entities.tolist())
+    bodies = sorted(
+        {*world.batch(Transform).entities.tolist(), *(one.entity for one in instruments_of(world))}
+    )
     now = window.selection.entities[-1] if window.selection.entities else 0
     if bodies:
         window.selection.take(next((entity for entity in bodies if entity > now), bodies[0]))
@@ -348,10 +364,11 @@ def nudger(across: int, up: int) -> Callable[[World, Window], None]:
     def nudge(world: World, window: Window) -> None:
         by = Vector2(across, up) / window.camera.scale
         bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
-        moves = [
+        moves: list[Command] = [
             SetField(entity, "Transform", "position", world.component(entity, Transform).position + by)
             for entity in bodies
         ]
+        moves += filter(None, (nudged(world, entity, by) for entity in window.selection.entities))
         if moves:
             window.edits.do(Group(f"moved {len(moves)}", moves))
 

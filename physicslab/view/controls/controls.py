@@ -5,8 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from physicslab.components import Trail
+from physicslab.components import Strobe, Trail
 from physicslab.view.controls import actions, file_actions
+from physicslab.view.controls.measuring import (
+    GATE,
+    NOTE,
+    PROTRACTOR,
+    RULER,
+    measuring,
+    toggle_stopwatch,
+    toggle_strobes,
+)
 from physicslab.view.controls.spawning import spawn_pendulum
 from physicslab.view.controls.tools import (
     HAND,
@@ -122,7 +131,7 @@ CONTROLS: tuple[Control, ...] = (
             tip="Move what is selected by a pixel"),
     Control("Shift+Arrows", "turn what is selected", "shift+left", actions.turner(1), minor=True,
             group="edit", tip="Turn what is selected by a degree; by 15 degrees where angles snap"),
-    Control("J", "snap", "j", actions.toggle_snapping, minor=True, group="edit",
+    Control("X", "snap", "x", actions.toggle_snapping, minor=True, group="edit",
             state=lambda _, window: window.snapping.on,
             tip="Places and sizes snap to the grid and to other bodies, angles to 15 degrees; also while "
                 "Alt or Ctrl is held"),
@@ -148,11 +157,27 @@ CONTROLS: tuple[Control, ...] = (
             state=lambda world, _: _gravity_is(world, "planet"),
             tip="Planet mode: all bodies attract each other"),
     Control("V", "arrows", "v", actions.toggle_arrows, group="show",
-            state=lambda _, window: window.overlays.arrows, tip="Velocities, forces, contact normals"),
+            state=lambda _, window: window.overlays.arrows, tip="Velocities, net forces, contact normals"),
     Control("T", "trails", "t", actions.toggle_trails, group="show",
             state=lambda world, _: bool(world.table(Trail).handles), tip="Trails behind moving bodies"),
     Control("E", "impulses", "e", actions.toggle_impulses, group="show",
             state=lambda _, window: window.overlays.impulses, tip="Impulses at contacts, with numbers"),
+    Control("D", "ruler", "d", measuring(RULER, actions.choose_tool), minor=True, group="measure", tool=RULER,
+            tip="A length: drag; or between two bodies that are selected"),
+    Control("Y", "angle", "y", measuring(PROTRACTOR, actions.choose_tool), minor=True, group="measure",
+            tool=PROTRACTOR, tip="An angle: drag one arm from the vertex, then click the end of the other"),
+    Control("J", "gate", "j", measuring(GATE, actions.choose_tool), minor=True, group="measure", tool=GATE,
+            tip="A light gate: notes when bodies cross it"),
+    Control("W", "note", "w", measuring(NOTE, actions.choose_tool), minor=True, group="measure", tool=NOTE,
+            tip="Words at a place of the world"),
+    Control("C", "stopwatch", "c", toggle_stopwatch, minor=True, group="measure",
+            state=lambda _, window: window.shows_stopwatch, tip="The times between crossings of gates"),
+    Control("X", "strobe of all that moves", "x", toggle_strobes, minor=True, group="measure",
+            state=lambda world, _: bool(world.table(Strobe).handles),
+            tip="Pictures of all that moves, ten a second"),
+    Control("A", "keep scales", "a", actions.toggle_scales, minor=True, group="show",
+            state=lambda _, window: window.overlays.keeps_scales,
+            tip="Arrows keep their scale, so that two pictures can be compared"),
     Control("M", "graph", "m", actions.plot_selected, minor=True, group="show",
             tip="A graph against time: of what is selected, or of the energies"),
     Control("I", "panel at the right", "i", actions.toggle_figures, minor=True, group="show",

@@ -135,5 +135,3 @@ def study_error(world: World, window: Window) -> None:
         window.error_study.start(world)
     except (OSError, SceneError) as error:
         window.notify(f"Error against run time could not be measured: {error}", failed=True)
-    else:
-        window.notify("Measuring error against run time of this scene; F5 stops it", 600.0)

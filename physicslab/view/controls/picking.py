@@ -1,18 +1,23 @@
-"""Which body is at a place on the screen."""
+"""Which body or instrument is at a place on the screen."""
 
 from __future__ import annotations
+
+import math
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Spring, Transform
+from physicslab.components import Note, Shape, Spring, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.canvas import Rect
+from physicslab.view.overlay.instruments import Instrument, instruments_of
 from physicslab.view.picture.bodies import POINT_RADIUS, body_rows
 from physicslab.view.picture.springs import ends_of
 from physicslab.world import World
 
-__all__ = ["body_at", "spring_at"]
+__all__ = ["body_at", "centre_near", "directions_near", "instrument_at", "point_at", "spring_at"]
 
 type Rows = NDArray[np.int64]
 type Numbers = NDArray[np.float64]
@@ -21,6 +26,10 @@ _MAX_FROM_SPRING = 6.0
 """How near to the line between its ends a click on a spring need be [px]."""
 _MAX_DISTANCE = 7.0
 """How near to the middle of a body a click need only be [px]: so that what appears small can be caught."""
+_MIDDLE = 10.0
+"""How near to a body's middle a point of an instrument need be to go with it [px]."""
+_ON_LINE, _ON_POINT = 5.0, 9.0
+"""How near to a line or a point of an instrument a press need be [px]."""
 
 
 def body_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
@@ -59,6 +68,68 @@ def spring_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int |
     if distance[nearest] > _MAX_FROM_SPRING:
         return None
     return int(world.batch(Spring).entities[nearest])
+
+
+def centre_near(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
+    """Return the body whose middle is nearest to a place on the screen [px], if it is within a few pixels."""
+    place, rows = camera.to_world(pixel), body_rows(world)
+    everything = np.concatenate((rows.boxes, rows.discs, rows.points))
+    distance = _distance(world, everything, place)
+    if not len(distance) or not np.fmin.reduce(distance) <= _MIDDLE / camera.scale:
+        return None
+    return int(world.entity_index.entities[everything[int(np.nanargmin(distance))]])
+
+
+def directions_near(world: World, camera: Camera, place: Vector2) -> list[float]:
+    """Return the angles of the boxes at a place [rad]: along them, or across, lines may be meant to go."""
+    rows = body_rows(world).boxes
+    near = rows[_box_gap(world, rows, place) <= _MIDDLE / camera.scale]
+    angles: list[float] = world.table(Transform)["angle"][near].tolist()
+    return angles
+
+
+def instrument_at(
+    world: World, camera: Camera, pixel: tuple[float, float], rects: Mapping[int, Rect]
+) -> int | None:
+    """Return the instrument whose line or words are at a place on the screen [px]; of several the last made.
+
+    ``rects`` says where words were drawn.
+    """
+    found = 0
+    for one in instruments_of(world):
+        if _is_within(pixel, rects.get(one.entity)) or _line_gap(one, camera, pixel) <= _ON_LINE:
+            found = max(found, one.entity)
+    return found or None
+
+
+def _is_within(pixel: tuple[float, float], rect: Rect | None) -> bool:
+    if rect is None:
+        return False
+    left, top, width, height = rect
+    return left <= pixel[0] < left + width and top <= pixel[1] < top + height
+
+
+def point_at(one: Instrument, camera: Camera, pixel: tuple[float, float]) -> str | None:
+    """Return the name of the point of an instrument that is at a place on the screen [px]."""
+    distances = {
+        name: math.dist(camera.to_screen(place), pixel)
+        for name, place in one.points.items()
+        if one.kind is not Note
+    }
+    nearest = min(distances, key=lambda name: distances[name], default=None)
+    return nearest if nearest is not None and distances[nearest] <= _ON_POINT else None
+
+
+def _line_gap(one: Instrument, camera: Camera, pixel: tuple[float, float]) -> float:
+    """Return how far a place is from the lines of an instrument [px]; a note has none."""
+    first, *others = (np.array(camera.to_screen(place)) for place in one.points.values())
+    gap, place = math.inf, np.array(pixel)
+    for other in others:
+        way = other - first
+        size = float(way @ way)
+        share = min(max(float((place - first) @ way) / size, 0.0), 1.0) if size > 0.0 else 0.0
+        gap = min(gap, float(np.hypot(*(place - first - share * way))))
+    return gap
 
 
 def _distance(world: World, rows: Rows, place: Vector2) -> Numbers:

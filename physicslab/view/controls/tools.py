@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 from physicslab.components import Spring, Transform, Velocity
-from physicslab.history import Group, Remove, RemoveComponent, Spawn
-from physicslab.view.controls.picking import body_at, spring_at
+from physicslab.history import Command, Group, Remove, RemoveComponent, Spawn
+from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
+from physicslab.view.controls.picking import body_at, instrument_at, spring_at
 from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawnable
+from physicslab.view.controls.tool import Tool
 from physicslab.view.window.pins import pin_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -17,35 +18,6 @@ __all__ = [
     "HAND", "MORE_TOOLS", "PALETTE", "PAN", "REMOVE", "SELECT", "SPAWN_TOOLS", "SPRING", "TOOLS", "Tool",
     "begin_spring", "end_spring", "remove_selected",
 ]  # fmt: skip
-
-type Deed = Callable[[World, Window], None]
-
-
-@dataclass(frozen=True, slots=True)
-class Tool:
-    """What a press and a release of the left button do.
-
-    Attributes
-    ----------
-    name, title : str
-        Its icon, and what it is called.
-    usage : str
-        How it is used.
-    press, release : callable
-        What happens.
-    pans : bool
-        Whether dragging moves the picture.
-    spawn : Spawnable, optional
-        What a click on empty space makes.
-    """
-
-    name: str
-    title: str
-    usage: str
-    press: Deed
-    release: Deed
-    pans: bool = False
-    spawn: Spawnable | None = None
 
 
 def _nothing(world: World, window: Window) -> None:
@@ -59,12 +31,15 @@ def let_go(world: World, window: Window) -> None:
 
 
 def take_hold(world: World, window: Window) -> bool:
-    """Take hold of the body under the cursor, or of the end of a spring, and select it.
+    """Take hold of the body under the cursor, of an instrument, or of the end of a spring, and select it.
 
-    Return whether there is one; of a spring that is not held at its end, it is selected alone.
+    Return whether there is one; a spring that is not held at its end is selected alone.
     """
     pin = pin_at(world, window.camera, window.pointer)
     entity = body_at(world, window.camera, window.pointer) if pin is None else None
+    fixed = entity is None or not world.has(entity, Velocity)
+    if pin is None and fixed and take_instrument(world, window):
+        return True  # it lies over what is fixed
     if entity is None:
         window.pins.dragged = pin
         spring = spring_at(world, window.camera, window.pointer) if pin is None else pin
@@ -103,8 +78,9 @@ def end_select(world: World, window: Window) -> None:
 
 
 def remove(world: World, window: Window) -> None:
-    """Remove the body under the cursor, with the springs that end at it; or else the spring there, alone."""
-    entity = body_at(world, window.camera, window.pointer)
+    """Remove the instrument, the body or the spring under the cursor; a body's springs go with it."""
+    entity = instrument_at(world, window.camera, window.pointer, window.measuring.rects)
+    entity = body_at(world, window.camera, window.pointer) if entity is None else entity
     spring = spring_at(world, window.camera, window.pointer) if entity is None else None
     if spring is not None and world.has(spring, Transform):  # a body carries it
         window.edits.do(RemoveComponent(spring, Spring.__name__))
@@ -129,8 +105,9 @@ def remove_entities(world: World, window: Window, entities: Sequence[int]) -> No
     for entity in entities:
         if window.hand.entity == entity:
             window.hand.drop(world)
-    removed = [Remove(entity) for entity in entities]
-    window.edits.do(removed[0] if len(removed) == 1 else Group(f"removed {len(removed)}", removed))
+    removed: list[Command] = [*detached(world, set(entities)), *(Remove(entity) for entity in entities)]
+    words = f"removed {len(entities)}" if len(entities) > 1 else removed[-1].words(world)
+    window.edits.do(removed[0] if len(removed) == 1 else Group(words, removed))
     window.selection.follow(world)
 
 
@@ -185,12 +162,15 @@ SELECT = Tool(
     end_select,
 )
 PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True)
-RULER = Tool(
-    "ruler", "Ruler", "Ruler: drag from one point to another; length, parts and angle are shown.",
-    lambda _, window: window.ruler.press(window.place), lambda _, window: window.ruler.release(window.place),
-)  # fmt: skip
 _IN_PALETTE = ("circle", "box", "block", "pendulum", "chain")
-PALETTE = (SELECT, *(tool for tool in SPAWN_TOOLS if tool.name in _IN_PALETTE), SPRING, RULER, REMOVE, PAN)
+PALETTE = (
+    SELECT,
+    *(tool for tool in SPAWN_TOOLS if tool.name in _IN_PALETTE),
+    SPRING,
+    *MEASURING_TOOLS,
+    REMOVE,
+    PAN,
+)
 """The tools that are in sight, in their order."""
 MORE_TOOLS = tuple(tool for tool in SPAWN_TOOLS if tool.name not in _IN_PALETTE)
 """Those behind one more button."""

@@ -92,7 +92,7 @@ class ArrowKind:
 
 
 VELOCITY = ArrowKind("Velocity", "velocity", Head.CLOSED)
-FORCE = ArrowKind("Force", "force", Head.DOUBLE)
+FORCE = ArrowKind("Net force", "force", Head.DOUBLE)
 CONTACT_NORMAL = ArrowKind("Contact normal", "contact_normal", Head.BAR, width=1.4)
 NORMAL_IMPULSE = ArrowKind("Normal impulse", "normal_impulse", Head.DIAMOND)
 FRICTION_IMPULSE = ArrowKind("Friction impulse", "friction_impulse", Head.OPEN, dashed=True)

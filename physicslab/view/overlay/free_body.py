@@ -12,7 +12,7 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.overlay.arrows import FORCE, ArrowKind, Head, draw_arrows
+from physicslab.view.overlay.arrows import ArrowKind, Head, draw_arrows
 from physicslab.view.overlay.gauge import Gauge
 from physicslab.view.overlay.labels import Label
 from physicslab.view.overlay.overlays import Overlays
@@ -21,7 +21,7 @@ __all__ = ["draw_free_body"]
 
 _NORMAL = ArrowKind("Normal force", "normal_impulse", Head.DIAMOND)
 _FRICTION = ArrowKind("Friction", "friction_impulse", Head.OPEN, dashed=True)
-_KINDS = {"field": FORCE, "normal": _NORMAL, "friction": _FRICTION}
+_KINDS = {"field": ArrowKind("Force", "force", Head.DOUBLE), "normal": _NORMAL, "friction": _FRICTION}
 _WIDTH = 2.6
 _REACH = 0.16
 """Length of the longest arrow, as a share of the smaller side of the picture."""

@@ -32,6 +32,8 @@ class Gauge:
     ----------
     per_metre : float
         How much one metre stands for; 0 before anything was shown.
+    kept : bool
+        Whether it stays as it is, so that two pictures can be compared.
 
     Examples
     --------
@@ -44,11 +46,14 @@ class Gauge:
     def __init__(self, unit: str) -> None:
         self.unit = unit
         self.per_metre = 0.0
+        self.kept = False
         self._peak = 0.0
         self._time = 0.0
 
     def follow(self, values: NDArray[np.float64], reach: float, time: float) -> None:
         """Take in the magnitudes of a frame; the strongest should be about ``reach`` [m] long."""
+        if self.kept and self.per_metre:
+            return
         strongest = float(np.max(values, initial=0.0, where=np.isfinite(values)))
         faded = self._peak * math.exp(-max(time - self._time, 0.0) / _MEMORY)
         self._peak, self._time = max(strongest, faded), time

@@ -32,11 +32,15 @@ def draw_handles(middle: Pixel, places: Sequence[tuple[str, Pixel]], theme: Them
         canvas.discs(spots, np.full(len(spots), _RADIUS), np.zeros(len(spots)), look)
 
 
-def draw_reading(words: str, pointer: Pixel, size: int, theme: Theme, canvas: Canvas) -> None:
-    """Write a number beside the cursor."""
+def draw_reading(
+    words: str, pointer: Pixel, size: int, theme: Theme, canvas: Canvas, room: Rect | None = None
+) -> None:
+    """Write words beside the cursor, within the room that is given or the picture [px]."""
+    low, top_edge, across, _ = room or (0, 0, *canvas.size)
     style = TextStyle(size, theme.text, bold=True)
     width, height = canvas.text_size(words, style)
-    left, top = round(pointer[0]) + size, round(pointer[1]) - 2 * size
+    left = max(min(round(pointer[0]) + size, low + across - width - size), low + size)
+    top = max(round(pointer[1]) - 2 * size, top_edge + size)
     rect: Rect = (left - size // 2, top - size // 4, width + size, height + size // 2)
     canvas.panel(rect, theme.panel, theme.outline, 0.95)
     canvas.text(words, (left, top), style)

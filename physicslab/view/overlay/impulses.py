@@ -20,10 +20,12 @@ from physicslab.view.overlay.labels import Key, Label
 from physicslab.view.overlay.overlays import Overlays
 from physicslab.world import World
 
-__all__ = ["IMPACT_WIDTH", "LABELLED", "REST_WIDTH", "draw_impulses", "words_of"]
+__all__ = ["CROWD", "IMPACT_WIDTH", "LABELLED", "LABELLED_IN_CROWD", "REST_WIDTH", "draw_impulses"]
 
 LABELLED = 12
 """How many contacts have their numbers written beside them: the strongest."""
+CROWD, LABELLED_IN_CROWD = 30, 4
+"""Of more impacts than this at a time, only so many have theirs: more would hide what they belong to."""
 IMPACT_WIDTH, REST_WIDTH = 3.0, 1.6
 """How thick arrows are drawn [px]: an impact's, and those of resting contact."""
 _KEEP_RATIO = 1.5
@@ -39,8 +41,8 @@ def draw_impulses(
 ) -> None:  # fmt: skip
     """Draw the impulses of the impacts of the last second, and of what rests, with cones and numbers.
 
-    Of what rests only contacts of the bodies in ``written`` have their numbers beside them: a heap would be
-    hidden under them.
+    Of what rests only contacts of the bodies in ``written`` have their numbers beside them, the points of a
+    pair added up: a heap would be hidden under them.
     """
     impacts = overlays.impacts.recent(world.time)
     impacts = impacts[np.argsort(impacts["time"], kind="stable")]  # the newest on top
@@ -52,20 +54,28 @@ def draw_impulses(
     _draw_impulses_of(resting, overlays.rest, REST_WIDTH, 0.9, camera, theme, canvas)
     _draw_impulses_of(impacts, overlays.impact, IMPACT_WIDTH, fresh, camera, theme, canvas)
     ends = np.array(sorted(written), np.int64)
-    of_written = resting[np.isin(resting["a"], ends) | np.isin(resting["b"], ends)]
-    candidates = [
-        *_strongest(impacts, fresh, overlays.impact, True, camera),
-        *_strongest(of_written, np.ones(len(of_written)), overlays.rest, False, camera),
-    ]
-    candidates.sort(key=lambda one: -one.weight * (_KEEP_RATIO if overlays.labels.known(one.key) else 1.0))
-    chosen = [one for one in candidates if not _under(one.at, overlays.covered)][:LABELLED]
-    labels = [Label(one.key, one.at, words_of(one.sample, one.is_impact, one.slips)) for one in chosen]
+    of_written = _by_pair(resting[np.isin(resting["a"], ends) | np.isin(resting["b"], ends)])
+
+    def rank(one: _Candidate) -> float:
+        return -one.weight * (_KEEP_RATIO if overlays.labels.known(one.key) else 1.0)
+
+    met = _strongest(impacts, fresh, overlays.impact, True, camera, overlays.covered)
+    met = sorted(met, key=rank)[: LABELLED if len(impacts) <= CROWD else LABELLED_IN_CROWD]
+    still = np.ones(len(of_written))
+    held = _strongest(of_written, still, overlays.rest, False, camera, overlays.covered)
+    chosen = sorted([*met, *held], key=rank)[:LABELLED]
+    labels = [Label(one.key, one.at, _words_of(one, world.contacts.impulse_dt)) for one in chosen]
     overlays.labels.draw(labels, overlays.covered, text_size, canvas, theme)
 
 
-def _under(at: tuple[float, float], covered: Sequence[Rect]) -> bool:
-    """Whether a place of the picture is covered."""
-    return any(x <= at[0] < x + width and y <= at[1] < y + height for x, y, width, height in covered)
+def _seen(at: Points, size: tuple[int, int], covered: Sequence[Rect]) -> NDArray[np.bool_]:
+    """Return which places lie in the picture and under no panel."""
+    with np.errstate(invalid="ignore"):
+        seen: NDArray[np.bool_] = ((at >= 0.0) & (at < np.array(size))).all(axis=1)
+        for left, top, width, height in covered:
+            low, high = (left, top), (left + width, top + height)
+            seen &= ~((at >= low) & (at < high)).all(axis=1)
+    return seen
 
 
 def _without(resting: ContactSamples, impacts: ContactSamples, distance: float) -> ContactSamples:
@@ -75,6 +85,19 @@ def _without(resting: ContactSamples, impacts: ContactSamples, distance: float) 
     candidates = np.flatnonzero(np.isin(resting[["a", "b"]], impacts[["a", "b"]]))
     hidden = same_place(resting[candidates], impacts, distance).any(axis=1)
     return np.delete(resting, candidates[hidden])
+
+
+def _by_pair(resting: ContactSamples) -> ContactSamples:
+    """Return one sample for each pair: the sums of the impulses at its points, where they act together."""
+    _, first, pair = np.unique(resting[["a", "b"]], return_index=True, return_inverse=True)
+    added = resting[first]
+    for name in ("normal", "tangent"):
+        added[name] = np.bincount(pair, resting[name], len(first))
+    for axis in range(2):
+        moments = np.bincount(pair, resting["normal"] * resting["place"][:, axis], len(first))
+        added["place"][:, axis] = moments / added["normal"]
+    added["point"] = 0
+    return added
 
 
 def _draw_impulses_of(
@@ -143,15 +166,19 @@ class _Candidate:
 
 
 def _strongest(
-    samples: ContactSamples, fresh: NDArray[np.float64], gauge: Gauge, is_impact: bool, camera: Camera
+    samples: ContactSamples,
+    fresh: NDArray[np.float64],
+    gauge: Gauge,
+    is_impact: bool,
+    camera: Camera,
+    covered: Sequence[Rect],
 ) -> list[_Candidate]:
-    """Return the samples in the picture that stand out most."""
+    """Return the samples that stand out most of those that can be seen."""
     if not len(samples):
         return []
-    with np.errstate(invalid="ignore"):
-        at = camera.project(samples["place"])
-        inside = (at >= 0.0) & (at < np.array(camera.size))
-    weight = np.where(inside[:, 0] & inside[:, 1], samples["normal"] * fresh / (gauge.per_metre or 1.0), 0.0)
+    at = camera.project(samples["place"])
+    strength = samples["normal"] * fresh / (gauge.per_metre or 1.0)
+    weight = np.where(_seen(at, camera.size, covered), strength, 0.0)
     chosen = np.argsort(-weight, kind="stable")[: 2 * LABELLED]
     chosen = chosen[weight[chosen] > 0.0]
     samples, slips = samples[chosen], sliding(samples[chosen]).tolist()
@@ -161,15 +188,22 @@ def _strongest(
     return [_Candidate(much, key, place, touch, is_impact, slip) for much, key, place, touch, slip in every]
 
 
-def words_of(sample: np.void, is_impact: bool, slips: bool) -> list[str]:
-    """Return the numbers of a contact in SI units, a line each."""
-    lines = [f"impact at {quantity(float(sample['speed']), 'm/s')}"] if is_impact else []
-    lines.append(f"normal {quantity(float(sample['normal']), 'N s')}")
+def _words_of(one: _Candidate, impulse_dt: float) -> list[str]:
+    """Return the numbers of a contact in SI units, a line each; of what rests also the mean forces."""
+    sample, rate = one.sample, 1.0 / impulse_dt if impulse_dt > 0.0 and not one.is_impact else 0.0
+    lines = [f"impact at {quantity(float(sample['speed']), 'm/s')}"] if one.is_impact else []
+    lines.append(f"normal {_impulse(float(sample['normal']), rate)}")
     if sample["friction"] > 0.0:
         friction_impulse = abs(float(sample["tangent"]))
         friction_impulse = friction_impulse if friction_impulse > _ROUNDING * sample["normal"] else 0.0
-        lines.append(f"friction {quantity(friction_impulse, 'N s')}")
-        lines.append(f"{'slips' if slips else 'sticks'}, μ = {float(sample['friction']):.3g}")
+        lines.append(f"friction {_impulse(friction_impulse, rate)}")
+        lines.append(f"{'slips' if one.slips else 'sticks'}, μ = {float(sample['friction']):.3g}")
     else:
         lines.append("μ = 0")
     return lines
+
+
+def _impulse(value: float, rate: float) -> str:
+    """Return an impulse; with a ``rate`` [1/s] the force that it comes to before it."""
+    words = quantity(value, "N s")
+    return f"{quantity(rate * value, 'N')} ({words})" if rate else words

@@ -73,9 +73,19 @@ class Labels:
         return key in self._slot
 
     def draw(
-        self, labels: Sequence[Label], covered: Sequence[Rect], size: int, canvas: Canvas, theme: Theme
-    ) -> None:
-        """Draw labels, those of the last frame and the first ones first; what finds no room is left out."""
+        self,
+        labels: Sequence[Label],
+        covered: Sequence[Rect],
+        size: int,
+        canvas: Canvas,
+        theme: Theme,
+        *,
+        always: bool = False,
+    ) -> dict[Key, Rect]:
+        """Draw labels, those of the last frame and the first ones first; return where they are [px].
+
+        What finds no room is left out; or, ``always``, lies over something.
+        """
         points = [
             (round(x) - _POINT, round(y) - _POINT, 2 * _POINT, 2 * _POINT)
             for x, y in (label.at for label in labels)
@@ -89,6 +99,8 @@ class Labels:
             width = max(canvas.text_size(line, style)[0] for line in label.lines) + 2 * _PAD
             extent = width, line_height * len(label.lines) + 2 * _PAD
             found = self._find(label, extent, taken, canvas.size)
+            if found is None and always:
+                found = self._find(label, extent, (), canvas.size)
             if found is None:
                 continue
             slots[label.key], rect = found
@@ -98,6 +110,7 @@ class Labels:
         _draw_leaders(placed, canvas, theme)
         for label, rect in placed:
             _draw(label, rect, style, line_height, canvas, theme)
+        return {label.key: rect for label, rect in placed}
 
     def _find(
         self, label: Label, extent: tuple[int, int], taken: Sequence[Rect], screen: tuple[int, int]
@@ -106,7 +119,7 @@ class Labels:
         rects = _beside(label.at, extent)
         low, high = rects, rects + extent
         free = ((low >= 0) & (high <= screen)).all(axis=1)
-        other = np.array(taken)
+        other = np.array(taken, np.int64).reshape(-1, 4)
         apart = (low[:, None] >= other[:, :2] + other[:, 2:] + _CLEAR) | (
             other[:, :2] >= high[:, None] + _CLEAR
         )

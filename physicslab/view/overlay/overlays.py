@@ -29,6 +29,8 @@ class Overlays:
     ----------
     arrows, impulses : bool
         Whether velocities, forces and normals are shown, and whether impulses are.
+    keeps_scales : bool
+        Whether the scales of arrows stay as they are.
     reach : float
         The wanted length of the strongest arrow [m], chosen when an overlay is turned on.
     velocity, force, impact, rest : Gauge
@@ -46,7 +48,7 @@ class Overlays:
     """
 
     def __init__(self) -> None:
-        self.arrows = self.impulses = False
+        self.arrows = self.impulses = self.keeps_scales = False
         self.reach = 1.0
         self.velocity, self.force = Gauge("m/s"), Gauge("N")
         self.impact, self.rest = Gauge("N s"), Gauge("N s")
@@ -58,17 +60,23 @@ class Overlays:
     def toggle_arrows(self, world: World, camera: Camera) -> None:
         """Show or hide velocities, forces and contact normals."""
         self.arrows = not self.arrows
-        if self.arrows:
+        if self.arrows and not self.keeps_scales:
             self.velocity, self.force = Gauge("m/s"), Gauge("N")
             self._measure(world, camera)
 
     def toggle_impulses(self, world: World, camera: Camera) -> None:
         """Show or hide the impulses at contacts."""
         self.impulses = not self.impulses
-        if self.impulses:
+        if self.impulses and not self.keeps_scales:
             self.impact, self.rest = Gauge("N s"), Gauge("N s")
             self._measure(world, camera)
         self.forget()
+
+    def toggle_scales(self) -> None:
+        """Let the scales of all arrows stay as they are, or follow what is shown again."""
+        self.keeps_scales = not self.keeps_scales
+        for gauge in (self.velocity, self.force, self.impact, self.rest, self.body_force):
+            gauge.kept = self.keeps_scales
 
     def forget(self) -> None:
         """Forget impacts and the places of labels: they belong to what was shown before."""

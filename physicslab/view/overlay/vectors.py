@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from physicslab.components import Transform, Velocity
+from physicslab.diagnostics.free_body import applied_forces, contact_forces
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.theme import Theme
@@ -20,19 +21,19 @@ NORMAL_LENGTH = 26.0
 
 
 def draw_vectors(world: World, overlays: Overlays, camera: Camera, theme: Theme, canvas: Canvas) -> None:
-    """Draw the velocity of each body that moves, the forces of the last substep, and the normals of contacts.
-
-    Forces are the sums of the force systems (gravity, springs, drag); contacts act by impulses.
-    """
-    world.add_up_forces()
+    """Draw the velocity of each body that moves, the sum of the forces on it, and the normals of contacts."""
+    applied = applied_forces(world)
+    force = applied + contact_forces(world)
     rows = world.batch(Transform, Velocity).rows
     position = world.table(Transform)["position"][rows]
     linear = world.table(Velocity)["linear"][rows]
     pulled = rows[world.bodies.inverse_mass[rows] > 0.0]
-    force = world.bodies.force[pulled]
-    overlays.force.follow(np.hypot(force[:, 0], force[:, 1]), overlays.reach, world.time)
-    # A speed that one step of the forces brings about is no motion where contacts take it away again.
-    pull = np.hypot(force[:, 0], force[:, 1]) * world.bodies.inverse_mass[pulled] * world.simulation.dt
+    force, applied = force[pulled], applied[pulled]
+    # What contacts take away again is a measure for what is left: a rest of it is no force, and no motion.
+    strength = np.hypot(applied[:, 0], applied[:, 1])
+    sizes = np.concatenate((np.hypot(force[:, 0], force[:, 1]), strength))
+    overlays.force.follow(sizes, overlays.reach, world.time)
+    pull = strength * world.bodies.inverse_mass[pulled] * world.simulation.dt
     speed = np.concatenate((np.hypot(linear[:, 0], linear[:, 1]), pull))
     overlays.velocity.follow(speed, overlays.reach, world.time)
     flip = np.array((1.0, -1.0))  # the screen's y points down

@@ -16,14 +16,17 @@ __all__ = ["draw_axis_numbers"]
 
 _EVERY = 2
 """Of so many lines of the grid one has its number."""
-_BAR = 7.0
-"""Room for the scale bar at the right, in heights of the text."""
 _MAX_LINES = 400
 """Of a picture with more lines than that, which would be a speck, none has."""
 
 
-def draw_axis_numbers(camera: Camera, room: Rect, size: int, canvas: Canvas, theme: Theme) -> None:
-    """Write the coordinates [m] of lines of the grid at the lower and the left edge of a room [px]."""
+def draw_axis_numbers(
+    camera: Camera, room: Rect, right: int, size: int, canvas: Canvas, theme: Theme
+) -> None:
+    """Write the coordinates [m] of lines of the grid at the lower and the left edge of a room [px].
+
+    Those at the lower edge end before ``right`` [px], where the scale bar begins.
+    """
     left, top, width, height = room
     step = _EVERY * grid_spacing(camera.scale)
     low, high = camera.to_world((left, top + height)), camera.to_world((left + width, top))
@@ -31,8 +34,9 @@ def draw_axis_numbers(camera: Camera, room: Rect, size: int, canvas: Canvas, the
     text_height = canvas.text_size("0", style)[1]
     for x in _multiples(low.x, high.x, step):
         place = round(camera.to_screen(Vector2(x, camera.centre.y))[0])
-        if left + size < place < left + width - _BAR * size:
-            canvas.text(_words(x, step), (place + 3, top + height - text_height - 2), style)
+        words = _words(x, step)
+        if left + size < place and place + canvas.text_size(words, style)[0] + size // 2 < right:
+            canvas.text(words, (place + 3, top + height - text_height - 2), style)
     for y in _multiples(low.y, high.y, step):
         place = round(camera.to_screen(Vector2(camera.centre.x, y))[1])
         if top + 2 * text_height < place < top + height - 2 * text_height:

@@ -11,8 +11,8 @@ from physicslab.view.panels.panels import broken, draw_pill, pill_height, pill_m
 
 __all__ = ["DroppedTime", "Message", "draw_banners", "draw_messages", "lay_out_messages"]
 
-_MIN_DROPPED = 0.005
-"""Less time [s], dropped within a few seconds, cannot be noticed."""
+_MIN_DROPPED = 0.05
+"""Less time [s], dropped within a few seconds, cannot be noticed, and would be written as 0.0 s."""
 _DROP_SHOWN = 3.0
 """How long [s] time that was dropped is shown."""
 

@@ -85,7 +85,7 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
             (Sample(FORCE), FORCE.name, overlays.force.words),
             (Sample(CONTACT_NORMAL, CONTACT_NORMAL.width), CONTACT_NORMAL.name, "direction only"),
         ]
-        remarks.append("Force: gravity, springs, drag; no contacts.")
+        remarks.append("Select a body to see each of the forces on it.")
     if overlays.impulses:
         rows += [
             (Sample(NORMAL_IMPULSE, IMPACT_WIDTH), "Normal, impact", overlays.impact.words),
@@ -108,7 +108,8 @@ def legend_of(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: 
         return None
     rows, remarks = _rows(overlays)
     pad = round(0.7 * size)
-    heading = lay_out([Line("Arrows", "scale", "heading")], 0, 0, width, size, canvas, theme)
+    scale = "scale, kept" if overlays.keeps_scales else "scale"
+    heading = lay_out([Line("Arrows", scale, "heading")], 0, 0, width, size, canvas, theme)
     label, value = TextStyle(size - 1, theme.text), TextStyle(size - 1, theme.faint)
     row_height = canvas.text_size("Ag", label)[1]
     texts, samples, y = list(heading.texts), [], heading.rect[3] - pad

@@ -8,6 +8,7 @@ from physicslab.view.canvas.theme import Theme
 from physicslab.view.picture.backdrop import draw_bounds, draw_grid
 from physicslab.view.picture.bodies import draw_bodies
 from physicslab.view.picture.springs import draw_springs
+from physicslab.view.picture.strobe import draw_strobes
 from physicslab.view.picture.trails import draw_trails
 from physicslab.world import World
 
@@ -21,6 +22,7 @@ def draw_world(world: World, camera: Camera, theme: Theme, canvas: Canvas, *, gr
     if grid:
         draw_grid(camera, theme, canvas)
     draw_bounds(world.physics.bounds, camera, theme, canvas)
+    draw_strobes(world, camera, theme, canvas)
     draw_trails(world, camera, theme, canvas)
     draw_bodies(world, camera, theme, canvas)
     draw_springs(world, camera, theme, canvas)

@@ -5,12 +5,25 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
 
-from physicslab.components import Drag, Held, Mass, Material, Name, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import (
+    Drag,
+    Held,
+    Mass,
+    Material,
+    Name,
+    Shape,
+    Spring,
+    Strobe,
+    Trail,
+    Transform,
+    Velocity,
+)
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
 from physicslab.ecs.text import in_words
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, RemoveComponent, SetField
+from physicslab.state.attached import local_point as in_frame
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.points import local_point, point_of
 from physicslab.view.window.window import Window
@@ -156,6 +169,7 @@ _MEANINGS: dict[type[Component], str] = {
     Material: "how much it bounces, and how rough it is",
     Drag: "it is slowed by what it moves through, as by air",
     Spring: "it hangs on a point that can be dragged",
+    Strobe: "pictures of where it was stay",
     Trail: "where it was is shown",
 }
 """What components mean to the body that has them."""
@@ -174,7 +188,7 @@ def name_entity(window: Window, entity: int, name: str) -> None:
 
 
 def set_end(window: Window, entity: int, kind: type[Component], field: str, end: int | None) -> None:
-    """Let a field name another entity; the point that a spring holds there stays where it is."""
+    """Let a field name another entity; the point there of a spring or an instrument stays where it is."""
     world = window.edits.world
     held = world.component(entity, kind)
     values = held.given() | {field: end}
@@ -188,6 +202,8 @@ def set_end(window: Window, entity: int, kind: type[Component], field: str, end:
         before = getattr(held, field) if field == "b" else held.a or own
         place = point_of(world, before, getattr(held, anchor))
         values[anchor] = local_point(world, end if field == "b" else end or own, place)
+    elif (point := field.removesuffix("_body")) in getattr(kind, "POINTS", ()):
+        values[point] = in_frame(world, end, point_of(world, getattr(held, field), getattr(held, point)))
     try:
         window.edits.do(AddComponent(entity, kind(**values)))
     except InvalidValue as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from physicslab.components import Shape, Transform
 from physicslab.ecs.vector import Vector2
+from physicslab.state.attached import local_point as in_frame
 from physicslab.world import World
 
 __all__ = ["local_point", "point_of"]
@@ -21,8 +22,7 @@ def local_point(world: World, body: int | None, place: Vector2) -> Vector2:
     """Return a point of the world in a body's frame [m]: if it is not on the body, the body's middle."""
     if body is None or not world.has(body, Transform):
         return place
-    transform = world.component(body, Transform)
-    local = (place - transform.position).rotated(-transform.angle)
+    local = in_frame(world, body, place)
     if not world.has(body, Shape):
         return Vector2()
     shape = world.component(body, Shape)

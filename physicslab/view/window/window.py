@@ -23,11 +23,11 @@ from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.measured import Measured
+from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.pins import Pins
 from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
-from physicslab.view.window.ruler import Ruler
 from physicslab.view.window.selection import Selection
 from physicslab.view.window.snapping import Snapping
 from physicslab.view.window.spring_tool import SpringTool
@@ -133,8 +133,10 @@ class Window:
         The fixed end of a spring that is dragged.
     picking : callable, optional
         What is done with the body that is clicked next, or with none where there is none.
-    ruler : Ruler
-        What lengths are measured with.
+    measuring : Measuring
+        What is being placed, dragged or written of instruments.
+    shows_stopwatch : bool
+        Whether the times between crossings of gates are shown.
     naming : str, optional
         The name that is being written for the scene to be saved under; ``None`` while none is.
     naming_refused : str
@@ -201,7 +203,7 @@ class Window:
         self.pins = Pins()
         self.snapping = Snapping()
         self.picking: Callable[[World, Window, int | None], None] | None = None
-        self.ruler = Ruler()
+        self.measuring, self.shows_stopwatch = Measuring(), False
         self.naming: str | None = None
         self.naming_refused = ""
         self.copied: list[list[Component]] = []

@@ -1,59 +1,173 @@
-"""The plot of error against run time, in a window of its own."""
+"""Error against run time: how far measuring has come, then a plot, and a table to choose a method from."""
 
 from __future__ import annotations
 
-import numpy as np
-from imgui_bundle import ImVec2, imgui, implot
+from collections.abc import Callable
 
-from physicslab.view.panels.error_study import ErrorStudy
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from numpy.typing import NDArray
+
+from physicslab.history import SetSimulation
+from physicslab.view.canvas.quantities import round_quantity
+from physicslab.view.canvas.theme import Colour
+from physicslab.view.controls import file_actions
+from physicslab.view.panels.error_study import ErrorStudy, Sample
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
+from physicslab.world import World
 
 __all__ = ["build_error_plot"]
 
+_TITLE = "Error against run time"
 _FLOOR = 1e-17
 """Errors below this are drawn at it [m]: zero has no place on a logarithmic scale."""
-_SHARE = (0.62, 0.6)
-"""How much of the window the plot takes."""
+_TABLE = 22.0
+"""Width of the table, in heights of the text."""
+_PLOT = (22.0, 60.0)
+"""The least width of a plot beside it, and the largest, in heights of the text."""
+_HEIGHT = 26.0
+"""The largest height of both, in heights of the text."""
+_WORDS = 12.0
+"""Height of all that is above and below them, in heights of the text."""
+_LEGEND = 16.0
+"""The height in heights of the text from which on a plot has room for a legend."""
+_ROOM = 2.0
+"""By what factor axes go beyond the marks."""
 
 
 def build_error_plot(ui: Ui, window: Window) -> None:
-    """Build a mark for each run, methods joined by lines: fast to the left, right below."""
-    study = window.error_study
-    with ui.floating("Error against run time", window.middle) as stays:
-        width, height = (share * px for share, px in zip(_SHARE, window.canvas.size, strict=True))
-        imgui.push_text_wrap_pos(width)
-        ui.faint(f"{study.remark}. Each mark is one run: left is fast, low is right.", wrapped=False)
-        imgui.pop_text_wrap_pos()
-        if implot.begin_plot(
-            "##error", ImVec2(width, height), implot.Flags_.no_title | implot.Flags_.no_menus
-        ):
-            implot.setup_axes(
-                "time of the processor [ms]",
-                "error [m]",
-                implot.AxisFlags_.auto_fit,
-                implot.AxisFlags_.auto_fit,
+    """Build how far it is while the scene is measured, and what was found after that."""
+    if window.error_study.running:
+        _build_progress(ui, window)
+    elif window.error_study.shown:
+        _build_result(ui, window)
+
+
+def _build_progress(ui: Ui, window: Window) -> None:
+    study, (left, top, width, _) = window.error_study, window.room()
+    with ui.floating("Measuring the error", (left + 0.5 * width, top + 4.0 * ui.size)) as stays:
+        ui.bar("Measuring this scene with every method", f"{study.share:.0%}", study.share, ui.theme.accent)
+        stopped = ui.button("Stop", "Give up measuring (F5)")
+    if stopped or not stays[0]:
+        window.deeds.append(file_actions.study_error)
+
+
+def _build_result(ui: Ui, window: Window) -> None:
+    study, size, (width, height) = window.error_study, ui.size, window.canvas.size
+    room = 0.9 * window.room()[2]
+    beside = room >= (_TABLE + _PLOT[0]) * size
+    wide = (_TABLE + _PLOT[1]) * size
+    wide = min(room, wide) if beside else min(max(room, 0.6 * width), 0.9 * width)
+    high = min(0.9 * height - _WORDS * size, _HEIGHT * size)
+    with ui.floating(_TITLE, window.middle) as stays:
+        imgui.push_text_wrap_pos(wide)
+        ui.faint(
+            f"How far bodies are off after {study.seconds:g} s: each mark is one run, left is fast, low is "
+            f"right. Compared with {study.reference}; there is no known answer.",
+            wrapped=False,
+        )
+        if study.chaotic:
+            shown = round_quantity(study.rounding, "m")
+            ui.text(
+                f"This scene is chaotic: one rounding at the start moves a body by {shown} until then. No "
+                "method can be right about places below that line, whichever is lower here.",
+                ui.theme.paused,
             )
-            implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
-            implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
-            for n, (name, costs, errors) in enumerate(_series(study)):
-                spec = implot.Spec()
-                spec.marker, spec.marker_size = n % implot.Marker_.count, 5.0
-                implot.plot_line(name, costs, errors, spec)
-                ui.words.append(name)
-            implot.end_plot()
+        imgui.pop_text_wrap_pos()
+        _build_plot(ui, study, (wide - _TABLE * size, high) if beside else (wide, 0.55 * high))
+        if beside:
+            imgui.same_line()
+        _build_table(ui, study, window, (_TABLE * size, high) if beside else (wide, 0.45 * high))
         if ui.button("Close"):
             study.shown = False
     if not stays[0]:
         study.shown = False
 
 
-def _series(study: ErrorStudy) -> list[tuple[str, np.ndarray, np.ndarray]]:
+def _build_plot(ui: Ui, study: ErrorStudy, size: tuple[float, float]) -> None:
+    flags = implot.Flags_.no_title | implot.Flags_.no_menus
+    if size[1] < _LEGEND * ui.size:
+        flags |= implot.Flags_.no_legend
+    if not implot.begin_plot("##error", ImVec2(*size), flags):
+        return
+    series = _series(study)
+    implot.setup_axes("processor time [ms]", "largest error [m]")
+    implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
+    implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
+    costs = np.concatenate([line[1] for line in series])
+    errors = np.concatenate([line[2] for line in series])
+    implot.setup_axes_limits(*_limits(costs), *_limits(errors))
+    implot.setup_legend(implot.Location_.north_east)
+    for n, (name, times, distances) in enumerate(series):
+        spec = implot.Spec()
+        spec.marker, spec.marker_size = n % implot.Marker_.count, 5.0
+        spec.line_color = spec.marker_fill_color = spec.marker_line_color = _opaque(
+            ui.theme.bodies[n % len(ui.theme.bodies)]
+        )
+        implot.plot_line(name, times, distances, spec)
+        ui.words.append(name)
+    if study.rounding > 0.0:
+        spec = implot.Spec()
+        spec.flags, spec.line_color = implot.InfLinesFlags_.horizontal, _opaque(ui.theme.faint)
+        implot.plot_inf_lines("one rounding at the start", np.array([study.rounding]), spec)
+    implot.end_plot()
+
+
+def _build_table(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, float]) -> None:
+    """Build a row for each run, the fastest first; a click chooses its method and step for this scene."""
+    flags = imgui.TableFlags_
+    if not imgui.begin_table(
+        "runs", 4, flags.scroll_y | flags.row_bg | flags.sizing_fixed_fit, ImVec2(*size)
+    ):
+        return
+    imgui.table_setup_scroll_freeze(0, 1)
+    for head in ("Method", "Step", "Time", "Error"):
+        imgui.table_setup_column(head)
+    imgui.table_headers_row()
+    for n, run in enumerate(sorted(study.samples, key=lambda run: run.cpu_ms)):
+        imgui.table_next_row()
+        imgui.table_next_column()
+        if ui.button(f"Use run {n + 1}", "Run this scene by it from here on", shown=run.name):
+            window.deeds.append(_using(run))
+        for words in (run.step, f"{run.cpu_ms:.3g} ms", f"{run.error:.2g} m"):
+            imgui.table_next_column()
+            ui.text(words)
+    imgui.end_table()
+
+
+def _using(run: Sample) -> Callable[[World, Window], None]:
+    """Return what chooses the settings of a run."""
+
+    def deed(world: World, window: Window) -> None:
+        window.edits.do(SetSimulation(run.settings))
+        step = f", {run.step}" if run.step else ""
+        window.notify(f"This scene goes by {run.name}{step} from here on")
+
+    return deed
+
+
+def _limits(values: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the ends of a logarithmic axis that has room for all of these, one power of ten at least.
+
+    >>> [float(end) for end in _limits(np.array([1.0, 100.0]))]
+    [0.5, 200.0]
+    """
+    low, high = float(values.min()) / _ROOM, float(values.max()) * _ROOM
+    missing = max(10.0 * low / high, 1.0) ** 0.5
+    return low / missing, high * missing
+
+
+def _opaque(colour: Colour) -> ImVec4:
+    red, green, blue = colour
+    return ImVec4(red / 255, green / 255, blue / 255, 1.0)
+
+
+def _series(study: ErrorStudy) -> list[tuple[str, NDArray[np.float64], NDArray[np.float64]]]:
     """Return the runs of each method, the fastest first: name, times [ms], errors [m]."""
-    names = list(dict.fromkeys(sample.integrator for sample in study.samples))
     found = []
-    for name in names:
-        runs = sorted((s.cpu_ms, max(s.error, _FLOOR)) for s in study.samples if s.integrator == name)
+    for name in dict.fromkeys(sample.name for sample in study.samples):
+        runs = sorted((s.cpu_ms, max(s.error, _FLOOR)) for s in study.samples if s.name == name)
         costs, errors = np.array(runs, np.float64).T.copy()
         found.append((name, np.ascontiguousarray(costs), np.ascontiguousarray(errors)))
     return found

@@ -6,13 +6,14 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
-from physicslab.components import Drag, Held, Mass, Name, Shape, Trail, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Name, Shape, Strobe, Trail, Transform, Velocity
 from physicslab.components.name import why_no_id
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.view.controls.actions import duplicate_selected, plot_selected
 from physicslab.view.controls.attaching import attachments
 from physicslab.view.controls.tools import remove_selected
+from physicslab.view.overlay.instruments import readings_of
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window import changing
 from physicslab.view.window.window import Window
@@ -31,6 +32,7 @@ _SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
     (Mass, "Has mass", "A body that can move and has none is infinitely heavy"),
     (Drag, "Air resistance", "A force against its motion"),
     (Trail, "Leaves a trail", "Shows where it was"),
+    (Strobe, "Strobe pictures", "Its outline stays where it was every 0.1 s"),
 )
 """Components that are one click away; all others are in a list."""
 
@@ -66,6 +68,8 @@ class Inspector:
         for kind in sorted(kinds, key=lambda kind: ORDER.get(kind, len(ORDER))):
             self._rows.build(ui, world, window, kind)
         if len(chosen) == 1:
+            for label, value in readings_of(world, first):
+                ui.row(label, value)
             build_derived(ui, world, first)
             if window.level != "Explore" or window.overlays.arrows:
                 build_forces(ui, window.measured)

@@ -20,11 +20,13 @@ from physicslab.view.workbench.history_panel import build_history
 from physicslab.view.workbench.inspector import Inspector
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
+from physicslab.view.workbench.note_panel import NotePanel
 from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
 from physicslab.view.workbench.save_panel import build_save
 from physicslab.view.workbench.settings_panel import SettingsPanel
+from physicslab.view.workbench.stopwatch_panel import build_stopwatch
 from physicslab.view.workbench.transport import build_transport
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
 from physicslab.world import World
@@ -62,6 +64,7 @@ class Interface:
         self._settings = SettingsPanel()
         self._gallery = Gallery()
         self._recipe = RecipePanel()
+        self._note = NotePanel()
         self._next = 0.0
         self._offer_height = 0  # of the offer to restore a session [px]
         self._seen: tuple[object, ...] = ()
@@ -103,7 +106,12 @@ class Interface:
 
     def _finish_fields(self) -> str:
         """Take over what is half written in a field, and return why it is refused; empty where it is not."""
-        return self._inspector.finish(self._window) or self._settings.finish() or self._recipe.finish()
+        return (
+            self._inspector.finish(self._window)
+            or self._settings.finish()
+            or self._recipe.finish()
+            or self._note.finish(self._window)
+        )
 
     def build(
         self,
@@ -145,6 +153,7 @@ class Interface:
         shown = (
             window.help,
             window.error_study.shown,
+            window.error_study.share if window.error_study.running else None,
             window.lists_history,
             window.shows_gallery,
             window.naming is None,
@@ -153,6 +162,8 @@ class Interface:
             window.figures,
             window.level,
             len(window.graphs),
+            window.shows_stopwatch,
+            window.measuring.writing is None,
         )
         time = pace.paused, pace.speed, world.time if pace.paused else None
         return (
@@ -194,10 +205,13 @@ class Interface:
                 self._build_counts(ui, figures)
         if window.graphs:
             build_graphs(ui, window)
+        if window.shows_stopwatch:
+            build_stopwatch(ui, world, window, layout.visible)
+        if window.measuring.writing is not None:
+            self._note.build(ui, window)
         if window.recovery.offered:
             self._offer_height = build_recovery(ui, window, layout.visible)
-        if window.error_study.shown:
-            build_error_plot(ui, window)
+        build_error_plot(ui, window)
         if window.naming is not None:
             build_save(ui, window)
         if window.shows_gallery:

@@ -18,7 +18,8 @@ from physicslab.world import World
 
 __all__ = ["build_menu_bar"]
 
-_MENUS = {"File": ("file", "quit"), "Edit": ("edit",), "World": ("laws",), "View": ("show", "view", "window"),
+_MENUS = {"File": ("file", "quit"), "Edit": ("edit",), "World": ("laws",), "Instruments": ("measure",),
+          "View": ("show", "view", "window"),
           "Help": ("help",)}  # fmt: skip
 """Which groups of controls each menu shows."""
 _MAX_TITLE = 60

@@ -14,31 +14,45 @@ from physicslab.world import World
 
 __all__ = ["build_palette"]
 
+_LOWEST = 1.1
+"""Height of a button at least, in heights of the text."""
+_YIELDING = ("protractor", "note", "chain", "gate", "block", "ruler")
+"""Tools that are not in sight where there is little room, the first ones first."""
+
 
 def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
     """Build a button for each tool, with its icon and its name; the tool in hand is marked."""
     with ui.panel("palette", rect, padded=False):
         imgui.push_style_var(imgui.StyleVar_.button_text_align, ImVec2(0.0, 0.5))
         room, gap = imgui.get_content_region_avail(), imgui.get_style().item_spacing.y
-        width, buttons = room.x, len(PALETTE) + 1
-        height = min(1.9 * ui.size, max((room.y - (buttons - 1) * gap) // buttons, 1.1 * ui.size))
-        for tool in PALETTE:
+        width, least = room.x, _LOWEST * ui.size
+        shown = _shown(int((room.y + gap) / (least + gap)) - 1)
+        buttons = len(shown) + 1
+        height = min(1.9 * ui.size, max((room.y - (buttons - 1) * gap) // buttons, least))
+        behind = [tool for tool in (*PALETTE, *MORE_TOOLS) if tool not in shown]
+        for tool in shown:
             if ui.button(
                 tool.title, tool.usage, shown=_words(tool), on=window.tool == tool.name, size=(width, height)
             ):
                 _take_up(tool, window)
-        hidden = next((tool for tool in MORE_TOOLS if tool.name == window.tool), None)
+        hidden = next((tool for tool in behind if tool.name == window.tool), None)
         words = f"{ICONS['more']}  More" if hidden is None else _words(hidden)
         if ui.button(
             "More", "More to put into the world", shown=words, on=hidden is not None, size=(width, height)
         ):
             imgui.open_popup("more tools")
         if imgui.begin_popup("more tools"):
-            for tool in MORE_TOOLS:
+            for tool in behind:
                 if ui.item(tool.title, on=window.tool == tool.name, tip=tool.usage):
                     _take_up(tool, window)
             imgui.end_popup()
         imgui.pop_style_var()
+
+
+def _shown(room: int) -> list[Tool]:
+    """Return the tools for which there is room in sight; the others are behind one more button."""
+    out_of_sight = _YIELDING[: max(len(PALETTE) - room, 0)]
+    return [tool for tool in PALETTE if tool.name not in out_of_sight]
 
 
 def _words(tool: Tool) -> str:

@@ -1,0 +1,76 @@
+"""Points of instruments, which may go with bodies: where they are in the world."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Gate, Note, Protractor, Ruler, Transform, Velocity
+from physicslab.ecs.vector import Vector2
+from physicslab.state.state import State
+
+__all__ = ["INSTRUMENTS", "attached_to", "let_go_of_removed", "local_point", "place_of", "points_of"]
+
+INSTRUMENTS: tuple[type[Any], ...] = (Note, Ruler, Protractor, Gate)
+"""The components whose ``POINTS`` may go with bodies."""
+
+type _Points = NDArray[np.float64]
+
+
+def points_of(state: State, kind: type[Any], name: str, rows: NDArray[np.int64]) -> tuple[_Points, _Points]:
+    """Return where a point of the instruments in some rows is (k, 2) [m], and how fast it moves [m/s]."""
+    table, transform, velocity = state.table(kind), state.table(Transform), state.table(Velocity)
+    # Without a body, or where it is gone, a point goes with row 0: the world, at rest in its origin.
+    body = np.maximum(state.entity_index.rows_of(table[f"{name}_body"][rows]), 0)
+    point, angle = table[name][rows], transform["angle"][body]
+    c, s = np.cos(angle), np.sin(angle)
+    arm = np.stack((c * point[:, 0] - s * point[:, 1], s * point[:, 0] + c * point[:, 1]), axis=1)
+    turning = velocity["angular"][body][:, None] * np.stack((-arm[:, 1], arm[:, 0]), axis=1)
+    return transform["position"][body] + arm, velocity["linear"][body] + turning
+
+
+def place_of(state: State, entity: int, kind: type[Any], name: str) -> Vector2:
+    """Return where a point of an instrument is in the world [m].
+
+    Raises
+    ------
+    KeyError
+        If there is no such instrument.
+    """
+    part = state.component(entity, kind)
+    body, point = getattr(part, f"{name}_body"), getattr(part, name)
+    if body is None or not state.has(body, Transform):
+        return Vector2(*point)
+    transform = state.component(body, Transform)
+    return transform.position + Vector2(*point).rotated(transform.angle)
+
+
+def local_point(state: State, body: int | None, place: Vector2) -> Vector2:
+    """Return a point of the world [m] in the frame of a body; in that of the world where there is none."""
+    if body is None:
+        return place
+    transform = state.component(body, Transform)
+    return (place - transform.position).rotated(-transform.angle)
+
+
+def attached_to(state: State, bodies: set[int]) -> list[tuple[int, type[Any], str]]:
+    """Return the points that go with any of these bodies: the instrument, its kind and the point's name."""
+    found: list[tuple[int, type[Any], str]] = []
+    for kind in INSTRUMENTS:
+        for entity in state.batch(kind).entities.tolist():
+            part = state.component(entity, kind)
+            found += [(entity, kind, name) for name in kind.POINTS if getattr(part, f"{name}_body") in bodies]
+    return found
+
+
+def let_go_of_removed(state: State) -> None:
+    """Let points stay in the world whose body was removed, or has no place any more."""
+    placed = state.table(Transform).present
+    for kind in INSTRUMENTS:
+        rows, table = state.batch(kind).rows, state.table(kind)
+        for name in kind.POINTS if len(rows) else ():
+            column = table[f"{name}_body"]
+            body = state.entity_index.rows_of(column[rows])
+            column[rows[(body < 0) | ~placed[body]]] = 0

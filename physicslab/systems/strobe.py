@@ -1,0 +1,122 @@
+"""Where bodies were at regular moments."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Strobe, Transform, Velocity
+from physicslab.state.state import State
+from physicslab.systems.system import Stage, System, at
+from physicslab.systems.within_step import StepPath
+
+__all__ = ["StrobeSystem"]
+
+_LIMIT = 200_000
+"""Pictures that are kept of all bodies together; the oldest go first."""
+_ROUNDING = 1e-9
+"""Share of the interval by which a moment may be missed, as the clock rounds."""
+
+type _Rows = NDArray[np.int64]
+
+
+class StrobeSystem(System):
+    """Records where each body with a :class:`Strobe` is at the multiples of its interval, and its angle.
+
+    Places between the ends of steps lie on the path through the step
+    (:class:`physicslab.systems.within_step.StepPath`). It writes to nothing but its own record, which goes
+    with the body, or with its Strobe.
+    """
+
+    needs = (Strobe, Transform)
+
+    def __init__(self) -> None:
+        self._entities: _Rows = np.zeros(0, np.int64)
+        self._rows: _Rows = np.zeros(0, np.int64)
+        # Flashes, a few rows each: entity, time, x, y, angle. None is changed, so key frames share them.
+        self._flashes: tuple[NDArray[np.float64], ...] = ()
+        self._until = -np.inf
+        self._before: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
+
+    def attach(self, state: State) -> None:
+        """Follow the bodies there are, and drop the records of those that are gone."""
+        batch = state.batch(*self.needs)
+        gone = np.setdiff1d(self._entities, batch.entities)
+        if len(gone):
+            kept = (flash[~np.isin(flash[:, 0], gone)] for flash in self._flashes)
+            self._flashes = tuple(flash for flash in kept if len(flash))
+        self._entities, self._rows, self._before = batch.entities, batch.rows, None
+
+    def keep(self) -> tuple[NDArray[Any], ...]:
+        """Return the record."""
+        return np.array(self._until), *self._flashes
+
+    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+        """Go on with an earlier record of the same bodies."""
+        until, *flashes = kept
+        self._until, self._flashes, self._before = float(until), tuple(flashes), None
+
+    @at(Stage.PREPARE)
+    def begin(self, state: State, h: float) -> None:
+        """Note where the bodies are at the beginning of the step."""
+        if state.time + h < self._until:  # the clock was set back: what was recorded is in the future
+            self._flashes, self._until = (), -np.inf
+        self._before = self._motion(state)
+
+    @at(Stage.FINISH)
+    def record(self, state: State, h: float) -> None:
+        """Note where the bodies were at the multiples of their intervals within the step."""
+        if self._before is None:
+            return
+        interval = state.table(Strobe)["interval"][self._rows]
+        start, end = state.time, state.time + h
+        first = np.ceil(start / interval - _ROUNDING).astype(np.int64)
+        behind = np.ceil(end / interval - _ROUNDING).astype(np.int64)
+        first = np.maximum(first, behind - state.table(Strobe)["count"][self._rows])
+        self._until = end
+        many = np.maximum(behind - first, 0)
+        if not many.any():
+            return
+        body = np.repeat(np.arange(len(many)), many)
+        turn = np.arange(len(body)) - np.repeat(np.cumsum(many) - many, many) + np.repeat(first, many)
+        times = turn * interval[body]
+        place, rate = self._motion(state)
+        path = StepPath.between(self._before[0], place, self._before[1], rate, h)
+        where = path.at(body, np.clip((times - start) / h, 0.0, 1.0))
+        flash = np.column_stack((self._entities[body], times, where))
+        self._flashes = (*self._flashes, flash)
+        self._forget_old(state)
+
+    def _motion(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return places with angles (n, 3) and how fast they change."""
+        transform, velocity, rows = state.table(Transform), state.table(Velocity), self._rows
+        place = np.column_stack((transform["position"][rows], transform["angle"][rows]))
+        return place, np.column_stack((velocity["linear"][rows], velocity["angular"][rows]))
+
+    def _forget_old(self, state: State) -> None:
+        """Drop the flashes that are too old to be shown, and the oldest where there are too many."""
+        strobe = state.table(Strobe)
+        longest = float((strobe["interval"][self._rows] * (strobe["count"][self._rows] + 1)).max())
+        flashes = [flash for flash in self._flashes if flash[-1, 1] > self._until - longest]
+        total = sum(map(len, flashes))
+        while total > _LIMIT and len(flashes) > 1:
+            total -= len(flashes.pop(0))
+        self._flashes = tuple(flashes)
+
+    def pictures(self, state: State) -> tuple[_Rows, NDArray[np.float64]]:
+        """Return the rows of bodies (k,), and where they were: x, y, angle and time (k, 4) [m, rad, s].
+
+        The oldest come first; of each body no more than its Strobe shows.
+        """
+        if not self._flashes:
+            return np.zeros(0, np.int64), np.zeros((0, 4))
+        every = np.concatenate(self._flashes)
+        rows = state.entity_index.rows_of(every[:, 0].astype(np.int64))
+        strobe, present = state.table(Strobe), rows > 0
+        every, rows = every[present], rows[present]
+        age = self._until - every[:, 1]
+        shown = age <= (1.0 + _ROUNDING) * strobe["interval"][rows] * strobe["count"][rows]
+        order = np.argsort(every[shown, 1], kind="stable")
+        return rows[shown][order], every[shown][order][:, [2, 3, 4, 1]]

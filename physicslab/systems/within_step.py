@@ -1,0 +1,87 @@
+"""Where something was between the beginning and the end of a step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["StepPath"]
+
+type _Numbers = NDArray[np.float64]
+
+_BEND = 0.25
+"""Share of its speed by which a velocity changes where a path may have a corner."""
+_EVEN = 1.0 / 6.0
+"""How far from the middle of the step, as a share of it, the corner then is: where a force that hardly
+changes gives the velocity, the two straight lines meet in the middle."""
+
+
+@dataclass(frozen=True, slots=True)
+class StepPath:
+    """The paths of some points through one step, from what is so at its beginning and its end.
+
+    Each is the cubic polynomial with these places and velocities (Hermite), which is off by at most
+    ``h**4 / 384`` times the fourth derivative. Where the velocity changes more than a smooth path through
+    these places allows, as by a blow, it is two straight lines that meet at the moment of the blow.
+
+    Parameters
+    ----------
+    first, last : float64 arrays (n, d)
+        Places; the first two columns are x and y, an angle may follow.
+    before, after : float64 arrays (n, d)
+        Their rates of change [1/s].
+    h : float
+        The length of the step [s].
+    corner : float64 array (n,)
+        The moment of the blow as a share of the step, 0 where there must have been several; NaN for smooth
+        paths.
+    """
+
+    first: _Numbers
+    last: _Numbers
+    before: _Numbers
+    after: _Numbers
+    h: float
+    corner: _Numbers
+
+    @classmethod
+    def between(
+        cls, first: _Numbers, last: _Numbers, before: _Numbers, after: _Numbers, h: float
+    ) -> StepPath:
+        """Return the paths between two moments."""
+        change = (after - before)[:, :2]
+        size = np.einsum("ij,ij->i", change, change)
+        speed = np.maximum(*(np.einsum("ij,ij->i", v[:, :2], v[:, :2]) for v in (before, after)))
+        missed = after[:, :2] * h - (last - first)[:, :2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            corner = np.einsum("ij,ij->i", missed, change) / (size * h)
+        bent = (size > _BEND**2 * speed) & (np.abs(corner - 0.5) > _EVEN)
+        inside = (corner > 0.0) & (corner < 1.0)
+        return cls(first, last, before, after, h, np.where(bent, np.where(inside, corner, 0.0), np.nan))
+
+    def at(self, points: NDArray[np.int64], share: _Numbers) -> _Numbers:
+        """Return where points (k,) are after a share (k,) of the step each (k, d)."""
+        p, q, corner = self.first[points], self.last[points], self.corner[points]
+        u, v = self.h * self.before[points], self.h * self.after[points]
+        s = share[:, None]
+        smooth = (p + s * u) + s * s * ((3.0 * (q - p) - 2.0 * u - v) + s * (2.0 * (p - q) + u + v))
+        bend = corner[:, None]
+        angle = p + np.where(np.isnan(bend), 0.0, bend) * u
+        with np.errstate(divide="ignore", invalid="ignore"):
+            early, late = p + (s / bend) * (angle - p), angle + (s - bend) / (1.0 - bend) * (q - angle)
+        straight = np.where(s < bend, early, late)
+        path: _Numbers = np.where(np.isnan(bend), smooth, straight)
+        return path
+
+    def velocity(self, points: NDArray[np.int64], share: _Numbers) -> _Numbers:
+        """Return how fast points (k,) are after a share (k,) of the step each (k, d)."""
+        p, q, corner = self.first[points], self.last[points], self.corner[points]
+        before, after = self.before[points], self.after[points]
+        u, v = self.h * before, self.h * after
+        s = share[:, None]
+        smooth = (u + s * (2.0 * (3.0 * (q - p) - 2.0 * u - v) + 3.0 * s * (2.0 * (p - q) + u + v))) / self.h
+        straight = np.where(s < corner[:, None], before, after)
+        velocity: _Numbers = np.where(np.isnan(corner)[:, None], smooth, straight)
+        return velocity
