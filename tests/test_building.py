@@ -291,7 +291,7 @@ def test_what_is_made_snaps_to_the_grid_on_request(way: str) -> None:
     desk = opened(world)
     desk.window.tool = "circle"
     if way == "menu":
-        desk.key("x")
+        desk.key("q")
         desk.frames(2)
     with holding({"alt": pygame.KMOD_LALT, "ctrl": pygame.KMOD_LCTRL, "menu": 0}[way]):
         click_at(desk, desk.pixel(1.03, 0.98))
@@ -349,7 +349,7 @@ def test_shift_and_arrows_turn_what_is_selected() -> None:
     desk = opened(world, body)
     tap(desk, "left", pygame.KMOD_LSHIFT)
     assert math.degrees(world.component(body, Transform).angle) == pytest.approx(1.0)
-    desk.key("x")
+    desk.key("q")
     desk.frames(2)
     tap(desk, "right", pygame.KMOD_LSHIFT)
     assert math.degrees(world.component(body, Transform).angle) == pytest.approx(-14.0)
@@ -391,9 +391,9 @@ def test_a_text_is_typed_into_a_name_key_by_key() -> None:
     body = circle(world, (0, 0))
     desk = opened(world, body)
     click(desk, "Name")
-    write(desk, "x1")
+    write(desk, "q1")
     tap(desk, "return")
-    assert world.label(body) == "x1" and not desk.window.snapping.on, "keys for fields are theirs"
+    assert world.label(body) == "q1" and not desk.window.snapping.on, "keys for fields are theirs"
 
 
 SETTINGS: dict[str, tuple[str, str, Callable[[World], float], float]] = {

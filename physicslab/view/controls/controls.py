@@ -131,7 +131,7 @@ CONTROLS: tuple[Control, ...] = (
             tip="Move what is selected by a pixel"),
     Control("Shift+Arrows", "turn what is selected", "shift+left", actions.turner(1), minor=True,
             group="edit", tip="Turn what is selected by a degree; by 15 degrees where angles snap"),
-    Control("X", "snap", "x", actions.toggle_snapping, minor=True, group="edit",
+    Control("Q", "snap", "q", actions.toggle_snapping, minor=True, group="edit",
             state=lambda _, window: window.snapping.on,
             tip="Places and sizes snap to the grid and to other bodies, angles to 15 degrees; also while "
                 "Alt or Ctrl is held"),
