@@ -16,7 +16,7 @@ from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 from physicslab.ecs.text import in_words
 
-__all__ = ["plain_name"]
+__all__ = ["name_by_kinds", "plain_name"]
 
 _OF_BODIES = (Transform, Velocity, Mass, Material, Drag, Trail, Held, Name)
 """Components that do not say what an entity is."""
@@ -28,11 +28,21 @@ def plain_name(number: int, components: Iterable[Any]) -> str:
     >>> plain_name(3, [Transform(), Shape.circle(1.0)]), plain_name(4, [Transform(), Velocity()])
     ('circle 3', 'point 4')
     """
-    parts = list(components)
-    shape = next((part for part in parts if isinstance(part, Shape)), None)
+    parts = {type(part): part for part in components}
+    shape = parts.get(Shape)
+    return name_by_kinds(number, parts, None if shape is None else shape.kind)
+
+
+def name_by_kinds(number: int, kinds: Iterable[type], shape: str | None) -> str:
+    """Return what the entity with this number is called, by its kinds of components and that of its shape.
+
+    >>> name_by_kinds(5, [Transform, Shape], "box")
+    'box 5'
+    """
+    present = list(kinds)
     if shape is not None:
-        return f"{shape.kind} {number}"
-    if any(isinstance(part, Velocity | Mass) for part in parts):
+        return f"{shape} {number}"
+    if Velocity in present or Mass in present:
         return f"point {number}"
-    other = next((part for part in parts if not isinstance(part, _OF_BODIES)), None)
-    return f"{in_words(type(other).__name__) if other is not None else 'entity'} {number}"
+    other = next((kind for kind in present if kind not in _OF_BODIES), None)
+    return f"{in_words(other.__name__) if other is not None else 'entity'} {number}"
