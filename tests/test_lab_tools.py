@@ -1,4 +1,4 @@
-"""The tools of the lab in the window: handles, graphs, time line, undo, free-body diagrams."""
+"""The tools of the lab in the window: handles, time line, undo, free-body diagrams."""
 
 import math
 from pathlib import Path
@@ -201,36 +201,6 @@ def test_a_body_that_was_in_the_hand_is_let_go_where_another_future_begins() -> 
     desk.key("space")
     desk.frames(3)
     assert not world.has(ball, Held)
-
-
-# Graphs
-
-
-def test_a_graph_follows_a_body_and_is_written_as_a_table(desk: Desk, tmp_path: Path) -> None:
-    ball = circle(desk.world, (0, 0), velocity=(2, 0), name="ball")
-    desk.window.selection.take(ball)
-    desk.key("m")
-    desk.frames(31)
-    (graph,) = desk.window.graphs
-    line = graph.chosen["x"]
-    assert len(line.times) >= 30 and np.allclose(line.values, 2.0 * line.times, atol=1e-9)
-    click(desk, "CSV of Motion of ball")
-    desk.frames(2)
-    (path,) = tmp_path.glob("*.csv")
-    head, first, *_ = path.read_text("utf-8").splitlines()
-    assert head == "time [s],x [m],y [m],speed [m/s]"
-    assert [float(value) for value in first.split(",")][3] == pytest.approx(2.0)
-
-
-def test_a_graph_records_nothing_again_in_the_past(desk: Desk) -> None:
-    circle(desk.world, (0, 0), velocity=(2, 0))
-    desk.key("m")
-    desk.frames(20)
-    (graph,) = desk.window.graphs
-    before = graph.chosen["kinetic energy"].times.copy()
-    actions.seek(desk.window, 3)
-    desk.frames(3)
-    assert np.array_equal(graph.chosen["kinetic energy"].times, before)
 
 
 # Free-body diagrams

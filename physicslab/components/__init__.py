@@ -2,14 +2,18 @@
 
 from physicslab.components.drag import Drag
 from physicslab.components.gate import Gate
+from physicslab.components.graph import Graph
+from physicslab.components.graph_line import GraphLine
 from physicslab.components.held import Held
 from physicslab.components.mass import Mass
 from physicslab.components.material import Material
+from physicslab.components.meter import Meter
 from physicslab.components.name import Name
 from physicslab.components.note import Note
 from physicslab.components.protractor import Protractor
 from physicslab.components.ruler import Ruler
 from physicslab.components.shape import Shape
+from physicslab.components.slider import Slider
 from physicslab.components.spring import Spring
 from physicslab.components.strobe import Strobe
 from physicslab.components.trail import Trail
@@ -19,14 +23,18 @@ from physicslab.components.velocity import Velocity
 __all__ = [
     "Drag",
     "Gate",
+    "Graph",
+    "GraphLine",
     "Held",
     "Mass",
     "Material",
+    "Meter",
     "Name",
     "Note",
     "Protractor",
     "Ruler",
     "Shape",
+    "Slider",
     "Spring",
     "Strobe",
     "Trail",

@@ -16,7 +16,6 @@ from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
-from physicslab.view.window.graphs import Graph
 from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.window import Left, Window
 from physicslab.view.workbench.interface import Interface
@@ -65,13 +64,13 @@ class Sandbox:
         self._autosave = autosave
         self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
-        self._titles = "", ""
+        self._titles, self._source = ("", ""), window.source
+        self.world = world
         self.interface = Interface(window)
         window.room = self.interface.room
         hud = HudSystem(window, self.interface)
         self._systems = InputSystem(window, self.interface), RenderSystem(window), hud
         self.show(world)
-        self._source = window.source
         if autosave is not None:
             autosave.finish(world)
 
@@ -80,13 +79,16 @@ class Sandbox:
 
         A world that was shown before comes with its history.
         """
-        self.world = world
         titles, self._titles = self._titles, (world.name, world.title)
+        is_again = titles == self._titles and self.window.source == self._source
+        before = self.world if is_again and world is not self.world else None
+        self.world = world
         if self._shown is not None:
             self._shown(world)
+        window = self.window
+        window.dashboard.begin(world, before, is_new=history is None)
         if history is None:
             world.install(*self._systems)
-        window = self.window
         world.synchronise()  # what was done to make it is no edit
         self.history = history or History(world)
         window.follow_history(self.history)
@@ -94,7 +96,6 @@ class Sandbox:
         window.overlays.forget()
         window.sparks.clear()
         window.selection.clear()
-        window.graphs = [graph for graph in window.graphs if _goes_on(graph, titles, self._titles)]
         window.naming, window.measuring = None, Measuring()
         window.shows_stopwatch = bool(len(world.batch(Gate)))
         window.error, window.next_world = "", None
@@ -104,6 +105,8 @@ class Sandbox:
     def frame(self, elapsed: float) -> None:
         """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last."""
         self.window.pace.begin(elapsed)
+        if self.window.next_world is None:
+            self._source = self.window.source  # another, once the scene was saved under another name
         self.world.frame(Stage.INPUT, elapsed)
         if self.window.next_world is not None:
             self._go_on_to(self.window.next_world)
@@ -123,10 +126,9 @@ class Sandbox:
         window.left = Left(self.history, self._source, window.unchanged) if edited else None
         if back is not None and back.history.world is world:
             self.show(world, back.history)
-            self._source, window.source, window.unchanged = back.source, back.source, back.unchanged
+            window.source, window.unchanged = back.source, back.unchanged
             return
         self.show(world)
-        self._source = window.source
         if edited:
             window.notify(f"{window.notice} - Ctrl+Z at its start brings back what was edited before", 6.0)
 
@@ -193,9 +195,3 @@ class Sandbox:
             return f"The last good state is shown; it could not be saved: {error}."
         self._rescued = self.world, self.world.time
         return f"The last good state is shown, and saved as {path.name}."
-
-
-def _goes_on(graph: Graph, before: tuple[str, str], now: tuple[str, str]) -> bool:
-    """Whether a graph stays where another world is shown: it does if that is the same scene once more."""
-    graph.restart()
-    return before == now

@@ -6,17 +6,24 @@ import csv
 from typing import TextIO
 
 from physicslab.components import Transform, Velocity
+from physicslab.components.quantities import QUANTITIES
 from physicslab.diagnostics.energy import Energy, measure_momentum
 from physicslab.diagnostics.run_report import body_names
 from physicslab.world import World
 
 __all__ = ["BODY_HEADER", "TrajectoryWriter"]
 
-BODY_HEADER = (
-    "time [s]", "entity", "x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "omega [rad/s]",
-)  # fmt: skip
+_MOTION = ("x", "y", "angle", "velocity x", "velocity y", "angular velocity")
+_KINETIC = ("kinetic energy of translation", "kinetic energy of rotation")
+_MOMENTUM = ("momentum x", "momentum y", "angular momentum")
+
+
+def _headings(names: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(QUANTITIES[name].heading for name in names)
+
+
+BODY_HEADER = ("time [s]", "entity", *_headings(_MOTION))
 """The columns that are a body's own."""
-_MOMENTUM_HEADER = ("px [kg m/s]", "py [kg m/s]", "angular momentum [kg m^2/s]")
 
 
 class TrajectoryWriter:
@@ -40,8 +47,8 @@ class TrajectoryWriter:
         self._potentials = tuple(dict.fromkeys(("gravity", "spring", *filter(None, stored))))
         self._rows = csv.writer(stream, lineterminator="\n")
         potentials = (f"potential {name} [J]" for name in self._potentials)
-        energies = ("kinetic linear [J]", "kinetic angular [J]", *potentials, "energy [J]")
-        self._rows.writerow((*BODY_HEADER, *energies, *_MOMENTUM_HEADER))
+        sums = (*_headings(_KINETIC), *potentials, *_headings(("total energy", *_MOMENTUM)))
+        self._rows.writerow((*BODY_HEADER, *sums))
         self._names: list[str] = []
         self._batch: object = None
 

@@ -82,6 +82,14 @@ class Component:
         It is called on a new component, so it may read every field; a write is tried on a new one first.
         """
 
+    def references(self) -> dict[str, str]:
+        """Return, by the names of fields that hold an entity, which component that one must have.
+
+        Override it where a scene file is to be refused that refers to another. An instrument, a component
+        that is not ``physical``, is left out of a file where what it refers to is gone.
+        """
+        return {}
+
     def values(self) -> dict[str, Any]:
         """Return every field's present value by name."""
         return {spec.name: getattr(self, spec.name) for spec in self.FIELDS}

@@ -76,6 +76,7 @@ def check_entities(
                 _check_ends(component, number, entities, where)
             elif isinstance(component, INSTRUMENTS):
                 _check_points(component, entities, where)
+            _check_references(component, entities, where)
         made.append((entity.get("id"), components))
     return made
 
@@ -198,6 +199,14 @@ def _check_inertia(mass: Mass, shape: Shape, where: str) -> None:
     if not math.isfinite(mass.mass * sum(size * size for size in sizes.values())):
         allowed = f"smaller: the moment of inertia is not finite with Mass.mass = {mass.mass:g} kg"
         raise refusal(f"{where}: Shape.{largest}", sizes[largest], allowed)
+
+
+def _check_references(component: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:
+    for name, needed in component.references().items():
+        other = getattr(component, name)
+        if other is not None and needed not in entities[other - 1]:
+            place = f"{where}: {type(component).__name__}.{name}"
+            raise refusal(place, entities[other - 1].get("id"), f"the id of an entity with a {needed}")
 
 
 def _check_points(part: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:

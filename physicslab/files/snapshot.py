@@ -34,8 +34,8 @@ class WorldSnapshot:
         The ids of the entities that have one.
     entities : list of int
         All entities, in order.
-    shaped : set of int
-        Those with a Shape.
+    living, shaped : set of int
+        All of them once more, and those with a Shape.
     contacts : Contacts
         What the contact solver remembers.
     rests : list of lists
@@ -58,7 +58,7 @@ class WorldSnapshot:
             self.entities = world.entities()
             self.chosen = outlived(world, world.schedule, world.plan)
             named = [(entity, name.id) for entity, name in esper.get_component(Name)]
-        living = set(self.entities)
+        self.living = living = set(self.entities)
         self.names = {entity: name for entity, name in named if entity in living}
         self.texts = {key: getattr(world, key) for key in ("name", "title", "description")}
         self.time, self.physics, self.simulation = world.time, world.physics, world.simulation

@@ -103,11 +103,25 @@ def _solver(snapshot: WorldSnapshot) -> dict[str, Any]:
 
 
 def _saved(snapshot: WorldSnapshot, entity: int) -> list[Component]:
-    """Return those of an entity's components that a file holds, the contract's first."""
+    """Return those of an entity's components that a file holds, the contract's first.
+
+    An instrument is left out whose body is gone: there is nothing that it could measure.
+    """
     order = [*_FIRST, *(name for name in COMPONENTS if name not in _FIRST)]
     kinds = [COMPONENTS[name] for name in order if COMPONENTS[name] not in UNSAVED]
     found = (snapshot.component(entity, kind) for kind in kinds)
-    return [component for component in found if component is not None]
+    return [part for part in found if part is not None and not _is_lost(part, snapshot)]
+
+
+def _is_lost(component: Component, snapshot: WorldSnapshot) -> bool:
+    """Whether an instrument refers to an entity that is gone, or that has not the component it needs."""
+    if component.physical:
+        return False
+    return any(
+        (entity := getattr(component, name)) is not None
+        and (entity not in snapshot.living or snapshot.component(entity, COMPONENTS[needed]) is None)
+        for name, needed in component.references().items()
+    )
 
 
 def _invented(

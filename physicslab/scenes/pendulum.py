@@ -1,5 +1,6 @@
 """A pendulum."""
 
+from physicslab.components import Graph, GraphLine
 from physicslab.prefabs import pendulum
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
@@ -9,6 +10,9 @@ __all__ = ["PENDULUM"]
 
 def _fill(world: World) -> None:
     pendulum(world, (0.0, 3.0), length=2.0, angle=0.5, name="bob")
+    graph = world.spawn(Graph())
+    for quantity in ("kinetic energy", "potential energy", "total energy"):
+        world.spawn(GraphLine(graph, quantity))
 
 
 PENDULUM = Scene(

@@ -67,10 +67,7 @@ class HudSystem(System):
         self._meter.note(world, elapsed)
         self._watch.follow(world)
         self._refresh(world)
-        history = window.edits.history
-        if history.step_count == history.steps_range[1]:  # in the past nothing is to be recorded again
-            for graph in window.graphs:
-                graph.sample(world)
+        window.dashboard.follow(world, window.edits.history)
         if window.error_study.poll():
             self._announce(window.error_study.failure)
         taken = self._draw_over_world(world)

@@ -33,7 +33,6 @@ __all__ = [
     "next_theme",
     "nudger",
     "paste",
-    "plot_selected",
     "redo",
     "reduce",
     "seek",
@@ -280,16 +279,6 @@ def leave(world: World, window: Window) -> None:
 def close(world: World, window: Window) -> None:
     """Close the window."""
     window.closing = True
-
-
-def plot_selected(world: World, window: Window) -> None:
-    """Plot the motion of what is selected; where nothing is, the energies of the world."""
-    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
-    for entity in bodies:
-        moves = world.has(entity, Velocity)
-        window.plot(f"Motion of {world.label(entity)}", entity, ("x", "y", "speed") if moves else ("x", "y"))
-    if not bodies:
-        window.plot("Energies", None, ("kinetic energy", "potential energy", "total energy"))
 
 
 def duplicate_selected(world: World, window: Window) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from physicslab.components import Strobe, Trail
-from physicslab.view.controls import actions, file_actions
+from physicslab.view.controls import actions, dashboard_actions, file_actions
 from physicslab.view.controls.measuring import (
     GATE,
     NOTE,
@@ -178,8 +178,15 @@ CONTROLS: tuple[Control, ...] = (
     Control("A", "keep scales", "a", actions.toggle_scales, minor=True, group="show",
             state=lambda _, window: window.overlays.keeps_scales,
             tip="Arrows keep their scale, so that two pictures can be compared"),
-    Control("M", "graph", "m", actions.plot_selected, minor=True, group="show",
+    Control("M", "graph", "m", dashboard_actions.plot_selected, minor=True, group="measure",
             tip="A graph against time: of what is selected, or of the energies"),
+    Control("Shift+M", "phase plot", "shift+m", dashboard_actions.plot_phase, minor=True, group="measure",
+            tip="The velocity of what is selected against its place"),
+    Control("Ctrl+M", "meter", "ctrl+m", dashboard_actions.add_meter, minor=True, group="measure",
+            tip="A number in large figures: the speed of what is selected, or the total energy"),
+    Control("Ctrl+Shift+M", "slider", "ctrl+shift+m", dashboard_actions.add_slider, minor=True,
+            group="measure",
+            tip="Changes a number by sliding: of what is selected, or gravity"),
     Control("I", "panel at the right", "i", actions.toggle_figures, minor=True, group="show",
             state=lambda _, window: window.figures, tip="What is selected, or the world in figures"),
     Control("H", "grid", "h", actions.toggle_grid, minor=True, group="show",

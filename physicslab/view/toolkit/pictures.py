@@ -46,19 +46,21 @@ class Pictures:
         self._pictures: dict[str, _Picture] = {}
         self._frame = self._texture_changes = 0
         self._shown: list[_Picture] = []
+        self._of: dict[str, _Picture] = {}
         self.painted = 0
 
     def take(self, data: imgui.ImDrawData) -> None:
         """Paint what is new of a frame of Dear ImGui; to be called after each ``imgui.render``."""
         self._frame += 1
         self._follow_textures(data)
-        self._shown = []
+        self._shown, self._of = [], {}
         for n, commands in enumerate(data.cmd_lists):
             if commands.idx_buffer.size() == 0:
                 continue
             picture = self._picture(f"{n} {commands._owner_name}", commands, data)
             if picture is not None:
                 self._shown.append(picture)
+                self._of[commands._owner_name] = picture
         old = [name for name, kept in self._pictures.items() if self._frame - kept.used > _UNUSED_FRAMES]
         for name in old:
             del self._pictures[name]
@@ -68,9 +70,19 @@ class Pictures:
         for picture in self._shown:
             surface.blit(picture.surface, picture.corner, special_flags=pygame.BLEND_PREMULTIPLIED)
 
+    def of(self, ending: str, paper: pygame.Color) -> pygame.Surface | None:
+        """Return the window whose name ends so as it is painted, on paper; ``None`` if there is none."""
+        picture = next((one for name, one in self._of.items() if name.endswith(ending)), None)
+        if picture is None:
+            return None
+        surface = pygame.Surface(picture.surface.get_size(), 0, 32)
+        surface.fill(paper)
+        surface.blit(picture.surface, (0, 0), special_flags=pygame.BLEND_PREMULTIPLIED)
+        return surface
+
     def forget(self) -> None:
         """Let Dear ImGui know that no texture is used any more; its context can then be ended."""
-        self._shown, self._pictures, self._textures = [], {}, {}
+        self._shown, self._of, self._pictures, self._textures = [], {}, {}, {}
 
     def _follow_textures(self, data: imgui.ImDrawData) -> None:
         """Take over the letters that were added to the texture since the last frame."""

@@ -192,6 +192,11 @@ class Toolkit:
         """Show panels as they were built last."""
         self._pictures.show(surface)
 
+    def picture_of(self, ending: str) -> pygame.Surface | None:
+        """Return a panel as it was painted last, by the end of its name; ``None`` if it is not shown."""
+        assert self._look is not None
+        return self._pictures.of(ending, pygame.Color(*self._look[0].panel))
+
     @property
     def painted(self) -> int:
         """How many pictures of panels were painted."""

@@ -66,12 +66,13 @@ class Ui:
     # ---- panels --------------------------------------------------------------------------------------------
 
     @contextmanager
-    def panel(self, name: str, rect: Rect, *, padded: bool = True) -> Iterator[None]:
-        """Begin a panel that stays where it is put."""
+    def panel(self, name: str, rect: Rect, *, padded: bool = True, rounded: bool = False) -> Iterator[None]:
+        """Begin a panel that stays where it is put; its corners are round where it lies over the world."""
         left, top, width, height = rect
         imgui.set_next_window_pos(ImVec2(left, top))
         imgui.set_next_window_size(ImVec2(max(width, 1), max(height, 1)))
-        imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+        if not rounded:
+            imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
         if not padded:
             imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(6.0, 6.0))
         imgui.begin(name, None, _FIXED)
@@ -79,7 +80,7 @@ class Ui:
             yield
         finally:
             imgui.end()
-            imgui.pop_style_var(1 if padded else 2)
+            imgui.pop_style_var(2 - padded - rounded)
 
     @contextmanager
     def floating(self, title: str, middle: tuple[float, float]) -> Iterator[list[bool]]:
@@ -327,7 +328,8 @@ class Ui:
         """Draw a slider with words on it, and return the new value if it was moved."""
         self.words.append(shown)
         imgui.set_next_item_width(width)
-        moved, new = imgui.slider_float(f"##{label}", value, low, high, shown.replace("%", "%%"))
+        flags = imgui.SliderFlags_.no_input  # Ctrl-click would make a field of it, without units
+        moved, new = imgui.slider_float(f"##{label}", value, low, high, shown.replace("%", "%%"), flags)
         self.note(label)
         return float(new) if moved else None
 

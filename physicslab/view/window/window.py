@@ -18,8 +18,8 @@ from physicslab.view.panels.error_study import ErrorStudy
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
+from physicslab.view.window.dashboard import Dashboard
 from physicslab.view.window.edits import Edits
-from physicslab.view.window.graphs import Graph, Series
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.measured import Measured
@@ -145,8 +145,8 @@ class Window:
         The components of each body that was copied.
     band : Vector2, optional
         Where the rectangle begins that is being drawn around bodies [m].
-    graphs : list of Graph
-        What is plotted.
+    dashboard : Dashboard
+        The graphs, meters and sliders that are shown, and what is recorded for them.
     deeds : list of callables
         What panels were clicked for; it is done when the next frame begins.
     source : str or path, optional
@@ -208,7 +208,7 @@ class Window:
         self.naming_refused = ""
         self.copied: list[list[Component]] = []
         self.band: Vector2 | None = None
-        self.graphs: list[Graph] = []
+        self.dashboard = Dashboard()
         self.deeds: list[Callable[[World, Window], None]] = []
         self.source: str | Path | None = None
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
@@ -254,11 +254,6 @@ class Window:
         """Show a message for a while; ``failed`` marks what could not be done."""
         self.notice_failed = failed
         self._notice, self._notice_until = words, self.now + seconds
-
-    def plot(self, title: str, entity: int | None, names: tuple[str, ...]) -> None:
-        """Plot quantities of the world or of a body, in a graph of their own."""
-        number = 1 + max((graph.number for graph in self.graphs), default=0)
-        self.graphs.append(Graph(number, title, entity, {name: Series() for name in names}))
 
     def follow_history(self, history: History) -> None:
         """Let edits, and what the hand does, go to the history of the world that is shown."""

@@ -2,116 +2,211 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Callable
 
-import numpy as np
-from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from imgui_bundle import ImVec2, imgui
 
-from physicslab.ecs.text import printable
-from physicslab.files.new_scene import file_stem
-from physicslab.files.replace import create_file
-from physicslab.view.canvas.theme import Colour
-from physicslab.view.controls.scene_files import new_paths
+from physicslab.components import Graph
+from physicslab.view.canvas.canvas import Rect
+from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.graphs import Graph
+from physicslab.view.window.dashboard import GraphShown
+from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
+from physicslab.view.workbench.graph_plot import GraphPlot
+from physicslab.view.workbench.graph_readings import ButtonRow, build_cursors, build_moment, build_readings
+from physicslab.view.workbench.panel_places import is_bar
+from physicslab.view.workbench.quantity_menu import build_quantities, shown_name
 from physicslab.world import World
 
-__all__ = ["build_graphs"]
+__all__ = ["GraphPanels", "owner_of"]
 
-_SIZE = (27.0, 15.0)
-"""Width and height of a new graph, in heights of the text."""
-_GAP = 0.8
-"""Room between two, in heights of the text."""
-
-
-def build_graphs(ui: Ui, window: Window) -> None:
-    """Build every graph, and drop those that were closed."""
-    closed = [graph for n, graph in enumerate(window.graphs) if not _build(ui, graph, n, window)]
-    for graph in closed:
-        window.graphs.remove(graph)
+_FLAGS = imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_nav
+_LEAST_PLOT = 6.0
+"""Height of a plot at least, in heights of the text: what is below the rest can be scrolled to."""
+_LEAST = (12.0, 9.0)
+"""Width and height down to which a graph can be made by hand, in heights of the text."""
 
 
-def _build(ui: Ui, graph: Graph, number: int, window: Window) -> bool:
-    """Build one, and return whether it stays."""
-    left, top, width, height = window.room()
-    rows = max(int((height - ui.size) / ((_SIZE[1] + _GAP) * ui.size)), 1)
-    across = left + width - (number // rows + 1) * (_SIZE[0] + _GAP) * ui.size
-    imgui.set_next_window_pos(
-        ImVec2(max(across, left), top + (_GAP + number % rows * (_SIZE[1] + _GAP)) * ui.size),
-        imgui.Cond_.appearing,
-    )
-    imgui.set_next_window_size(ImVec2(_SIZE[0] * ui.size, _SIZE[1] * ui.size), imgui.Cond_.appearing)
-    flags = imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_nav
-    shown, stays = imgui.begin(f"{graph.title}##graph {graph.number}", True, flags)
-    ui.words.append(graph.title)
-    if shown:
-        _build_head(ui, graph, window)
-        _build_plot(ui, graph, window.edits.world.time)
-    imgui.end()
-    return bool(stays)
+def owner_of(entity: int) -> str:
+    """Return the name of a graph's window in Dear ImGui, without what is written as its title."""
+    return f"###graph {entity}"
 
 
-def _build_head(ui: Ui, graph: Graph, window: Window) -> None:
-    """Build the choice of lines, and what can be done with them."""
-    if ui.button(f"Lines of {graph.title}", "What is plotted", shown="Lines"):
-        imgui.open_popup("lines")
-    if imgui.begin_popup("lines"):
-        for quantity in graph.quantities:
-            if ui.item(f"{quantity.name} [{quantity.unit}]", on=quantity.name in graph.chosen):
-                graph.toggle(quantity.name)
+class GraphPanels:
+    """The windows of graphs. One that was moved by hand stays where it was put."""
+
+    def __init__(self) -> None:
+        self._put: dict[int, Rect] = {}
+        self._moved: set[int] = set()
+        self._plots: dict[int, GraphPlot] = {}
+
+    def free(self, graphs: tuple[GraphShown, ...]) -> dict[int, str]:
+        """Return the graphs that are put beside each other, and the side of each."""
+        living = {graph.entity for graph in graphs}
+        self._moved &= living
+        self._put = {entity: rect for entity, rect in self._put.items() if entity in living}
+        self._plots = {entity: plot for entity, plot in self._plots.items() if entity in living}
+        return {graph.entity: graph.side for graph in graphs if graph.entity not in self._moved}
+
+    def build(self, ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
+        """Build every graph at its place."""
+        pointed: float | None = None
+        bar: Rect | None = None
+        for graph in window.dashboard.graphs:
+            place = places.get(graph.entity)
+            if place is not None and is_bar(place, ui.size):
+                self._put.pop(graph.entity, None)
+                bar = place
+                continue
+            hovered = self._build(ui, world, window, graph, place)
+            pointed = hovered if hovered is not None else pointed
+        if bar is not None:
+            _build_bar(ui, window, bar, places)
+        window.dashboard.pointed = pointed
+
+    def _build(
+        self, ui: Ui, world: World, window: Window, graph: GraphShown, place: Rect | None
+    ) -> float | None:
+        """Build one; return the time under the cursor, if the cursor is in its plot."""
+        entity = graph.entity
+        title = _title(graph, window)
+        known = imgui.internal.find_window_by_name(f"{title}{owner_of(entity)}")
+        if known is not None and known.dock_id:
+            self._moved.add(entity)  # a place would take it out of where it is docked
+        elif place is not None and place != self._put.get(entity):
+            when = imgui.Cond_.first_use_ever if known is None else imgui.Cond_.always
+            imgui.set_next_window_pos(ImVec2(place[0], place[1]), when)
+            imgui.set_next_window_size(ImVec2(place[2], place[3]), when)
+            self._put[entity] = place
+        room = imgui.get_io().display_size
+        least = ImVec2(
+            *(min(share * ui.size, px) for share, px in zip(_LEAST, (room.x, room.y), strict=True))
+        )
+        if place is not None:
+            least = ImVec2(min(least.x, place[2]), min(least.y, place[3]))
+        imgui.set_next_window_size_constraints(least, room)
+        shown, stays = imgui.begin(f"{title}{owner_of(entity)}", True, _FLAGS)
+        ui.words.append(title)
+        hovered: float | None = None
+        self._follow_hand(entity)
+        if shown:
+            self._build_head(ui, world, window, graph)
+            build_cursors(ui, window, graph)
+            build_readings(ui, world, window, graph)
+            height = max(imgui.get_content_region_avail().y, _LEAST_PLOT * ui.size)
+            plot = self._plots.setdefault(entity, GraphPlot())
+            hovered = plot.build(ui, world, window, graph, height)
+        imgui.end()
+        if not stays:
+            window.deeds.append(dashboard_actions.close_graph(graph))
+        return hovered
+
+    def _follow_hand(self, entity: int) -> None:
+        """Note whether a graph was moved or resized by hand, and keep its title within the display."""
+        place, size, room = imgui.get_window_pos(), imgui.get_window_size(), imgui.get_io().display_size
+        put = self._put.get(entity)
+        held = imgui.is_mouse_dragging(0) and imgui.is_window_focused()
+        if held and put is not None and (place.x, place.y, size.x, size.y) != tuple(map(float, put)):
+            self._moved.add(entity)
+        x, y = max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0)
+        if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
+            imgui.set_window_pos(ImVec2(x, y))
+
+    def _build_head(self, ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
+        """Build the choice of lines, and what can be done with them."""
+        number, dashboard = graph.number, window.dashboard
+        row = ButtonRow()
+        row.next("Lines")
+        if ui.button(f"Lines of graph {number}", "What is plotted", shown="Lines"):
+            imgui.open_popup("lines")
+        across = "time" if graph.across is None else graph.across[1]
+        row.next(f"Across: {across}")
+        tip = "What stands on the horizontal axis: the time, or another quantity"
+        if ui.button(f"Across graph {number}", tip, shown=f"Across: {across}"):
+            imgui.open_popup("across")
+        row.next("Follow")
+        follows = graph.entity not in dashboard.free_axes
+        tip = "Let the axes follow what is recorded; scroll or drag in the plot to look closer"
+        if ui.button(f"Follow graph {number}", tip, shown="Follow", on=follows):
+            dashboard.free_axes ^= {graph.entity}
+        row.next("More")
+        if ui.button(f"More of graph {number}", "Cursors, files, place", shown="More"):
+            imgui.open_popup("more")
+        build_moment(ui, world, window, row.used)
+        _popup("lines", lambda: self._build_lines(ui, world, window, graph))
+        _popup("across", lambda: self._build_across(ui, world, window, graph))
+        _popup("more", lambda: self._build_more(ui, world, window, graph))
+
+    @staticmethod
+    def _build_lines(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
+        def choose(key: Key) -> None:
+            window.deeds.append(dashboard_actions.toggle_line(graph, key))
+
+        gone = [line.key for line in graph.lines if line.key[0] not in (None, *world.entity_index.row_of)]
+        for key in gone:
+            if ui.item(f"Remove: {shown_name(window.dashboard.label(key[0]))}: {key[1]}", on=True):
+                choose(key)
+        build_quantities(ui, world, window, [line.key for line in graph.lines], choose)
+
+    @staticmethod
+    def _build_across(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
+        def choose(key: Key | None) -> None:
+            window.dashboard.free_axes.discard(graph.entity)
+            window.deeds.append(dashboard_actions.put_across(graph, key))
+
+        if ui.item("Time [s]", on=graph.across is None):
+            choose(None)
+        build_quantities(ui, world, window, [graph.across] if graph.across else [], choose)
+
+    @staticmethod
+    def _build_more(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
+        dashboard = window.dashboard
+        for n, name in enumerate("AB"):
+            if ui.item(f"Cursor {name} at the moment shown"):
+                dashboard.marks[n] = world.time
+        if ui.item("No cursors", enabled=dashboard.marks != [None, None]):
+            dashboard.marks[:] = [None, None]
+        ui.rule()
+        if ui.item("Save as a table (CSV)"):
+            window.deeds.append(dashboard_actions.save_table(graph))
+        if ui.item("Save as a picture (PNG)"):
+            dashboard.picture_of = graph.entity
+        ui.rule()
+        other = "left" if graph.side == "right" else "right"
+        if ui.item(f"Put it at the {other}"):
+            body, name = graph.across or (None, "time")
+            window.deeds.append(dashboard_actions.changing(graph.entity, Graph(name, body, other)))
+
+
+def _build_bar(ui: Ui, window: Window, bar: Rect, places: dict[int, Rect]) -> None:
+    """Build what opens a graph, by its number, where there is room for one alone."""
+    with ui.panel("bar of graphs", bar, padded=False, rounded=True):
+        height = imgui.get_content_region_avail().y
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + 0.5 * (height - imgui.get_text_line_height()))
+        ui.faint("Graph", wrapped=False)
+        for graph in window.dashboard.graphs:
+            place = places.get(graph.entity)
+            if place is None:
+                continue
+            imgui.same_line()
+            imgui.set_cursor_pos_y(0.5 * (bar[3] - height))
+            tip, is_open = f"Open {_title(graph, window)}", not is_bar(place, ui.size)
+            if ui.button(
+                f"Open graph {graph.number}", tip, shown=f"{graph.number}", on=is_open, size=(0, height)
+            ):
+                window.dashboard.active = graph.entity
+
+
+def _popup(name: str, build: Callable[[], None]) -> None:
+    if imgui.begin_popup(name):
+        build()
         imgui.end_popup()
-    imgui.same_line()
-    if ui.button(
-        f"Follow {graph.title}", "Let the axes follow what is recorded", shown="Follow", on=graph.follows
-    ):
-        graph.follows = not graph.follows
-    imgui.same_line()
-    if ui.button(f"CSV of {graph.title}", "Write what is shown to a file", shown="CSV"):
-        window.deeds.append(lambda world, window: _save(graph, world, window))
 
 
-def _build_plot(ui: Ui, graph: Graph, now: float) -> None:
-    units = {quantity.name: quantity.unit for quantity in graph.quantities}
-    shown = list(dict.fromkeys(units[name] for name in graph.chosen))
-    flags = implot.Flags_.no_title | implot.Flags_.no_menus
-    if not implot.begin_plot(f"##plot {graph.number}", ImVec2(-1.0, -1.0), flags):
-        return
-    fit = implot.AxisFlags_.auto_fit if graph.follows else implot.AxisFlags_.none
-    implot.setup_axes("time [s]", ", ".join(shown), fit, fit)
-    implot.setup_legend(implot.Location_.north_west)
-    for n, (name, line) in enumerate(graph.chosen.items()):
-        colour = ui.theme.bodies[n % len(ui.theme.bodies)]
-        old = graph.before.get(name)
-        if old is not None and len(old.times):
-            implot.plot_line(f"{name} before", old.times, old.values, _look(colour, 0.35))
-        if len(line.times):
-            implot.plot_line(name, line.times, line.values, _look(colour, 1.0))
-        ui.words.append(name)
-    implot.plot_inf_lines("##now", np.array([now]), _look(ui.theme.faint, 0.8))
-    if implot.is_plot_hovered() and (imgui.get_io().mouse_wheel or imgui.is_mouse_dragging(0)):
-        graph.follows = False
-    implot.end_plot()
-
-
-def _look(colour: Colour, opacity: float) -> implot.Spec:
-    spec = implot.Spec()
-    red, green, blue = colour
-    spec.line_color, spec.line_weight = ImVec4(red / 255, green / 255, blue / 255, opacity), 2.0
-    return spec
-
-
-def _save(graph: Graph, world: World, window: Window) -> None:
-    """Write a graph to a new file where the program was started, and say what came of it."""
-    stem = file_stem(f"{world.name or 'graph'}-{graph.title}")
-    content = graph.csv().encode("utf-8")
-    for path in new_paths(Path.cwd(), stem, ".csv"):
-        try:
-            create_file(path, content)
-        except FileExistsError:
-            continue
-        except OSError as error:
-            window.notify(f"The graph could not be saved: {error.strerror or error}", 6.0, failed=True)
-            return
-        window.notify(f"Saved {printable(str(path))}")
-        return
+def _title(graph: GraphShown, window: Window) -> str:
+    """Return what a graph shows, in a few words."""
+    bodies = list(dict.fromkeys(key[0] for key in graph.keys))
+    names = [window.dashboard.label(body) for body in bodies]
+    subject = ", ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} others"
+    return shown_name(f"Graph {graph.number}: {subject}" if names else f"Graph {graph.number}")

@@ -10,8 +10,9 @@ from physicslab.components import Drag, Held, Mass, Name, Shape, Strobe, Trail, 
 from physicslab.components.name import why_no_id
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field, InvalidValue
-from physicslab.view.controls.actions import duplicate_selected, plot_selected
+from physicslab.view.controls.actions import duplicate_selected
 from physicslab.view.controls.attaching import attachments
+from physicslab.view.controls.dashboard_actions import plot_selected
 from physicslab.view.controls.tools import remove_selected
 from physicslab.view.overlay.instruments import readings_of
 from physicslab.view.toolkit.ui import Ui

@@ -14,7 +14,6 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
 from physicslab.view.workbench.gallery import Gallery
-from physicslab.view.workbench.graph_panel import build_graphs
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.history_panel import build_history
 from physicslab.view.workbench.inspector import Inspector
@@ -25,6 +24,7 @@ from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
 from physicslab.view.workbench.save_panel import build_save
+from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.settings_panel import SettingsPanel
 from physicslab.view.workbench.stopwatch_panel import build_stopwatch
 from physicslab.view.workbench.transport import build_transport
@@ -64,6 +64,7 @@ class Interface:
         self._settings = SettingsPanel()
         self._gallery = Gallery()
         self._recipe = RecipePanel()
+        self._scene_panels = ScenePanels()
         self._note = NotePanel()
         self._next = 0.0
         self._offer_height = 0  # of the offer to restore a session [px]
@@ -110,6 +111,7 @@ class Interface:
             self._inspector.finish(self._window)
             or self._settings.finish()
             or self._recipe.finish()
+            or self._scene_panels.finish()
             or self._note.finish(self._window)
         )
 
@@ -161,7 +163,7 @@ class Interface:
             window.recovery.offered,
             window.figures,
             window.level,
-            len(window.graphs),
+            window.dashboard.state,
             window.shows_stopwatch,
             window.measuring.writing is None,
         )
@@ -203,8 +205,7 @@ class Interface:
                 ui.gap(0.3)
                 ui.rule()
                 self._build_counts(ui, figures)
-        if window.graphs:
-            build_graphs(ui, window)
+        self._scene_panels.build(ui, world, window, self.visible)
         if window.shows_stopwatch:
             build_stopwatch(ui, world, window, layout.visible)
         if window.measuring.writing is not None:
@@ -237,6 +238,7 @@ class Interface:
         canvas.paint(self.toolkit.draw)
         if self.ui.pictures:
             canvas.paint(self.ui.show_pictures)
+        self._scene_panels.save_picture(self._window, self.toolkit)
 
     @property
     def covered(self) -> list[Rect]:

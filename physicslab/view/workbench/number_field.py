@@ -119,7 +119,7 @@ class NumberFields:
         self.label(ui, key, words, spec, number if drags else None, commit)
         unit = _unit_shown(spec, number)
         room = imgui.get_content_region_avail().x - _width(ui, unit)
-        refusal = self._field(ui, key, value, spec, room, commit)
+        refusal = self.build(ui, key, value, spec, room, commit)
         _finish(ui, unit, refusal)
 
     def vector_row(
@@ -139,10 +139,10 @@ class NumberFields:
 
             if axis:
                 imgui.same_line()
-            refusals.append(self._field(ui, f"{key}.{name}", value[axis], spec, room, commit_part))
+            refusals.append(self.build(ui, f"{key}.{name}", value[axis], spec, room, commit_part))
         _finish(ui, unit, next(filter(None, refusals), ""))
 
-    def _field(
+    def build(
         self, ui: Ui, key: str, value: float | str | None, spec: Field, width: float, commit: Commit
     ) -> str:
         """Build one field, and return why what was written in it is refused; empty while it is not."""

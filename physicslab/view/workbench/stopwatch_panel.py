@@ -43,13 +43,15 @@ _ARROWS = "→↗↑↖←↙↓↘"
 
 
 def build_stopwatch(ui: Ui, world: World, window: Window, room: Rect) -> None:
-    """Build it in a window of its own, which begins in a corner of the room [px]."""
+    """Build it in a window of its own, which begins in a corner of the room [px] where no graph is."""
     system = world.schedule.find(GateSystem)
     gates = len(world.batch(Gate))
     every = laps(system.crossings, gates) if system is not None else []
     left, top, width, _ = room
     columns = _COLUMNS if width > _width(_COLUMNS) * ui.size else _COLUMNS[_NARROW:]
-    place = left + width - 0.5 * _width(columns) * ui.size, top + 10.0 * ui.size
+    half = 0.5 * _width(columns) * ui.size
+    is_taken = any(graph.side == "right" for graph in window.dashboard.graphs)
+    place = left + half if is_taken else left + width - half, top + 10.0 * ui.size
     with ui.floating("Stopwatch", place) as stays:
         _build_times(ui, world, every, gates)
         _build_table(ui, world, every[-(_ROWS if columns is _COLUMNS else _FEWER_ROWS) :], columns)

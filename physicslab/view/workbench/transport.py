@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.controls import actions, file_actions
 from physicslab.view.controls.icons import ICONS
+from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.window import Window
@@ -78,9 +79,25 @@ def _build_line(ui: Ui, world: World, window: Window) -> None:
         f"{world.time:.2f} s", width,
     )  # fmt: skip
     ui.tip("Drag to go back in time, and forward again; what is changed there begins another future")
+    _mark_moments(ui, window, first, max(last, first + 1))
     if place is not None:
         step = round(place)
         window.deeds.append(lambda world, window: actions.seek(window, step))
     if is_hinted:
         imgui.same_line()
         ui.faint(_HINT, wrapped=False)
+
+
+def _mark_moments(ui: Ui, window: Window, first: int, last: int) -> None:
+    """Mark the moment under the cursor in a graph, and the cursors A and B, over the time line."""
+    dashboard = window.dashboard
+    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    half = 0.5 * imgui.get_style().grab_min_size
+    for time in (dashboard.pointed, *dashboard.marks):
+        step = None if time is None else dashboard.step_at(time)
+        if step is None or not first <= step <= last:
+            continue
+        x = low.x + half + (high.x - low.x - 2.0 * half) * (step - first) / (last - first)
+        paper = imgui.get_window_draw_list()
+        paper.add_line(ImVec2(x, low.y), ImVec2(x, high.y), packed(ui.theme.heading), 2.0)
+        ui.words.append(f"mark at {time:.3f} s")

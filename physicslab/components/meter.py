@@ -1,0 +1,29 @@
+"""A number in large figures."""
+
+from typing import ClassVar
+
+from physicslab.components.quantities import QUANTITIES, why_not_of
+from physicslab.ecs.component import Component, InvalidValue, component, field
+
+CORNERS = ("bottom left", "top left", "bottom right", "top right")
+"""Where in the window a small panel may be."""
+
+
+@component
+class Meter(Component):
+    """Shows a quantity of a body, or of the world, in a small panel of the window."""
+
+    physical: ClassVar[bool] = False
+    quantity: str = field(choices=tuple(QUANTITIES), meaning="what is shown")
+    body: int | None = field(default=None, meaning="whose quantity it is; the world's where absent")
+    corner: str = field(default=CORNERS[0], choices=CORNERS, meaning="where in the window it is")
+
+    def references(self) -> dict[str, str]:
+        """Return which component the body must have."""
+        return {"body": "Transform"}
+
+    def validate(self) -> None:
+        """Check that the body, or the world, has the quantity."""
+        allowed = why_not_of(self.quantity, self.body)
+        if allowed is not None:
+            raise InvalidValue("Meter", "quantity", self.quantity, allowed)

@@ -1,0 +1,84 @@
+"""What can be measured of a body and of the world: names and units, the one list of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["BODY_QUANTITIES", "QUANTITIES", "WORLD_QUANTITIES", "Quantity"]
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """Something that can be measured.
+
+    Attributes
+    ----------
+    name : str
+        What it is called in scene files and in the window.
+    unit : str
+        Its SI unit, as fields have it: ``"kg m^2/s"``.
+    column : str
+        What it is called in the table of ``run --csv``.
+    of_body, of_world : bool
+        Whether a body has it, and whether the world has.
+    """
+
+    name: str
+    unit: str
+    column: str
+    of_body: bool = True
+    of_world: bool = False
+
+    @property
+    def heading(self) -> str:
+        """What stands over its column in a table."""
+        return f"{self.column} [{self.unit}]"
+
+
+QUANTITIES: dict[str, Quantity] = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("x", "m", "x"),
+        Quantity("y", "m", "y"),
+        Quantity("angle", "rad", "angle"),
+        Quantity("velocity x", "m/s", "vx"),
+        Quantity("velocity y", "m/s", "vy"),
+        Quantity("speed", "m/s", "speed"),
+        Quantity("angular velocity", "rad/s", "omega"),
+        Quantity("acceleration x", "m/s^2", "ax"),
+        Quantity("acceleration y", "m/s^2", "ay"),
+        Quantity("acceleration", "m/s^2", "acceleration"),
+        Quantity("force x", "N", "fx"),
+        Quantity("force y", "N", "fy"),
+        Quantity("net force", "N", "force"),
+        Quantity("momentum x", "kg m/s", "px", of_world=True),
+        Quantity("momentum y", "kg m/s", "py", of_world=True),
+        Quantity("momentum", "kg m/s", "momentum", of_world=True),
+        Quantity("angular momentum", "kg m^2/s", "angular momentum", of_world=True),
+        Quantity("kinetic energy", "J", "kinetic", of_world=True),
+        Quantity("kinetic energy of translation", "J", "kinetic linear", of_world=True),
+        Quantity("kinetic energy of rotation", "J", "kinetic angular", of_world=True),
+        Quantity("potential energy", "J", "potential", of_world=True),
+        Quantity("energy of gravity", "J", "potential gravity", of_body=False, of_world=True),
+        Quantity("energy of springs", "J", "potential spring", of_body=False, of_world=True),
+        Quantity("total energy", "J", "energy", of_world=True),
+    )
+}
+"""All of them by name. Scene files hold the names."""
+BODY_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.of_body)
+"""The names of those that a body has."""
+WORLD_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.of_world)
+"""The names of those that the world has."""
+
+
+def why_not_of(name: str, body: int | None) -> str | None:
+    """Return what the name of a quantity must be, if a body, or the world for ``None``, has none such.
+
+    >>> why_not_of("x", 1) is None, "kinetic energy" in (why_not_of("x", None) or "")
+    (True, True)
+    """
+    allowed = WORLD_QUANTITIES if body is None else BODY_QUANTITIES
+    if name in allowed:
+        return None
+    words = ", ".join(f'"{other}"' for other in allowed)
+    return f"one of {words} where there is {'no' if body is None else 'a'} body"

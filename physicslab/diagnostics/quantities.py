@@ -1,0 +1,220 @@
+"""Quantities of bodies and of the world at one moment, by name: what graphs and meters show.
+
+The names and units are in :mod:`physicslab.components.quantities`; sums over the world are those of
+:mod:`physicslab.diagnostics.energy`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+
+from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.diagnostics.energy import Energy, Momentum, measure_energy, measure_momentum
+from physicslab.diagnostics.free_body import forces_on, net_force
+from physicslab.ecs.vector import Vector2
+from physicslab.kernels.forces import springs
+from physicslab.state.masses import quiet
+from physicslab.state.packed import spring_ends
+from physicslab.world import World
+
+__all__ = ["Reading", "why_undefined"]
+
+_NAN = math.nan
+
+
+class Reading:
+    """The quantities of a world as it is now. What several of them need is measured once.
+
+    Parameters
+    ----------
+    world : World
+        It must stay as it is while it is read.
+
+    Examples
+    --------
+    >>> from physicslab.systems.integrate import IntegrateSystem
+    >>> world = World(IntegrateSystem())
+    >>> ball = world.spawn(Transform((0, 5)), Velocity((3, 4)), Mass(2.0))
+    >>> reading = Reading(world)
+    >>> reading.value("speed", ball), reading.value("kinetic energy", ball), reading.value("kinetic energy")
+    (5.0, 25.0, 25.0)
+    >>> reading.value("speed", 99)
+    nan
+    """
+
+    def __init__(self, world: World) -> None:
+        world.synchronise()
+        self._world = world
+        self._rows = world.entity_index.row_of
+        self._nets: dict[int, Vector2] = {}
+
+    def value(self, name: str, body: int | None = None) -> float:
+        """Return a quantity in its SI unit, of a body, or of the world for ``None``.
+
+        It is NaN where it is not defined (:func:`why_undefined`).
+
+        Raises
+        ------
+        KeyError
+            If a body, or the world, has no such quantity at all.
+        """
+        if body is None:
+            return float(_OF_WORLD[name](self))
+        read = _OF_BODY[name]
+        if _why_undefined(self._world, name, body):
+            return _NAN
+        return float(read(self, body))
+
+    # ---- of the world --------------------------------------------------------------------------------------
+
+    @cached_property
+    def energy(self) -> Energy:
+        """The energy of the world."""
+        return measure_energy(self._world)
+
+    @cached_property
+    def momentum(self) -> Momentum:
+        """The momentum of the world."""
+        return measure_momentum(self._world)
+
+    # ---- of a body -----------------------------------------------------------------------------------------
+
+    def _transform(self, body: int) -> Transform:
+        return self._world.component(body, Transform)
+
+    def _velocity(self, body: int) -> Velocity:
+        return self._world.component(body, Velocity)
+
+    def _mass(self, body: int) -> float:
+        return self._world.component(body, Mass).mass
+
+    def _momentum(self, body: int) -> Vector2:
+        return self._mass(body) * self._velocity(body).linear
+
+    def _inertia(self, body: int) -> float:
+        """Return the moment of inertia [kg m^2]; 0 of what does not turn, and of points."""
+        inverse = float(self._world.bodies.inverse_inertia[self._rows[body]])
+        return 1.0 / inverse if inverse > 0.0 else 0.0
+
+    def _angular_momentum(self, body: int) -> float:
+        place, momentum = self._transform(body).position, self._momentum(body)
+        turning = self._inertia(body) * self._velocity(body).angular
+        return place.x * momentum.y - place.y * momentum.x + turning
+
+    def _translation(self, body: int) -> float:
+        velocity = self._velocity(body).linear
+        return 0.5 * self._mass(body) * (velocity.x * velocity.x + velocity.y * velocity.y)
+
+    def _rotation(self, body: int) -> float:
+        return 0.5 * self._inertia(body) * self._velocity(body).angular ** 2
+
+    def _kinetic(self, body: int) -> float:
+        return self._translation(body) + self._rotation(body)
+
+    def _net(self, body: int) -> Vector2:
+        if body not in self._nets:
+            self._nets[body] = net_force(forces_on(self._world, body))
+        return self._nets[body]
+
+    def _acceleration(self, body: int) -> Vector2:
+        return self._net(body) / self._mass(body)
+
+    @quiet
+    def _potential(self, body: int) -> float:
+        """Return that of weight, zero at the origin, and of the springs that hold it to what cannot move."""
+        world, total = self._world, 0.0
+        if any(force.potential == "gravity" for force in world.schedule.forces):
+            gravity, place = world.physics.gravity, self._transform(body).position
+            total -= self._mass(body) * (gravity.x * place.x + gravity.y * place.y)
+        rows, a, b = spring_ends(world)
+        own = (a == self._rows[body]) | (b == self._rows[body])
+        if own.any():
+            spring, transform = world.table(Spring), world.table(Transform)
+            world.compile((springs.spring_potential,))
+            total += springs.spring_potential(
+                transform["position"], transform["angle"], rows[own], a[own], b[own],
+                spring["anchor_a"], spring["anchor_b"], spring["rest_length"], spring["stiffness"],
+            )  # fmt: skip
+        return total
+
+
+def why_undefined(world: World, name: str, body: int | None) -> str:
+    """Return in a few words why a quantity has no value now; empty where it has one."""
+    world.synchronise()
+    return _why_undefined(world, name, body)
+
+
+def _why_undefined(world: World, name: str, body: int | None) -> str:
+    if body is None:
+        return ""
+    if body not in world.entity_index.row_of:
+        return "gone"
+    if not world.has(body, Transform):
+        return "has no place"
+    if name in ("x", "y", "angle"):
+        return ""
+    if not world.has(body, Velocity):
+        return "is fixed"
+    if name in ("velocity x", "velocity y", "speed", "angular velocity"):
+        return ""
+    if not world.has(body, Mass):
+        return "has no mass"
+    return _why_no_potential(world, body) if name in ("potential energy", "total energy") else ""
+
+
+def _why_no_potential(world: World, body: int) -> str:
+    """Return why a body has no potential energy of its own: it then belongs to several together."""
+    stored = {force.potential for force in world.schedule.forces} - {None, "gravity", "spring"}
+    if stored:
+        return f"shares the energy of {min(map(str, stored))} with others"
+    is_attracted = any(force.potential == "gravity" for force in world.schedule.forces)
+    if is_attracted and world.physics.gravity_mode == "planet":
+        return "shares the energy of gravity with others"
+    row = world.entity_index.row_of[body]
+    _, a, b = spring_ends(world)
+    moves = world.bodies.inverse_mass > 0.0
+    is_shared = ((a == row) & moves[b]) | ((b == row) & moves[a])
+    return "shares the energy of a spring with others" if np.any(is_shared) else ""
+
+
+_OF_WORLD: dict[str, Callable[[Reading], float]] = {
+    "momentum x": lambda now: now.momentum.linear.x,
+    "momentum y": lambda now: now.momentum.linear.y,
+    "momentum": lambda now: now.momentum.linear.magnitude,
+    "angular momentum": lambda now: now.momentum.angular,
+    "kinetic energy": lambda now: now.energy.kinetic,
+    "kinetic energy of translation": lambda now: now.energy.kinetic_linear,
+    "kinetic energy of rotation": lambda now: now.energy.kinetic_angular,
+    "potential energy": lambda now: sum(now.energy.potential.values()),
+    "energy of gravity": lambda now: now.energy.potential.get("gravity", 0.0),
+    "energy of springs": lambda now: now.energy.potential.get("spring", 0.0),
+    "total energy": lambda now: now.energy.total,
+}
+_OF_BODY: dict[str, Callable[[Reading, int], float]] = {
+    "x": lambda now, body: now._transform(body).position.x,
+    "y": lambda now, body: now._transform(body).position.y,
+    "angle": lambda now, body: now._transform(body).angle,
+    "velocity x": lambda now, body: now._velocity(body).linear.x,
+    "velocity y": lambda now, body: now._velocity(body).linear.y,
+    "speed": lambda now, body: now._velocity(body).linear.magnitude,
+    "angular velocity": lambda now, body: now._velocity(body).angular,
+    "acceleration x": lambda now, body: now._acceleration(body).x,
+    "acceleration y": lambda now, body: now._acceleration(body).y,
+    "acceleration": lambda now, body: now._acceleration(body).magnitude,
+    "force x": lambda now, body: now._net(body).x,
+    "force y": lambda now, body: now._net(body).y,
+    "net force": lambda now, body: now._net(body).magnitude,
+    "momentum x": lambda now, body: now._momentum(body).x,
+    "momentum y": lambda now, body: now._momentum(body).y,
+    "momentum": lambda now, body: now._momentum(body).magnitude,
+    "angular momentum": lambda now, body: now._angular_momentum(body),
+    "kinetic energy": lambda now, body: now._kinetic(body),
+    "kinetic energy of translation": lambda now, body: now._translation(body),
+    "kinetic energy of rotation": lambda now, body: now._rotation(body),
+    "potential energy": lambda now, body: now._potential(body),
+    "total energy": lambda now, body: now._kinetic(body) + now._potential(body),
+}

@@ -1,0 +1,246 @@
+"""What the user can do with graphs, meters and sliders: each is an edit, so that it is saved and undone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from physicslab.components import Graph, GraphLine, Mass, Meter, Shape, Slider, Spring, Transform, Velocity
+from physicslab.components.graph import TIME
+from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
+from physicslab.ecs.component import Component
+from physicslab.ecs.fields import InvalidValue
+from physicslab.ecs.text import printable
+from physicslab.ecs.vector import Vector2
+from physicslab.files.new_scene import file_stem
+from physicslab.files.replace import create_file
+from physicslab.history import AddComponent, Command, Group, Remove, SetField, SetPhysics, Spawn
+from physicslab.view.controls import actions
+from physicslab.view.controls.scene_files import new_paths
+from physicslab.view.window.dashboard import GraphShown, SliderShown
+from physicslab.view.window.placing import refused_change
+from physicslab.view.window.record import Key
+from physicslab.view.window.table import table_of
+from physicslab.view.window.window import Window
+from physicslab.world import World
+
+__all__ = [
+    "add_meter", "add_slider", "changing", "close_graph", "go_to", "plot_phase", "plot_selected",
+    "put_across", "removing", "save_picture", "save_table", "slide", "toggle_line", "usual_range",
+]  # fmt: skip
+
+type Deed = Callable[[World, Window], None]
+
+_ENERGIES = ("kinetic energy", "potential energy", "total energy")
+_LIMIT = 8
+"""Bodies that one graph begins with."""
+_EACH = 4
+"""Meters that are made at once."""
+_GONE = "It was made later than the moment that is shown: go to the end of the time line to change it"
+_IN_SPACE = (Shape, Transform)
+"""Components of which a change may need room."""
+_USUAL = {
+    "Mass.mass": (0.1, 10.0), "Spring.stiffness": (0.0, 200.0), "Material.restitution": (0.0, 1.0),
+}  # fmt: skip
+"""Between which values a new slider goes, if the value that there is lies between them."""
+
+
+def plot_selected(world: World, window: Window) -> None:
+    """Plot what is selected against time; where nothing is, the energies of the world."""
+    bodies = _selected(world, window)
+    if not bodies:
+        _plot(window, "plotted energies", Graph(), [(None, name) for name in _ENERGIES])
+        return
+    names: tuple[str, ...] = ("x", "y")
+    if len(bodies) > 1:
+        names = ("speed",) if all(world.has(body, Velocity) for body in bodies) else ("y",)
+    elif world.has(bodies[0], Velocity):
+        names = ("x", "y", "speed")
+    keys: list[Key] = [(body, name) for body in bodies[:_LIMIT] for name in names]
+    _plot(window, f"plotted {_labels(world, bodies)}", Graph(), keys)
+
+
+def plot_phase(world: World, window: Window) -> None:
+    """Plot the velocity of what is selected against its place."""
+    bodies = [body for body in _selected(world, window) if world.has(body, Velocity)]
+    if not bodies:
+        window.notify("Select a body that moves: its velocity is plotted against its place")
+        return
+    body = bodies[-1]
+    graph = Graph("x", body=body)
+    _plot(window, f"plotted velocity of {world.label(body)} against place", graph, [(body, "velocity x")])
+
+
+def _plot(window: Window, words: str, graph: Graph, keys: Sequence[Key]) -> None:
+    """Make a graph with its lines, in one edit."""
+    entity = window.edits.history.next_entity
+    lines = [Spawn([GraphLine(entity, name, body)]) for body, name in keys]
+    window.edits.do(Group(words, [Spawn([graph]), *lines]))
+
+
+def add_meter(world: World, window: Window) -> None:
+    """Show the speed of each body that is selected in large figures, or the total energy of the world."""
+    bodies = _selected(world, window)[:_EACH]
+    keys: list[Key] = [(body, "speed" if world.has(body, Velocity) else "y") for body in bodies]
+    keys = keys or [(None, "total energy")]
+    made = [Spawn([Meter(name, body)]) for body, name in keys]
+    window.edits.do(Group(f"made a meter: {_labels(world, bodies) or 'total energy'}", made))
+
+
+def add_slider(world: World, window: Window) -> None:
+    """Make a slider for what is selected: its mass or its stiffness; where nothing is, for gravity."""
+    for entity in window.selection.entities:
+        for kind, changes in ((Spring, "Spring.stiffness"), (Mass, "Mass.mass")):
+            if world.has(entity, kind):
+                slider = Slider(changes, entity, *usual_range(world, changes, entity))
+                words = f"made a slider: {changes} of {world.label(entity)}"
+                window.edits.do(Group(words, [Spawn([slider])]))
+                return
+    window.edits.do(Group("made a slider: gravity", [Spawn([Slider(GRAVITY)])]))
+
+
+def usual_range(world: World, changes: str, entity: int | None) -> tuple[float, float]:
+    """Return between which values a new slider goes, such that the present one is among them."""
+    if changes == GRAVITY or entity is None:
+        return 0.0, 20.0
+    kind, spec = SLIDER_FIELDS[changes]
+    now = float(getattr(world.component(entity, kind), spec.name))
+    low, high = _USUAL.get(changes, (-10.0, 10.0))
+    low, high = min(low, 2.0 * now), max(high, 2.0 * now)
+    if spec.above > -math.inf:
+        low = max(low, min(0.1, 0.1 * now))
+    return max(low, spec.lowest), min(high, spec.highest)
+
+
+def toggle_line(graph: GraphShown, key: Key) -> Deed:
+    """Return what draws a line in a graph, or takes it away."""
+
+    def deed(world: World, window: Window) -> None:
+        body, name = key
+        there = [Remove(line.entity) for line in graph.lines if line.key == key]
+        what = name if body is None else f"{name} of {window.dashboard.label(body)}"
+        if there:
+            _do(world, window, graph.entity, Group(f"took {what} from a graph", there))
+        else:
+            made = Spawn([GraphLine(graph.entity, name, body)])
+            _do(world, window, graph.entity, Group(f"plotted {what}", [made]))
+
+    return deed
+
+
+def put_across(graph: GraphShown, key: Key | None) -> Deed:
+    """Return what puts a quantity on the horizontal axis of a graph, or the time."""
+    body, name = key or (None, TIME)
+    return changing(graph.entity, Graph(name, body, graph.side))
+
+
+def changing(entity: int, part: Component) -> Deed:
+    """Return what gives an instrument other fields."""
+    return lambda world, window: _do(world, window, entity, AddComponent(entity, part))
+
+
+def removing(entity: int) -> Deed:
+    """Return what removes a meter or a slider."""
+    return lambda world, window: _do(world, window, entity, Remove(entity))
+
+
+def close_graph(graph: GraphShown) -> Deed:
+    """Return what removes a graph with its lines."""
+
+    def deed(world: World, window: Window) -> None:
+        lines = [Remove(line.entity) for line in graph.lines]
+        _do(world, window, graph.entity, Group("closed a graph", [*lines, Remove(graph.entity)]))
+
+    return deed
+
+
+def _do(world: World, window: Window, entity: int, command: Command) -> None:
+    """Carry out an edit of an instrument, if it is there at the moment that is shown."""
+    if entity not in world.entity_index.row_of:
+        window.notify(_GONE, 6.0, failed=True)
+        return
+    window.edits.do(command)
+
+
+def slide(slider: SliderShown, value: float, *, held: bool) -> Deed:
+    """Return what gives the number of a slider another value.
+
+    While the slider is ``held`` and time runs it is a part of the run, as what a hand does; once it is let go
+    it is an edit.
+    """
+
+    def deed(world: World, window: Window) -> None:
+        command = _sliding(world, slider, value)
+        if isinstance(command, str):
+            window.notify(command, 6.0, failed=True)
+        elif not held:
+            window.edits.do(command)
+        elif not window.pace.paused:
+            try:
+                window.edits.write(command)
+            except InvalidValue as error:
+                window.notify(str(error), 6.0, failed=True)
+
+    return deed
+
+
+def _sliding(world: World, slider: SliderShown, value: float) -> Command | str:
+    """Return the command that does so, or why there is none."""
+    if slider.changes == GRAVITY:
+        return SetPhysics({"gravity": Vector2(world.physics.gravity.x, -value)})
+    kind, spec = SLIDER_FIELDS[slider.changes]
+    if slider.target is None or slider.target not in world.entity_index.row_of:
+        return "What the slider changes is gone"
+    if not world.has(slider.target, kind):
+        return f"{world.label(slider.target)} has no {kind.__name__}"
+    refused = refused_change(world, slider.target, kind, spec.name, value) if kind in _IN_SPACE else ""
+    return refused or SetField(slider.target, kind.__name__, spec.name, value)
+
+
+def go_to(time: float) -> Deed:
+    """Return what pauses and goes to the recorded moment nearest to a time [s]."""
+
+    def deed(world: World, window: Window) -> None:
+        step = window.dashboard.step_at(time)
+        if step is not None:
+            actions.seek(window, step)
+
+    return deed
+
+
+def save_table(graph: GraphShown) -> Deed:
+    """Return what writes a graph to a new file where the program was started, as a table."""
+
+    def deed(world: World, window: Window) -> None:
+        content = table_of(graph, window.dashboard).encode("utf-8")
+        _write(window, world, graph, ".csv", content)
+
+    return deed
+
+
+def save_picture(world: World, window: Window, graph: GraphShown, content: bytes) -> None:
+    """Write a picture of a graph to a new file where the program was started."""
+    _write(window, world, graph, ".png", content)
+
+
+def _write(window: Window, world: World, graph: GraphShown, ending: str, content: bytes) -> None:
+    stem = file_stem(f"{world.name or 'scene'}-graph")
+    for path in new_paths(Path.cwd(), stem, ending):
+        try:
+            create_file(path, content)
+        except FileExistsError:
+            continue
+        except OSError as error:
+            window.notify(f"The graph could not be saved: {error.strerror or error}", 6.0, failed=True)
+            return
+        window.notify(f"Saved {printable(str(path))}")
+        return
+
+
+def _selected(world: World, window: Window) -> list[int]:
+    return [entity for entity in window.selection.entities if world.has(entity, Transform)]
+
+
+def _labels(world: World, bodies: Sequence[int]) -> str:
+    return world.label(bodies[0]) if len(bodies) == 1 else f"{len(bodies)} bodies" if bodies else ""

@@ -1,0 +1,197 @@
+"""What is written beside a plot: each line with its value, slopes and areas between two moments."""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import ImVec2, imgui
+
+from physicslab.components.quantities import QUANTITIES
+from physicslab.diagnostics.quantities import why_undefined
+from physicslab.view.canvas.quantities import quantity
+from physicslab.view.canvas.theme import Colour
+from physicslab.view.canvas.units import product, quotient, written_unit
+from physicslab.view.controls import dashboard_actions
+from physicslab.view.toolkit.style import packed
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.dashboard import GraphShown
+from physicslab.view.window.plot_data import area_between, slope_between
+from physicslab.view.window.record import Key
+from physicslab.view.window.window import Window
+from physicslab.view.workbench.quantity_menu import shown_name, unit_of
+from physicslab.world import World
+
+__all__ = ["ButtonRow", "build_cursors", "build_moment", "build_readings", "colour_of", "line_name"]
+
+_VALUE = "-0.0000"
+"""As wide as most values are: what follows stays in its place while they change."""
+_MARK = 1.1
+"""Length of the mark in a line's colour, in heights of the text."""
+
+
+class ButtonRow:
+    """Puts buttons beside each other, and in a new row where they would be cut.
+
+    Attributes
+    ----------
+    used : float
+        How much of the width is used up in the present row [px].
+    """
+
+    def __init__(self) -> None:
+        self._room = imgui.get_content_region_avail().x
+        self.used = 0.0
+
+    def next(self, words: str) -> None:
+        """Go on to where a button with these words has room."""
+        style = imgui.get_style()
+        width = imgui.calc_text_size(words).x + 2.0 * style.frame_padding.x
+        if self.used and self.used + style.item_spacing.x + width <= self._room:
+            imgui.same_line()
+            self.used += style.item_spacing.x + width
+        else:
+            self.used = width
+
+
+def colour_of(ui: Ui, number: int) -> Colour:
+    """Return the colour of a graph's line, by its place from 0."""
+    return ui.theme.bodies[number % len(ui.theme.bodies)]
+
+
+def line_name(graph: GraphShown, key: Key, window: Window) -> str:
+    """Return what a line is called: its body too, where lines are of several."""
+    alone = len({other[0] for other in graph.keys}) == 1
+    return key[1] if alone else shown_name(f"{window.dashboard.label(key[0])}: {key[1]}")
+
+
+def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
+    """Write every line with its colour, and its value at the moment under the cursor or at that shown.
+
+    Between two cursors its slope and its area are written in place of the value.
+    """
+    dashboard = window.dashboard
+    row = dashboard.record.nearest(world.time if dashboard.pointed is None else dashboard.pointed)
+    if not graph.lines:
+        ui.faint("Lines: choose what is plotted")
+        return
+    spans = _spans(window, graph)
+    style = imgui.get_style()
+    used, room = 0.0, imgui.get_content_region_avail().x
+    for colour, key in _entries(ui, graph):
+        name = line_name(graph, key, window)
+        if spans is not None:
+            if colour is not None:
+                _entry(ui, colour, name, spans[key], wrapped=True)
+            continue
+        value, usual = _value(world, window, key, row), f"{_VALUE} {unit_of(key)}"
+        width = (_MARK + 0.4) * ui.size if colour is not None else 0.0
+        width += imgui.calc_text_size(f"{name} ").x
+        width += max(imgui.calc_text_size(usual).x, imgui.calc_text_size(value).x)
+        if used and used + width <= room:
+            imgui.same_line(used + style.window_padding.x)
+        else:
+            used = 0.0
+        used += width + 0.8 * ui.size
+        _entry(ui, colour, name, value)
+
+
+def build_moment(ui: Ui, world: World, window: Window, used: float) -> None:
+    """Write of which moment the values are, at the right of a row of which so much is used [px]."""
+    record, pointed = window.dashboard.record, window.dashboard.pointed
+    row = record.nearest(world.time if pointed is None else pointed)
+    if row is None:
+        return
+    words = f"t {record.times[row]:.3f} s"
+    style, room = imgui.get_style(), imgui.get_content_region_avail().x
+    width = imgui.calc_text_size(words).x
+    if used + style.item_spacing.x + width > room:
+        ui.text(words)
+        return
+    imgui.same_line(room - width + style.window_padding.x)
+    imgui.align_text_to_frame_padding()
+    ui.text(words)
+
+
+def _entries(ui: Ui, graph: GraphShown) -> list[tuple[Colour | None, Key]]:
+    """Return what is across, and every line with its colour."""
+    across: list[tuple[Colour | None, Key]] = [] if graph.across is None else [(None, graph.across)]
+    return [*across, *((colour_of(ui, n), line.key) for n, line in enumerate(graph.lines))]
+
+
+def _entry(ui: Ui, colour: Colour | None, name: str, value: str, *, wrapped: bool = False) -> None:
+    if colour is not None:
+        corner, height = imgui.get_cursor_screen_pos(), imgui.get_text_line_height()
+        low = ImVec2(corner.x, corner.y + 0.5 * height - 0.1 * ui.size)
+        high = ImVec2(corner.x + _MARK * ui.size, low.y + 0.2 * ui.size)
+        imgui.get_window_draw_list().add_rect_filled(low, high, packed(colour), 0.1 * ui.size)
+        imgui.dummy(ImVec2(_MARK * ui.size, height))
+        imgui.same_line(0.0, 0.4 * ui.size)
+    ui.faint(name, wrapped=False)
+    imgui.same_line(0.0, imgui.calc_text_size(" ").x)
+    if wrapped and imgui.calc_text_size(value).x > imgui.get_content_region_avail().x:
+        imgui.new_line()
+    ui.text(value, wrapped=wrapped)
+
+
+def _value(world: World, window: Window, key: Key, row: int | None) -> str:
+    """Return a value in words: why there is none, where there is none."""
+    value = np.nan if row is None else float(window.dashboard.record.values(key)[row])
+    why = why_undefined(world, key[1], key[0])
+    if np.isnan(value):
+        return f"({why})" if why else "not recorded"
+    words, record = quantity(value, unit_of(key)), window.dashboard.record
+    return f"{words} (gone)" if why == "gone" and world.time >= record.times[-1] else words
+
+
+def build_cursors(ui: Ui, window: Window, graph: GraphShown) -> None:
+    """Build a button for each cursor that is set, which goes to its moment; and what clears them."""
+    marks = window.dashboard.marks
+    if marks == [None, None]:
+        return
+    row = ButtonRow()
+    for name, time in zip("AB", marks, strict=True):
+        if time is None:
+            words = "Shift-click: B" if name == "B" else "Click: A"
+            row.next(words)
+            imgui.align_text_to_frame_padding()
+            ui.faint(words, wrapped=False)
+            continue
+        words = f"{name} {time:.3f} s"
+        row.next(words)
+        if ui.button(f"Go to {name} in graph {graph.number}", "Pause, and go to this moment", shown=words):
+            window.deeds.append(dashboard_actions.go_to(time))
+    row.next("Clear")
+    if ui.button(f"Clear cursors in graph {graph.number}", "Take the cursors A and B away", shown="Clear"):
+        marks[:] = [None, None]
+    a, b = marks
+    if a is not None and b is not None:
+        words = f"B - A {b - a:.3f} s"
+        row.next(words)
+        imgui.align_text_to_frame_padding()
+        ui.text(words)
+
+
+def _spans(window: Window, graph: GraphShown) -> dict[Key, str] | None:
+    """Return of each line its slope and its area between the cursors in words; ``None`` without two."""
+    dashboard = window.dashboard
+    record, (a, b) = dashboard.record, dashboard.marks
+    first, last = (None if time is None else record.nearest(time) for time in (a, b))
+    if first is None or last is None:
+        return None
+    across = record.times if graph.across is None else record.values(graph.across)
+    unit = "s" if graph.across is None else QUANTITIES[graph.across[1]].unit
+    found: dict[Key, str] = {}
+    for line in graph.lines:
+        values, own = record.values(line.key), QUANTITIES[line.key[1]].unit
+        slope = slope_between(across, values, first, last)
+        area = area_between(across, values, first, last)
+        if np.isnan(slope) and np.isnan(area):
+            found[line.key] = "not recorded from A to B"
+            continue
+        words = "slope not defined" if np.isnan(slope) else f"slope {_words(slope, quotient(own, unit))}"
+        more = "not all recorded" if np.isnan(area) else f"area {_words(area, product(own, unit))}"
+        found[line.key] = f"{words}, {more}"
+    return found
+
+
+def _words(value: float, unit: str) -> str:
+    return quantity(value, written_unit(unit)).rstrip()

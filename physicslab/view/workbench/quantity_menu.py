@@ -1,0 +1,73 @@
+"""Menus from which a quantity of a body, or of the world, is chosen."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+
+from physicslab.components import Transform, Velocity
+from physicslab.components.quantities import BODY_QUANTITIES, QUANTITIES, WORLD_QUANTITIES
+from physicslab.view.canvas.drawable_text import drawable
+from physicslab.view.canvas.units import written_unit
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.record import Key
+from physicslab.view.window.window import Window
+from physicslab.world import World
+
+__all__ = ["build_quantities", "named_key", "shown_name", "unit_of"]
+
+_OFFERED = 24
+"""Bodies that a menu lists beside those that are selected or shown already."""
+
+
+def unit_of(key: Key) -> str:
+    """Return the unit of a quantity, as people write it."""
+    return written_unit(QUANTITIES[key[1]].unit)
+
+
+def named_key(key: Key, window: Window) -> str:
+    """Return what a quantity is called, with its body: ``"ball: speed"``."""
+    return f"{window.dashboard.label(key[0])}: {key[1]}"
+
+
+def shown_name(name: str) -> str:
+    """Return a name as widgets show it: they take what follows ``##`` for a mark of their own.
+
+    >>> shown_name("a###b")
+    'a# # #b'
+    """
+    return re.sub("#(?=#)", "# ", drawable(name))
+
+
+def build_quantities(
+    ui: Ui, world: World, window: Window, shown: Iterable[Key], choose: Callable[[Key], None]
+) -> None:
+    """Build a menu for the world and for each body, with a line for each of its quantities.
+
+    Parameters
+    ----------
+    shown : iterable of Key
+        What is marked: it is chosen already.
+    choose : callable
+        Called with what is clicked.
+    """
+    marked = set(shown)
+    for body in (None, *_offered(world, window, marked)):
+        name = "The world" if body is None else shown_name(world.label(body))
+        with ui.menu(name) as is_open:
+            if not is_open:
+                continue
+            for quantity in WORLD_QUANTITIES if body is None else BODY_QUANTITIES:
+                key = (body, quantity)
+                if ui.item(f"{quantity} [{unit_of(key)}]", on=key in marked):
+                    choose(key)
+
+
+def _offered(world: World, window: Window, marked: set[Key]) -> list[int]:
+    """Return the bodies of a menu: those that are shown or selected, those that move, and others."""
+    chosen = [*(body for body, _ in sorted(marked, key=str)), *window.selection.entities]
+    moving, placed = world.batch(Transform, Velocity), world.batch(Transform)
+    offered = [*moving.entities[:_OFFERED].tolist(), *placed.entities[:_OFFERED].tolist()]
+    there = set(placed.entities.tolist())
+    bodies = dict.fromkeys(body for body in (*chosen, *offered[:_OFFERED]) if body in there)
+    return [body for body in bodies if body is not None]
