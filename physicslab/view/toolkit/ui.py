@@ -90,7 +90,8 @@ class Ui:
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
         _, stays = imgui.begin(title, True, _FLOATING)
         place, size = imgui.get_window_pos(), imgui.get_window_size()
-        within = ImVec2(max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0))
+        bar = min(imgui.get_frame_height(), max(room.y - size.y, 0.0))  # the menus stay free, if they can
+        within = ImVec2(max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), bar))
         if (within.x, within.y) != (place.x, place.y):
             imgui.set_window_pos(within)
         self.words.append(title)
