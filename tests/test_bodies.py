@@ -187,7 +187,7 @@ def test_a_run_that_diverges_says_what_and_when(component: str, column: str, val
 def test_a_velocity_alone_can_diverge() -> None:
     world = World(Push((math.inf, 0.0)))
     world.spawn(Transform(), Velocity(), Mass())
-    with pytest.raises(Diverged, match="entity 1: Velocity is no longer finite"):
+    with pytest.raises(Diverged, match="point 1: Velocity is no longer finite"):
         world.step()
 
 

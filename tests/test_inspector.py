@@ -369,3 +369,10 @@ def test_figures_follow_the_motion() -> None:
     tap(desk, "space")
     speed = world.component(body, Velocity).linear.magnitude
     assert desk.ui.rows["Speed"] == quantity(speed, "m/s")
+
+
+def test_an_angle_is_shown_in_degrees_beside() -> None:
+    desk, body = bench("Transform.angle")
+    fill(desk, "Transform.angle", "30 deg")
+    assert held(desk, body, "Transform.angle") == pytest.approx(math.pi / 6)
+    assert "rad = 30°" in desk.ui.words

@@ -212,7 +212,7 @@ def test_between_two_bodies_that_are_selected(desk: Desk) -> None:
     tap(desk, "d")
     part = desk.world.component(only(desk, Ruler), Ruler)
     assert (part.start_body, part.end_body) == (one, two)
-    assert desk.ui.rows["Length"] == "5.000 m" and desk.ui.rows["End goes with"] == f"entity {two}"
+    assert desk.ui.rows["Length"] == "5.000 m" and desk.ui.rows["End goes with"] == f"circle {two}"
     desk.world.component(two, Transform).position = (0.0, 2.0)
     desk.window.pace.paused = False
     desk.frames(20)
@@ -474,7 +474,7 @@ def test_the_stopwatch_reads_the_period_of_a_pendulum(desk: Desk, tmp_path: Path
     desk.frames(60 * 5)
     shown = next(words for words in desk.ui.words if words.startswith("2.0") and words.endswith(" s"))
     assert float(shown[:-2]) == pytest.approx(2.018, abs=0.006)
-    assert "Period of body" in " ".join(desk.ui.words) or "Period of entity" in " ".join(desk.ui.words)
+    assert "Period of circle" in " ".join(desk.ui.words)
     desk.window.pace.paused = True
     click(desk, "CSV of crossings")
     desk.frames(2)

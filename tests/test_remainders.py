@@ -95,8 +95,8 @@ def test_an_edit_drops_the_remainder_of_what_it_changed_in_the_file_as_well() ->
     before = {row[0]: row[1:] for row in write_scene(world)["remainders"]}
     world.component(2, Transform).position += Vector2(0.25, 0.0)
     after = {row[0]: row[1:] for row in write_scene(world)["remainders"]}
-    assert before["entity 2"][0] != 0.0 == after["entity 2"][0]
-    before["entity 2"][0] = 0.0
+    assert before["point 2"][0] != 0.0 == after["point 2"][0]
+    before["point 2"][0] = 0.0
     assert after == before
     again = read_scene(write_scene(world))
     world.run(steps=20)

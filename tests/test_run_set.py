@@ -140,7 +140,7 @@ def test_ids_have_dots_and_equals_signs_and_entities_without_one_have_numbers() 
     assign(world, ["e = 0.5.Mass.mass=4"])
     assert world.component(world.entity("e = 0.5"), Mass).mass == 4.0
     nameless = world.spawn(Transform(), Velocity(), Mass())
-    assign(world, [f"entity {nameless}.Mass.mass=5"])
+    assign(world, [f"{world.label(nameless)}.Mass.mass=5"])
     assert world.component(nameless, Mass).mass == 5.0
 
 
@@ -154,8 +154,8 @@ def test_a_sleeping_body_that_gets_a_velocity_moves(
     path = tmp_path / "asleep.json"
     save_scene(world, path)
     lifted = report(
-        capsys, str(path), "--steps", "6", "--set", f"entity {top}.Velocity.linear=[0, 5]"
-    )["entities"][f"entity {top}"]  # fmt: skip
+        capsys, str(path), "--steps", "6", "--set", f"{world.label(top)}.Velocity.linear=[0, 5]"
+    )["entities"][world.label(top)]  # fmt: skip
     assert lifted["position"][1] > world.component(top, Transform).position.y + 0.3
 
 

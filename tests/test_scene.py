@@ -145,3 +145,13 @@ def test_values_are_shown_on_one_line_and_short() -> None:
 def test_a_refused_value_of_any_size_can_be_named() -> None:
     with pytest.raises(InvalidValue, match=r"^Material\.friction = <int>: must be"):
         Material(friction=10**5000)
+
+
+def test_an_entity_without_an_id_is_called_by_what_it_is_and_its_number() -> None:
+    ball = {"Transform": {}, "Shape": {"kind": "circle", "radius": 1}}
+    point: dict[str, Any] = {"Transform": {}, "Velocity": {}}
+    named = {"id": "floor", "Transform": {}, "Shape": {"kind": "box", "width": 1, "height": 1}}
+    world = read_scene(scene(ball, point, named, {"Spring": {"a": "floor"}}, {}))
+    words = ["circle 1", "point 2", "floor", "spring 4", "entity 5"]
+    assert [world.label(entity) for entity in world.entities()] == words
+    assert world.label(99) == "entity 99"

@@ -153,9 +153,9 @@ def test_undo_and_seek_bring_a_text_back() -> None:
     history = History(World())
     (entity,) = history.do(Spawn([Note("one")]))
     history.do(SetField(entity, "Note", "text", "two\nlines"))
-    assert history.entries[-1].words == f"text of entity {entity}: two lines"
+    assert history.entries[-1].words == f"text of note {entity}: two lines"
     history.step(0.01, steps=3)
-    for words in ("ran 0.03 s", f"text of entity {entity}: two lines"):
+    for words in ("ran 0.03 s", f"text of note {entity}: two lines"):
         assert history.undo() == words
     assert history.world.component(entity, Note).text == "one"
     history.redo()

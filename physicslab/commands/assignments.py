@@ -42,7 +42,7 @@ def assign(world: World, texts: Sequence[str]) -> None:
         Whose fields.
     texts : sequence of str
         Each ``ID.Component.field=VALUE``; of two for one field the later holds. An entity without an id is
-        called ``entity <number>``, as in ``run --json``.
+        called as in ``run --json``: what it is and its number, ``circle 3``.
 
     Raises
     ------

@@ -93,10 +93,10 @@ class StepWatch:
         first, start, self._most_impacts = self._storm is None, float(times[begin]), count
         within = (log["time"] >= start) & (log["time"] < start + world.simulation.dt)
         entities, often = np.unique(log["entity_b"][within], return_counts=True)
-        name = world.label(int(entities[np.argmax(often)]))
+        struck = int(entities[np.argmax(often)])
         what = "is part of a storm of impacts: so many follow each other within a step"
         setting = 'simulation.collisions = "step"'
-        self._storm = ModelWarning(name, what, float(count), "", float(STORM_LIMIT), setting)
+        self._storm = ModelWarning.about(world, struck, what, float(count), "", float(STORM_LIMIT), setting)
         return f"at t = {start:.9g} s: {self._storm}" if first else ""
 
     def _reason(self, impacts: float, evaluations: float) -> tuple[str, str, str]:

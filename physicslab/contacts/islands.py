@@ -14,7 +14,7 @@ from physicslab.state.state import State
 
 __all__ = [
     "all_asleep", "check_edits", "export_rests", "fall_asleep", "follow_rows", "keep_places", "restore_rests",
-    "set_inactive", "wake", "wake_all",
+    "set_inactive", "wake", "wake_all", "wake_neighbours",
 ]  # fmt: skip
 
 type _Marks = NDArray[np.bool_]
@@ -65,6 +65,15 @@ def _mark_neighbours(state: State, causes: NDArray[np.int64], marked: _Marks) ->
     for entity, row in ((near["entity_a"], b), (near["entity_b"], a)):
         met = row[(count > 0) & np.isin(entity, causes) & (row >= 0)]
         marked[met[state.sleep.asleep[met]]] = True
+
+
+def wake_neighbours(state: State, entities: NDArray[np.int64]) -> None:
+    """Wake what sleeps and touched some entities when pairs were last listed."""
+    if state.sleep.count:
+        marked = np.zeros(len(state.sleep.asleep), np.bool_)
+        _mark_neighbours(state, entities, marked)
+        if marked.any():
+            wake(state, marked)
 
 
 def wake(state: State, marked: _Marks) -> _Marks:

@@ -41,18 +41,18 @@ class ContactGraph:
     depth: NDArray[np.float64]
     normal: NDArray[np.float64]
 
-    def lighter(self, world: World, pair: int) -> str:
-        """Return the name of the lighter body of a pair."""
+    def lighter(self, world: World, pair: int) -> int:
+        """Return the lighter body of a pair."""
         inverse = world.bodies.inverse_mass
         row = self.a[pair] if inverse[self.a[pair]] > inverse[self.b[pair]] else self.b[pair]
-        return world.label(int(world.entity_index.entities[row]))
+        return int(world.entity_index.entities[row])
 
-    def faster(self, world: World, pair: int) -> str:
-        """Return the name of the faster body of a pair."""
+    def faster(self, world: World, pair: int) -> int:
+        """Return the faster body of a pair."""
         linear = world.table(Velocity)["linear"]
         a, b = int(self.a[pair]), int(self.b[pair])
         row = a if np.hypot(*linear[a]) > np.hypot(*linear[b]) else b
-        return world.label(int(world.entity_index.entities[row]))
+        return int(world.entity_index.entities[row])
 
     def sharing_a_body(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Return which of the ``chosen`` pairs have a body in common with another of them (pairs,)."""

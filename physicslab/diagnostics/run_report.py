@@ -56,13 +56,18 @@ class RunRecord:
 
 
 def body_names(world: World) -> dict[int, str]:
-    """Name every entity with a Transform, in order, by its id or ``entity <number>``; no two alike."""
+    """Name every entity with a Transform, in order, by its id, or what it is and its number; no two alike."""
     names: dict[int, str] = {}
     taken: set[str] = set()
     for entity in world.batch(Transform).entities.tolist():
         names[entity] = unique_name(world.label(entity), taken)
         taken.add(names[entity])
     return names
+
+
+def _advice(warning: ModelWarning) -> dict[str, Any]:
+    """Return a warning as a report has it; entities have names there, and no numbers."""
+    return {key: value for key, value in dataclasses.asdict(warning).items() if key != "number"}
 
 
 def run_report(world: World, record: RunRecord) -> dict[str, Any]:
@@ -110,7 +115,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "collisions": int(world.collisions),
         "max_penetration": record.max_penetration,
         "divided": record.divided,
-        "advice": [dataclasses.asdict(warning) for warning in record.warnings.all],
+        "advice": [_advice(warning) for warning in record.warnings.all],
         "entities": _bodies(world),
     }
 

@@ -59,7 +59,7 @@ def _rates(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarn
     if value <= limit:
         return
     entity = _stiffest(world) if Spring in system.needs else None
-    source = "" if entity else f"{system.name.removesuffix('System')}: "
+    source = "" if entity is not None else f"{system.name.removesuffix('System')}: "
     if bounded:
         what = "is too fast to be followed (omega h): its motion between steps is not shown"
     elif value > integrator.stability_limit:
@@ -69,7 +69,7 @@ def _rates(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarn
     setting = _shorter(world, rate, limit, followed=bounded)
     if system.attractors > 1 and world.simulation.integrator != "auto":
         setting = 'simulation.integrator = "auto"'  # with the steps of a passage, others are still long
-    yield ModelWarning(entity, source + what, value, "", limit, setting)
+    yield ModelWarning.about(world, entity, source + what, value, "", limit, setting)
 
 
 def _phase(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarning]:
@@ -99,8 +99,8 @@ def _phase(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarn
     if world.simulation.integrator == "auto":
         setting = ""  # it takes other steps of its own
     what = "oscillates out of phase by now, by the error of the method"
-    name = world.label(int(world.entity_index.entities[rows[worst]]))
-    yield ModelWarning(name, what, float(lost[worst]), "rad", PHASE_LIMIT, setting)
+    late = int(world.entity_index.entities[rows[worst]])
+    yield ModelWarning.about(world, late, what, float(lost[worst]), "rad", PHASE_LIMIT, setting)
 
 
 def _order(world: World) -> Iterator[ModelWarning]:
@@ -134,12 +134,12 @@ def _below(value: float) -> float:
     return math.floor(value / digits) * digits
 
 
-def _stiffest(world: World) -> str | None:
-    """Return the name of the spring with the fastest oscillation or decay."""
+def _stiffest(world: World) -> int | None:
+    """Return the spring with the fastest oscillation or decay."""
     rows, a, b = spring_ends(world)
     if not len(rows):
         return None
     spring, inverse = world.table(Spring), world.bodies.inverse_mass
     give = inverse[a] + inverse[b]
     rates = np.maximum(np.sqrt(spring["stiffness"][rows] * give), spring["damping"][rows] * give)
-    return world.label(int(world.entity_index.entities[rows[np.argmax(rates)]]))
+    return int(world.entity_index.entities[rows[np.argmax(rates)]])

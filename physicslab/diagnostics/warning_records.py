@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from physicslab.world import World
+
 __all__ = ["ModelWarning", "WorstWarnings"]
 
 
@@ -25,6 +27,8 @@ class ModelWarning:
         Of both; empty for a plain number.
     setting : str
         A setting that helps, with its value; empty where none does.
+    number : int, optional
+        The entity itself.
     """
 
     entity: str | None
@@ -33,6 +37,16 @@ class ModelWarning:
     unit: str
     limit: float | None
     setting: str
+    number: int | None = None
+
+    @classmethod
+    def about(
+        cls, world: World, entity: int | None, what: str, value: float | None, unit: str,
+        limit: float | None, setting: str,
+    ) -> ModelWarning:  # fmt: skip
+        """Return a warning about an entity of a world; about all of it where that is ``None``."""
+        name = None if entity is None else world.label(entity)
+        return cls(name, what, value, unit, limit, setting, entity)
 
     @property
     def excess(self) -> float:

@@ -126,8 +126,8 @@ def _distance(world: World) -> Iterator[ModelWarning]:
     limit = DISTANCE_LIMIT * float(size[worst])
     if reach[worst] >= limit:
         what = "is so far from the origin that its contacts cannot be resolved"
-        name = world.label(int(batch.entities[worst]))
-        yield ModelWarning(name, what, float(reach[worst]), "m", limit, "a place nearer to the origin")
+        far, better = int(batch.entities[worst]), "a place nearer to the origin"
+        yield ModelWarning.about(world, far, what, float(reach[worst]), "m", limit, better)
 
 
 def _overlap(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
@@ -137,21 +137,21 @@ def _overlap(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     share = graph.depth / graph.size[graph.touching]
     worst = int(np.argmax(share))
     if share[worst] > OVERLAP_LIMIT:
-        name = graph.lighter(world, int(graph.touching[worst]))
+        lighter = graph.lighter(world, int(graph.touching[worst]))
         size = float(graph.size[graph.touching[worst]])
         what = "is pressed into another body deeper than contacts can hold"
         depth, limit = float(graph.depth[worst]), OVERLAP_LIMIT * size
-        yield ModelWarning(name, what, depth, "m", limit, _rigid(world, graph))
+        yield ModelWarning.about(world, lighter, what, depth, "m", limit, _rigid(world, graph))
 
 
 def _mass_ratios(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     """Yield the lighter body of the largest mass ratio among bodies that lie on supported ones."""
     ratio = graph.mass_ratios(world)
     if len(ratio) and ratio.max() > MASS_RATIO_LIMIT:
-        name = graph.lighter(world, int(graph.touching[np.argmax(ratio)]))
+        lighter = graph.lighter(world, int(graph.touching[np.argmax(ratio)]))
         what = "carries a body so much heavier that contacts cannot hold it (mass ratio)"
         setting = _rigid(world, graph) if ratio.max() <= _RIGID_MASS_RATIO else ""
-        yield ModelWarning(name, what, float(ratio.max()), "", MASS_RATIO_LIMIT, setting)
+        yield ModelWarning.about(world, lighter, what, float(ratio.max()), "", MASS_RATIO_LIMIT, setting)
 
 
 def _speeds(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
@@ -165,7 +165,8 @@ def _speeds(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
         worst = int(np.argmax(sizes))
         setting = _more_substeps(world, float(sizes[worst]) / SPEED_LIMIT)
         what = "passes so many sizes of a body in a substep that impacts after the first may be missed"
-        yield ModelWarning(graph.faster(world, worst), what, float(sizes[worst]), "", SPEED_LIMIT, setting)
+        faster = graph.faster(world, worst)
+        yield ModelWarning.about(world, faster, what, float(sizes[worst]), "", SPEED_LIMIT, setting)
 
 
 def _spins(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
@@ -179,8 +180,8 @@ def _spins(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     if len(angles) and angles.max() > SPIN_LIMIT:
         setting = _more_substeps(world, float(angles.max()) / SPIN_LIMIT)
         what = "turns so far in a substep that chance decides where its corners strike"
-        name = world.label(int(world.entity_index.entities[rows[np.argmax(angles)]]))
-        yield ModelWarning(name, what, float(angles.max()), "rad", SPIN_LIMIT, setting)
+        spinning = int(world.entity_index.entities[rows[np.argmax(angles)]])
+        yield ModelWarning.about(world, spinning, what, float(angles.max()), "rad", SPIN_LIMIT, setting)
 
 
 def _rigid(world: World, graph: ContactGraph) -> str:

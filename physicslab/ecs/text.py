@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from collections.abc import Container
 
-__all__ = ["SHORT", "has_width", "is_line", "printable", "shortened", "unique_name"]
+__all__ = ["SHORT", "has_width", "in_words", "is_line", "printable", "shortened", "unique_name"]
 
 SHORT = 60
 """Characters of a value, a key or a name that a message shows."""
@@ -62,3 +63,12 @@ def unique_name(wanted: str, taken: Container[str]) -> str:
         count += 1
         name = f"{wanted} ({count})"
     return name
+
+
+def in_words(name: str) -> str:
+    """Return the name of a class in words.
+
+    >>> in_words("GraphLine"), in_words("Spring")
+    ('graph line', 'spring')
+    """
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name).lower()

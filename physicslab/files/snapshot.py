@@ -70,10 +70,6 @@ class WorldSnapshot:
         self._rows = dict(world.entity_index.row_of)
         self._tables = _copied(world.entity_index)
 
-    def label(self, entity: int) -> str:
-        """Return the entity's id if it has one, else ``entity <number>``."""
-        return self.names.get(entity, f"entity {entity}")
-
     def component(self, entity: int, kind: type[Any]) -> Component | None:
         """Return a component as it was, or ``None`` where the entity had none."""
         row, held = self._rows[entity], self._tables.get(kind)

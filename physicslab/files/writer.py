@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Iterable, Mapping
 from typing import Any
 
+from physicslab.components.naming import plain_name
 from physicslab.contacts.memory import kept_rows
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
@@ -73,7 +74,7 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
     document["simulation"] = _settings(snapshot.simulation)
     document["entities"] = written = []
     for number, components in entities.items():
-        label = snapshot.label(number)
+        label = snapshot.names.get(number) or plain_name(number, components)
         named = {"id": ids[number]} if number in ids else {}
         written.append(named | {type(part).__name__: _fields(part, ids, label) for part in components})
         yield
@@ -137,7 +138,7 @@ def _invented(
     for place, number in enumerate(entities, start=1):
         if number in referred and number not in ids:
             # Its place in the file: what the entity will be called when the scene is read.
-            invented[number] = unique_name(f"entity {place}", taken)
+            invented[number] = unique_name(plain_name(place, entities[number]), taken)
             taken.add(invented[number])
     return invented
 

@@ -31,7 +31,10 @@ __all__ = ["Keyframe"]
 type _Array = NDArray[Any]
 type _Columns = tuple[_Array, ...]
 
-_COUNTS = ("time", "steps", "substeps", "step_divisions", "force_evaluations", "collisions")
+_COUNTS = (
+    "time", "steps", "substeps", "step_divisions", "force_evaluations", "collisions", "brought_back",
+    "energy_brought_back",
+)  # fmt: skip
 """What else a world counts."""
 
 

@@ -94,6 +94,7 @@ class Contacts:
     energetic_impacts = _count(
         near_counts.ENERGETIC, "How many impacts obeyed Stronge's law, as Newton's would have made energy."
     )
+    outside = _count(near_counts.OUTSIDE, "Whether a body was beyond the bounds in the step at hand.")
     unordered = _count(
         near_counts.UNORDERED, "Whether scalar pairs were added since those were last put in order."
     )
@@ -177,6 +178,26 @@ class Contacts:
             self.list_scalar(rows)
         self.wide.reset(rows)
 
+    def forget(self, bodies: NDArray[np.int64], rows: int) -> None:
+        """Drop the points of some bodies that are elsewhere now, in a world of so many ``rows``."""
+        self.dissolve(rows)
+        near = self.manifolds[: self.recorded]
+        touched = np.isin(near["a"], bodies) | np.isin(near["b"], bodies)
+        for name in ("count", "found", "swept"):
+            near[name][touched] = 0
+        of_points = np.repeat(touched, 2)
+        for name in ("feature", "ahead", "normal_impulse", "tangent_impulse"):
+            self.points[name][: len(of_points)][of_points] = 0
+        self._list_touching(rows)
+
+    def _list_touching(self, rows: int) -> None:
+        """Find which pairs are scalar, which of these have points, and which are inactive."""
+        self.list_scalar(rows)
+        scalar = self.scalar[: self.scalar_count]
+        touching = scalar[self.manifolds["count"][scalar] > 0]
+        self.active = len(touching)
+        self.touching[: self.active] = touching
+
     def in_order(self, rows: int) -> None:
         """Sort the scalar pairs, where some were added since: a file keeps no other order."""
         if self.unordered:
@@ -197,11 +218,7 @@ class Contacts:
         found = self.manifolds["found"]
         found[found == AS_FOUND] = 0  # the effective masses are others
         if not self.stale:  # else this is done when they are listed
-            self.list_scalar(rows)
-            scalar = self.scalar[: self.scalar_count]
-            touching = scalar[self.manifolds["count"][scalar] > 0]
-            self.active = len(touching)
-            self.touching[: self.active] = touching
+            self._list_touching(rows)
 
     def release(self, asleep: NDArray[np.bool_]) -> None:
         """Write the slots of sleeping bodies to their records and empty them."""

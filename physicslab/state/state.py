@@ -11,6 +11,7 @@ import esper
 
 from physicslab.components import Name
 from physicslab.components.name import why_no_id
+from physicslab.components.naming import plain_name
 from physicslab.ecs.batch import Batch
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -52,6 +53,10 @@ class State:
         Into how many parts the last step was divided, which was longer than ``simulation.dt``; or 1.
     force_evaluations, collisions : int
         How often forces were evaluated, and how many impacts there were.
+    brought_back : int
+        How often a body beyond the bounds was put elsewhere, as something fixed held it there.
+    energy_brought_back : float
+        By how much that changed the energy [J].
     has_forces : bool
         Whether a force system runs.
     event_driven, rigid_contacts : bool
@@ -98,7 +103,8 @@ class State:
         self.view: View | None = None
         self.time, self.steps, self.revision, self.motion_edits = 0.0, 0, 0, 0
         self.substeps, self.step_divisions = self._simulation.substeps, 1
-        self.force_evaluations = self.collisions = 0
+        self.force_evaluations = self.collisions = self.brought_back = 0
+        self.energy_brought_back = 0.0
         self._waited_before = seconds_waited()
         self.generation = 0
         self.has_forces = self.event_driven = self.rigid_contacts = False
@@ -238,10 +244,12 @@ class State:
         raise KeyError(f"no entity has the id {name!r}")
 
     def label(self, entity: int) -> str:
-        """Return the entity's id if it has one, else ``entity <number>``."""
+        """Return the entity's id if it has one, else what it is and its number: ``circle 3``."""
         with self.active():
+            if not esper.entity_exists(entity):
+                return f"entity {entity}"
             named = esper.try_component(entity, Name)
-        return named.id if named is not None else f"entity {entity}"
+            return named.id if named is not None else plain_name(entity, esper.components_for_entity(entity))
 
     def label_of_row(self, row: int) -> str:
         """Return the label of the entity of a row; row 0 is the world itself."""

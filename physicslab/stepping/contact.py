@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
+from physicslab.stepping.bounds import bring_back
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.split_forces import OF_SPLIT_FORCES, SplitForces
 from physicslab.stepping.stepper import Advance, divisions
@@ -60,6 +61,8 @@ class Contact:
         check_finite(state, state.time + h)
         if self._sleep is not None:
             self._schedule.call(self._sleep, self._sleep.count_rest, state, h)
+        if state.contacts.outside:
+            bring_back(state, self._schedule)
         factors = (system.substep_factor(state) for system in self._schedule.running)
         state.contacts.substep_factor = max(factors, default=1)
         return Advance(1, parts)

@@ -30,6 +30,7 @@ from physicslab.kernels.solver import fused_contact as fused
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
+from physicslab.stepping.bounds import bring_back
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.accelerate import AccelerateSystem
@@ -143,9 +144,12 @@ class FusedContact:
                     if self._sleep is not None:
                         self._timed(self._sleep, self._sleep.wake_touched_islands, state, span)
                     stage = fused.IMPACTS
-                elif why == fused.SLEEP_PENDING and self._sleep is not None:
+                elif why in (fused.SLEEP_PENDING, fused.WALL_PENDING):
                     state.checkpoint.take(motion_of(state), state.counts)
-                    self._timed(self._sleep, self._sleep.put_islands_to_sleep, state, h)
+                    if why == fused.SLEEP_PENDING and self._sleep is not None:
+                        self._timed(self._sleep, self._sleep.put_islands_to_sleep, state, h)
+                    if state.contacts.outside:
+                        bring_back(state, self._schedule)
                     stage = fused.BEGIN
                     if all_asleep(state):
                         break

@@ -30,7 +30,7 @@ from physicslab.kernels.arguments import (
 from physicslab.kernels.broad.fat_boxes import still_holds
 from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.motion import clear, drift, find_not_finite, kick
-from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
+from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.islands import count_rest, find_touched
 from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
@@ -40,13 +40,13 @@ from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to
 __all__ = [
     "ACCELERATE", "ALL", "BEGIN", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "FIND",
     "GRAVITY", "IMPACTS", "INTEGRATE", "PAIRS_STALE", "RESOLVE", "SLEEP", "SLEEP_PENDING", "STEPS",
-    "WAKE_PENDING", "advance",
+    "WAKE_PENDING", "WALL_PENDING", "advance",
 ]  # fmt: skip
 
-ALL, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING = range(6)
+ALL, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING, WALL_PENDING = range(7)
 """Why the loop ended: all steps are done; the near pairs must be listed again; so many bodies touch that more
 blocks may be needed; the last step left a number that is not finite; a sleeping body is touched; at the end
-of a step, an island may fall asleep."""
+of a step, an island may fall asleep, or a body was beyond the bounds."""
 BEGIN, FIND, IMPACTS = range(3)
 """Where in a substep the loop begins: at its start; where bodies touch; at the impacts."""
 COSTS, STEPS = 8, 7
@@ -190,6 +190,8 @@ def _advance(
                 now = charge(cost, SLEEP, now)
                 if check:
                     return SLEEP_PENDING, done, substep, finished_impacts, impact_count, impulse_dt
+            if counts[OUTSIDE] != 0:
+                return WALL_PENDING, done, substep, finished_impacts, impact_count, impulse_dt
     return ALL, done, substep, finished_impacts, impact_count, impulse_dt
 
 

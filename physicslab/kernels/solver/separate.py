@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, Vectors, allocating, fused, inlined
 from physicslab.kernels.arguments import Contacts, Near
-from physicslab.kernels.near_counts import DISC_BLOCKS
+from physicslab.kernels.near_counts import DISC_BLOCKS, OUTSIDE
 from physicslab.kernels.records import Manifold, Points
 from physicslab.kernels.wide.float64x8 import lesser, mask_bits, take
 from physicslab.kernels.wide.layout import (
@@ -20,12 +20,15 @@ from physicslab.kernels.wide.layout import (
     rows_of,
 )
 
-__all__ = ["separate"]
+__all__ = ["BEYOND", "separate"]
 
 _DEEP = 0.1
 """Share beyond which overlap is resolved by moving bodies."""
 _SHARE = 0.6
 """Share of the way that they are moved in a substep."""
+BEYOND = 0.02
+"""Share of its size by which a body is beyond the bounds where it is noted as outside: one that is pressed
+against them by others stays below."""
 
 
 @inlined
@@ -47,11 +50,18 @@ def _deep_slots(slots: Slots, k: int) -> int:
 
 @inlined
 def _any_deep(contacts: Contacts, near: Near) -> bool:
-    """Whether any contact overlaps deeply."""
+    """Whether any contact overlaps deeply; whether a body is beyond the bounds is noted in the counts."""
+    any_deep = False
     for k in range(contacts.number):
         p = contacts.touching[k]
-        if _lowest(contacts.manifolds[p], contacts.points, p) < -_DEEP * contacts.manifolds[p].size:
-            return True
+        manifold = contacts.manifolds[p]
+        lowest = _lowest(manifold, contacts.points, p)
+        if lowest < -_DEEP * manifold.size:
+            any_deep = True
+        if manifold.wall >= 0 and manifold.swept != 1 and lowest < -BEYOND * manifold.size:
+            near.counts[OUTSIDE] = 1
+    if any_deep:
+        return True
     for slots in (near.discs, near.boxes):
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
             if _deep_slots(slots, k) != 0:
@@ -130,6 +140,8 @@ def _move_wide(near: Near, position: Vectors, before: Vectors, inverse_mass: Num
                 if not (deep >> place) & 1:
                     continue
                 at = k * rows_of(slots.kind) + place
+                if slots.a[k * WIDE + place] == 0:  # the world itself: a wall
+                    near.counts[OUTSIDE] = 1
                 lowest = data[at + ONE + SEPARATION]
                 if slots.kind != DISC:
                     lowest = min(lowest, data[at + TWO + SEPARATION])
@@ -147,7 +159,8 @@ def separate(
 
     Only positions change: however many bodies are on one spot, separating them gives them no speed. A body
     beyond the world's bounds, or within a fixed body, is put back at once, so that the heaviest body cannot
-    press another one through a floor.
+    press another one through a floor. What is beyond the bounds is noted in the counts: where both hold of a
+    body, neither may have an end (:mod:`physicslab.stepping.bounds`).
     """
     if not _any_deep(contacts, near):
         return

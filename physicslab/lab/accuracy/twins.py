@@ -13,6 +13,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
+from physicslab.components import Shape
+from physicslab.components.naming import name_by_kinds
+from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.text import unique_name
 from physicslab.files.reader import read_scene
@@ -72,7 +75,9 @@ def with_ids(document: Document) -> Document:
     taken = {entity["id"] for entity in document["entities"] if "id" in entity}
     for i, entity in enumerate(document["entities"], 1):
         if "id" not in entity:
-            entity["id"] = unique_name(f"entity {i}", taken)
+            kinds = [COMPONENTS[name] for name in entity if name in COMPONENTS]
+            shape = entity.get(Shape.__name__, {}).get("kind")
+            entity["id"] = unique_name(name_by_kinds(i, kinds, shape), taken)
             taken.add(entity["id"])
     return document
 

@@ -127,7 +127,7 @@ class HudSystem(System):
         """Write what is not to be trusted, and put a ring around each body that is spoken of."""
         window, size = self._window, self._text_size
         canvas, theme = window.canvas, window.theme
-        bodies = [entity for one in self._advice if (entity := _named(world, one.entity)) is not None]
+        bodies = [one.number for one in self._advice if one.number is not None]
         draw_selection(world, bodies, window.camera, theme, canvas, colour=theme.warning)
         plainly = window.level == "Explore"
         return draw_advice(self._advice, middle, top, bottom, width, size, canvas, theme, plainly=plainly)
@@ -175,11 +175,3 @@ class HudSystem(System):
         if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):
             messages, bottom = lay_out_messages(words, size, width - size, canvas), bar[1]
         return draw_messages(messages, middle, top + size // 2, bottom, size, canvas, theme)
-
-
-def _named(world: World, label: str | None) -> int | None:
-    """Return the entity that a warning speaks of, if it speaks of one that is there."""
-    for entity in world.entities() if label else ():
-        if world.label(entity) == label:
-            return entity
-    return None

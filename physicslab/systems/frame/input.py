@@ -14,6 +14,8 @@ from physicslab.view.controls.controls import KEYS, RELEASES
 from physicslab.view.controls.file_actions import open_scene
 from physicslab.view.controls.keyboard import open_menu
 from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
+from physicslab.view.controls.picking import body_at
+from physicslab.view.controls.snapping import follow_snapping
 from physicslab.view.controls.spawning import spawn_box
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import TOOLS
@@ -28,6 +30,8 @@ __all__ = ["InputSystem"]
 _BY_PRINT = ("+", "-", ".", ",", "[", "]")
 """Keys that go by what they print: on other keyboards they are elsewhere, or need AltGr."""
 _PRESSES = (pygame.KEYDOWN, pygame.MOUSEBUTTONDOWN, pygame.MOUSEWHEEL)
+_SNAPPING = pygame.KMOD_ALT | pygame.KMOD_CTRL
+"""Keys with which places snap while they are held."""
 _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
 """With these keys held, another key is meant for the desktop: Alt+Tab is no slow motion."""
 
@@ -87,8 +91,14 @@ class InputSystem(System):
                 window.pointer_on_panel, window.has_pointed = taken, True
         window.follow_size(world)
         window.trails.follow(world)
-        window.hand.move(window.place, window.now)
+        self._follow_snapping(world)
+        window.hand.move(window.target, window.now)
         window.hand.lead(world, window.coming(world), window.pace.paused)
+
+    def _follow_snapping(self, world: World) -> None:
+        """Let the place of the cursor snap, where that is on or a key for it is held."""
+        self._window.snapping.held = bool(pygame.key.get_mods() & _SNAPPING)
+        follow_snapping(world, self._window)
 
     def _do_deeds(self, world: World) -> None:
         """Do what panels were clicked for."""
@@ -128,7 +138,12 @@ class InputSystem(System):
         self._window.pointer = event.pos
         follow_pointer(world, self._window)
         self._window.adding = bool(pygame.key.get_mods() & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL))
+        self._follow_snapping(world)
         if event.button == pygame.BUTTON_LEFT:
+            if self._window.picking is not None:
+                picking, self._window.picking = self._window.picking, None
+                picking(world, self._window, body_at(world, self._window.camera, event.pos))
+                return
             if self._takes_handle(world, event.pos):
                 return
             self._tool = TOOLS[self._window.tool]
@@ -149,6 +164,7 @@ class InputSystem(System):
 
     def _release(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
+        self._follow_snapping(world)
         follow_pointer(world, self._window)
         if event.button == pygame.BUTTON_LEFT:
             self._window.handles.release(self._window.edits)
@@ -165,6 +181,7 @@ class InputSystem(System):
         if not event.buttons[0]:  # let go where no report came from, as over another window
             window.hand.drop(world)
             window.handles.release(window.edits)
+            window.pins.release(window.edits)
             let_instrument_go(world, window)
             if self._tool is not None:
                 window.spring_tool.cancel()
@@ -175,9 +192,12 @@ class InputSystem(System):
             dx, dy = event.pos[0] - window.pointer[0], event.pos[1] - window.pointer[1]
             window.camera.pan(dx, dy)
         window.pointer = event.pos
+        self._follow_snapping(world)
         if window.handles.dragged is not None and window.handled is not None:
-            snaps = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
-            window.handles.drag(window.edits, window.handled, window.camera, window.place, snaps=snaps)
+            rounds = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
+            snaps = rounds or (window.snapping.active and window.handles.dragged == "angle")
+            window.handles.drag(window.edits, window.handled, window.camera, window.target, snaps=snaps)
+        window.pins.drag(window.edits, window.target, paused=window.pace.paused)
         follow_pointer(world, window)
 
     def _wheel(self, world: World, event: pygame.Event) -> None:
@@ -187,6 +207,7 @@ class InputSystem(System):
     def _leave(self, world: World, event: pygame.Event) -> None:
         """Let go of everything while another window has the focus."""
         self._window.hand.drop(world)
+        self._window.pins.release(self._window.edits)
         self._window.spring_tool.cancel()
         let_instrument_go(world, self._window)
         self._panning, self._tool = 0, None

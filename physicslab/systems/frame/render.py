@@ -17,6 +17,7 @@ from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.instrument_marks import draw_instruments
 from physicslab.view.overlay.instruments import instruments_of
 from physicslab.view.overlay.selection_marks import draw_band, draw_selection
+from physicslab.view.overlay.snap_marks import draw_snap_marks
 from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.panels.panels import text_size
 from physicslab.view.picture.painting import draw_world
@@ -63,18 +64,42 @@ class RenderSystem(System):
         if overlays.impulses:
             self._draw_impulses(world)
         draw_selection(world, window.selection.entities, camera, theme, canvas)
-        if overlays.arrows and len(window.selection.entities) == 1:
-            size = text_size(canvas, window.text_scale) - 1
-            draw_free_body(world, window.selection.entities[0], overlays, camera, theme, canvas, size)
+        self._draw_forces(world)
         if window.band is not None:
             draw_band(camera.to_screen(window.band), window.pointer, theme, canvas)
         self._draw_instruments(world)
         if not window.filming.running:  # a film has no cursor
             self._draw_handles(world)
             self._draw_ghost(world)
+            self._draw_snapping()
             if window.points_by_key:
                 draw_cursor(window.pointer, theme.accent, canvas)
         window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
+
+    def _draw_snapping(self) -> None:
+        """Draw where what is dragged snaps, and the length of a spring whose pin is dragged."""
+        window, canvas, theme = self._window, self._window.canvas, self._window.theme
+        if window.pins.words:
+            size = text_size(canvas, window.text_scale)
+            draw_reading(window.pins.words, window.pointer, size, theme, canvas)
+        snapping = window.snapping
+        if snapping.place is not None:
+            marks = [(mark.axis, mark.at) for mark in snapping.marks]
+            draw_snap_marks(marks, snapping.place, window.camera, theme, canvas)
+
+    def _draw_forces(self, world: World) -> None:
+        """Measure the forces on what is selected where they are shown, and draw them with the arrows."""
+        window, overlays = self._window, self._window.overlays
+        chosen = window.selection.entities
+        shown = len(chosen) == 1 and (overlays.arrows or (window.figures and window.level != "Explore"))
+        window.measured.follow(world, chosen[0] if shown else None, window.now, paused=window.pace.paused)
+        if overlays.arrows and window.measured.forces:
+            size = text_size(window.canvas, window.text_scale) - 1
+            moved = window.measured.moved(world, chosen[0])
+            draw_free_body(
+                window.measured.forces, moved, world.time, overlays, window.camera, window.theme,
+                window.canvas, size,
+            )  # fmt: skip
 
     def _draw_impulses(self, world: World) -> None:
         """Draw impulses; resting contacts have numbers where they are selected or under the cursor."""

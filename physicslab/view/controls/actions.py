@@ -55,7 +55,9 @@ __all__ = [
     "toggle_planets",
     "toggle_scales",
     "toggle_slow_motion",
+    "toggle_snapping",
     "toggle_trails",
+    "turner",
     "undo",
     "zoom",
     "zoom_in",
@@ -238,6 +240,12 @@ def toggle_gallery(world: World, window: Window) -> None:
     window.shows_gallery = not window.shows_gallery
 
 
+def toggle_snapping(world: World, window: Window) -> None:
+    """Let places, sizes and angles snap, or no longer."""
+    window.snapping.on = not window.snapping.on
+    window.notify("Snapping is on" if window.snapping.on else "Snapping is off")
+
+
 def toggle_history(world: World, window: Window) -> None:
     """Show the list of edits and runs, or no longer."""
     window.lists_history = not window.lists_history
@@ -272,6 +280,9 @@ def leave(world: World, window: Window) -> None:
         window.lists_history = False
     elif window.error_study.shown:
         window.error_study.shown = False
+    elif window.picking is not None:
+        window.picking = None
+        window.notify("Nothing was chosen")
     elif window.selection.entities:
         window.selection.clear()
     elif window.tool != HAND.name:
@@ -366,6 +377,22 @@ def nudger(across: int, up: int) -> Callable[[World, Window], None]:
             window.edits.do(Group(f"moved {len(moves)}", moves))
 
     return nudge
+
+
+def turner(sign: int) -> Callable[[World, Window], None]:
+    """Return what turns each body that is selected by a degree, or by 15 where angles snap."""
+
+    def turn(world: World, window: Window) -> None:
+        by = sign * math.radians(15.0 if window.snapping.active else 1.0)
+        bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+        turns = [
+            SetField(entity, "Transform", "angle", world.component(entity, Transform).angle + by)
+            for entity in bodies
+        ]
+        if turns:
+            window.edits.do(Group(f"turned {len(turns)}", turns))
+
+    return turn
 
 
 def undo(world: World, window: Window) -> None:

@@ -140,6 +140,12 @@ CONTROLS: tuple[Control, ...] = (
             tip="Move what is selected by a pixel; where nothing is, the cursor"),
     Control("Enter", "edit, or click", "return", keyboard.enter, also=("enter",), minor=True, group="edit",
             tip="Edit the numbers of what is selected; where nothing is, click with the tool at the cursor"),
+    Control("Shift+Arrows", "turn what is selected", "shift+left", actions.turner(1), minor=True,
+            group="edit", tip="Turn what is selected by a degree; by 15 degrees where angles snap"),
+    Control("Q", "snap", "q", actions.toggle_snapping, minor=True, group="edit",
+            state=lambda _, window: window.snapping.on,
+            tip="Places and sizes snap to the grid and to other bodies, angles to 15 degrees; also while "
+                "Alt or Ctrl is held"),
     Control("R", "clear all", "r", actions.clear, group="edit", tip="Remove everything"),
     Control("Space", "pause", "space", actions.toggle_pause, group="time",
             state=lambda _, window: window.pace.paused, tip="Pause or resume"),
@@ -256,6 +262,7 @@ KEYS: dict[str, Action] = {
 }
 """What each key does when it goes down, by its name in SDL."""
 KEYS |= keyboard.ARROWS
+KEYS |= {"shift+right": actions.turner(-1)}
 
 RELEASES: dict[str, Action] = {
     control.key: control.release for control in CONTROLS if control.release is not None

@@ -8,19 +8,22 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Note, Shape, Transform
+from physicslab.components import Note, Shape, Spring, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.overlay.instruments import Instrument, instruments_of
 from physicslab.view.picture.bodies import POINT_RADIUS, body_rows
+from physicslab.view.picture.springs import ends_of
 from physicslab.world import World
 
-__all__ = ["body_at", "centre_near", "directions_near", "instrument_at", "point_at"]
+__all__ = ["body_at", "centre_near", "directions_near", "instrument_at", "point_at", "spring_at"]
 
 type Rows = NDArray[np.int64]
 type Numbers = NDArray[np.float64]
 
+_MAX_FROM_SPRING = 6.0
+"""How near to the line between its ends a click on a spring need be [px]."""
 _MAX_DISTANCE = 7.0
 """How near to the middle of a body a click need only be [px]: so that what appears small can be caught."""
 _MIDDLE = 10.0
@@ -48,6 +51,23 @@ def body_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | N
     if len(distance) and np.fmin.reduce(distance) <= _MAX_DISTANCE / camera.scale:
         return int(entities[everything[int(np.nanargmin(distance))]])
     return None
+
+
+def spring_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
+    """Return the entity whose spring is nearest to a place on the screen [px], if it is near, or ``None``."""
+    if not len(world.batch(Spring).rows):
+        return None
+    start, end = (camera.project(place) for place in ends_of(world))
+    with np.errstate(all="ignore"):
+        along, offset = end - start, np.array(pixel) - start
+        length = np.maximum((along**2).sum(axis=1), 1e-12)
+        share = np.clip((along * offset).sum(axis=1) / length, 0.0, 1.0)[:, None]
+        distance = np.hypot(*(offset - share * along).T)
+    distance[~np.isfinite(distance)] = np.inf
+    nearest = int(np.argmin(distance))
+    if distance[nearest] > _MAX_FROM_SPRING:
+        return None
+    return int(world.batch(Spring).entities[nearest])
 
 
 def centre_near(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:

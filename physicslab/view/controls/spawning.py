@@ -109,7 +109,11 @@ class Spawnable:
 
     def outlines(self, window: Window) -> Outlines:
         """Return what would be made at the cursor: the ghost that is shown there."""
-        return _outlines(self.make, window.spawned + 1, window.recipe).moved(window.place)
+        return _outlines(self.make, window.spawned + 1, window.recipe).moved(window.target)
+
+    def about(self, window: Window) -> Outlines:
+        """Return the outlines of what would be made, where the cursor is at the origin."""
+        return _outlines(self.make, window.spawned + 1, window.recipe)
 
     def spawn(self, world: World, window: Window) -> None:
         """Make it at the cursor; where it would overlap, say so instead."""
@@ -127,7 +131,7 @@ class Spawnable:
 def _spawn_commands(make: Make, window: Window, first: int) -> list[Command]:
     """Return the commands that make something at the cursor; ``first`` is the number of its first entity."""
     scratch = World()
-    make(scratch, window.place, window.spawned, window.recipe)
+    make(scratch, window.target, window.spawned, window.recipe)
     entities = scratch.entities()
     number = {entity: first + n for n, entity in enumerate(entities)}
     commands: list[Command] = []

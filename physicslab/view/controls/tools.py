@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from physicslab.components import Transform, Velocity
-from physicslab.history import Command, Group, Remove, Spawn
+from physicslab.components import Spring, Transform, Velocity
+from physicslab.history import Command, Group, Remove, RemoveComponent, Spawn
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
-from physicslab.view.controls.picking import body_at, instrument_at
+from physicslab.view.controls.picking import body_at, instrument_at, spring_at
 from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawnable
 from physicslab.view.controls.tool import Tool
+from physicslab.view.window.pins import pin_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -25,16 +26,26 @@ def _nothing(world: World, window: Window) -> None:
 
 def let_go(world: World, window: Window) -> None:
     """Let go of what is held."""
-    window.hand.release(world, window.place, window.now, window.pace.paused)
+    window.pins.release(window.edits)
+    window.hand.release(world, window.target, window.now, window.pace.paused)
 
 
 def take_hold(world: World, window: Window) -> bool:
-    """Take hold of the body under the cursor, or of an instrument, and select it; return if there is one."""
-    entity = body_at(world, window.camera, window.pointer)
-    if (entity is None or not world.has(entity, Velocity)) and take_instrument(world, window):
+    """Take hold of the body under the cursor, of an instrument, or of the end of a spring, and select it.
+
+    Return whether there is one; a spring that is not held at its end is selected alone.
+    """
+    pin = pin_at(world, window.camera, window.pointer)
+    entity = body_at(world, window.camera, window.pointer) if pin is None else None
+    fixed = entity is None or not world.has(entity, Velocity)
+    if pin is None and fixed and take_instrument(world, window):
         return True  # it lies over what is fixed
     if entity is None:
-        return False
+        window.pins.dragged = pin
+        spring = spring_at(world, window.camera, window.pointer) if pin is None else pin
+        if spring is not None:
+            window.selection.take(spring, add=window.adding)
+        return spring is not None
     window.selection.take(entity, add=window.adding)
     if not window.hand.take(world, entity, window.place, window.now) and not window.pace.paused:
         window.notify(f"{world.label(entity)} stays where it is: it is fixed")
@@ -67,11 +78,16 @@ def end_select(world: World, window: Window) -> None:
 
 
 def remove(world: World, window: Window) -> None:
-    """Remove the instrument or the body under the cursor; a body's springs go with it."""
+    """Remove the instrument, the body or the spring under the cursor; a body's springs go with it."""
     entity = instrument_at(world, window.camera, window.pointer, window.measuring.rects)
     entity = body_at(world, window.camera, window.pointer) if entity is None else entity
+    spring = spring_at(world, window.camera, window.pointer) if entity is None else None
+    if spring is not None and world.has(spring, Transform):  # a body carries it
+        window.edits.do(RemoveComponent(spring, Spring.__name__))
+        return
+    entity = spring if entity is None else entity
     if entity is None:
-        window.notify("Nothing to remove: put the cursor on a body, or select one")
+        window.notify("Nothing to remove: put the cursor on a body or a spring, or select one")
         return
     remove_entities(world, window, (entity,))
 
@@ -137,7 +153,9 @@ SPAWN_TOOLS = (HAND, *(spawning(spawn) for spawn in SPAWNS[1:]))
 SPRING = Tool(
     "spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring, drags=True
 )
-REMOVE = Tool("remove", "Erase", "Erase: click a body; its springs go with it.", remove, _nothing)
+REMOVE = Tool(
+    "remove", "Erase", "Erase: click a body, whose springs go with it, or a spring.", remove, _nothing
+)
 SELECT = Tool(
     "select",
     "Select",

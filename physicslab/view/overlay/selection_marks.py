@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform
+from physicslab.diagnostics.period import spring_state
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.theme import Colour, Theme
@@ -22,6 +23,10 @@ _GAP = 4.0
 _CORNERS = 48
 """Straight lines that a circle is drawn as."""
 _WIDTH = 2.0
+_SPRING_WIDTH = 9.0
+"""Of the band along a spring [px]."""
+_FAR = 1e6
+"""What is farther out of the picture than this is not drawn [px]."""
 
 
 def draw_selection(
@@ -32,11 +37,15 @@ def draw_selection(
     canvas: Canvas,
     colour: Colour | None = None,
 ) -> None:
-    """Draw a line around each of these entities that has a place, in a colour or that of what is selected."""
+    """Draw a line around each body, or along a spring; in a colour, or that of what is selected."""
     for entity in entities:
         if world.has(entity, Transform):
             corners = camera.project(_outline(world, entity, _GAP / camera.scale))
             canvas.lines(corners, np.roll(corners, -1, axis=0), colour or theme.accent, _WIDTH)
+        elif (spring := spring_state(world, entity)) is not None:
+            ends = camera.project(np.array([tuple(spring.start), tuple(spring.end)]))
+            if (np.abs(ends) < _FAR).all():
+                canvas.lines(ends[:1], ends[1:], colour or theme.accent, _SPRING_WIDTH, 0.5)
 
 
 def draw_band(

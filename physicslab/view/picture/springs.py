@@ -11,7 +11,7 @@ from physicslab.view.canvas.canvas import Canvas, Look, Points
 from physicslab.view.canvas.theme import Theme
 from physicslab.world import World
 
-__all__ = ["coil", "draw_springs"]
+__all__ = ["coil", "draw_springs", "ends_of"]
 
 _TURN = 13.0
 """About how long a turn of a coil is at rest [px]."""
@@ -38,11 +38,9 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
     rows = world.batch(Spring).rows
     if not len(rows):
         return
-    spring, lookup = world.table(Spring), world.entity_index.lookup
+    spring = world.table(Spring)
     own, a, b = world.batch(Spring).entities, spring["a"][rows], spring["b"][rows]
-    start = _end(world, lookup[np.where(a == 0, own, a)], spring["anchor_a"][rows])
-    end = _end(world, lookup[b], spring["anchor_b"][rows])
-    start, end = camera.project(start), camera.project(end)
+    start, end = (camera.project(place) for place in ends_of(world))
     with np.errstate(over="ignore"):  # a rest length may be as long as numbers go
         rest = spring["rest_length"][rows] * camera.scale
     seen = _on_screen(start, end, camera.size)
@@ -61,6 +59,14 @@ def draw_springs(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
         count = len(pins)
         look = Look.plain(theme.pin, theme.pin, count)
         canvas.discs(pins, np.full(count, _PIN), np.zeros(count), look)
+
+
+def ends_of(world: World) -> tuple[Points, Points]:
+    """Return where every spring begins and ends (n, 2) [m]."""
+    springs, spring, lookup = world.batch(Spring), world.table(Spring), world.entity_index.lookup
+    rows, a = springs.rows, spring["a"][springs.rows]
+    start = _end(world, lookup[np.where(a == 0, springs.entities, a)], spring["anchor_a"][rows])
+    return start, _end(world, lookup[spring["b"][rows]], spring["anchor_b"][rows])
 
 
 def _looks_rigid(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 import pygame
@@ -298,12 +298,16 @@ class Ui:
         return bool(clicked)
 
     def item(
-        self, label: str, keys: str = "", *, on: bool = False, enabled: bool = True, tip: str = ""
-    ) -> bool:
-        """Draw a line of the menu that is open, and return whether it was chosen."""
-        label = drawable(label)
-        self.words.append(label)
-        chosen, _ = imgui.menu_item(label, keys, on, enabled)
+        self, label: str, keys: str = "", *, on: bool = False, enabled: bool = True, tip: str = "",
+        shown: str | None = None,
+    ) -> bool:  # fmt: skip
+        """Draw a line of the menu that is open, and return whether it was chosen.
+
+        ``shown`` is written on it, where that is not the label.
+        """
+        label, words = drawable(label), drawable(label if shown is None else shown)
+        self.words.append(words)
+        chosen, _ = imgui.menu_item(label if shown is None else f"{words}##{label}", keys, on, enabled)
         self.note(label)
         self.tip(tip)
         return bool(chosen)
@@ -320,6 +324,25 @@ class Ui:
             if shown:
                 imgui.end_menu()
 
+    @contextmanager
+    def list(self, label: str, tip: str = "") -> Iterator[bool]:
+        """Draw a button that opens a list of lines; what is yielded says whether it is open."""
+        if self.button(label, tip):
+            imgui.open_popup(label)
+        shown = bool(imgui.begin_popup(label))
+        try:
+            yield shown
+        finally:
+            if shown:
+                imgui.end_popup()
+
+    def same_line_if_room(self, label: str) -> None:
+        """Go on in the same line where there is room for a button with such words."""
+        imgui.same_line()
+        needed = imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x
+        if imgui.get_content_region_avail().x < needed:
+            imgui.new_line()
+
     def checkbox(self, label: str, on: bool, tip: str = "") -> bool:
         """Draw a box to tick, and return whether it was clicked."""
         self.words.append(label)
@@ -334,16 +357,20 @@ class Ui:
         return float(imgui.get_frame_height() + gap + imgui.calc_text_size(label).x)
 
     def choice(
-        self, label: str, chosen: str, choices: Sequence[str], tip: str = "", width: float = -1.0
-    ) -> str:
-        """Draw a list that unfolds, and return what is chosen in it."""
+        self, label: str, chosen: str, choices: Sequence[str] | Callable[[], Sequence[str]], tip: str = "",
+        width: float = -1.0,
+    ) -> str:  # fmt: skip
+        """Draw a list that unfolds, and return what is chosen in it.
+
+        Where ``choices`` is called for them, that is done while the list is unfolded.
+        """
         self.words.append(chosen)
         imgui.set_next_item_width(width)
         shown = imgui.begin_combo(f"##{label}", chosen)
         self.note(label)
         self.tip(tip if not shown else "")
         if shown:
-            for name in choices:
+            for name in choices() if callable(choices) else choices:
                 self.words.append(name)
                 clicked, _ = imgui.selectable(name, name == chosen)
                 self.note(f"{label}: {name}")

@@ -6,18 +6,21 @@ import math
 
 import numpy as np
 
-from physicslab.components import Mass, Shape, Spring, Transform, Velocity
+from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look
 from physicslab.view.canvas.theme import Theme
+from physicslab.view.window.points import local_point, point_of
 from physicslab.world import World
 
-__all__ = ["SpringTool"]
+__all__ = ["SpringTool", "spring_between"]
 
 _FREQUENCY = 2.0
 """How fast two bodies swing on a new spring [Hz]: soft enough to be seen, stiff enough to carry them."""
 _DAMPING_RATIO = 0.05
+_ROD_STRETCH, _EARTH = 2e-3, 9.81
+"""Share of its length by which the weight of a body on the Earth [m/s^2] stretches what serves as a rod."""
 _DASH = 9.0
 """Length of a dash of the preview [px]."""
 _END = 4.0
@@ -39,7 +42,7 @@ class SpringTool:
 
     def begin(self, world: World, entity: int, place: Vector2) -> None:
         """Begin a spring on a body, where a point of the world [m] is on it."""
-        self.entity, self._anchor = entity, _local(world, entity, place)
+        self.entity, self._anchor = entity, local_point(world, entity, place)
 
     def cancel(self) -> None:
         """Forget what was begun."""
@@ -59,16 +62,7 @@ class SpringTool:
         entity, self.entity = self.entity, None
         if entity is None or start is None or target == entity:
             return ""
-        inverse = _inverse_mass(world, entity) + (_inverse_mass(world, target) if target is not None else 0.0)
-        if inverse == 0.0:
-            return "No spring: neither of its ends could move"
-        anchor = place if target is None else _local(world, target, place)
-        end = place if target is None else _place(world, target, anchor)
-        rate = 2.0 * math.pi * _FREQUENCY
-        return Spring(
-            a=entity, b=target, anchor_a=self._anchor, anchor_b=anchor, rest_length=(end - start).magnitude,
-            stiffness=rate * rate / inverse, damping=2.0 * _DAMPING_RATIO * rate / inverse,
-        )  # fmt: skip
+        return spring_between(world, entity, target, (start, place))
 
     def draw(
         self, world: World, camera: Camera, pointer: tuple[float, float], theme: Theme, canvas: Canvas
@@ -91,20 +85,39 @@ class SpringTool:
         """Return where the spring begins [m]; nowhere if its body is gone."""
         if self.entity is not None and not world.has(self.entity, Transform):
             self.entity = None
-        return None if self.entity is None else _place(world, self.entity, self._anchor)
+        return None if self.entity is None else point_of(world, self.entity, self._anchor)
 
 
-def _local(world: World, entity: int, place: Vector2) -> Vector2:
-    """Return a point of the world in a body's own frame [m]; one without Shape has its middle alone."""
-    if not world.has(entity, Shape):
-        return Vector2()
-    transform = world.component(entity, Transform)
-    return (place - transform.position).rotated(-transform.angle)
+def spring_between(
+    world: World, one: int, other: int | None, places: tuple[Vector2, Vector2], *, stiff: bool = False
+) -> Spring | str:
+    """Return a spring that is at rest now, or why there is none.
 
-
-def _place(world: World, entity: int, anchor: Vector2) -> Vector2:
-    transform = world.component(entity, Transform)
-    return transform.position + anchor.rotated(transform.angle)
+    Parameters
+    ----------
+    one : int
+        The body at its beginning.
+    other : int, optional
+        The body at its end; a fixed point of the world where there is none.
+    places : two Vector2
+        Where its ends are [m].
+    stiff : bool
+        Whether weight hardly stretches it, so that it serves as a rod.
+    """
+    inverse = _inverse_mass(world, one) + (_inverse_mass(world, other) if other is not None else 0.0)
+    if inverse == 0.0:
+        return "No spring: neither of its ends could move"
+    start, end = (local_point(world, body, place) for body, place in zip((one, other), places, strict=True))
+    length = (point_of(world, other, end) - point_of(world, one, start)).magnitude
+    if length == 0.0:
+        return "No spring: its ends are at one place"
+    rate, damping = 2.0 * math.pi * _FREQUENCY, _DAMPING_RATIO
+    if stiff:
+        rate, damping = max(rate, math.sqrt(_EARTH / (_ROD_STRETCH * length))), 0.0
+    return Spring(
+        a=one, b=other, anchor_a=start, anchor_b=end, rest_length=length,
+        stiffness=rate * rate / inverse, damping=2.0 * damping * rate / inverse,
+    )  # fmt: skip
 
 
 def _inverse_mass(world: World, entity: int) -> float:

@@ -23,12 +23,15 @@ from physicslab.view.window.edits import Edits
 from physicslab.view.window.filming import Filming
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
+from physicslab.view.window.measured import Measured
 from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.pace import Pace
+from physicslab.view.window.pins import Pins
 from physicslab.view.window.recent import RecentFiles
 from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.selection import Selection
+from physicslab.view.window.snapping import Snapping
 from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
 
@@ -133,6 +136,14 @@ class Window:
         Those of what is selected.
     recipe : Recipe
         What the next body is like.
+    measured : Measured
+        The forces on what is selected.
+    snapping : Snapping
+        Whether places, sizes and angles snap, and where to.
+    pins : Pins
+        The fixed end of a spring that is dragged.
+    picking : callable, optional
+        What is done with the body that is clicked next, or with none where there is none.
     measuring : Measuring
         What is being placed, dragged or written of instruments.
     shows_stopwatch : bool
@@ -210,6 +221,10 @@ class Window:
         self.handles = Handles()
         self.edits: Edits
         self.recipe = Recipe()
+        self.measured = Measured()
+        self.pins = Pins()
+        self.snapping = Snapping()
+        self.picking: Callable[[World, Window, int | None], None] | None = None
         self.measuring, self.shows_stopwatch = Measuring(), False
         self.naming: str | None = None
         self.naming_refused = ""
@@ -246,6 +261,11 @@ class Window:
     def place(self) -> Vector2:
         """The point of the world under the cursor [m]."""
         return self.camera.to_world(self.pointer)
+
+    @property
+    def target(self) -> Vector2:
+        """Where what the cursor moves or makes goes [m]: its place, or where that has snapped to."""
+        return self.place if self.snapping.place is None else self.snapping.place
 
     @property
     def notice(self) -> str:

@@ -2,60 +2,52 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable
 
-import numpy as np
 from imgui_bundle import imgui
 
-from physicslab.components import (
-    Drag,
-    Held,
-    Mass,
-    Material,
-    Name,
-    Shape,
-    Spring,
-    Strobe,
-    Trail,
-    Transform,
-    Velocity,
-)
-from physicslab.diagnostics.free_body import forces_on, net_force
+from physicslab.components import Drag, Held, Mass, Name, Shape, Strobe, Trail, Transform, Velocity
+from physicslab.components.name import why_no_id
 from physicslab.ecs.component import Component
-from physicslab.ecs.fields import Field
-from physicslab.ecs.vector import Vector2
-from physicslab.history import AddComponent, Group, RemoveComponent, SetField
-from physicslab.view.canvas.quantities import quantity, vector_quantity
+from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.view.controls.actions import duplicate_selected
+from physicslab.view.controls.attaching import attachments
 from physicslab.view.controls.dashboard_actions import plot_selected
 from physicslab.view.controls.tools import remove_selected
-from physicslab.view.overlay.instruments import instrument_of, readings_of
+from physicslab.view.overlay.instruments import readings_of
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.placing import refused_change
+from physicslab.view.window import changing
 from physicslab.view.window.window import Window
+from physicslab.view.workbench.component_rows import ORDER, ComponentRows
+from physicslab.view.workbench.derived_rows import build_derived, build_forces
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
 
 __all__ = ["Inspector"]
 
-_LEFT_OUT = (Name, Held)
-"""Components without rows of their own: a name is the title, a hand is seen."""
-_OPTIONAL: tuple[type[Component], ...] = (Velocity, Mass, Material, Drag, Trail)
-"""Components that can be added and removed here."""
-_SECOND_COLUMN = 0.52
-"""Where the second column of boxes to tick begins, as a share of the panel's width."""
 _LABELS = 0.36
 """Share of the panel's width that labels take."""
-_AXES = ("x", "y")
+_SECOND_COLUMN = 0.52
+"""Where the second column of boxes to tick begins, as a share of the panel's width."""
+_NAME = Field("id", "text", owner="Name", meaning="what it is called; without a name by what it is")
+_SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
+    (Velocity, "Can move", "Without it the body stays where it is"),
+    (Mass, "Has mass", "A body that can move and has none is infinitely heavy"),
+    (Drag, "Air resistance", "A force against its motion"),
+    (Trail, "Leaves a trail", "Shows where it was"),
+    (Strobe, "Strobe pictures", "Its outline stays where it was every 0.1 s"),
+)
+"""Components that are one click away; all others are in a list."""
+
+type Deed = Callable[[World, Window], None]
 
 
 class Inspector:
     """The rows of what is selected. One body: all its fields; several: what they have in common."""
 
     def __init__(self) -> None:
-        self._numbers = NumberFields()
+        self._numbers = NumberFields(_LABELS)
+        self._rows = ComponentRows(self._numbers)
         self._shown: tuple[object, ...] = ()
 
     def build(self, ui: Ui, world: World, window: Window) -> None:
@@ -65,23 +57,27 @@ class Inspector:
             self._shown = world, chosen
             self._numbers.clear()
         first = chosen[-1]
-        ui.heading(_title(world, first) if len(chosen) == 1 else f"{len(chosen)} selected")
+        ui.heading(world.label(first) if len(chosen) == 1 else f"{len(chosen)} selected")
         ui.faint(_kind(world, first) if len(chosen) == 1 else "Changes go to all of them")
+        if len(chosen) == 1:
+            self._build_name(ui, world, window, first)
         kinds = [
             type(held)
             for held in world.components(first)
-            if not isinstance(held, _LEFT_OUT) and all(world.has(other, type(held)) for other in chosen)
+            if isinstance(held, Component)
+            and not isinstance(held, Held)
+            and all(world.has(other, type(held)) for other in chosen)
         ]
-        for kind in sorted(kinds, key=lambda kind: _ORDER.get(kind, len(_ORDER))):
-            self._build_component(ui, world, window, kind)
+        for kind in sorted(kinds, key=lambda kind: ORDER.get(kind, len(ORDER))):
+            self._rows.build(ui, world, window, kind)
         if len(chosen) == 1:
             for label, value in readings_of(world, first):
                 ui.row(label, value)
-            self._build_now(ui, world, first, is_brief=window.level == "Explore")
+            build_derived(ui, world, first, is_brief=window.level == "Explore")
             if window.level != "Explore" or window.overlays.arrows:
-                self._build_forces(ui, world, first)
-            self._build_optional(ui, world, window, first)
-        self._build_buttons(ui, window)
+                build_forces(ui, window.measured)
+        self._build_components(ui, world, window)
+        self._build_buttons(ui, world, window)
 
     def finish(self, window: Window) -> str:
         """Take over what is half written in a field, and return why it is refused; empty where it is not.
@@ -92,142 +88,23 @@ class Inspector:
             self._numbers.clear()
         return self._numbers.finish()
 
-    # ---- fields --------------------------------------------------------------------------------------------
+    def _build_name(self, ui: Ui, world: World, window: Window, entity: int) -> None:
+        """Build the row of a name."""
 
-    def _build_component(self, ui: Ui, world: World, window: Window, kind: type[Component]) -> None:
-        held = world.component(window.selection.entities[-1], kind)
-        rows = [spec for spec in kind.FIELDS if _is_shown(spec, held)]
-        if not rows:
-            return
-        ui.gap(0.2)
-        for spec in rows:
-            if spec.kind == "vector":
-                self._build_vector(ui, world, window, kind, spec, getattr(held, spec.name))
-            elif spec.kind in ("number", "whole", "text"):
-                self._build_number(ui, world, window, kind, spec, getattr(held, spec.name))
-            elif spec.kind == "flag" and ui.checkbox(
-                _label(spec), bool(getattr(held, spec.name)), spec.meaning
-            ):
-                self._set(window, kind, spec, not getattr(held, spec.name))
+        def commit(name: str) -> None:
+            if name:
+                _check_name(world, entity, name)
+            window.deeds.insert(0, lambda _, window: changing.name_entity(window, entity, name))
 
-    def _build_number(
-        self, ui: Ui, world: World, window: Window, kind: type[Component], spec: Field, value: float | str
-    ) -> None:
-        key = f"{kind.__name__}.{spec.name}"
+        held = world.component(entity, Name).id if world.has(entity, Name) else ""
+        self._numbers.row(ui, "Name", "Name", _NAME, held, commit)
 
-        def commit(new: Any) -> None:
-            new = int(new) if spec.kind == "whole" and float(new).is_integer() else new
-            spec.check(new)
-            held = world.component(window.selection.entities[-1], kind)
-            kind(**(held.given() | {spec.name: new}))  # some fields depend on others: a radius is above 0
-            self._set(window, kind, spec, new)
+    # ---- components ----------------------------------------------------------------------------------------
 
-        width = imgui.get_content_region_avail().x
-        dragged = None if isinstance(value, str) else value
-        self._numbers.label(ui, key, _label(spec), _LABELS * width, dragged, spec.meaning, commit)
-        imgui.same_line()
-        room = imgui.get_content_region_avail().x - _unit_width(spec)
-        refusal = self._numbers.build(ui, key, value, spec, room, commit)
-        self._finish(ui, spec, refusal)
-
-    def _build_vector(
-        self, ui: Ui, world: World, window: Window, kind: type[Component], spec: Field, value: Vector2
-    ) -> None:
-        width = imgui.get_content_region_avail().x
-        self._numbers.label(
-            ui, f"{kind.__name__}.{spec.name}", _label(spec), _LABELS * width, None, spec.meaning, _ignore
-        )
-        refusals = []
-        room = width - _LABELS * width - _unit_width(spec) - 2 * imgui.get_style().item_spacing.x
-        for axis, name in enumerate(_AXES):
-
-            def commit(new: float, axis: int = axis) -> None:
-                parts = [value.x, value.y]
-                parts[axis] = new
-                spec.check(tuple(parts))
-                self._set_part(window, kind, spec, axis, new)
-
-            imgui.same_line()
-            key = f"{kind.__name__}.{spec.name}.{name}"
-            refusals.append(self._numbers.build(ui, key, (value.x, value.y)[axis], spec, 0.5 * room, commit))
-        self._finish(ui, spec, next(filter(None, refusals), ""))
-
-    @staticmethod
-    def _finish(ui: Ui, spec: Field, refusal: str) -> None:
-        """Write the unit beside a field, and below it why what is written there is refused."""
-        if spec.unit != "1":
-            imgui.same_line(0.0, 0.4 * ui.size)
-            ui.faint(_unit(spec), wrapped=False)
-        if refusal:
-            ui.text(refusal, ui.theme.error, wrapped=True)
-
-    @staticmethod
-    def _set(window: Window, kind: type[Component], spec: Field, value: object) -> None:
-        def deed(world: World, window: Window) -> None:
-            _change(window, [SetField(e, kind.__name__, spec.name, value) for e in window.selection.entities])
-
-        window.deeds.insert(0, deed)  # before the click that ended the writing
-
-    @staticmethod
-    def _set_part(window: Window, kind: type[Component], spec: Field, axis: int, new: float) -> None:
-        def deed(world: World, window: Window) -> None:
-            changes = []
-            for entity in window.selection.entities:
-                vector = getattr(world.component(entity, kind), spec.name)
-                parts = (new, vector.y) if axis == 0 else (vector.x, new)
-                changes.append(SetField(entity, kind.__name__, spec.name, Vector2(*parts)))
-            _change(window, changes)
-
-        window.deeds.insert(0, deed)
-
-    # ---- what follows from them ----------------------------------------------------------------------------
-
-    @staticmethod
-    def _build_now(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
-        """Write what follows from the fields: it cannot be changed. Where it is brief, parts are left out."""
-        if not world.has(entity, Velocity):
-            return
-        velocity = world.component(entity, Velocity)
-        ui.gap(0.2)
-        ui.rule()
-        speed = velocity.linear.magnitude
-        ui.row("Speed", quantity(speed, "m/s"))
-        if speed > 0.0:
-            ui.row(
-                "Direction", f"{math.degrees(velocity.linear.angle):.1f}°", "counter-clockwise from the right"
-            )
-        if not world.has(entity, Mass):
-            return
-        mass = world.component(entity, Mass)
-        row = world.entity_index.row_of[entity]
-        ui.row("Momentum", quantity(mass.mass * speed, "kg m/s"))
-        if not is_brief:
-            ui.row("as a vector", vector_quantity(mass.mass * velocity.linear, "kg m/s"), lesser=True)
-        energy = 0.5 * mass.mass * speed**2
-        inverse = float(world.bodies.inverse_inertia[row])
-        spin = 0.5 * velocity.angular**2 / inverse if inverse > 0.0 else 0.0
-        ui.row("Kinetic energy", quantity(energy + spin, "J"))
-        if spin and np.isfinite(spin) and not is_brief:
-            ui.row("of turning", quantity(spin, "J"), lesser=True)
-
-    @staticmethod
-    def _build_forces(ui: Ui, world: World, entity: int) -> None:
-        """Write the forces on it, and their sum: what a free-body diagram shows (V draws it)."""
-        forces = forces_on(world, entity)
-        if not forces:
-            return
-        ui.gap(0.2)
-        ui.rule()
-        ui.faint("Forces on it")
-        for one in forces:
-            ui.row(one.name.capitalize(), quantity(one.force.magnitude, "N"), vector_quantity(one.force, "N"))
-        total, largest = net_force(forces), max(one.force.magnitude for one in forces)
-        net = total.magnitude if total.magnitude > 1e-9 * largest else 0.0
-        ui.row("Sum", quantity(net, "N"), vector_quantity(total, "N"))
-
-    def _build_optional(self, ui: Ui, world: World, window: Window, entity: int) -> None:
-        """Build a box to tick for each component that the body may have or not."""
-        if not world.has(entity, Transform):
+    def _build_components(self, ui: Ui, world: World, window: Window) -> None:
+        """Build what components can be added, and which can be taken away."""
+        chosen = window.selection.entities
+        if not all(world.has(entity, Transform) for entity in chosen):
             return
         ui.gap(0.2)
         ui.rule()
@@ -235,12 +112,28 @@ class Inspector:
         for n, (kind, words, tip) in enumerate(_SWITCHES):
             if n % 2 and _SECOND_COLUMN * width + ui.checkbox_width(words) <= width:
                 imgui.same_line(_SECOND_COLUMN * width + imgui.get_style().window_padding.x)
-            if ui.checkbox(words, world.has(entity, kind), tip):
-                window.deeds.append(_switching(entity, kind))
+            on = all(world.has(entity, kind) for entity in chosen)
+            if ui.checkbox(words, on, tip):
+                window.deeds.append(_switching(chosen, kind, on=on))
+        with ui.list("Add ...", "Properties that it may have and has not") as shown:
+            for words, (meaning, make) in (changing.addable(world, chosen) if shown else {}).items():
+                if ui.item(f"add {words}", tip=meaning, shown=f"{words}: {meaning}"):
+                    window.deeds.append(_giving(chosen, make))
+        imgui.same_line()
+        with ui.list("Take away ...", "Properties that it has") as shown:
+            for words, (meaning, kind) in (changing.removable(world, chosen) if shown else {}).items():
+                if ui.item(f"no {words}", tip=meaning, shown=f"{words}: {meaning}"):
+                    window.deeds.append(_taking(chosen, kind))
 
     @staticmethod
-    def _build_buttons(ui: Ui, window: Window) -> None:
+    def _build_buttons(ui: Ui, world: World, window: Window) -> None:
         ui.gap(0.2)
+        attached = attachments(world, window.selection.entities)
+        for n, (words, (tip, deed)) in enumerate(attached.items()):
+            if n:
+                ui.same_line_if_room(words)
+            if ui.button(words, tip):
+                window.deeds.append(deed)
         if ui.button("Duplicate", "Another one beside it (Ctrl+D)"):
             window.deeds.append(duplicate_selected)
         imgui.same_line()
@@ -249,92 +142,46 @@ class Inspector:
         imgui.same_line()
         if ui.button("Plot", "Its speed and place against time"):
             window.deeds.append(plot_selected)
-        imgui.same_line()
+        ui.same_line_if_room("Done")
         if ui.button("Done", "Select nothing (Esc)"):
             window.deeds.append(lambda _, window: window.selection.clear())
 
 
-def _switching(entity: int, kind: type[Component]) -> Callable[[World, Window], None]:
-    def deed(world: World, window: Window) -> None:
-        has = world.has(entity, kind)
-        window.edits.do(RemoveComponent(entity, kind.__name__) if has else AddComponent(entity, kind()))
-
-    return deed
+def _switching(chosen: tuple[int, ...], kind: type[Component], *, on: bool) -> Deed:
+    return _taking(chosen, kind) if on else _giving(chosen, lambda _: kind())
 
 
-def _change(window: Window, changes: Sequence[SetField]) -> None:
-    """Make one edit of a change to each of what is selected."""
-    for change in changes:
-        refused = _refused(window.edits.world, change)
-        if refused:
-            window.notify(f"{change.words(window.edits.world)}: {refused}", 6.0, failed=True)
+def _giving(chosen: tuple[int, ...], make: Callable[[int], Component]) -> Deed:
+    return lambda _, window: changing.give(window, chosen, make)
+
+
+def _taking(chosen: tuple[int, ...], kind: type[Component]) -> Deed:
+    return lambda _, window: changing.take(window, chosen, kind)
+
+
+def _check_name(world: World, entity: int, name: str) -> None:
+    """Raise ``InvalidValue`` for a name that an entity cannot have."""
+    allowed = why_no_id(name)
+    if allowed is None:
+        try:
+            other = world.entity(name)
+        except KeyError:
             return
-    if changes:
-        one = changes[0]
-        window.edits.do(one if len(changes) == 1 else Group(one.words(window.edits.world), changes))
-
-
-def _refused(world: World, change: SetField) -> str:
-    """Return why a place or a size cannot be given to a body; of other fields nothing."""
-    kind = next((kind for kind in (Transform, Shape) if kind.__name__ == change.component), None)
-    return "" if kind is None else refused_change(world, change.entity, kind, change.field, change.value)
-
-
-def _title(world: World, entity: int) -> str:
-    return world.component(entity, Name).id if world.has(entity, Name) else f"Body {entity}"
+        if other == entity:
+            return
+        allowed = "a name of its own: another one has this one"
+    raise InvalidValue("Name", "id", name, allowed)
 
 
 def _kind(world: World, entity: int) -> str:
     """Return what an entity is, in words."""
     if world.has(entity, Shape):
-        shape = "circle" if world.component(entity, Shape).kind == "circle" else "box"
+        shape = world.component(entity, Shape).kind
+    elif world.has(entity, Transform):
+        shape = "point"
     else:
-        one = instrument_of(world, entity)
-        made = "spring" if one is None else one.kind.__name__.lower()
-        shape = "point" if world.has(entity, Transform) else made
-    if not world.has(entity, Transform):
-        return shape
+        kinds = [type(part) for part in world.components(entity) if isinstance(part, Component)]
+        return changing.plain_kind(kinds[0]).lower() if kinds else "nothing that is seen"
     if not world.has(entity, Velocity):
         return f"{shape}, stays where it is"
     return f"{shape}, moves" if world.has(entity, Mass) else f"{shape}, moves as it was set, infinitely heavy"
-
-
-def _is_shown(spec: Field, held: Component) -> bool:
-    """Whether a field has a row: sizes of the other kind of shape and what cannot change have none."""
-    if isinstance(held, Shape):
-        return spec.name in Shape.SIZES[held.kind]
-    return spec.kind in ("number", "whole", "vector", "flag", "text") and not spec.fixed
-
-
-def _label(spec: Field) -> str:
-    return _NAMES.get(spec.name, spec.name.replace("_", " ").capitalize())
-
-
-def _unit(spec: Field) -> str:
-    return spec.unit.replace("^2", "²").replace("^3", "³")
-
-
-def _unit_width(spec: Field) -> float:
-    return float(imgui.calc_text_size(_unit(spec)).x) + 8.0 if spec.unit != "1" else 0.0
-
-
-def _ignore(value: float) -> None:
-    """Drop a number: the label of a vector cannot be dragged."""
-
-
-_ORDER: dict[type[Component], int] = {
-    kind: n for n, kind in enumerate((Transform, Velocity, Mass, Shape, Material, Drag, Spring, Trail))
-}
-_NAMES = {
-    "linear": "Velocity", "angular": "Turning", "mass": "Mass", "inertia": "Inertia",
-    "fixed_rotation": "Keeps its angle", "anchor_a": "Holds at", "anchor_b": "Other end",
-    "rest_length": "Rest length", "quadratic": "Drag of v²",
-}  # fmt: skip
-"""Plainer names for the labels."""
-_SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
-    (Velocity, "Can move", "Without it the body stays where it is"),
-    (Mass, "Has mass", "A body that can move and has none is infinitely heavy"),
-    (Drag, "Air resistance", "A force against its motion"),
-    (Trail, "Leaves a trail", "Shows where it was"),
-    (Strobe, "Strobe pictures", "Its outline stays where it was every 0.1 s"),
-)

@@ -202,6 +202,8 @@ class Interface:
             window.tool,
             window.selection.entities,
             world.motion_edits,
+            world.revision,
+            window.measured.number,
             window.canvas.size,
             shown,
             time,

@@ -1,7 +1,9 @@
-"""Fields for numbers, typed with units or changed by dragging their label, and for texts."""
+"""Rows of numbers and texts: a label, a field that is typed into, the unit, and why a value is refused."""
 
 from __future__ import annotations
 
+import contextlib
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -23,11 +25,16 @@ _FINER, _COARSER = 0.1, 10.0
 _ONLY_MOUSE = imgui.ItemFlags_.no_nav | imgui.ItemFlags_.no_tab_stop
 _PART = 6
 """Characters that the field of a part of a vector has room for."""
-_LINES_SHOWN = 3
-"""Lines that a field of several shows at once."""
+_VARIOUS = "various"
+"""What a field shows of several bodies whose numbers differ."""
+_LARGEST_ANGLE = 1e5
+"""Larger angles are not shown in degrees as well [°]."""
+
+_LINES_SHOWN = 4
+"""Lines of a longer text that a field shows at one time."""
 
 type Commit = Callable[[Any], None]
-"""Takes what was written: a number, or the text of a field for text."""
+type CommitPart = Callable[[int, float], None]
 
 
 def shown_number(value: float, figures: int = 6) -> str:
@@ -42,17 +49,11 @@ def shown_number(value: float, figures: int = 6) -> str:
 def shown_vector_part(value: float) -> str:
     """Return a number as half a field shows it: to four figures, or to fewer where it is longer than that.
 
-    >>> shown_vector_part(0.123456), shown_vector_part(-0.123456)
-    ('0.1235', '-0.123')
+    >>> shown_vector_part(0.123456), shown_vector_part(-0.123456), shown_vector_part(-5.06e-12)
+    ('0.1235', '-0.123', '-5e-12')
     """
-    shorter = (shown_number(value, figures) for figures in range(4, 1, -1))
-    return next((text for text in shorter if len(text) <= _PART), shown_number(value, 3))
-
-
-def _shown(value: float | str, spec: Field) -> str:
-    if isinstance(value, str):
-        return value
-    return shown_vector_part(value) if spec.kind == "vector" else shown_number(value)
+    shorter = (shown_number(value, figures) for figures in range(4, 0, -1))
+    return next((text for text in shorter if len(text) <= _PART), shown_number(value, 1))
 
 
 @dataclass(slots=True)
@@ -74,9 +75,16 @@ class _Target:
 
 
 class NumberFields:
-    """The fields of a panel; what is half written in one is kept from frame to frame."""
+    """The rows of numbers of a panel; what is half written in one is kept from frame to frame.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    share : float
+        Share of the panel's width that labels take.
+    """
+
+    def __init__(self, share: float = 0.42) -> None:
+        self._share = share
         self._drafts: dict[str, _Draft] = {}
         self._edited: _Target | None = None
         self._dragged: tuple[str, float] | None = None
@@ -86,16 +94,62 @@ class NumberFields:
         self._drafts.clear()
         self._edited = self._dragged = None
 
-    def build(
-        self, ui: Ui, key: str, value: float | str, spec: Field, width: float, commit: Commit, zero: str = ""
-    ) -> str:
-        """Build one field, and return why what was written in it is refused; empty while it is not.
+    def row(
+        self, ui: Ui, key: str, words: str, spec: Field, value: float | str | None, commit: Commit, *,
+        drags: bool = True, zero: str = "",
+    ) -> None:  # fmt: skip
+        """Build the row of one number or text.
 
-        ``zero`` is shown in place of 0 where that has a meaning of its own.
-
-        ``commit`` is called once Enter or Tab is pressed, or the field is left; it raises
-        :class:`InvalidValue` for what the field cannot hold.
+        Parameters
+        ----------
+        key : str
+            What the field is found by; its label is found by ``"label " + key``.
+        words : str
+            What is written on the label.
+        spec : Field
+            The unit, and what is shown as the tip.
+        value : float or str, optional
+            The number in SI, or the text; ``None`` where entities differ in it.
+        commit : callable
+            Called with the new one once Enter or Tab is pressed or the field is left; it raises
+            :class:`InvalidValue` for one that cannot be.
+        drags : bool
+            Whether dragging the label changes the number.
+        zero : str
+            What is shown in place of 0, without a unit, where that has a meaning of its own.
         """
+        number = None if isinstance(value, str) else value
+        self.label(ui, key, words, spec, number if drags else None, commit)
+        unit = "" if zero and number == 0.0 else _unit_shown(spec, number)
+        room = imgui.get_content_region_avail().x - _width(ui, unit)
+        refusal = self.build(ui, key, value, spec, room, commit, zero)
+        _finish(ui, unit, refusal)
+
+    def vector_row(
+        self, ui: Ui, key: str, words: str, spec: Field, value: tuple[float | None, float | None],
+        commit: CommitPart,
+    ) -> None:  # fmt: skip
+        """Build the row of a vector: a field for each part; ``commit`` is called with its number as well."""
+        self.label(ui, key, words, spec)
+        unit = _unit_shown(spec, None)
+        gap = imgui.get_style().item_spacing.x
+        room = 0.5 * (imgui.get_content_region_avail().x - _width(ui, unit) - gap)
+        refusals = []
+        for axis, name in enumerate(("x", "y")):
+
+            def commit_part(new: float, axis: int = axis) -> None:
+                commit(axis, new)
+
+            if axis:
+                imgui.same_line()
+            refusals.append(self.build(ui, f"{key}.{name}", value[axis], spec, room, commit_part))
+        _finish(ui, unit, next(filter(None, refusals), ""))
+
+    def build(
+        self, ui: Ui, key: str, value: float | str | None, spec: Field, width: float, commit: Commit,
+        zero: str = "",
+    ) -> str:  # fmt: skip
+        """Build one field, and return why what was written in it is refused; empty while it is not."""
         draft = self._drafts.get(key)
         shown = zero if zero and value == 0.0 else _shown(value, spec)
         wrong, lines = bool(draft and draft.refusal), min(spec.lines, _LINES_SHOWN)
@@ -120,8 +174,7 @@ class NumberFields:
         if edited is None or draft is None or draft.text == edited.shown:
             return ""  # the number may have more figures than the field shows
         try:
-            text, spec = draft.text, edited.spec
-            edited.commit(text if spec.kind == "text" else evaluate(text, spec.unit))
+            edited.commit(_as_field(draft.text, edited.spec))
         except InvalidText as error:
             draft.refusal = str(error)
         except InvalidValue as error:
@@ -132,41 +185,79 @@ class NumberFields:
         return draft.refusal
 
     def label(
-        self, ui: Ui, key: str, words: str, width: float, value: float | None, tip: str, commit: Commit
-    ) -> None:
-        """Build a label; dragging it to the side changes its number, Shift finer, Ctrl coarser."""
-        corner = imgui.get_cursor_screen_pos()
+        self, ui: Ui, key: str, words: str, spec: Field, value: float | None = None,
+        commit: Commit | None = None,
+    ) -> None:  # fmt: skip
+        """Build the label of a row, and stay in its line.
+
+        Where there is a number, dragging the label to the side changes it, Shift finer, Ctrl coarser.
+        """
+        width, corner = self._share * imgui.get_content_region_avail().x, imgui.get_cursor_screen_pos()
         imgui.push_item_flag(_ONLY_MOUSE, True)
         imgui.invisible_button(f"drag {key}", ImVec2(width, imgui.get_frame_height()))
         imgui.pop_item_flag()
         ui.note(f"label {key}")
         ui.words.append(words)
-        drawn = (
-            ui.theme.accent
-            if value is not None and (imgui.is_item_hovered() or imgui.is_item_active())
-            else ui.theme.faint
-        )
+        drags = value is not None and commit is not None
+        lit = drags and (imgui.is_item_hovered() or imgui.is_item_active())
         place = ImVec2(corner.x, corner.y + 0.5 * (imgui.get_frame_height() - imgui.get_font_size()))
-        imgui.get_window_draw_list().add_text(place, packed(drawn), words)
-        if value is None:
-            ui.tip(tip)
-            return
+        drawn = packed(ui.theme.accent if lit else ui.theme.faint)
+        imgui.get_window_draw_list().add_text(place, drawn, words)
+        if value is None or commit is None:
+            ui.tip(spec.meaning)
+        else:
+            self._drag(ui, key, value, spec, commit)
+        imgui.same_line()
+
+    def _drag(self, ui: Ui, key: str, value: float, spec: Field, commit: Commit) -> None:
+        """Change a number while its label is dragged."""
         if imgui.is_item_active() and imgui.is_mouse_dragging(0, 2.0):
             if self._dragged is None or self._dragged[0] != key:
                 self._dragged = key, value
             held = pygame.key.get_mods()
             factor = _FINER if held & pygame.KMOD_SHIFT else _COARSER if held & pygame.KMOD_CTRL else 1.0
             moved = imgui.get_mouse_drag_delta(0, 2.0).x
-            self._commit(self._dragged[1] + moved * factor * _DRAG * max(abs(self._dragged[1]), 1.0), commit)
+            new = self._dragged[1] + moved * factor * _DRAG * max(abs(self._dragged[1]), 1.0)
+            with contextlib.suppress(InvalidValue):  # at the end of its range a drag does nothing more
+                commit(float(f"{new:.6g}"))
         elif self._dragged is not None and self._dragged[0] == key:
             self._dragged = None
         else:
-            ui.tip(f"{tip}\nDrag to change; Shift: finer, Ctrl: coarser" if tip else "")
+            tip = "Drag to change; Shift: finer, Ctrl: coarser"
+            ui.tip(f"{spec.meaning}\n{tip}" if spec.meaning else tip)
 
-    @staticmethod
-    def _commit(value: float, commit: Commit) -> None:
-        """Hand over what a drag gives, to six figures; where the field cannot hold it, nothing happens."""
-        try:
-            commit(float(f"{value:.6g}"))
-        except InvalidValue:
-            return
+
+def _shown(value: float | str | None, spec: Field) -> str:
+    if value is None:
+        return _VARIOUS
+    if isinstance(value, str):
+        return value
+    return shown_vector_part(value) if spec.kind == "vector" else shown_number(value)
+
+
+def _as_field(text: str, spec: Field) -> float | str:
+    """Return what was written as a field takes it; raise ``InvalidText`` where that is no number."""
+    if spec.kind == "text":
+        return text
+    value = evaluate(text, spec.unit)
+    return round(value) if spec.kind == "whole" and value == round(value) else value
+
+
+def _unit_shown(spec: Field, value: float | None) -> str:
+    """Return what stands beside a field: its unit; after an angle, what it is in degrees."""
+    unit = spec.unit.replace("^2", "²").replace("^3", "³") if spec.unit != "1" else ""
+    degrees = math.degrees(value) if value is not None and spec.unit == "rad" else math.inf
+    return f"{unit} = {degrees + 0.0:.4g}°" if abs(degrees) < _LARGEST_ANGLE else unit
+
+
+def _width(ui: Ui, unit: str) -> float:
+    return float(imgui.calc_text_size(unit).x) + 0.6 * ui.size if unit else 0.0
+
+
+def _finish(ui: Ui, unit: str, refusal: str) -> None:
+    """Write the unit beside a field, and below it why what is written there is refused."""
+    if unit:
+        imgui.same_line(0.0, 0.4 * ui.size)
+        ui.faint(unit, wrapped=False)
+    if refusal:
+        ui.text(refusal, ui.theme.error, wrapped=True)

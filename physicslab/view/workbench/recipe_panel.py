@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from imgui_bundle import imgui
-
 from physicslab.ecs.fields import Field
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.recipe import Recipe
@@ -16,8 +14,6 @@ from physicslab.world import World
 
 __all__ = ["RecipePanel"]
 
-_LABELS = 0.42
-"""Share of the panel's width that labels take."""
 _ZERO = {"size": "in turn"}
 """What 0 means where it is no number: sizes that differ from one body to the next."""
 
@@ -45,19 +41,9 @@ class RecipePanel:
             spec.check(new)
             window.deeds.append(_changing(spec.name, new))
 
-        width, value = imgui.get_content_region_avail().x, getattr(window.recipe, spec.name)
-        key = f"new {spec.name}"
-        self._numbers.label(ui, key, spec.name.capitalize(), _LABELS * width, value, spec.meaning, commit)
-        imgui.same_line()
+        value = getattr(window.recipe, spec.name)
         zero = _ZERO.get(spec.name, "")
-        unit = "" if spec.unit == "1" or (zero and not value) else spec.unit.replace("^2", "²")
-        room = imgui.get_content_region_avail().x - imgui.calc_text_size(unit).x - (8.0 if unit else 0.0)
-        refusal = self._numbers.build(ui, key, value, spec, room, commit, zero)
-        if unit:
-            imgui.same_line(0.0, 0.4 * ui.size)
-            ui.faint(unit, wrapped=False)
-        if refusal:
-            ui.text(refusal, ui.theme.error, wrapped=True)
+        self._numbers.row(ui, f"new {spec.name}", spec.name.capitalize(), spec, value, commit, zero=zero)
 
 
 def _changing(name: str, value: float) -> Callable[[World, Window], None]:

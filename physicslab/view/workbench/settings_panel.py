@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-
-from imgui_bundle import imgui
+from dataclasses import replace
 
 from physicslab.ecs.config import COLLISIONS, CONTACTS, INTEGRATORS, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
@@ -16,8 +15,6 @@ from physicslab.world import World
 
 __all__ = ["SettingsPanel"]
 
-_LABELS = 0.42
-"""Share of the panel's width that labels take."""
 _SLEEPING = {"auto": "auto", "yes": True, "no": False}
 _NUMBERS: tuple[tuple[str, str, str], ...] = (
     ("linear_damping", "Damping", "Share of the velocity that is lost a second"),
@@ -45,9 +42,7 @@ class SettingsPanel:
         self._build_number(
             ui, "dt", "Step", simulation.dt, "Length of a step; the error falls with it", window
         )
-        self._build_number(
-            ui, "substeps", "Substeps", simulation.substeps, "Parts of a step", window, whole=True
-        )
+        self._build_number(ui, "substeps", "Substeps", simulation.substeps, "Parts of a step", window)
         self._build_choice(ui, "integrator", "Method", simulation.integrator, INTEGRATORS, window)
         if simulation.integrator == "auto":
             ui.faint(f"auto takes {plan.integrator.name}: {plan.reason}")
@@ -58,35 +53,20 @@ class SettingsPanel:
         for name, words, tip in _NUMBERS:
             self._build_number(ui, name, words, getattr(world.physics, name), tip, window)
 
-    def _build_number(
-        self, ui: Ui, name: str, words: str, value: float, tip: str, window: Window, *, whole: bool = False
-    ) -> None:
+    def _build_number(self, ui: Ui, name: str, words: str, value: float, tip: str, window: Window) -> None:
         config: type[Config] = PhysicsConfig if name.endswith("damping") else SimulationConfig
-        spec: Field = next(field for field in config.FIELDS if field.name == name)
+        spec = replace(next(field for field in config.FIELDS if field.name == name), meaning=tip)
 
         def commit(new: float) -> None:
-            given = round(new) if whole and new == round(new) else new
-            spec.check(given)
-            window.deeds.append(_changing(config, name, given))
+            spec.check(new)
+            window.deeds.append(_changing(config, name, new))
 
-        width = imgui.get_content_region_avail().x
-        self._numbers.label(ui, name, words, _LABELS * width, None, tip, commit)
-        imgui.same_line()
-        unit = "" if spec.unit == "1" else spec.unit
-        room = imgui.get_content_region_avail().x - imgui.calc_text_size(unit).x - (8.0 if unit else 0.0)
-        refusal = self._numbers.build(ui, name, value, spec, room, commit)
-        if unit:
-            imgui.same_line(0.0, 0.4 * ui.size)
-            ui.faint(unit, wrapped=False)
-        if refusal:
-            ui.text(refusal, ui.theme.error, wrapped=True)
+        self._numbers.row(ui, name, words, spec, value, commit, drags=False)
 
     def _build_choice(
         self, ui: Ui, name: str, words: str, now: str, choices: tuple[str, ...], window: Window
     ) -> None:
-        width = imgui.get_content_region_avail().x
-        self._numbers.label(ui, name, words, _LABELS * width, None, "", _ignore)
-        imgui.same_line()
+        self._numbers.label(ui, name, words, Field(name, "choice"))
         chosen = ui.choice(words, now, choices)
         if chosen != now:
             value: object = _SLEEPING[chosen] if name == "sleeping" else chosen
@@ -102,7 +82,3 @@ def _changing(config: type[Config], name: str, value: object) -> Callable[[World
         )
 
     return deed
-
-
-def _ignore(value: float) -> None:
-    """Take no number."""

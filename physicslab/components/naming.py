@@ -1,0 +1,48 @@
+"""What an entity without an id is called: by what it is, in plain words, and its number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from physicslab.components.drag import Drag
+from physicslab.components.held import Held
+from physicslab.components.mass import Mass
+from physicslab.components.material import Material
+from physicslab.components.name import Name
+from physicslab.components.shape import Shape
+from physicslab.components.trail import Trail
+from physicslab.components.transform import Transform
+from physicslab.components.velocity import Velocity
+from physicslab.ecs.text import in_words
+
+__all__ = ["name_by_kinds", "plain_name"]
+
+_OF_BODIES = (Transform, Velocity, Mass, Material, Drag, Trail, Held, Name)
+"""Components that do not say what an entity is."""
+
+
+def plain_name(number: int, components: Iterable[Any]) -> str:
+    """Return what the entity with this number and these components is called.
+
+    >>> plain_name(3, [Transform(), Shape.circle(1.0)]), plain_name(4, [Transform(), Velocity()])
+    ('circle 3', 'point 4')
+    """
+    parts = {type(part): part for part in components}
+    shape = parts.get(Shape)
+    return name_by_kinds(number, parts, None if shape is None else shape.kind)
+
+
+def name_by_kinds(number: int, kinds: Iterable[type], shape: str | None) -> str:
+    """Return what the entity with this number is called, by its kinds of components and that of its shape.
+
+    >>> name_by_kinds(5, [Transform, Shape], "box")
+    'box 5'
+    """
+    present = list(kinds)
+    if shape is not None:
+        return f"{shape} {number}"
+    if Velocity in present or Mass in present:
+        return f"point {number}"
+    other = next((kind for kind in present if kind not in _OF_BODIES), None)
+    return f"{in_words(other.__name__) if other is not None else 'entity'} {number}"

@@ -1,0 +1,157 @@
+"""Bodies beyond the bounds of the world that something fixed keeps there: they are put back inside.
+
+What is beyond the bounds is pushed in by their walls. Where a fixed body pushes it out again, as the end of a
+floor does, neither has an end: the bounds win. The body is put to the nearest place within them in which it
+overlaps nothing fixed, and loses the part of its velocity that points outwards.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Shape, Transform, Velocity
+from physicslab.contacts.islands import wake_neighbours
+from physicslab.contacts.outlines import Outlines, exits, outlines_of, overlap, overlapping
+from physicslab.kernels.solver.separate import BEYOND
+from physicslab.state.state import State
+from physicslab.systems.schedule import Schedule
+
+__all__ = ["bring_back"]
+
+_OUTWARDS = -0.1
+"""Along the inward normal of a wall: a fixed body whose push has less keeps what is beyond the wall there."""
+_HELD = 0.01
+"""Overlap with it, as a share of a size, above which that body does push."""
+_WITHIN = 0.15
+"""Overlap with a fixed body, as a share of a size, that is more than contacts leave: it is inside."""
+_FREE = 1e-6
+"""Overlap, as a share of a size, that is none."""
+_ALIKE = 0.1
+"""Distance, as a share of a size, at which two places to try are one."""
+_TRIES, _GRID = 40, 12
+"""How many places are tried; then how many across and up."""
+_INWARDS = np.array(((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)))
+"""The normals of the walls: left, bottom, right, top."""
+
+type Numbers = NDArray[np.float64]
+
+
+def bring_back(state: State, schedule: Schedule) -> int:
+    """Put every body back inside that a fixed one keeps beyond the bounds; return how many.
+
+    To be called at the end of a step in which the contact stages have found a body beyond them.
+
+    Parameters
+    ----------
+    state : State
+        Whose contacts may note that a body is outside; after the call none is.
+    schedule : Schedule
+        The forces, whose energy this changes.
+    """
+    state.contacts.outside = 0
+    bounds = state.physics.bounds
+    if bounds is None:
+        return 0
+    low, high = np.array(bounds[:2]), np.array(bounds[2:])
+    rows = state.batch(Transform, Shape).rows
+    inverse_mass, moves = state.bodies.inverse_mass[rows], state.table(Velocity).present[rows]
+    movable, shapes = rows[inverse_mass > 0.0], outlines_of(state, rows[~moves])
+    bodies = outlines_of(state, movable)
+    beyond = _beyond(bodies, low, high) > BEYOND * bodies.size[:, None]
+    places: dict[int, Numbers] = {}
+    for n in np.flatnonzero(beyond.any(axis=1)):
+        if _is_kept(bodies, int(n), shapes, _INWARDS[beyond[n]]):
+            place = _free_place(bodies, int(n), shapes, low, high)
+            if place is not None:
+                places[int(n)] = place
+    if places:
+        numbers = np.array(list(places))
+        _put(state, schedule, movable[numbers], np.array(list(places.values())), beyond[numbers])
+    return len(places)
+
+
+def _beyond(bodies: Outlines, low: Numbers, high: Numbers) -> Numbers:
+    """Return how far each body is beyond each of the walls (n, 4) [m]."""
+    reach = bodies.reach
+    return np.concatenate((low - bodies.place + reach, bodies.place + reach - high), axis=1)
+
+
+def _is_kept(bodies: Outlines, n: int, fixed: Outlines, inwards: Numbers) -> bool:
+    """Whether a fixed body pushes one out through a wall that it is beyond, or has it inside itself."""
+    for m in overlapping(bodies, n, fixed):
+        depth, away = overlap(fixed, int(m), bodies, n)
+        outwards = bool((inwards @ away < _OUTWARDS).any())
+        if depth > (_HELD if outwards else _WITHIN) * bodies.size[n]:
+            return True
+    return False
+
+
+def _free_place(
+    bodies: Outlines, n: int, fixed: Outlines, low: Numbers, high: Numbers
+) -> Numbers | None:  # fmt: skip
+    """Return a place within the bounds, near to a body, where it overlaps nothing fixed, if one is found.
+
+    From a place that is taken, the ways out of what is there lead to others; the nearest is tried first.
+    Where that leads nowhere, as in a wedge, places all over the world are tried.
+    """
+    reach, size, begin = bodies.reach[n], float(bodies.size[n]), bodies.place[n]
+    low, high = low + reach, high - reach
+    if (high < low).any():
+        return None  # it is larger than the world
+    parts = bodies.place, bodies.half, bodies.radius, bodies.angle
+    own = Outlines(*(part[n : n + 1].copy() for part in parts))
+
+    def hits(place: Numbers) -> list[int]:
+        own.place[0] = place
+        near = overlapping(own, 0, fixed).tolist()
+        return [m for m in near if overlap(fixed, m, own, 0)[0] > _FREE * size]
+
+    waiting: list[tuple[float, int, Numbers]] = [(0.0, 0, np.clip(begin, low, high))]
+    order = itertools.count(1)
+    seen: set[tuple[int, int]] = set()
+    for _ in range(_TRIES):
+        if not waiting:
+            break
+        _, _, place = heapq.heappop(waiting)
+        taken = hits(place)
+        if not taken:
+            return place
+        for way in itertools.chain.from_iterable(exits(fixed, m, own, 0) for m in taken):
+            found = np.clip(place + way, low, high)
+            key = round(found[0] / (_ALIKE * size)), round(found[1] / (_ALIKE * size))
+            if key not in seen:
+                seen.add(key)
+                heapq.heappush(waiting, (float(np.hypot(*(found - begin))), next(order), found))
+    share = np.linspace(0.0, 1.0, _GRID)
+    grid: Numbers = low + np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2) * (high - low)
+    nearest = np.argsort(np.hypot(*(grid - begin).T), kind="stable")
+    free = next((int(k) for k in nearest if not hits(grid[k])), None)
+    return None if free is None else grid[free].copy()
+
+
+def _put(
+    state: State, schedule: Schedule, rows: NDArray[np.int64], places: Numbers, beyond: NDArray[np.bool_]
+) -> None:
+    """Put bodies elsewhere, without the velocity that led outwards, and note what energy that brought."""
+    position, linear = state.table(Transform)["position"], state.table(Velocity)["linear"]
+    before = _energy(state, schedule, rows)
+    position[rows] = places
+    for wall, inwards in enumerate(_INWARDS):
+        out = rows[beyond[:, wall]]
+        linear[out] -= np.minimum(linear[out] @ inwards, 0.0)[:, None] * inwards
+    state.energy_brought_back += _energy(state, schedule, rows) - before
+    state.brought_back += len(rows)
+    state.contacts.forget(rows, len(state.entity_index))
+    wake_neighbours(state, state.entity_index.entities[rows])
+
+
+def _energy(state: State, schedule: Schedule, rows: NDArray[np.int64]) -> float:
+    """Return the kinetic energy of some bodies, and what all forces store [J]."""
+    velocity = state.table(Velocity)["linear"][rows]
+    kinetic = 0.5 * float(((velocity**2).sum(axis=1) / state.bodies.inverse_mass[rows]).sum())
+    stored = (force.potential_energy(state) for force in schedule.forces if force.potential is not None)
+    return kinetic + sum(stored)

@@ -1,0 +1,210 @@
+"""Edits of what is selected: one command for all of it, or one sentence that says why it is refused."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
+
+from physicslab.components import (
+    Drag,
+    Held,
+    Mass,
+    Material,
+    Name,
+    Shape,
+    Spring,
+    Strobe,
+    Trail,
+    Transform,
+    Velocity,
+)
+from physicslab.ecs.component import COMPONENTS, Component
+from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
+from physicslab.ecs.text import in_words
+from physicslab.ecs.vector import Vector2
+from physicslab.history import AddComponent, Command, Group, RemoveComponent, SetField
+from physicslab.state.attached import local_point as in_frame
+from physicslab.view.window.placing import refused_change
+from physicslab.view.window.points import local_point, point_of
+from physicslab.view.window.window import Window
+from physicslab.world import World
+
+__all__ = [
+    "addable", "change_fields", "give", "name_entity", "plain_kind", "removable", "set_end",
+    "take",
+]  # fmt: skip
+
+_SIZE = 0.25
+"""Radius of a shape that a body is given, half the width of a box [m]."""
+_ABOVE = 1.0
+"""How far above a body the spring holds it that it is given [m]."""
+_BY_TOOLS: tuple[type[Component], ...] = (Held,)
+"""Components that are added and removed by tools alone."""
+
+
+def change_fields(window: Window, changes: Sequence[SetField]) -> None:
+    """Make one edit of a change to each of what is selected, or say why it is refused."""
+    world = window.edits.world
+    for change in changes:
+        refused = _refused_place(world, change)
+        if refused:
+            window.notify(f"{change.words(world)}: {refused}", 6.0, failed=True)
+            return
+    _do(window, changes)
+
+
+def _refused_place(world: World, change: SetField) -> str:
+    """Return why a place or a size cannot be given to a body; of other fields nothing."""
+    kind = next((kind for kind in (Transform, Shape) if kind.__name__ == change.component), None)
+    return "" if kind is None else refused_change(world, change.entity, kind, change.field, change.value)
+
+
+def _do(window: Window, commands: Sequence[Command]) -> None:
+    if commands:
+        one = commands[0]
+        window.edits.do(one if len(commands) == 1 else Group(one.words(window.edits.world), commands))
+
+
+# ---- components ----------------------------------------------------------------------------------------
+
+
+def addable(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Callable[[int], Component]]]:
+    """Return what can be added to some bodies: by its plain name its meaning, and what makes it for a body.
+
+    These are all components that one of them has not. What is made with values of its own, or names other
+    entities and takes no part in the motion, as graphs do, is made by tools; it is not among them.
+    """
+    if not all(world.has(entity, Transform) for entity in entities):
+        return {}
+    found: dict[str, tuple[str, Callable[[int], Component]]] = {}
+    for kind in COMPONENTS.values():
+        apart = not kind.physical and any(spec.kind == "entity" for spec in kind.FIELDS)
+        if kind in _BY_TOOLS or apart or all(world.has(entity, kind) for entity in entities):
+            continue
+        for words, make in _makers(world, kind):
+            found[words] = _meaning(kind), make
+    return found
+
+
+def removable(world: World, entities: Sequence[int]) -> dict[str, tuple[str, type[Component]]]:
+    """Return what can be taken from some bodies: by its plain name its meaning, and the component."""
+    if not entities or not all(world.has(entity, Transform) for entity in entities):
+        return {}
+    held = [type(part) for part in world.components(entities[-1]) if isinstance(part, Component)]
+    kinds = [kind for kind in held if kind not in _BY_TOOLS]
+    common = [kind for kind in kinds if all(world.has(entity, kind) for entity in entities)]
+    return {plain_kind(kind): (_meaning(kind), kind) for kind in common}
+
+
+def give(window: Window, entities: Sequence[int], make: Callable[[int], Component]) -> None:
+    """Add a component to each of some entities that has none of its kind."""
+    world = window.edits.world
+    made = [(entity, make(entity)) for entity in entities]
+    _do(window, [AddComponent(entity, part) for entity, part in made if not world.has(entity, type(part))])
+
+
+def take(window: Window, entities: Sequence[int], kind: type[Component]) -> None:
+    """Take a component from each of some entities that has it, or say why that cannot be."""
+    world = window.edits.world
+    if kind is Transform:
+        window.notify("A body has a place as long as it is there: delete the body instead", 6.0, failed=True)
+        return
+    _do(window, [RemoveComponent(entity, kind.__name__) for entity in entities if world.has(entity, kind)])
+
+
+def plain_kind(kind: type[Component]) -> str:
+    """Return what a component is called; one without a plain name by the words of its class.
+
+    >>> plain_kind(Spring), plain_kind(Transform)
+    ('Spring', 'Place')
+    """
+    words = _PLAIN.get(kind, in_words(kind.__name__))
+    return words[:1].upper() + words[1:]
+
+
+def _meaning(kind: type[Component]) -> str:
+    """Return what a component means; without plain words for it, the first sentence of its description."""
+    return _MEANINGS.get(kind) or (kind.__doc__ or "").strip().split("\n")[0].split(": ")[0].rstrip(".")
+
+
+def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable[[int], Component]]]:
+    """Yield by what words a component is made for an entity; of one that cannot be made nothing."""
+    if kind is Shape:
+        yield "Shape: circle", lambda entity: Shape.circle(_SIZE)
+        yield "Shape: box", lambda entity: Shape.box(2.0 * _SIZE, 2.0 * _SIZE)
+        return
+    if kind is Spring:
+        yield plain_kind(kind), lambda entity: _spring_above(world, entity)
+        return
+    given = {spec.name: _first(spec) for spec in kind.FIELDS if spec.default is REQUIRED}
+    with contextlib.suppress(InvalidValue, TypeError):
+        kind(**given)
+        yield plain_kind(kind), lambda entity: kind(**given)
+
+
+def _first(spec: Field) -> object:
+    """Return a value that a field without default can hold."""
+    if spec.kind == "choice":
+        return spec.choices[0]
+    if spec.kind in ("number", "whole"):
+        value = min(max(1.0, spec.lowest), spec.highest)
+        return round(value) if spec.kind == "whole" else value
+    return {"vector": (0.0, 0.0), "flag": False, "text": ""}.get(spec.kind)
+
+
+def _spring_above(world: World, entity: int) -> Spring:
+    place = world.component(entity, Transform).position
+    return Spring(anchor_b=place + Vector2(0.0, _ABOVE), rest_length=_ABOVE)
+
+
+_PLAIN: dict[type[Component], str] = {
+    Transform: "place", Velocity: "motion", Material: "surface", Drag: "air resistance",
+}  # fmt: skip
+"""What components are called that a plainer name fits."""
+_MEANINGS: dict[type[Component], str] = {
+    Transform: "where it is, and how far it is turned",
+    Velocity: "it can move; without it, it stays where it is",
+    Mass: "forces move it; what moves without mass is infinitely heavy",
+    Shape: "it can touch others",
+    Material: "how much it bounces, and how rough it is",
+    Drag: "it is slowed by what it moves through, as by air",
+    Spring: "it hangs on a point that can be dragged",
+    Strobe: "pictures of where it was stay",
+    Trail: "where it was is shown",
+}
+"""What components mean to the body that has them."""
+
+
+# ---- names, and ends of springs ------------------------------------------------------------------------
+
+
+def name_entity(window: Window, entity: int, name: str) -> None:
+    """Give an entity a name; without one it is called by what it is."""
+    world = window.edits.world
+    if name:
+        window.edits.do(AddComponent(entity, Name(name)))
+    elif world.has(entity, Name):
+        window.edits.do(RemoveComponent(entity, Name.__name__))
+
+
+def set_end(window: Window, entity: int, kind: type[Component], field: str, end: int | None) -> None:
+    """Let a field name another entity; the point there of a spring or an instrument stays where it is."""
+    world = window.edits.world
+    held = world.component(entity, kind)
+    values = held.given() | {field: end}
+    if isinstance(held, Spring):
+        own = entity if world.has(entity, Transform) else None
+        if (values["a"] or own) in (None, values["b"]):
+            words = "a spring has two ends: two bodies, or a body and a fixed point"
+            window.notify(words, 6.0, failed=True)
+            return
+        anchor = f"anchor_{field}"
+        before = getattr(held, field) if field == "b" else held.a or own
+        place = point_of(world, before, getattr(held, anchor))
+        values[anchor] = local_point(world, end if field == "b" else end or own, place)
+    elif (point := field.removesuffix("_body")) in getattr(kind, "POINTS", ()):
+        values[point] = in_frame(world, end, point_of(world, getattr(held, field), getattr(held, point)))
+    try:
+        window.edits.do(AddComponent(entity, kind(**values)))
+    except InvalidValue as error:
+        window.notify(f"{field}: must be {error.allowed}", 6.0, failed=True)

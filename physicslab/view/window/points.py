@@ -1,0 +1,32 @@
+"""Points of bodies: in a body's own frame, and in the world."""
+
+from __future__ import annotations
+
+from physicslab.components import Shape, Transform
+from physicslab.ecs.vector import Vector2
+from physicslab.state.attached import local_point as in_frame
+from physicslab.world import World
+
+__all__ = ["local_point", "point_of"]
+
+
+def point_of(world: World, body: int | None, anchor: Vector2) -> Vector2:
+    """Return where a point in a body's frame is in the world [m]; without a body it is one of the world."""
+    if body is None or not world.has(body, Transform):
+        return anchor
+    transform = world.component(body, Transform)
+    return transform.position + anchor.rotated(transform.angle)
+
+
+def local_point(world: World, body: int | None, place: Vector2) -> Vector2:
+    """Return a point of the world in a body's frame [m]: if it is not on the body, the body's middle."""
+    if body is None or not world.has(body, Transform):
+        return place
+    local = in_frame(world, body, place)
+    if not world.has(body, Shape):
+        return Vector2()
+    shape = world.component(body, Shape)
+    if shape.kind == "circle":
+        return local if local.magnitude <= shape.radius else Vector2()
+    inside = abs(local.x) <= 0.5 * shape.width and abs(local.y) <= 0.5 * shape.height
+    return local if inside else Vector2()

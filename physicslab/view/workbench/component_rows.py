@@ -1,0 +1,179 @@
+"""The rows of a component's fields: one for each, whatever it holds, of one entity or of several at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from imgui_bundle import imgui
+
+from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.ecs.component import Component
+from physicslab.ecs.fields import Field
+from physicslab.ecs.vector import Vector2
+from physicslab.history import SetField
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.changing import change_fields, set_end
+from physicslab.view.window.window import Window
+from physicslab.view.workbench.number_field import NumberFields
+from physicslab.world import World
+
+__all__ = ["ComponentRows"]
+
+_VARIOUS = "various"
+_MAX_LISTED = 60
+"""How many entities a list shows; others are clicked in the world."""
+
+type Kind = type[Component]
+
+
+class ComponentRows:
+    """Builds the rows of components, and makes edits of what is written there.
+
+    Parameters
+    ----------
+    numbers : NumberFields
+        What keeps what is half written.
+    """
+
+    def __init__(self, numbers: NumberFields) -> None:
+        self._numbers = numbers
+
+    def build(self, ui: Ui, world: World, window: Window, kind: Kind) -> None:
+        """Build a row for each field of a component that all of what is selected has."""
+        held = [world.component(entity, kind) for entity in window.selection.entities]
+        rows = [spec for spec in kind.FIELDS if all(_is_shown(spec, part) for part in held)]
+        if rows:
+            ui.gap(0.2)
+        for spec in rows:
+            key = f"{kind.__name__}.{spec.name}"
+            values = [getattr(part, spec.name) for part in held]
+            match spec.kind:
+                case "vector":
+                    self._vector(ui, window, kind, spec, key, values)
+                case "flag":
+                    self._flag(ui, window, kind, spec, values)
+                case "choice":
+                    self._choice(ui, window, kind, spec, key, values)
+                case "entity":
+                    self._entity(ui, world, window, kind, spec, key, values)
+                case _:
+                    self._number(ui, world, window, kind, spec, key, values)
+
+    def _number(
+        self, ui: Ui, world: World, window: Window, kind: Kind, spec: Field, key: str, values: Sequence[Any]
+    ) -> None:
+        def commit(new: object) -> None:
+            spec.check(new)
+            for entity in window.selection.entities:  # some fields depend on others: a radius is above 0
+                kind(**(world.component(entity, kind).given() | {spec.name: new}))
+            _set(window, kind, spec, new)
+
+        self._numbers.row(ui, key, _label(spec), spec, _common(values), commit)
+
+    def _vector(
+        self, ui: Ui, window: Window, kind: Kind, spec: Field, key: str, values: Sequence[Vector2]
+    ) -> None:
+        parts = _common([value.x for value in values]), _common([value.y for value in values])
+
+        def commit(axis: int, new: float) -> None:
+            spec.check((new, new))
+            _set_part(window, kind, spec, axis, new)
+
+        self._numbers.vector_row(ui, key, _label(spec), spec, parts, commit)
+
+    def _flag(self, ui: Ui, window: Window, kind: Kind, spec: Field, values: Sequence[Any]) -> None:
+        words = _label(spec) if _common(values) is not None else f"{_label(spec)} ({_VARIOUS})"
+        on = all(value is True for value in values)
+        if ui.checkbox(words, on, spec.meaning):
+            _set(window, kind, spec, not on)
+
+    def _choice(
+        self, ui: Ui, window: Window, kind: Kind, spec: Field, key: str, values: Sequence[str]
+    ) -> None:
+        now = _common(values) or _VARIOUS
+        self._numbers.label(ui, key, _label(spec), spec)
+        chosen = ui.choice(key, now, spec.choices)
+        if chosen != now:
+            _set(window, kind, spec, chosen)
+
+    def _entity(
+        self, ui: Ui, world: World, window: Window, kind: Kind, spec: Field, key: str, values: Sequence[Any]
+    ) -> None:
+        """Build the list of the bodies that a field can name; one can be clicked in the world as well."""
+        if len(values) > 1:
+            return
+        (entity,), end = window.selection.entities, values[0]
+        self._numbers.label(ui, key, _label(spec), spec)
+        none = _ABSENT.get(key, "none")
+        now = none if end is None else world.label(end)
+        room = imgui.get_content_region_avail().x - 3.6 * ui.size
+        chosen = ui.choice(key, now, lambda: _names(world, entity, none), width=room)
+        imgui.same_line()
+        if ui.button(f"{key} click", "Click the body in the world", shown="Click"):
+            window.picking = lambda world, window, picked: set_end(window, entity, kind, spec.name, picked)
+            window.notify("Click the body; empty space for none", 6.0)
+        if chosen != now:
+            picked = None if chosen == none else _numbered(world, chosen)
+            window.deeds.insert(0, lambda _, window: set_end(window, entity, kind, spec.name, picked))
+
+
+def _names(world: World, entity: int, none: str) -> list[str]:
+    """Return the names of what has a place, but for one entity, after the word for none."""
+    bodies = [other for other in world.batch(Transform).entities.tolist() if other != entity]
+    return [none, *(world.label(other) for other in sorted(bodies)[:_MAX_LISTED])]
+
+
+def _numbered(world: World, name: str) -> int | None:
+    bodies = world.batch(Transform).entities.tolist()
+    return next((entity for entity in bodies if world.label(entity) == name), None)
+
+
+def _common(values: Sequence[Any]) -> Any:
+    """Return the value that all have, or ``None``."""
+    return values[0] if all(value == values[0] for value in values) else None
+
+
+def _set(window: Window, kind: Kind, spec: Field, value: object) -> None:
+    """Give the field of all that is selected a value, before the click that ended the writing is done."""
+    _do_first(window, lambda entity: SetField(entity, kind.__name__, spec.name, value))
+
+
+def _set_part(window: Window, kind: Kind, spec: Field, axis: int, new: float) -> None:
+    def change(entity: int) -> SetField:
+        vector = getattr(window.edits.world.component(entity, kind), spec.name)
+        value = Vector2(new, vector.y) if axis == 0 else Vector2(vector.x, new)
+        return SetField(entity, kind.__name__, spec.name, value)
+
+    _do_first(window, change)
+
+
+def _do_first(window: Window, change: Callable[[int], SetField]) -> None:
+    chosen = window.selection.entities
+    window.deeds.insert(0, lambda _, window: change_fields(window, [change(entity) for entity in chosen]))
+
+
+def _is_shown(spec: Field, held: Component) -> bool:
+    """Whether a field has a row: sizes of the other kind of shape and what cannot change have none."""
+    if isinstance(held, Shape):
+        return spec.name in Shape.SIZES[held.kind]
+    return spec.kind == "entity" or not spec.fixed
+
+
+def _label(spec: Field) -> str:
+    return _NAMES.get((spec.owner, spec.name), spec.name.replace("_", " ").capitalize())
+
+
+ORDER: dict[Kind, int] = {
+    kind: n for n, kind in enumerate((Transform, Velocity, Mass, Shape, Material, Drag, Spring, Trail))
+}
+"""In which order components are shown; others come after these."""
+_NAMES = {
+    ("Velocity", "linear"): "Velocity", ("Velocity", "angular"): "Turning",
+    ("Mass", "fixed_rotation"): "Keeps its angle", ("Spring", "a"): "From", ("Spring", "b"): "To",
+    ("Spring", "anchor_a"): "Holds at", ("Spring", "anchor_b"): "Other end",
+    ("Drag", "linear"): "Drag of v", ("Drag", "quadratic"): "Drag of v²", ("Trail", "length"): "Trail of",
+}  # fmt: skip
+"""Plainer names for the labels, by component and field."""
+_ABSENT = {"Spring.a": "itself", "Spring.b": "a fixed point"}
+"""What the absence of an entity means, by component and field."""

@@ -1,0 +1,88 @@
+"""Periods of oscillations, against closed forms and against runs."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from desk import empty_world
+
+from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.diagnostics.period import period_of, spring_state
+from physicslab.ecs.vector import Vector2
+from physicslab.prefabs import circle, pendulum
+from physicslab.world import World
+
+
+def run_period(world: World, body: int) -> float:
+    """Return the time [s] between two passages of x = 0 in the same direction."""
+    crossings: list[float] = []
+    before = 0.0
+    for _ in range(20_000):
+        world.step(0.002)
+        now = world.component(body, Transform).position.x
+        if before < 0.0 <= now:
+            crossings.append(world.time - 0.002 * now / (now - before))
+        before = now
+        if len(crossings) == 3:
+            return crossings[2] - crossings[1]
+    raise AssertionError("it does not swing")
+
+
+@pytest.mark.parametrize("angle", [0.2, 1.2, 2.4])
+def test_the_period_of_a_pendulum_is_that_of_its_amplitude(angle: float) -> None:
+    world = empty_world()
+    bob = pendulum(world, (0, 0), length=2.0, angle=angle, stiffness=2e5)
+    found = period_of(world, bob)
+    assert found is not None
+    assert found.seconds == pytest.approx(run_period(world, bob), rel=2e-3)
+    later = period_of(world, bob)
+    assert later is not None and later.seconds == pytest.approx(found.seconds, rel=2e-3), "wherever it is"
+
+
+def test_the_period_of_a_body_on_a_spring() -> None:
+    world = empty_world(gravity_mode="none")
+    body = circle(world, (0.3, 0), mass=2.0)
+    spring = world.spawn(Spring(a=body, anchor_b=(-1.0, 0.0), rest_length=1.0, stiffness=50.0))
+    found = period_of(world, body)
+    assert found is not None and found.seconds == pytest.approx(2 * math.pi * math.sqrt(2.0 / 50.0))
+    assert found.seconds == pytest.approx(run_period(world, body), rel=1e-3)
+    assert period_of(world, spring) == found
+
+
+def test_two_bodies_on_a_spring_have_their_reduced_mass_and_a_damper_slows_them() -> None:
+    world = empty_world(gravity_mode="none")
+    one, two = circle(world, (0, 0), mass=1.0), circle(world, (2, 0), mass=3.0)
+    spring = world.spawn(Spring(a=one, b=two, rest_length=2.0, stiffness=30.0))
+    found = period_of(world, spring)
+    assert found is not None and found.seconds == pytest.approx(2 * math.pi * math.sqrt(0.75 / 30.0))
+    world.component(spring, Spring).damping = 6.0
+    slower = period_of(world, two)
+    rate = math.sqrt(30.0 / 0.75 - (6.0 / 1.5) ** 2)
+    assert slower is not None and slower.seconds == pytest.approx(2 * math.pi / rate)
+    world.component(spring, Spring).damping = 100.0
+    assert period_of(world, two) is None
+
+
+def test_what_is_not_periodic_has_no_period() -> None:
+    world = empty_world()
+    free = circle(world, (5, 5))
+    assert period_of(world, free) is None
+    bob = pendulum(world, (0, 0), length=2.0, stiffness=1e5)
+    world.component(bob, Velocity).linear = Vector2(30.0, 0.0)
+    assert period_of(world, bob) is None, "it turns over"
+    world.component(bob, Velocity).linear = Vector2()
+    assert period_of(world, bob) is not None
+    world.spawn(Spring(a=bob, b=free))
+    assert period_of(world, bob) is None, "two springs"
+
+
+def test_a_spring_is_read_off() -> None:
+    world = empty_world(gravity_mode="none")
+    body = world.spawn(Transform((0, 0)), Velocity((2.0, 0.0)), Mass(1.0))
+    spring = world.spawn(Spring(a=body, anchor_b=(3.0, 4.0), rest_length=4.0, stiffness=10.0, damping=5.0))
+    found = spring_state(world, spring)
+    assert found is not None
+    assert (found.length, found.extension, found.energy) == pytest.approx((5.0, 1.0, 5.0))
+    assert found.force == pytest.approx(10.0 - 5.0 * 2.0 * 0.6)
+    assert spring_state(world, body) is None
