@@ -88,7 +88,7 @@ def bench(key: str) -> tuple[Desk, int]:
     assert other != body
     desk = Desk(world)
     desk.key("space")
-    desk.window.tool = "select"
+    desk.window.tool, desk.window.level = "select", "Measure"
     desk.window.selection.take(body)
     desk.frames(SETTLED)
     return desk, body

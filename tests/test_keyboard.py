@@ -95,6 +95,7 @@ def test_the_fields_of_what_is_selected_are_gone_through_and_changed(desk: Desk)
     ball = circle(desk.world, (1, 2), radius=0.25)
     keys(desk, "n", "return")
     assert desk.window.selection.entities == (ball,) and desk.sandbox.interface.toolkit.typing
+    keys(desk, "tab")  # from its name to its place
     write(desk, "2.5")
     keys(desk, "tab")
     assert desk.world.component(ball, Transform).position == Vector2(2.5, 2)

@@ -123,7 +123,7 @@ def _mean(a: float, b: float) -> float:
     """Return the arithmetic-geometric mean of two numbers above 0.
 
     >>> round(_mean(1.0, 2.0**0.5), 12)
-    1.19814023474
+    1.198140234736
     """
     for _ in range(_HALVES):
         if abs(a - b) <= 1e-15 * a:

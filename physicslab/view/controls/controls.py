@@ -140,7 +140,7 @@ CONTROLS: tuple[Control, ...] = (
             tip="Move what is selected by a pixel; where nothing is, the cursor"),
     Control("Enter", "edit, or click", "return", keyboard.enter, also=("enter",), minor=True, group="edit",
             tip="Edit the numbers of what is selected; where nothing is, click with the tool at the cursor"),
-    Control("Shift+Arrows", "turn what is selected", "shift+left", actions.turner(1), minor=True,
+    Control("Shift+Arrows", "turn what is selected", "shift+left", keyboard.ARROWS["shift+left"], minor=True,
             group="edit", tip="Turn what is selected by a degree; by 15 degrees where angles snap"),
     Control("Q", "snap", "q", actions.toggle_snapping, minor=True, group="edit",
             state=lambda _, window: window.snapping.on,
@@ -262,7 +262,6 @@ KEYS: dict[str, Action] = {
 }
 """What each key does when it goes down, by its name in SDL."""
 KEYS |= keyboard.ARROWS
-KEYS |= {"shift+right": actions.turner(-1)}
 
 RELEASES: dict[str, Action] = {
     control.key: control.release for control in CONTROLS if control.release is not None

@@ -7,7 +7,7 @@ from typing import Any
 
 import pygame
 
-from physicslab.view.controls.actions import nudger
+from physicslab.view.controls.actions import nudger, turner
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -59,8 +59,11 @@ def _post(kind: int, place: tuple[int, int], **more: Any) -> None:
 
 
 def _arrow(across: int, down: int, step: int) -> Callable[[World, Window], None]:
-    """Return what moves all that is selected by a pixel; where nothing is, the cursor by a step."""
-    nudge = nudger(across, -down)
+    """Return what moves all that is selected by a pixel; where nothing is, the cursor by a step.
+
+    With Shift held, an arrow to the side turns what is selected.
+    """
+    nudge = turner(-across) if step == 1 and across else nudger(across, -down)
 
     def move(world: World, window: Window) -> None:
         if window.selection.entities and not window.presses_by_key:

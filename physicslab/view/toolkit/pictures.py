@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import compile_kernels
 from physicslab.kernels.triangles import paint_triangles
+from physicslab.view.canvas.theme import Colour
 
 __all__ = ["Pictures"]
 
@@ -92,7 +93,7 @@ class Pictures:
         for picture in self._pictures.values():
             surface.blit(picture.surface, picture.sheet.box, special_flags=pygame.BLEND_PREMULTIPLIED)
 
-    def of(self, ending: str, paper: pygame.Color) -> pygame.Surface | None:
+    def of(self, ending: str, paper: Colour) -> pygame.Surface | None:
         """Return the window whose name ends so as it is painted, on paper; ``None`` if there is none."""
         picture = next((one for name, one in self._pictures.items() if name.endswith(ending)), None)
         if picture is None:

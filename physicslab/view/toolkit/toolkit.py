@@ -221,7 +221,7 @@ class Toolkit:
     def picture_of(self, ending: str) -> pygame.Surface | None:
         """Return a panel as it was painted last, by the end of its name; ``None`` if it is not shown."""
         assert self._look is not None
-        return self.pictures.of(ending, pygame.Color(*self._look[0].panel))
+        return self.pictures.of(ending, self._look[0].panel)
 
 
 def _covered() -> list[Rect]:

@@ -21,6 +21,8 @@ from physicslab.world import World
 __all__ = ["ComponentRows"]
 
 _VARIOUS = "various"
+_LESSER = ("inertia",)
+"""Fields that have no row where few figures are wanted."""
 _MAX_LISTED = 60
 """How many entities a list shows; others are clicked in the world."""
 
@@ -43,6 +45,8 @@ class ComponentRows:
         """Build a row for each field of a component that all of what is selected has."""
         held = [world.component(entity, kind) for entity in window.selection.entities]
         rows = [spec for spec in kind.FIELDS if all(_is_shown(spec, part) for part in held)]
+        if window.level == "Explore":
+            rows = [spec for spec in rows if spec.name not in _LESSER]
         if rows:
             ui.gap(0.2)
         for spec in rows:

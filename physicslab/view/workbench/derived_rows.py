@@ -44,7 +44,7 @@ def _build_motion(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
     ui.rule()
     speed = linear.magnitude
     ui.row("Speed", quantity(speed, "m/s"))
-    if speed > 0.0:
+    if speed > 0.0 and not is_brief:
         ui.row("Direction", f"{math.degrees(linear.angle):.1f}°", "counter-clockwise from the right")
     if not world.has(entity, Mass):
         return

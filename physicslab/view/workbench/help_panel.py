@@ -12,8 +12,8 @@ from physicslab.view.window.window import Window
 
 __all__ = ["build_help"]
 
-_COLUMNS = (4, 3, 2)
-"""How many columns there may be, if they fit; otherwise there is one."""
+_MAX_COLUMNS = 4
+"""How many columns there may be, if they fit."""
 _SHARE = 0.94
 """How much of the window's width they may take."""
 _GAP = "   "
@@ -23,7 +23,7 @@ def build_help(ui: Ui, window: Window) -> None:
     """Build the window of keys, in columns."""
     lines = [(_keys(control), f"{control.does}{_GAP}") for control in CONTROLS]
     room = _SHARE * window.canvas.size[0]
-    columns = next((n for n in _COLUMNS if _width(lines, n) <= room), 1)
+    columns = next((n for n in range(_MAX_COLUMNS, 1, -1) if _width(lines, n) <= room), 1)
     with ui.floating("Keys and buttons", window.middle, docks=True) as stays:
         rows = -(-len(lines) // columns)
         if imgui.begin_table("keys", 2 * columns, imgui.TableFlags_.sizing_fixed_fit):

@@ -124,6 +124,9 @@ class Inspector:
             for words, (meaning, kind) in (changing.removable(world, chosen) if shown else {}).items():
                 if ui.item(f"no {words}", tip=meaning, shown=f"{words}: {meaning}"):
                     window.deeds.append(_taking(chosen, kind))
+        ui.same_line_if_room("Plot")
+        if ui.button("Plot", "Its speed and place against time"):
+            window.deeds.append(plot_selected)
 
     @staticmethod
     def _build_buttons(ui: Ui, world: World, window: Window) -> None:
@@ -139,9 +142,6 @@ class Inspector:
         imgui.same_line()
         if ui.button("Delete", "Remove what is selected (Del)"):
             window.deeds.append(remove_selected)
-        imgui.same_line()
-        if ui.button("Plot", "Its speed and place against time"):
-            window.deeds.append(plot_selected)
         ui.same_line_if_room("Done")
         if ui.button("Done", "Select nothing (Esc)"):
             window.deeds.append(lambda _, window: window.selection.clear())

@@ -25,6 +25,8 @@ _FINER, _COARSER = 0.1, 10.0
 _ONLY_MOUSE = imgui.ItemFlags_.no_nav | imgui.ItemFlags_.no_tab_stop
 _PART = 6
 """Characters that the field of a part of a vector has room for."""
+_SMALL = 1e-3
+"""Of numbers smaller than this one figure may be enough."""
 _VARIOUS = "various"
 """What a field shows of several bodies whose numbers differ."""
 _LARGEST_ANGLE = 1e5
@@ -52,8 +54,9 @@ def shown_vector_part(value: float) -> str:
     >>> shown_vector_part(0.123456), shown_vector_part(-0.123456), shown_vector_part(-5.06e-12)
     ('0.1235', '-0.123', '-5e-12')
     """
-    shorter = (shown_number(value, figures) for figures in range(4, 0, -1))
-    return next((text for text in shorter if len(text) <= _PART), shown_number(value, 1))
+    fewest = 1 if abs(value) < _SMALL else 2
+    shorter = (shown_number(value, figures) for figures in range(4, fewest - 1, -1))
+    return next((text for text in shorter if len(text) <= _PART), shown_number(value, 3))
 
 
 @dataclass(slots=True)
@@ -244,10 +247,16 @@ def _as_field(text: str, spec: Field) -> float | str:
 
 
 def _unit_shown(spec: Field, value: float | None) -> str:
-    """Return what stands beside a field: its unit; after an angle, what it is in degrees."""
+    """Return what stands beside a field: its unit; after an angle, what it is in degrees, to a hundredth.
+
+    >>> _unit_shown(Field("angle", "number", unit="rad"), math.radians(-30.0))
+    'rad = -30°'
+    >>> _unit_shown(Field("angle", "number", unit="rad"), 1e-7)
+    'rad = 0°'
+    """
     unit = spec.unit.replace("^2", "²").replace("^3", "³") if spec.unit != "1" else ""
     degrees = math.degrees(value) if value is not None and spec.unit == "rad" else math.inf
-    return f"{unit} = {degrees + 0.0:.4g}°" if abs(degrees) < _LARGEST_ANGLE else unit
+    return f"{unit} = {round(degrees, 2) + 0.0:.5g}°" if abs(degrees) < _LARGEST_ANGLE else unit
 
 
 def _width(ui: Ui, unit: str) -> float:
