@@ -155,6 +155,8 @@ def test_several_bodies_show_various_where_they_differ_and_change_alike() -> Non
     world = empty_world(gravity_mode="none")
     one, two = circle(world, (-2, 0), mass=1.0, friction=0.3), circle(world, (2, 1), mass=5.0, friction=0.3)
     desk = opened(world, one, two)
+    desk.window.level = "Measure"
+    desk.frames(SETTLED)
     assert desk.ui.words.count("various") >= 3, "mass, and both parts of the place"
     tap(desk, "escape")
     desk.window.selection.entities = (one, two)

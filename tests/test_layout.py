@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pygame
 import pytest
 from desk import SETTLED, Desk, empty_world, fill, sized, tap
@@ -9,7 +11,7 @@ from imgui_bundle import imgui
 
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
-from physicslab.prefabs import circle
+from physicslab.prefabs import box, circle
 
 SIZES = [(800, 600), (1280, 720), (1920, 1080)]
 
@@ -20,11 +22,12 @@ def scrolls(desk: Desk) -> bool:
     return bool(imgui.internal.find_window_by_name("side").scroll_max.y > 0.0)
 
 
-def test_the_numbers_of_a_body_fit_the_usual_window() -> None:
+@pytest.mark.parametrize("make", [circle, box])
+def test_the_numbers_of_a_body_fit_the_usual_window(make: Callable[..., int]) -> None:
     world = empty_world()
-    ball = circle(world, (0, 0), velocity=Vector2(1.0, 2.0), angular_velocity=3.0)
+    body = make(world, (0, 0), velocity=Vector2(1.0, 2.0), angular_velocity=3.0)
     desk = sized((1280, 720), world)
-    desk.window.selection.take(ball)
+    desk.window.selection.take(body)
     desk.frames(SETTLED)
     assert "Kinetic energy" in desk.ui.rows and "Delete" in desk.ui.places and not scrolls(desk)
 

@@ -21,7 +21,7 @@ from physicslab.world import World
 __all__ = ["ComponentRows"]
 
 _VARIOUS = "various"
-_LESSER = ("inertia",)
+_LESSER = ("inertia", "fixed_rotation")
 """Fields that have no row where few figures are wanted."""
 _MAX_LISTED = 60
 """How many entities a list shows; others are clicked in the world."""
