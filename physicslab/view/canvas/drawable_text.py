@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from functools import lru_cache
 
 __all__ = ["MAX_LETTERS", "drawable", "shortened"]
 
@@ -21,6 +22,7 @@ def shortened(words: str, letters: int) -> str:
     return words if len(words) <= letters else words[: letters - 1] + "…"
 
 
+@lru_cache(maxsize=2048)  # panels write the same words again and again
 def drawable(words: str) -> str:
     r"""Return text without what fonts refuse: control characters and halves of surrogate pairs.
 

@@ -245,8 +245,8 @@ class Ui:
 
     def tip(self, words: str) -> None:
         """Show words beside the cursor while it rests on what was drawn last."""
-        words = drawable(words)
         if words and imgui.is_item_hovered(_TIP_FLAGS):
+            words = drawable(words)
             self.words.append(words)
             if imgui.begin_tooltip():
                 imgui.push_text_wrap_pos(22 * self.size)
