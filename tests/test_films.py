@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -219,7 +220,9 @@ def test_an_interrupted_film_leaves_nothing(ending: str, tmp_path: Path) -> None
         f"--{ending[1:]}",
         f"{tmp_path}/a{ending}",
     ]
-    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True) as program:
+    # What is started in the background ignores this signal, and so do the programs that it starts.
+    heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, preexec_fn=heed) as program:
         deadline = time.monotonic() + 60.0
         while not any(path.stat().st_size > 10_000 for path in tmp_path.glob(".*-tmp")):
             assert program.poll() is None and time.monotonic() < deadline
