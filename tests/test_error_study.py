@@ -196,3 +196,15 @@ def test_a_chaotic_scene_is_called_so(tmp_path: Path, grown: float, chaotic: boo
     measured(desk)
     desk.frames(SETTLED)
     assert any("This scene is chaotic" in words for words in desk.ui.words) is chaotic
+
+
+def test_the_table_is_saved_as_csv(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text({json.dumps({'scenes': [FOUND]})!r})")
+    measured(desk)
+    desk.frames(2 * SETTLED)
+    click(desk, "CSV of all runs")
+    (path,) = tmp_path.glob("*-errors-1.csv")
+    head, *rows = path.read_text("utf-8").splitlines()
+    assert head.startswith("chosen,method,") and len(rows) == 3
+    assert rows[0] == "rk4,rk4,0.01 s,8,1e-09,0.1,0.001"

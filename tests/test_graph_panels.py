@@ -11,7 +11,7 @@ from desk import SETTLED, Desk, button_down, button_up, click, empty_world, poin
 from plotting import CTRL, SHIFT, ball_of, drawn_lines, graph_of, pause
 
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.controls import dashboard_actions
+from physicslab.view.controls import dashboard_actions, file_actions
 from physicslab.view.window.plot_data import line_to_show
 
 
@@ -46,7 +46,7 @@ def test_a_full_disk_is_one_plain_sentence(desk: Desk, monkeypatch: pytest.Monke
     def full(path: Path, content: bytes) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(dashboard_actions, "create_file", full)
+    monkeypatch.setattr(file_actions, "create_file", full)
     ball_of(desk)
     tap(desk, "m")
     desk.window.deeds.append(dashboard_actions.save_table(graph_of(desk)))

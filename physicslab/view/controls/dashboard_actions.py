@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 from physicslab.components import Graph, GraphLine, Mass, Meter, Shape, Slider, Spring, Transform, Velocity
 from physicslab.components.graph import TIME
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import InvalidValue
-from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
-from physicslab.files.new_scene import file_stem
-from physicslab.files.replace import create_file
 from physicslab.history import AddComponent, Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.view.controls import actions
-from physicslab.view.controls.scene_files import new_paths
+from physicslab.view.controls.file_actions import save_new
 from physicslab.view.window.dashboard import GraphShown, SliderShown
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.record import Key
@@ -214,28 +210,14 @@ def save_table(graph: GraphShown) -> Deed:
 
     def deed(world: World, window: Window) -> None:
         content = table_of(graph, window.dashboard).encode("utf-8")
-        _write(window, world, graph, ".csv", content)
+        save_new(window, world, "graph", ".csv", content)
 
     return deed
 
 
 def save_picture(world: World, window: Window, graph: GraphShown, content: bytes) -> None:
     """Write a picture of a graph to a new file where the program was started."""
-    _write(window, world, graph, ".png", content)
-
-
-def _write(window: Window, world: World, graph: GraphShown, ending: str, content: bytes) -> None:
-    stem = file_stem(f"{world.name or 'scene'}-graph")
-    for path in new_paths(Path.cwd(), stem, ending):
-        try:
-            create_file(path, content)
-        except FileExistsError:
-            continue
-        except OSError as error:
-            window.notify(f"The graph could not be saved: {error.strerror or error}", 6.0, failed=True)
-            return
-        window.notify(f"Saved {printable(str(path))}")
-        return
+    save_new(window, world, "graph", ".png", content)
 
 
 def _selected(world: World, window: Window) -> list[int]:

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable
-from physicslab.files.new_scene import save_new_scene
+from physicslab.files.new_scene import file_stem, save_new_scene
+from physicslab.files.replace import create_file
 from physicslab.files.scene import SceneError, load_scene, save_scene
-from physicslab.view.controls.scene_files import is_recording, new_scene_paths, newest_scene
+from physicslab.view.controls.scene_files import is_recording, new_paths, new_scene_paths, newest_scene
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -24,6 +25,7 @@ __all__ = [
     "request_screenshot",
     "restart",
     "save",
+    "save_new",
     "save_under",
     "study_error",
 ]
@@ -149,6 +151,20 @@ def restart(world: World, window: Window) -> None:
     open_scene(window, window.source)
     if window.next_world is not None:
         window.notify("Started again")
+
+
+def save_new(window: Window, world: World, what: str, ending: str, content: bytes) -> None:
+    """Write something that belongs to a scene to a new file where the program was started; show its name."""
+    for path in new_paths(Path.cwd(), file_stem(f"{world.name or 'scene'}-{what}"), ending):
+        try:
+            create_file(path, content)
+        except FileExistsError:
+            continue
+        except OSError as error:
+            window.notify(f"The {what} could not be saved: {error.strerror or error}", 6.0, failed=True)
+            return
+        window.notify(f"Saved {printable(str(path))}")
+        return
 
 
 def request_screenshot(world: World, window: Window) -> None:

@@ -81,6 +81,9 @@ def _build_result(ui: Ui, window: Window) -> None:
         _build_table(ui, study, window, (_TABLE * size, high) if beside else (wide, 0.45 * high))
         if ui.button("Close"):
             study.shown = False
+        imgui.same_line()
+        if ui.button("CSV of all runs", "Write the table to a file", shown="CSV"):
+            window.deeds.append(_save)
     if not stays[0]:
         study.shown = False
 
@@ -134,6 +137,12 @@ def _build_table(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, f
             imgui.table_next_column()
             ui.text(words)
     imgui.end_table()
+
+
+def _save(world: World, window: Window) -> None:
+    """Write the table of all runs to a new file."""
+    content = window.error_study.csv().encode("utf-8")
+    file_actions.save_new(window, world, "errors", ".csv", content)
 
 
 def _using(run: Sample) -> Callable[[World, Window], None]:

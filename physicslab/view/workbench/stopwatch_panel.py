@@ -6,21 +6,18 @@ import csv
 import io
 import math
 from collections.abc import Sequence
-from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Gate
 from physicslab.diagnostics.stopwatch import Lap, laps
 from physicslab.ecs.text import printable
-from physicslab.files.new_scene import file_stem
-from physicslab.files.replace import create_file
 from physicslab.state.attached import place_of
 from physicslab.systems.gate import GateSystem
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.controls.scene_files import new_paths
+from physicslab.view.controls.file_actions import save_new
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -151,15 +148,5 @@ def crossings_csv(world: World) -> str:
 
 
 def _save(world: World, window: Window) -> None:
-    """Write the crossings to a new file where the program was started, and show what came of it."""
-    content = crossings_csv(world).encode("utf-8")
-    for path in new_paths(Path.cwd(), file_stem(f"{world.name or 'scene'}-crossings"), ".csv"):
-        try:
-            create_file(path, content)
-        except FileExistsError:
-            continue
-        except OSError as error:
-            window.notify(f"The crossings could not be saved: {error.strerror or error}", 6.0, failed=True)
-            return
-        window.notify(f"Saved {printable(str(path))}")
-        return
+    """Write the crossings to a new file."""
+    save_new(window, world, "crossings", ".csv", crossings_csv(world).encode("utf-8"))
