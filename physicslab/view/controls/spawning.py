@@ -171,7 +171,7 @@ SPAWNS = (
     Spawnable("pyramid", "Pyramid", "where its foot shall be", _pyramid),
     Spawnable("heap", "Heap of discs", "where it shall fall", _heap),
     Spawnable("pit", "Open box", "where the middle of its floor shall be", _pit),
-    Spawnable("binary", "Two planets", "where they shall circle each other", _binary,
+    Spawnable("binary", "Planets", "where they shall circle each other", _binary,
           "These two circle each other in planet mode: O turns it on"),
 )  # fmt: skip
 """All there is to spawn, in the order of the chooser."""
