@@ -66,7 +66,7 @@ def near_in(state: State) -> NearTuple:
         contacts.counts, contacts.manifolds, contacts.points, contacts.scalar, contacts.touching,
         contacts.wide.discs.slots, contacts.wide.boxes.slots,
         contacts.proximity, contacts.activation_distance, state.entity_index.entities,
-        contacts.rotations,
+        contacts.rotations, state.account.sums,
     )  # fmt: skip
 
 

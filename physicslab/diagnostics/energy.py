@@ -57,7 +57,7 @@ class Momentum:
     angular: float
 
 
-def _motion(world: World) -> tuple[float, float, float, float, float]:
+def _motion(world: World) -> tuple[float, float, float, float, float, float, float]:
     world.synchronise()
     world.compile((energy.motion_totals,))
     velocity, mass = world.table(Velocity), world.table(Mass)
@@ -82,7 +82,7 @@ def measure_energy(world: World) -> Energy:
 
 def measure_momentum(world: World) -> Momentum:
     """Return the momentum and angular momentum of the world as it is now."""
-    _, _, px, py, spin = _motion(world)
+    _, _, px, py, spin, _, _ = _motion(world)
     return Momentum(Vector2(px, py), spin)
 
 

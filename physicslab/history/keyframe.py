@@ -21,6 +21,7 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.context import create_numbered
 from physicslab.ecs.table import Table
+from physicslab.state.account import KeptAccount
 from physicslab.state.remainders import Remainders
 from physicslab.stepping.plan import StepPlan
 from physicslab.systems.system import System
@@ -116,6 +117,7 @@ class Keyframe:
     """
 
     __slots__ = (
+        "_account",
         "_columns",
         "_contacts",
         "_counts",
@@ -146,6 +148,7 @@ class Keyframe:
         self._plan: StepPlan = world.plan
         self._rates = dict(world.fastest_rates)
         self._remainders: Remainders = world.remainders
+        self._account: KeptAccount = world.account.keep()
         self._forces: _Columns = shared(
             (world.bodies.force, world.bodies.torque), last._forces if last is not None else None
         )
@@ -200,6 +203,7 @@ class Keyframe:
         for system, kept in self._own.items():
             system.bring_back(kept)
         world.remainders = self._remainders
+        world.account.bring_back(self._account)
         world.fastest_rates.update(self._rates)
 
 

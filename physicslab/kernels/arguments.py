@@ -70,7 +70,8 @@ class Near(NamedTuple):
     """The near pairs: their records, points and counts, which are scalar, which of them touch.
 
     Then the slots of discs and of boxes; the pairs without records, the distance at which each gets one [m],
-    the entities of all rows, and the angle of each box when its cosine and sine were computed, and those.
+    the entities of all rows, and the angle of each box when its cosine and sine were computed, and those; the
+    account that contacts and impacts add to (:mod:`physicslab.kernels.accounts`).
     """
 
     counts: Rows
@@ -84,6 +85,7 @@ class Near(NamedTuple):
     activation_distance: Numbers
     entities: Rows
     rotations: Vectors
+    account: Vectors
 
 
 class Contacts(NamedTuple):
@@ -99,10 +101,11 @@ class Contacts(NamedTuple):
 
 
 class Log(NamedTuple):
-    """A ring of impacts, and the time [s] from which theirs are counted."""
+    """A ring of impacts, the time [s] from which theirs are counted, and the account that they add to."""
 
     impacts: Impacts
     time: float
+    account: Vectors
 
 
 class Softness(NamedTuple):
@@ -162,7 +165,7 @@ InverseTuple = tuple[Numbers, Numbers]
 ActingTuple = tuple[Vectors, Numbers, bool]
 BoundsTuple = tuple[Numbers, float, float]
 NearTuple = tuple[
-    Rows, Manifolds, Points, Rows, Rows, SlotsTuple, SlotsTuple, Couples, Numbers, Rows, Vectors
+    Rows, Manifolds, Points, Rows, Rows, SlotsTuple, SlotsTuple, Couples, Numbers, Rows, Vectors, Vectors
 ]
 SoftnessTuple = tuple[float, float, float]
 PlanTuple = tuple[int, int, float, float, float]
@@ -176,9 +179,9 @@ def named_near(plain: NearTuple) -> Near:
     """Give names to a tuple, and to the slots within it."""
     (
         counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities,
-        rotations,
+        rotations, account,
     ) = plain  # fmt: skip
     return Near(
         counts, manifolds, points, scalar, touching, Slots(*discs), Slots(*boxes),
-        proximity, activation_distance, entities, rotations,
+        proximity, activation_distance, entities, rotations, account,
     )  # fmt: skip

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.state.account import Account, KeptAccount
 from physicslab.state.remainders import NO_REMAINDERS, Remainders
 
 __all__ = ["Checkpoint"]
@@ -27,6 +28,8 @@ class Checkpoint:
         Positions, angles, velocities and angular velocities of then; compiled loops keep them themselves.
     counts : tuple of int
         Force evaluations, impacts, and impacts logged until then.
+    account : KeptAccount
+        What was booked until then.
     remainders : Remainders
         What rounding had left out of positions and velocities; replaced by a step, never changed in place.
     """
@@ -35,6 +38,7 @@ class Checkpoint:
         self.columns: _Columns = ()
         self.counts = 0, 0, 0
         self.remainders: Remainders = NO_REMAINDERS
+        self.account: KeptAccount = Account().keep()
 
     def make_room(self, columns: _Columns, counts: tuple[int, int, int]) -> None:
         """Keep the counts, with room for columns like these."""

@@ -19,6 +19,7 @@ from physicslab.ecs.context import Active, create_numbered, next_number, switch
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Table
 from physicslab.kernels import compile_kernels, seconds_waited
+from physicslab.state.account import Account
 from physicslab.state.bodies import Bodies
 from physicslab.state.checkpoint import Checkpoint
 from physicslab.state.contacts import Contacts
@@ -92,6 +93,8 @@ class State:
         The state of motion before the step at hand.
     sleep : Sleep
         Which bodies have come to rest, and are not simulated until something wakes them.
+    account : Account
+        What changed the energy and the momentum, by cause.
     """
 
     def __init__(
@@ -114,6 +117,7 @@ class State:
         self.remainders: Remainders = NO_REMAINDERS
         self.fastest_rates: dict[str, float] = {}
         self.checkpoint = Checkpoint()
+        self.account = Account()
         # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
         self._names: set[str] = set()
         self.stale, self.in_step = True, False

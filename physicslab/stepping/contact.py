@@ -29,6 +29,7 @@ class Contact:
     title: ClassVar[str] = "Steps stage by stage, contacts within them"
     leaps: bool = False
     leaves_forces: ClassVar[bool] = True
+    contacts_take_the_rest: ClassVar[bool] = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._stages = schedule, plan.stages.substep

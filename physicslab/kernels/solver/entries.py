@@ -45,9 +45,10 @@ def impact_stage(
     log: Impacts, moment: float, h: float, start: float, end: float,
 ) -> int:  # fmt: skip
     """Bounce what meets (:func:`~physicslab.kernels.solver.stages.resolve_all_impacts`)."""
+    of = named_near(near)
     return resolve_all_impacts(
-        named_near(near), Motion(*motion), Sizes(*sizes), Inverse(*inverse), Acting(*acting),
-        Log(log, moment), h, start, end,
+        of, Motion(*motion), Sizes(*sizes), Inverse(*inverse), Acting(*acting),
+        Log(log, moment, of.account), h, start, end,
     )  # fmt: skip
 
 

@@ -161,7 +161,7 @@ def _advance(
         stage = BEGIN
         moment = plan.time + done * plan.dt + (substep + 0.5) * h
         impact_count += resolve_all_impacts(
-            near, motion, sizes, inverse, acting, Log(impacts, moment), h, -0.5 * h, 0.5 * h
+            near, motion, sizes, inverse, acting, Log(impacts, moment, near.account), h, -0.5 * h, 0.5 * h
         )
         now = charge(cost, RESOLVE, now)
         if kicked:
