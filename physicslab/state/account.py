@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels.accounts import CAUSES, EDITS, HAND
+from physicslab.kernels import direct_entry
+from physicslab.kernels.accounts import CAUSES, EDITS, HAND, book_rest
 
 __all__ = ["Account", "Balance", "KeptAccount"]
 
@@ -91,8 +92,8 @@ class Account:
     def close(self, now: Balance, rest: int | None) -> None:
         """End a step at a balance; all that is not booked goes to the cause ``rest``, if one is given."""
         if rest is not None:
-            booked = self.sums.sum(axis=0) - self._before.sum(axis=0)
-            self.sums[rest] += np.subtract(now, self.last) - booked
+            change = [new - old for new, old in zip(now, self.last, strict=True)]
+            direct_entry(book_rest)(self.sums, self._before, rest, *change)
         self.last = now
 
     def keep(self) -> KeptAccount:

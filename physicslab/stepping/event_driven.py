@@ -65,7 +65,7 @@ class EventDriven:
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
-        self._schedule, self._resting = schedule, RestingBodies(schedule, plan)
+        self._schedule, self._resting = schedule, RestingBodies(state, schedule, plan)
         self.reason = plan.collision_reason
         self._leaves_rest = plan.contacts == "rigid"
         self._left = -1

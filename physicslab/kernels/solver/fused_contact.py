@@ -34,6 +34,7 @@ from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.islands import count_rest, find_touched
 from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
+from physicslab.kernels.solver.work import book_damping, book_gravity
 from physicslab.kernels.ticks import charge, ticks
 from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to_blocks
 
@@ -130,6 +131,8 @@ def _advance(
                 now = charge(cost, ACCELERATE, now)
             drift(position, angle, linear, angular, sub_integrated, 0.5 * h)
             now = _pull(acting, gravity, cost, charge(cost, INTEGRATE, now))
+            if acting.any:
+                book_gravity(near.account, position, gravity.mass, inverse.mass, gravity.gx, gravity.gy, h)
             if kicked:
                 _kick(motion, inverse, acting, sub_integrated, damping, 0.5 * h)
             now = charge(cost, ACCELERATE, now)
@@ -165,13 +168,18 @@ def _advance(
         )
         now = charge(cost, RESOLVE, now)
         if kicked:
+            if damping[0] != 0.0 or damping[1] != 0.0:
+                book_damping(
+                    position, linear, angular, acting.force, acting.torque, inverse.mass, inverse.inertia,
+                    sub_integrated, damping[0], damping[1], 0.5 * h, 0.5 * h, near.account,
+                )  # fmt: skip
             _kick(motion, inverse, acting, sub_integrated, damping, 0.5 * h)
             now = charge(cost, ACCELERATE, now)
         impulse_dt = press(near, motion, inverse, acting, softness, h, impulse_dt, plan.iterations)
         now = charge(cost, RESOLVE, now)
         drift(position, angle, linear, angular, sub_integrated, 0.5 * h)
         now = charge(cost, INTEGRATE, now)
-        relax(near, motion, inverse, softness, 0.5 * h, plan.iterations)
+        relax(near, motion, inverse, acting, softness, 0.5 * h, plan.iterations)
         now = charge(cost, RESOLVE, now)
         substep += 1
         if substep == plan.substeps:
