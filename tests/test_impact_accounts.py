@@ -17,6 +17,7 @@ from physicslab import World, load_scene
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.diagnostics.account import Accounts, measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.kernels import accounts
 from physicslab.prefabs import box, circle
 from physicslab.state.state import State
@@ -35,7 +36,7 @@ def laboratory(way: str, *, gravity: float = 0.0, **simulation: Any) -> World:
         simulation |= {"collisions": "exact"}
     else:
         simulation |= {"contacts": way, "collisions": "step"}
-    physics = PhysicsConfig(gravity=(0.0, -gravity), gravity_mode="linear" if gravity else "none")
+    physics = PhysicsConfig(gravity=Vector2(0.0, -gravity), gravity_mode="linear" if gravity else "none")
     return World(*standard_systems(), physics=physics, simulation=SimulationConfig(**simulation))
 
 
@@ -241,7 +242,7 @@ def test_accounts_explain_a_random_impact(way: str, bodies: list[dict[str, Any]]
 def test_accounts_explain_random_impacts_at_exact_times(bodies: list[dict[str, Any]], g: float) -> None:
     world = laboratory("exact", gravity=g)
     world.physics = PhysicsConfig(
-        gravity=(0.0, -g), gravity_mode="linear" if g else "none", bounds=(-3, -2, 3, 2),
+        gravity=Vector2(0.0, -g), gravity_mode="linear" if g else "none", bounds=(-3, -2, 3, 2),
         bounds_restitution=0.9, bounds_friction=0.4,
     )  # fmt: skip
     _add(world, bodies)
@@ -294,5 +295,5 @@ def test_the_account_is_kept_where_no_impact_is_read() -> None:
         world.run(seconds=0.25)
         found.append(world.account.sums.copy())
         assert (world.contacts.logged > 0) == read
-    assert np.array_equal(*found)
+    assert np.array_equal(found[0], found[1])
     assert found[0][accounts.IMPACTS, 1:].any()

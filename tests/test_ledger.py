@@ -27,7 +27,7 @@ from physicslab.prefabs import box, circle
 from physicslab.state.contacts import Contacts
 from physicslab.systems.standard import standard_systems
 
-WAYS = {
+WAYS: dict[str, dict[str, Any]] = {
     "soft": {"contacts": "soft", "collisions": "step"},
     "rigid": {"contacts": "rigid", "collisions": "step"},
     "exact": {"collisions": "exact"},
