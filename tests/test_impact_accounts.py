@@ -286,6 +286,34 @@ def test_single_steps_and_a_leap_book_the_same() -> None:
     assert sums[0][accounts.FRICTION] == pytest.approx(sums[1][accounts.FRICTION], rel=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_resting_and_ballistic_bodies_beside_each_other_are_all_accounted_for(seed: int) -> None:
+    """What rests goes by the contact step, back and forth in time between the impacts of the others."""
+    random = np.random.default_rng(seed)
+    physics = PhysicsConfig(bounds=(-3, -2, 3, 4), bounds_restitution=0.7, bounds_friction=0.4)
+    simulation = SimulationConfig(contacts="soft", collisions="exact")
+    world = World(*standard_systems(), physics=physics, simulation=simulation)
+    circle(world, (-2, -1.6), radius=0.4, velocity=(0.5, 0), restitution=0.5, friction=0.3)
+    circle(world, (1, -1.7), radius=0.3, restitution=0.5, friction=0.3)
+    for place, e in (((0, 1), 0.8), ((1.5, 1), 0.6)):
+        velocity = tuple(random.normal(0.0, 3.0, 2))
+        circle(world, place, radius=0.3, velocity=velocity, angular_velocity=3.0, restitution=e, friction=0.4)
+    box(
+        world, (-1, 2), width=0.6, height=0.4, fixed_rotation=True,
+        velocity=tuple(random.normal(0.0, 3.0, 2)), restitution=0.6, friction=0.5,
+    )  # fmt: skip
+    for steps in (1, 1, 1, 90, 1, 60):
+        world.run(steps=steps)
+        found = measure_account(world)
+        largest = max(map(abs, found.energy.values()))
+        assert abs(found.energy["numerical"]) <= 1e-11 * (largest + found.start.energy)
+        pushes = abs(found.momentum["gravity"].y) + abs(found.momentum["impacts"].y)
+        assert max(map(abs, found.momentum["numerical"])) <= 1e-12 * (pushes + 1.0)
+        # The arms of soft contacts do not lead to one point: angular momentum is theirs to err in.
+        assert abs(found.angular_momentum["numerical"]) <= 1e-4 * pushes
+    assert world.collisions > 20 and found.energy["contact"] != 0.0
+
+
 def test_the_account_is_kept_where_no_impact_is_read() -> None:
     """The log of the contact step has no length then; the account is the same."""
     found = []

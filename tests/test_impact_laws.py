@@ -339,9 +339,10 @@ class Cluster:
         worst = max(booked, sums[accounts.IMPACTS, 0], sums[accounts.FRICTION, 0], after - before)
         heavy = 1.0 / inverse[2 : 2 + 2 * len(self.kinds)].clip(1e-300)
         heavy[heavy > 1e200] = 0.0
-        change = heavy * (v[2 : 2 + 2 * len(self.kinds)] - old[2 : 2 + 2 * len(self.kinds)])
+        new, earlier = heavy * v[2 : 2 + 2 * len(self.kinds)], heavy * old[2 : 2 + 2 * len(self.kinds)]
+        change, scale = new - earlier, np.abs(new).sum() + np.abs(earlier).sum()
         unbalanced = np.abs((change[::2].sum(), change[1::2].sum()) - sums[accounts.IMPACTS, 1:3]).max()
-        return worst / before, abs(after - before - booked) / before, unbalanced / np.abs(change).sum()
+        return worst / before, abs(after - before - booked) / before, unbalanced / scale
 
 
 def _check_rigid(count: int) -> int:
@@ -359,7 +360,7 @@ def _check_rigid(count: int) -> int:
         struck += len(worst)
         given, missed, unbalanced = worst.max(axis=0)
         assert given <= 1e-12, cluster.kinds
-        assert missed <= 1e-12 and unbalanced <= 1e-10, cluster.kinds
+        assert missed <= 1e-12 and unbalanced <= 1e-12, cluster.kinds
     return struck
 
 
