@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Velocity
+from physicslab.kernels.accounts import DAMPING
 from physicslab.kernels.forces import packed_forces
 from physicslab.kernels.forces.resistance import drag_resistance
 from physicslab.state.packed import PackedForce, StateLayout
@@ -25,9 +26,12 @@ class DragSystem(ForceSystem):
         """Return the drag for compiled integrators."""
         table, rows = state.table(Drag), state.batch(*self.needs).rows
         rows = rows[layout.place[rows] >= 0]  # rows that take no part have no coordinates
+        moved = state.bodies.inverse_mass[rows] > 0.0
+        rows = np.concatenate((rows[moved], rows[~moved]))
         parameters = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
-        indices = np.concatenate(([len(rows)], layout.place[rows]))
-        return PackedForce(packed_forces.drag, parameters, indices, drag_resistance)
+        indices = np.concatenate(([len(rows)], layout.place[rows], (-1, np.count_nonzero(moved))))
+        books = ((DAMPING, len(indices) - 2),) if moved.any() else ()
+        return PackedForce(packed_forces.drag, parameters, indices, drag_resistance, books=books)
 
     def needs_origin(self, state: State) -> bool:
         """Drag depends on velocities alone."""

@@ -1,11 +1,15 @@
 """Gravity, springs and drag over packed coordinates, as :mod:`physicslab.kernels.forces.force_calls` has it.
 
-Each works by the same formulas as the loop over columns in the module of that force.
+Each works by the same formulas as the loop over columns in the module of that force. Where one is given the
+place of an account (:mod:`physicslab.kernels.forces.bookings`), it also adds there what it gives in a second;
+a place of -1 is none.
 """
 
 import numpy as np
 
 from physicslab.kernels import allocating
+from physicslab.kernels.accounts import PX, PY, SPIN
+from physicslab.kernels.forces.bookings import book_open_spring
 from physicslab.kernels.forces.drag import drag_factor
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT, attract, inverse_cube
@@ -16,11 +20,26 @@ __all__ = ["drag", "planet_gravity", "springs", "uniform_gravity"]
 
 @force_kernel
 def uniform_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
-    """Add m g. ``parameters``: gx, gy, then the masses; ``indices``: how many, then where x of each is."""
-    for p in range(indices[0]):
+    """Add m g. ``parameters``: gx, gy, the masses, and their sum.
+
+    ``indices``: how many, where x of each is, and the account of gravity.
+    """
+    n = indices[0]
+    for p in range(n):
         i = indices[1 + p]
         force[i] += parameters[2 + p] * parameters[0]
         force[i + 1] += parameters[2 + p] * parameters[1]
+    account = indices[1 + n]
+    if account < 0:
+        return
+    mx, my = 0.0, 0.0
+    for p in range(n):
+        i = indices[1 + p]
+        mx += parameters[2 + p] * q[i]
+        my += parameters[2 + p] * q[i + 1]
+    force[account + PX] += parameters[2 + n] * parameters[0]
+    force[account + PY] += parameters[2 + n] * parameters[1]
+    force[account + SPIN] += mx * parameters[1] - my * parameters[0]
 
 
 @allocating
@@ -78,8 +97,13 @@ def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-
     that never changes. ``parameters``: seven a spring: the anchors at A and B in the body's own directions,
     or in the world's where the angle never changes [m], rest length, stiffness, damping. Over a span, what
     the springs store changes by just the work done, of the turning ends as well.
+
+    Behind the indices of the springs are the accounts of springs, damping and hand, then of each spring which
+    of its coordinates forces move (:func:`physicslab.kernels.forces.bookings.book_open_spring`).
     """
-    for s in range(indices[0]):
+    n, lost = indices[0], 0.0
+    store, damp, hand = indices[1 + 4 * n], indices[2 + 4 * n], indices[3 + 4 * n]
+    for s in range(n):
         w, p = 1 + 4 * s, 7 * s
         a, turn_a, b, turn_b = indices[w], indices[w + 1], indices[w + 2], indices[w + 3]
         ax, ay, bx, by = parameters[p], parameters[p + 1], parameters[p + 2], parameters[p + 3]
@@ -96,27 +120,59 @@ def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-
         dy = q[b + 1] + near_b * by - q[a + 1] - near_a * ay
         vx = v[b] - spin_b * by - v[a] + spin_a * ay
         vy = v[b + 1] + spin_b * bx - v[a + 1] - spin_a * ax
+        rest, stiffness, damping = parameters[p + 4], parameters[p + 5], parameters[p + 6]
         if span == 0.0:
-            fx, fy = spring_pull(dx, dy, vx, vy, parameters[p + 4], parameters[p + 5], parameters[p + 6])
+            fx, fy, nx, ny, rate = spring_pull(dx, dy, vx, vy, rest, stiffness, damping)
         else:
-            fx, fy = mean_spring_pull(
-                dx, dy, vx, vy, span, parameters[p + 4], parameters[p + 5], parameters[p + 6]
-            )
+            fx, fy, nx, ny, rate = mean_spring_pull(dx, dy, vx, vy, span, rest, stiffness, damping)
         force[a] += fx
         force[a + 1] += fy
         force[b] -= fx
         force[b + 1] -= fy
+        torque_a, torque_b = 0.0, 0.0
         if turn_a >= 0:
-            force[turn_a] += give_a * (ax * fy - ay * fx)
+            torque_a = give_a * (ax * fy - ay * fx)
+            force[turn_a] += torque_a
         if turn_b >= 0:
-            force[turn_b] -= give_b * (bx * fy - by * fx)
+            torque_b = give_b * (bx * fy - by * fx)
+            force[turn_b] -= torque_b
+        if damp >= 0:
+            lost += damping * rate * rate
+        if store >= 0:
+            moved = indices[4 + 4 * n + s]
+            share = damping * rate
+            book_open_spring(
+                q, v, force, a, turn_a, b, turn_b, moved, fx, fy, torque_a, torque_b, share * nx, share * ny,
+                store, damp, hand,
+            )  # fmt: skip
+    if damp >= 0:
+        force[damp] -= lost
 
 
 @force_kernel
 def drag(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
-    """Add -(c + k |v|) v. ``indices``: how many, then where x of each is; ``parameters``: c and k of each."""
-    for p in range(indices[0]):
+    """Add -(c + k |v|) v. ``parameters``: c and k of each.
+
+    ``indices``: how many, where x of each is, the account of damping, and how many of them forces move: those
+    come first.
+    """
+    n = indices[0]
+    account = indices[1 + n]
+    booked = indices[2 + n] if account >= 0 else 0
+    power, px, py, spin = 0.0, 0.0, 0.0, 0.0
+    for p in range(n):
         i = indices[1 + p]
         f = drag_factor(v[i], v[i + 1], parameters[2 * p], parameters[2 * p + 1])
-        force[i] -= f * v[i]
-        force[i + 1] -= f * v[i + 1]
+        fx, fy = f * v[i], f * v[i + 1]
+        force[i] -= fx
+        force[i + 1] -= fy
+        if p < booked:
+            power += fx * v[i] + fy * v[i + 1]
+            px += fx
+            py += fy
+            spin += q[i] * fy - q[i + 1] * fx
+    if account >= 0:
+        force[account] -= power
+        force[account + PX] -= px
+        force[account + PY] -= py
+        force[account + SPIN] -= spin

@@ -1,0 +1,170 @@
+"""What causes give in a second, by account: added up beside the forces, integrated beside the motion.
+
+Behind the clock, the packed coordinates have four places for each account that a world needs: the energy, the
+momentum (x, y) and the angular momentum about the origin (:mod:`physicslab.kernels.accounts`). A force adds
+its power [W], its force [N] and its torque [N m] to those places of ``force``, and an integrator keeps in
+those of ``v`` what they amount to. They are no coordinates: no force depends on them, and no error is
+estimated from them.
+
+Powers and forces are those on the coordinates that forces move: on what has an inverse mass, or an inverse
+moment of inertia.
+"""
+
+from physicslab.kernels import Numbers, Rows, fused, inlined
+from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
+from physicslab.kernels.forces.force_calls import force_kernel
+from physicslab.kernels.ode.fall_shares import fall_shares
+
+__all__ = [
+    "ACCOUNTS", "ALL_MOVED", "A_MOVES", "A_TURNS", "BODIES", "B_MOVES", "B_TURNS", "CLOCK", "DAMPED",
+    "END", "FIELD", "PLACES", "PULL", "book_damping", "book_kick", "book_open_spring", "gather", "resist",
+]  # fmt: skip
+
+CLOCK, END, BODIES, DAMPED, FIELD, PULL, PLACES = range(7)
+"""What :attr:`physicslab.ode.system.OdeSystem.places` holds: where the time is; where the
+accounts behind it end; how many bodies move; the accounts of damping and of fields; where the forces of fields that store no energy are kept by themselves,
+coordinate by coordinate. -1 where there is none."""
+ACCOUNTS = 4
+"""How many places an account has."""
+A_MOVES, B_MOVES, A_TURNS, B_TURNS = 1, 2, 4, 8
+ALL_MOVED = 15
+"""Which coordinates of a spring's ends forces move; one that does not exist counts as moved."""
+
+
+@inlined
+def book_open_spring(  # type: ignore[no-untyped-def]
+    q, v, force, a, turn_a, b, turn_b, moved, fx, fy, torque_a, torque_b, damper_x, damper_y, store, damp, hand
+):
+    """Book the momentum that a spring brings in from outside, and the work of ends that are driven.
+
+    The force on A is (fx, fy), of which (damper_x, damper_y) is the damper's; the torques are those on A, and
+    on B reversed.
+    """
+    if moved == ALL_MOVED:
+        return
+    px, py, spin, dx, dy, d_spin, work = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    size = fx * fx + fy * fy
+    share = (fx * damper_x + fy * damper_y) / size if size > 0.0 else 0.0  # the damper's, along the same line
+    if moved & A_MOVES:
+        px, py, spin = fx, fy, q[a] * fy - q[a + 1] * fx
+        dx, dy, d_spin = damper_x, damper_y, q[a] * damper_y - q[a + 1] * damper_x
+    else:
+        work -= fx * v[a] + fy * v[a + 1]
+    if moved & B_MOVES:
+        px, py, spin = px - fx, py - fy, spin - (q[b] * fy - q[b + 1] * fx)
+        dx, dy = dx - damper_x, dy - damper_y
+        d_spin -= q[b] * damper_y - q[b + 1] * damper_x
+    else:
+        work += fx * v[b] + fy * v[b + 1]
+    if turn_a >= 0:
+        if moved & A_TURNS:
+            spin, d_spin = spin + torque_a, d_spin + share * torque_a
+        else:
+            work -= torque_a * v[turn_a]
+    if turn_b >= 0:
+        if moved & B_TURNS:
+            spin, d_spin = spin - torque_b, d_spin - share * torque_b
+        else:
+            work += torque_b * v[turn_b]
+    force[store + PX] += px - dx
+    force[store + PY] += py - dy
+    force[store + SPIN] += spin - d_spin
+    if damp >= 0:
+        force[damp + PX] += dx
+        force[damp + PY] += dy
+        force[damp + SPIN] += d_spin
+    if hand >= 0:
+        force[hand] += work
+
+
+@force_kernel
+def gather(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
+    """Book the forces that are there by now, with a sign: before a force and after it, by its difference.
+
+    ``parameters``: the sign; ``indices``: the account; whether the energy counts, and the momentum; where each
+    force is kept by itself, or -1; how many coordinates are kept so; how many bodies; of each where x and the
+    angle are, -1 for one that is left out.
+    """
+    sign, account, kept = parameters[0], indices[0], indices[3]
+    power, px, py, spin = 0.0, 0.0, 0.0, 0.0
+    for p in range(indices[5]):
+        i, turn = indices[6 + 2 * p], indices[7 + 2 * p]
+        if i >= 0:
+            power += force[i] * v[i] + force[i + 1] * v[i + 1]
+            px += force[i]
+            py += force[i + 1]
+            spin += q[i] * force[i + 1] - q[i + 1] * force[i]
+        if turn >= 0:
+            power += force[turn] * v[turn]
+            spin += force[turn]
+    if kept >= 0:
+        for i in range(indices[4]):
+            force[kept + i] += sign * force[i]
+    if indices[1] != 0:
+        force[account] += sign * power
+    if indices[2] != 0:
+        force[account + PX] += sign * px
+        force[account + PY] += sign * py
+        force[account + SPIN] += sign * spin
+
+
+@force_kernel
+def resist(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
+    """Book what the damping of all motion takes.
+
+    ``parameters``: of each coordinate its rate of damping times its mass or moment of inertia. ``indices``: the
+    account, how many bodies move, and how many coordinates there are.
+    """
+    account, bodies = indices[0], indices[1]
+    power, px, py, spin = 0.0, 0.0, 0.0, 0.0
+    for p in range(bodies):
+        i = 2 * p
+        fx, fy = parameters[i] * v[i], parameters[i + 1] * v[i + 1]
+        power += fx * v[i] + fy * v[i + 1]
+        px += fx
+        py += fy
+        spin += q[i] * fy - q[i + 1] * fx
+    for i in range(2 * bodies, indices[2]):
+        torque = parameters[i] * v[i]
+        power += torque * v[i]
+        spin += torque
+    force[account] -= power
+    force[account + PX] -= px
+    force[account + PY] -= py
+    force[account + SPIN] -= spin
+
+
+@fused
+def book_damping(v: Numbers, places: Rows, q: Numbers, i: int, energy: float, impulse: float) -> None:
+    """Book the energy and the impulse of damping on coordinate ``i``."""
+    account = places[DAMPED]
+    v[account + ENERGY] += energy
+    if i >= 2 * places[BODIES]:
+        v[account + SPIN] += impulse
+    elif i % 2 == 0:
+        v[account + PX] += impulse
+        v[account + SPIN] -= q[i + 1] * impulse
+    else:
+        v[account + PY] += impulse
+        v[account + SPIN] += q[i - 1] * impulse
+
+
+@fused
+def book_kick(
+    q: Numbers, v: Numbers, places: Rows, i: int, acceleration: Numbers, inverse_mass: float, rate: float,
+    kick: float, change: float,
+) -> None:  # fmt: skip
+    """Book on coordinate ``i`` what a kick of ``kick`` seconds does that changes its velocity by ``change``.
+
+    What is not stored: the work of damping at ``rate``, and that of fields, by the velocities on the way. To
+    be called before the velocity has changed.
+    """
+    along = kick * v[i] + 0.5 * kick * change  # the integral of the velocity
+    if rate > 0.0 and inverse_mass > 0.0:
+        _, first, second = fall_shares(rate * kick)
+        along = kick * (v[i] * first + acceleration[i] * kick * second)
+        work = (change * (v[i] + 0.5 * change) - acceleration[i] * along) / inverse_mass
+        book_damping(v, places, q, i, work, -rate * along / inverse_mass)
+    if places[PULL] >= 0:
+        # What the force has booked by itself is by the velocity before the kick.
+        v[places[FIELD]] += acceleration[places[PULL] + i] * (along - kick * v[i])
