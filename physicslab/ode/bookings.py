@@ -18,6 +18,7 @@ from physicslab.kernels.forces.bookings import (
     FIELD,
     PLACES,
     PULL,
+    RESISTANCE,
     gather,
     resist,
 )
@@ -46,6 +47,8 @@ class BookKeeper:
         Rates of damping; empty where nothing is damped.
     also : tuple of int
         Causes that need an account as well.
+    kicked : bool
+        Whether the method kicks, so that it needs forces that store nothing by themselves.
 
     Attributes
     ----------
@@ -58,8 +61,9 @@ class BookKeeper:
     """
 
     def __init__(
-        self, state: State, layout: StateLayout, packed: Packed, damping: Numbers, also: tuple[int, ...]
-    ) -> None:
+        self, state: State, layout: StateLayout, packed: Packed, damping: Numbers, also: tuple[int, ...],
+        *, kicked: bool,
+    ) -> None:  # fmt: skip
         self._state, self._layout = state, layout
         free = state.bodies.inverse_mass[layout.moving] > 0.0
         goes = state.table(Velocity).present[layout.moving]
@@ -79,14 +83,25 @@ class BookKeeper:
         self.slots = {cause: first + ACCOUNTS * number for number, cause in enumerate(sorted(causes))}
         self.count = ACCOUNTS * len(causes)
         end = first + self.count
-        self.count += layout.moving_count if unstored else 0
         self.places = np.full(PLACES, -1, np.int64)
         self.places[[CLOCK, END, BODIES]] = layout.clock, end, len(layout.moving)
         self.places[[DAMPED, FIELD]] = self.slots.get(DAMPING, -1), self.slots.get(FIELDS, -1)
-        self.places[PULL] = end if unstored else -1
-        for _, force in packed:
-            for cause, place in (force.books or ()) if force is not None else ():
+        if kicked and unstored:
+            self.places[PULL] = self._room()
+        own = [force for _, force in packed if force is not None]
+        if kicked and any(force.keeps is not None for force in own):
+            self.places[RESISTANCE] = self._room()
+        for force in own:
+            for cause, place in force.books or ():
                 force.indices[place] = self.slots[cause]
+            if force.keeps is not None:
+                force.indices[force.keeps] = self.places[RESISTANCE]
+
+    def _room(self) -> int:
+        """Make room for a number for each coordinate; return where it begins."""
+        first = self._layout.clock + 1 + self.count
+        self.count += self._layout.clock
+        return first
 
     def around(self, system: ForceSystem, force: PackedForce) -> list[PackedForce]:
         """Return the force, and before and after it what measures it, where it does not book all itself."""
@@ -99,7 +114,7 @@ class BookKeeper:
         if force.books is None:
             unstored = system.potential is None
             ends, layout = self._ends(self._movable), self._layout
-            kept = (int(self.places[PULL]), layout.moving_count) if unstored else (-1, 0)
+            kept = (int(self.places[PULL]) if unstored else -1, layout.moving_count)
             measures.append(self._indices(FIELDS, ends, energy=unstored, momentum=True, kept=kept))
             signs.append(1.0)
             if not unstored and HAND in self.slots:
@@ -164,6 +179,7 @@ def book_in_python(
     force[account + SPIN] += (x * fy - y * fx).sum() + given[n:d].sum()
     if not stored:
         force[account + ENERGY] += given @ v[:d]
-        force[pull : pull + d] += given
+        if pull >= 0:
+            force[pull : pull + d] += given
     elif HAND in slots:
         force[slots[HAND] + ENERGY] -= np.where(free, 0.0, all_forces) @ v[:d]

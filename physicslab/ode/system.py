@@ -80,6 +80,8 @@ class OdeSystem:
         Whether every row has its coordinates and its angle, be it fixed or not.
     also : tuple of int, optional
         Causes that need an account besides those of the forces.
+    kicked : bool, optional
+        Whether a splitting method is to advance it.
     """
 
     def __init__(
@@ -90,8 +92,9 @@ class OdeSystem:
         *,
         every_row: bool = False,
         also: tuple[int, ...] = (),
+        kicked: bool = False,
     ) -> None:
-        self.forces, self._also = tuple(forces), also
+        self.forces, self._also, self._kicked = tuple(forces), also, kicked
         self.interpreted = any(not type(system).packs() for system in self.forces)
         self.layout = (
             StateLayout.of_rows(len(state.entity_index))
@@ -256,7 +259,7 @@ class OdeSystem:
             (system, system.packed(state, self.layout) if type(system).packs() else None)
             for system in self.forces
         ]
-        book = BookKeeper(state, self.layout, packed, self.damping, self._also)
+        book = BookKeeper(state, self.layout, packed, self.damping, self._also, kicked=self._kicked)
         self.slots, self.places, self._nothing = book.slots, book.places, np.zeros(book.count)
         forces = [force for _, force in packed if force is not None]
         # After the number of coordinates: resistances get several velocities in one array.

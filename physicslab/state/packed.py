@@ -34,6 +34,8 @@ class PackedForce:
         The accounts to which the kernel itself adds what it gives, each with where in ``indices`` the kernel
         looks for its place (-1: it books nothing). ``None`` where it does not: what it gives is then measured
         around it, and booked as that of a field.
+    keeps : int, optional
+        Where in ``indices`` the kernel looks for a place to keep by itself what it takes without storing it.
     anchors : int64 array, optional
         The places of fixed ends, where all else that it acts on is moved by what acts on these, reversed.
     cause : int
@@ -46,6 +48,7 @@ class PackedForce:
     resistance: ForceKernel | None = None
     steepest: int | None = None
     books: tuple[tuple[int, int], ...] | None = None
+    keeps: int | None = None
     anchors: NDArray[np.int64] | None = None
     cause: int = FIELDS
 

@@ -78,7 +78,10 @@ class SpringSystem(ForceSystem):
         for column, name in enumerate(("rest_length", "stiffness", "damping"), 4):
             parameters[:, column] = spring[name][rows]
         resistance = damper_resistance if self.sees_velocity(state) else None
-        return PackedForce(packed_forces.springs, parameters.ravel(), indices, resistance, books=books)
+        return PackedForce(
+            packed_forces.springs, parameters.ravel(), indices, resistance, books=books,
+            keeps=4 + 4 * len(rows) if resistance else None,
+        )  # fmt: skip
 
     def _booked(
         self, state: State, places: NDArray[np.int64]
@@ -101,7 +104,7 @@ class SpringSystem(ForceSystem):
             found.append((accounts.HAND, 3 + 4 * n))
         if self.sees_velocity(state):
             found.append((accounts.DAMPING, 2 + 4 * n))
-        return np.concatenate(([n], places.ravel(), (-1, -1, -1), moved)), tuple(found)
+        return np.concatenate(([n], places.ravel(), (-1, -1, -1, -1), moved)), tuple(found)
 
     def inputs(self, state: State, layout: StateLayout) -> bytes:
         """Return every number of every spring, and the angles of anchors that no force turns."""

@@ -17,13 +17,14 @@ from physicslab.kernels.ode.fall_shares import fall_shares
 
 __all__ = [
     "ACCOUNTS", "ALL_MOVED", "A_MOVES", "A_TURNS", "BODIES", "B_MOVES", "B_TURNS", "CLOCK", "DAMPED",
-    "END", "FIELD", "PLACES", "PULL", "book_damping", "book_kick", "book_open_spring", "gather", "resist",
+    "END", "FIELD", "PLACES", "PULL", "RESISTANCE", "book_damping", "book_kick", "book_open_spring", "gather", "resist",
 ]  # fmt: skip
 
-CLOCK, END, BODIES, DAMPED, FIELD, PULL, PLACES = range(7)
+CLOCK, END, BODIES, DAMPED, FIELD, PULL, RESISTANCE, PLACES = range(8)
 """What :attr:`physicslab.ode.system.OdeSystem.places` holds: where the time is; where the
-accounts behind it end; how many bodies move; the accounts of damping and of fields; where the forces of fields that store no energy are kept by themselves,
-coordinate by coordinate. -1 where there is none."""
+accounts behind it end; how many bodies move; the accounts of damping and of fields; where forces are kept by
+themselves, coordinate by coordinate, for methods that kick: of fields that store no energy, and of dampers and
+drag. -1 where there is none."""
 ACCOUNTS = 4
 """How many places an account has."""
 A_MOVES, B_MOVES, A_TURNS, B_TURNS = 1, 2, 4, 8
@@ -165,6 +166,8 @@ def book_kick(
         along = kick * (v[i] * first + acceleration[i] * kick * second)
         work = (change * (v[i] + 0.5 * change) - acceleration[i] * along) / inverse_mass
         book_damping(v, places, q, i, work, -rate * along / inverse_mass)
+    # What forces have booked by themselves is by the velocity before the kick.
     if places[PULL] >= 0:
-        # What the force has booked by itself is by the velocity before the kick.
         v[places[FIELD]] += acceleration[places[PULL] + i] * (along - kick * v[i])
+    if places[RESISTANCE] >= 0:
+        v[places[DAMPED]] += acceleration[places[RESISTANCE] + i] * (along - kick * v[i])

@@ -98,11 +98,14 @@ def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-
     or in the world's where the angle never changes [m], rest length, stiffness, damping. Over a span, what
     the springs store changes by just the work done, of the turning ends as well.
 
-    Behind the indices of the springs are the accounts of springs, damping and hand, then of each spring which
-    of its coordinates forces move (:func:`physicslab.kernels.forces.bookings.book_open_spring`).
+    Behind the indices of the springs are the accounts of springs, damping and hand, where the forces of dampers
+    are kept by themselves, then of each spring which of its coordinates forces move
+    (:func:`physicslab.kernels.forces.bookings.book_open_spring`).
     """
     n, lost = indices[0], 0.0
-    store, damp, hand = indices[1 + 4 * n], indices[2 + 4 * n], indices[3 + 4 * n]
+    store, damp, hand, kept = (
+        indices[1 + 4 * n], indices[2 + 4 * n], indices[3 + 4 * n], indices[4 + 4 * n]
+    )  # fmt: skip
     for s in range(n):
         w, p = 1 + 4 * s, 7 * s
         a, turn_a, b, turn_b = indices[w], indices[w + 1], indices[w + 2], indices[w + 3]
@@ -139,12 +142,20 @@ def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-
         if damp >= 0:
             lost += damping * rate * rate
         if store >= 0:
-            moved = indices[4 + 4 * n + s]
-            share = damping * rate
+            moved, x, y = indices[5 + 4 * n + s], damping * rate * nx, damping * rate * ny
             book_open_spring(
-                q, v, force, a, turn_a, b, turn_b, moved, fx, fy, torque_a, torque_b, share * nx, share * ny,
-                store, damp, hand,
-            )  # fmt: skip
+                q, v, force, a, turn_a, b, turn_b, moved, fx, fy, torque_a, torque_b, x, y, store, damp, hand
+            )
+        if kept >= 0:
+            x, y = damping * rate * nx, damping * rate * ny
+            force[kept + a] += x
+            force[kept + a + 1] += y
+            force[kept + b] -= x
+            force[kept + b + 1] -= y
+            if turn_a >= 0:
+                force[kept + turn_a] += ax * y - ay * x
+            if turn_b >= 0:
+                force[kept + turn_b] -= bx * y - by * x
     if damp >= 0:
         force[damp] -= lost
 
@@ -153,11 +164,11 @@ def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-
 def drag(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add -(c + k |v|) v. ``parameters``: c and k of each.
 
-    ``indices``: how many, where x of each is, the account of damping, and how many of them forces move: those
-    come first.
+    ``indices``: how many, where x of each is, the account of damping, how many of them forces move, which come
+    first, and where their drag is kept by itself.
     """
     n = indices[0]
-    account = indices[1 + n]
+    account, kept = indices[1 + n], indices[3 + n]
     booked = indices[2 + n] if account >= 0 else 0
     power, px, py, spin = 0.0, 0.0, 0.0, 0.0
     for p in range(n):
@@ -171,6 +182,9 @@ def drag(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def
             px += fx
             py += fy
             spin += q[i] * fy - q[i + 1] * fx
+        if kept >= 0:
+            force[kept + i] -= fx
+            force[kept + i + 1] -= fy
     if account >= 0:
         force[account] -= power
         force[account + PX] -= px
