@@ -104,7 +104,9 @@ class SpringSystem(ForceSystem):
             found.append((accounts.HAND, 3 + 4 * n))
         if self.sees_velocity(state):
             found.append((accounts.DAMPING, 2 + 4 * n))
-        return np.concatenate(([n], places.ravel(), (-1, -1, -1, -1), moved)), tuple(found)
+        opened = np.flatnonzero(moved != bookings.ALL_MOVED)
+        ends = np.stack((opened, moved[opened]), axis=1)
+        return np.concatenate(([n], places.ravel(), (-1, -1, -1, -1, len(opened)), ends.ravel())), tuple(found)
 
     def inputs(self, state: State, layout: StateLayout) -> bytes:
         """Return every number of every spring, and the angles of anchors that no force turns."""

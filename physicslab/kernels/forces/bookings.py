@@ -17,7 +17,7 @@ from physicslab.kernels.ode.fall_shares import fall_shares
 
 __all__ = [
     "ACCOUNTS", "ALL_MOVED", "A_MOVES", "A_TURNS", "BODIES", "B_MOVES", "B_TURNS", "CLOCK", "DAMPED",
-    "END", "FIELD", "PLACES", "PULL", "RESISTANCE", "book_damping", "book_kick", "book_open_spring", "gather", "resist",
+    "END", "FIELD", "PLACES", "PULL", "RESISTANCE", "book_damping", "book_kick", "book_open_spring", "gather", "keep_pull", "resist",
 ]  # fmt: skip
 
 CLOCK, END, BODIES, DAMPED, FIELD, PULL, RESISTANCE, PLACES = range(8)
@@ -33,19 +33,32 @@ ALL_MOVED = 15
 
 
 @inlined
-def book_open_spring(  # type: ignore[no-untyped-def]
-    q, v, force, a, turn_a, b, turn_b, moved, fx, fy, torque_a, torque_b, damper_x, damper_y, store, damp, hand
-):
-    """Book the momentum that a spring brings in from outside, and the work of ends that are driven.
+def keep_pull(force, kept, indices, s, x, y, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    """Keep the pull (x, y) of the damper of spring number s by itself; it acts at the arms a and b."""
+    a, turn_a, b, turn_b = indices[1 + 4 * s], indices[2 + 4 * s], indices[3 + 4 * s], indices[4 + 4 * s]
+    force[kept + a] += x
+    force[kept + a + 1] += y
+    force[kept + b] -= x
+    force[kept + b + 1] -= y
+    if turn_a >= 0:
+        force[kept + turn_a] += ax * y - ay * x
+    if turn_b >= 0:
+        force[kept + turn_b] -= bx * y - by * x
 
-    The force on A is (fx, fy), of which (damper_x, damper_y) is the damper's; the torques are those on A, and
-    on B reversed.
+
+@inlined
+def book_open_spring(  # type: ignore[no-untyped-def]
+    q, v, force, indices, s, moved, fx, fy, damper_x, damper_y, ax, ay, bx, by, store, damp, hand
+):
+    """Book the momentum that spring number s brings in from outside, and the work of ends that are driven.
+
+    The force on A is (fx, fy), of which (damper_x, damper_y) is the damper's; it acts at the arms a and b.
+    ``moved`` tells which coordinates forces move.
     """
-    if moved == ALL_MOVED:
-        return
+    a, turn_a, b, turn_b = indices[1 + 4 * s], indices[2 + 4 * s], indices[3 + 4 * s], indices[4 + 4 * s]
+    torque_a, torque_b = ax * fy - ay * fx, bx * fy - by * fx
+    slow_a, slow_b = ax * damper_y - ay * damper_x, bx * damper_y - by * damper_x
     px, py, spin, dx, dy, d_spin, work = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    size = fx * fx + fy * fy
-    share = (fx * damper_x + fy * damper_y) / size if size > 0.0 else 0.0  # the damper's, along the same line
     if moved & A_MOVES:
         px, py, spin = fx, fy, q[a] * fy - q[a + 1] * fx
         dx, dy, d_spin = damper_x, damper_y, q[a] * damper_y - q[a + 1] * damper_x
@@ -59,12 +72,12 @@ def book_open_spring(  # type: ignore[no-untyped-def]
         work += fx * v[b] + fy * v[b + 1]
     if turn_a >= 0:
         if moved & A_TURNS:
-            spin, d_spin = spin + torque_a, d_spin + share * torque_a
+            spin, d_spin = spin + torque_a, d_spin + slow_a
         else:
             work -= torque_a * v[turn_a]
     if turn_b >= 0:
         if moved & B_TURNS:
-            spin, d_spin = spin - torque_b, d_spin - share * torque_b
+            spin, d_spin = spin - torque_b, d_spin - slow_b
         else:
             work += torque_b * v[turn_b]
     force[store + PX] += px - dx

@@ -2,19 +2,19 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, kernel
 
 __all__ = ["mean_spring_pull", "spring_potential", "spring_pull", "turn_over", "turned"]
 
 
-@inlined
+@always_inlined
 def turned(angle: float, anchor_x: float, anchor_y: float) -> tuple[float, float]:
     """Return a local anchor [m] turned into the directions of the world."""
     c, s = math.cos(angle), math.sin(angle)
     return c * anchor_x - s * anchor_y, s * anchor_x + c * anchor_y
 
 
-@inlined
+@always_inlined
 def spring_pull(
     dx: float, dy: float, vx: float, vy: float, rest_length: float, stiffness: float, damping: float
 ) -> tuple[float, float, float, float, float]:
@@ -33,7 +33,7 @@ def spring_pull(
     return pull * nx, pull * ny, nx, ny, rate
 
 
-@inlined
+@always_inlined
 def turn_over(angle: float) -> tuple[float, float]:
     """Return the ratio of an arm's mean, and of its mean rate, over a turn by ``angle`` to its middle.
 
@@ -45,7 +45,7 @@ def turn_over(angle: float) -> tuple[float, float]:
     return math.cos(half), math.sin(half) / half
 
 
-@inlined
+@always_inlined
 def mean_spring_pull(
     dx: float, dy: float, vx: float, vy: float, span: float,
     rest_length: float, stiffness: float, damping: float,

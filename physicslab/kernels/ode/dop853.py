@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, always_inlined, inlined
 from physicslab.kernels.accounts import PX, PY, SPIN
 from physicslab.kernels.forces.bookings import ACCOUNTS, CLOCK, END
 from physicslab.kernels.forces.force_calls import Calls, accelerate
@@ -51,20 +51,20 @@ def largest(values: Numbers, n: int) -> float:
     return found
 
 
-@inlined
+@always_inlined
 def make_stages(
     q: Numbers, v: Numbers, stage_q: Numbers, stage_v: Numbers, acceleration: Numbers, rates: Vectors,
-    pushes: Vectors, inverse_mass: Numbers, damping: Numbers, calls: Calls, places: Rows, h: float, first: int,
-    end: int,
+    pushes: Vectors, inverse_mass: Numbers, damping: Numbers, calls: Calls, clock: int, booked: int, h: float,
+    first: int, end: int,
 ) -> None:  # fmt: skip
     """Compute stages ``first`` to ``end - 1`` of a step from (q, v).
 
     ``rates`` and ``pushes`` (n, 16) take how much q' has changed since the start of the step, and v', of each
     stage; those of the stages before ``first`` are there. ``stage_q`` and ``stage_v`` are left at the last
     stage. Neither the speed at the start nor the weights are rounded where it would act alike in every step.
-    Below the n coordinates, ``pushes`` takes what is behind the clock.
+    Below the n coordinates, ``pushes`` takes as many as are ``booked`` behind the clock.
     """
-    n, clock = len(inverse_mass), places[CLOCK]
+    n = len(inverse_mass)
     for stage in range(first, end):
         stage_q[clock] = q[clock] + NODES[stage] * h
         for i in range(n):
@@ -79,8 +79,8 @@ def make_stages(
         accelerate(stage_q, stage_v, acceleration, inverse_mass, damping, calls)
         for i in range(n):
             pushes[i, stage] = acceleration[i]
-        for i in range(clock + 1, places[END]):
-            pushes[n + i - clock - 1, stage] = acceleration[i]
+        for i in range(booked):
+            pushes[n + i, stage] = acceleration[clock + 1 + i]
 
 
 @inlined
@@ -181,21 +181,20 @@ def _restore_origin(q: Numbers, q_low: Numbers, bodies: int, origin: Numbers) ->
 
 
 @inlined
-def _book(v: Numbers, pushes: Vectors, n: int, places: Rows, origin: Numbers, taken: float) -> None:
+def _book(
+    v: Numbers, pushes: Vectors, n: int, clock: int, booked: int, origin: Numbers, taken: float
+) -> None:
     """Book what causes have given in a step; their torques were about ``origin``."""
-    clock = places[CLOCK]
-    for i in range(clock + 1, places[END]):
-        row, given = n + i - clock - 1, 0.0
+    for i in range(booked):
+        given = 0.0
         for stage in range(LAST):
-            given += WEIGHTS[LAST, stage] * pushes[row, stage]
-        v[i] += taken * given
-        column = (i - clock - 1) % ACCOUNTS
-        account = i - column
-        if column == PX:
-            v[account + SPIN] -= origin[1] * taken * given
-        elif column == PY:
-            v[account + SPIN] += origin[0] * taken * given
-        pushes[row, 0] = pushes[row, LAST]
+            given += WEIGHTS[LAST, stage] * pushes[n + i, stage]
+        v[clock + 1 + i] += taken * given
+        pushes[n + i, 0] = pushes[n + i, LAST]
+        if i % ACCOUNTS == PX:
+            v[clock + 1 + i - PX + SPIN] -= origin[1] * taken * given
+        elif i % ACCOUNTS == PY:
+            v[clock + 1 + i - PY + SPIN] += origin[0] * taken * given
 
 
 @allocating_kernel
@@ -218,12 +217,13 @@ def dop853(
     Behind the clock, v takes what causes give (:mod:`physicslab.kernels.forces.bookings`).
     """
     n, clock = len(inverse_mass), places[CLOCK]
-    start = q[clock]
+    start, booked = q[clock], places[END] - places[CLOCK] - 1
     stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
-    rates, pushes = np.zeros((n, 16)), np.zeros((n + places[END] - clock - 1, 16))
+    rates, pushes = np.zeros((n, 16)), np.zeros((n + booked, 16))
     q_scale, v_scale = largest(q, n), largest(v, n)
     make_stages(
-        q, v, stage_q, stage_v, acceleration, rates, pushes, inverse_mass, damping, calls, places, 0.0, 0, 1
+        q, v, stage_q, stage_v, acceleration, rates, pushes, inverse_mass, damping, calls, clock, booked,
+        0.0, 0, 1,
     )
     if not _all_finite(acceleration, stage_v, n):
         return NOT_FINITE
@@ -252,7 +252,7 @@ def dop853(
             break
         make_stages(
             q, v, stage_q, stage_v, acceleration, rates, pushes,
-            inverse_mass, damping, calls, places, taken, 1, LAST + 1,
+            inverse_mass, damping, calls, clock, booked, taken, 1, LAST + 1,
         )  # fmt: skip
         evaluations += LAST
         spent += LAST
@@ -282,7 +282,7 @@ def dop853(
             q[i], q_low[i] = add(q[i], q_low[i], taken * moved)
             v[i], v_low[i] = add(v[i], v_low[i], taken * pushed)
             pushes[i, 0] = pushes[i, LAST]
-        _book(v, pushes, n, places, origin, taken)
+        _book(v, pushes, n, clock, booked, origin, taken)
         done, done_low = add(done, done_low, taken)
         q[clock] = start + done
         if last:
