@@ -113,8 +113,7 @@ class BookKeeper:
             signs.append(-1.0)
         if force.books is None:
             unstored = system.potential is None
-            ends, layout = self._ends(self._movable), self._layout
-            kept = (int(self.places[PULL]) if unstored else -1, layout.moving_count)
+            ends, kept = self._ends(self._movable), int(self.places[PULL]) if unstored else -1
             measures.append(self._indices(FIELDS, ends, energy=unstored, momentum=True, kept=kept))
             signs.append(1.0)
             if not unstored and HAND in self.slots:
@@ -133,9 +132,9 @@ class BookKeeper:
 
     def _indices(
         self, cause: int, ends: NDArray[np.int64], *, energy: bool, momentum: bool,
-        kept: tuple[int, int] = (-1, 0),
+        kept: int = -1,
     ) -> NDArray[np.int64]:  # fmt: skip
-        head = (self.slots[cause], energy, momentum, *kept, len(ends))
+        head = (self.slots[cause], energy, momentum, kept, len(ends))
         return np.concatenate((np.array(head, np.int64), ends.ravel()))
 
     def damping(self, rates: Numbers, inverse_mass: Numbers) -> list[PackedForce]:
@@ -177,9 +176,9 @@ def book_in_python(
     force[account + PX] += fx.sum()
     force[account + PY] += fy.sum()
     force[account + SPIN] += (x * fy - y * fx).sum() + given[n:d].sum()
-    if not stored:
+    if not stored and pull >= 0:
+        force[pull : pull + d] += given
+    elif not stored:
         force[account + ENERGY] += given @ v[:d]
-        if pull >= 0:
-            force[pull : pull + d] += given
     elif HAND in slots:
         force[slots[HAND] + ENERGY] -= np.where(free, 0.0, all_forces) @ v[:d]

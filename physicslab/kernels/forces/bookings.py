@@ -96,13 +96,13 @@ def gather(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
     """Book the forces that are there by now, with a sign: before a force and after it, by its difference.
 
     ``parameters``: the sign; ``indices``: the account; whether the energy counts, and the momentum; where each
-    force is kept by itself, or -1; how many coordinates are kept so; how many bodies; of each where x and the
-    angle are, -1 for one that is left out.
+    force is kept by itself, or -1; how many bodies; of each where x and the angle are, -1 for one that is left
+    out.
     """
     sign, account, kept = parameters[0], indices[0], indices[3]
     power, px, py, spin = 0.0, 0.0, 0.0, 0.0
-    for p in range(indices[5]):
-        i, turn = indices[6 + 2 * p], indices[7 + 2 * p]
+    for p in range(indices[4]):
+        i, turn = indices[5 + 2 * p], indices[6 + 2 * p]
         if i >= 0:
             power += force[i] * v[i] + force[i + 1] * v[i + 1]
             px += force[i]
@@ -111,10 +111,12 @@ def gather(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
         if turn >= 0:
             power += force[turn] * v[turn]
             spin += force[turn]
-    if kept >= 0:
-        for i in range(indices[4]):
+        if kept >= 0 and i >= 0:
             force[kept + i] += sign * force[i]
-    if indices[1] != 0:
+            force[kept + i + 1] += sign * force[i + 1]
+        if kept >= 0 and turn >= 0:
+            force[kept + turn] += sign * force[turn]
+    if indices[1] != 0 and kept < 0:
         force[account] += sign * power
     if indices[2] != 0:
         force[account + PX] += sign * px
@@ -179,8 +181,7 @@ def book_kick(
         along = kick * (v[i] * first + acceleration[i] * kick * second)
         work = (change * (v[i] + 0.5 * change) - acceleration[i] * along) / inverse_mass
         book_damping(v, places, q, i, work, -rate * along / inverse_mass)
-    # What forces have booked by themselves is by the velocity before the kick.
     if places[PULL] >= 0:
-        v[places[FIELD]] += acceleration[places[PULL] + i] * (along - kick * v[i])
+        v[places[FIELD]] += acceleration[places[PULL] + i] * along
     if places[RESISTANCE] >= 0:
-        v[places[DAMPED]] += acceleration[places[RESISTANCE] + i] * (along - kick * v[i])
+        v[places[DAMPED]] += acceleration[places[RESISTANCE] + i] * along

@@ -2,7 +2,7 @@
 
 Each works by the same formulas as the loop over columns in the module of that force. Where one is given the
 place of an account (:mod:`physicslab.kernels.forces.bookings`), it also adds there what it gives in a second;
-a place of -1 is none.
+a place of -1 is none. Where it keeps its force by itself, it books no energy.
 """
 
 import numpy as np
@@ -168,7 +168,7 @@ def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-
                 q, v, force, indices, end, moved, fx, fy, x, y, ax, ay, bx, by, store, damp, hand
             )
             first = end + 1
-    if damp >= 0:
+    if damp >= 0 and kept < 0:
         force[damp] -= lost
 
 
@@ -194,11 +194,11 @@ def drag(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def
             px += fx
             py += fy
             spin += q[i] * fy - q[i + 1] * fx
-        if kept >= 0:
-            force[kept + i] -= fx
-            force[kept + i + 1] -= fy
+            if kept >= 0:
+                force[kept + i] -= fx
+                force[kept + i + 1] -= fy
     if account >= 0:
-        force[account] -= power
+        force[account] -= power if kept < 0 else 0.0
         force[account + PX] -= px
         force[account + PY] -= py
         force[account + SPIN] -= spin

@@ -181,6 +181,13 @@ def _restore_origin(q: Numbers, q_low: Numbers, bodies: int, origin: Numbers) ->
 
 
 @inlined
+def _move_torques(pushes: Vectors, n: int, booked: int, x: float, y: float) -> None:
+    """Take the torques of the first stage of a step about (x, y) instead of the origin."""
+    for account in range(n, n + booked, ACCOUNTS):
+        pushes[account + SPIN, 0] -= x * pushes[account + PY, 0] - y * pushes[account + PX, 0]
+
+
+@inlined
 def _book(
     v: Numbers, pushes: Vectors, n: int, clock: int, booked: int, origin: Numbers, taken: float
 ) -> None:
@@ -238,6 +245,7 @@ def dop853(
             break
         near = _body_of_nearest(q, bodies)
         if near >= 0:
+            _move_torques(pushes, n, booked, q[2 * near], q[2 * near + 1])
             _move_origin(q, q_low, bodies, origin, q[2 * near], q[2 * near + 1])
             moved_origin, q_scale = True, largest(q, n)
         last = h >= left
