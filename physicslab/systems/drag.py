@@ -20,6 +20,7 @@ class DragSystem(ForceSystem):
     """Slows every body that has Drag. It dissipates energy and stores none."""
 
     needs = (Drag, Velocity, Mass)
+    account = DAMPING
     kernels = (packed_forces.drag,)
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
