@@ -14,6 +14,7 @@ from physicslab import World, load_scene
 from physicslab.components import Drag, Mass, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.account import Accounts, measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.kernels.forces.bookings import ACCOUNTS, CLOCK, DAMPED, END
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.ode import system as ode_system
@@ -92,7 +93,9 @@ def test_quadratic_drag_takes_the_energy_of_the_known_solution() -> None:
     assert account.angular_momentum["damping"] == pytest.approx(-2.0 * m * (v - v0), rel=1e-13)
 
 
-@pytest.mark.parametrize(("integrator", "error"), [("leapfrog", 1e-3), ("blanes_moan", 1e-12), ("dop853", 1e-13)])
+@pytest.mark.parametrize(
+    ("integrator", "error"), [("leapfrog", 1e-3), ("blanes_moan", 1e-12), ("dop853", 1e-13)]
+)
 def test_a_driven_end_gives_what_it_pulls_times_its_speed(integrator: str, error: float) -> None:
     m, k, u, t = 1.3, 25.0, 0.4, 2.0
     world = empty(integrator)
@@ -253,7 +256,7 @@ def test_a_moved_origin_leaves_torques_about_the_first() -> None:
     assert abs(account.angular_momentum["numerical"]) < 1e-11
 
 
-# ---- what is left falls as the method's error does -----------------------------------------------------------
+# ---- what is left falls as the method's error does ---------------------------------------------------------
 
 
 def smooth(integrator: str, dt: float, *, damped: bool) -> World:
@@ -282,7 +285,10 @@ def test_what_is_left_falls_with_the_step_at_the_order_of_the_method(
     integrator: str, order: int, damped: bool
 ) -> None:
     coarse = 0.1 if integrator == "blanes_moan" else 0.005
-    left = [abs(after(smooth(integrator, dt, damped=damped), 1.0).energy["numerical"]) for dt in (coarse, coarse / 2)]
+    left = [
+        abs(after(smooth(integrator, dt, damped=damped), 1.0).energy["numerical"])
+        for dt in (coarse, coarse / 2)
+    ]
     assert left[0] > 1e-9
     assert left[1] < left[0] / 2 ** (order - 0.4)
 
@@ -296,8 +302,15 @@ def test_nothing_is_left_where_the_method_keeps_the_balance(integrator: str, dam
 
 def test_stiff_dampers_that_an_implicit_step_does_not_follow_leave_nothing() -> None:
     world = empty("implicit_midpoint", 0.05, gravity=(0.0, -G))
-    before = world.spawn(Transform((1, 0)), Velocity((0, 3)), Mass(1), Spring(rest_length=0.5, stiffness=1e6, damping=1e4))
-    world.spawn(Transform((2, 0.5)), Velocity((0, 3)), Mass(2), Spring(b=before, rest_length=1, stiffness=1e4, damping=1e3))
+    before = world.spawn(
+        Transform((1, 0)), Velocity((0, 3)), Mass(1), Spring(rest_length=0.5, stiffness=1e6, damping=1e4)
+    )
+    world.spawn(
+        Transform((2, 0.5)),
+        Velocity((0, 3)),
+        Mass(2),
+        Spring(b=before, rest_length=1, stiffness=1e4, damping=1e3),
+    )
     account = after(world, 1.0)
     lost = account.energy["damping"]
     assert lost < -1.0
@@ -380,11 +393,13 @@ def test_accounts_leave_the_bits_of_the_motion_alone(
     for keeper in (BookKeeper, NoAccounts):
         monkeypatch.setattr(ode_system, "BookKeeper", keeper)
         world = smooth(integrator, 0.01, damped=True)
-        world.physics = PhysicsConfig(gravity=(0.2, -G), angular_damping=0.1)
+        world.physics = PhysicsConfig(gravity=Vector2(0.2, -G), angular_damping=0.1)
         world.run(steps=40)
         booked = measure_account(world).energy["damping"]
         assert (booked != 0.0) == (keeper is BookKeeper)
-        ends.append((world.table(Transform)["position"].tobytes(), world.table(Velocity)["angular"].tobytes()))
+        ends.append(
+            (world.table(Transform)["position"].tobytes(), world.table(Velocity)["angular"].tobytes())
+        )
     assert ends[0] == ends[1]
 
 
@@ -452,7 +467,7 @@ def test_split_forces_book_as_flows_do(damping: float) -> None:
     accounts = []
     for touching in (True, False):
         world = World(
-            *standard_systems(), physics=PhysicsConfig(gravity=(0.3, -G)),
+            *standard_systems(), physics=PhysicsConfig(gravity=Vector2(0.3, -G)),
             simulation=SimulationConfig(dt=1 / 60, contacts="soft", collisions="step"),
         )  # fmt: skip
         a, b = (

@@ -69,9 +69,7 @@ def test_a_disc_that_slides_until_it_rolls_has_rubbed_off_a_third() -> None:
     """Its speed goes from v to 2/3 v; it rolls on for ever."""
     world = laboratory()
     floor(world, 0.3)
-    disc = world.spawn(
-        Transform((0, 0.5)), Velocity((3, 0)), Mass(2), Shape.circle(0.5), Material(0.0, 0.3)
-    )
+    disc = world.spawn(Transform((0, 0.5)), Velocity((3, 0)), Mass(2), Shape.circle(0.5), Material(0.0, 0.3))
     account = after(world, 1.0)
     assert world.component(disc, Velocity).linear.x == pytest.approx(2.0, rel=1e-12)
     assert account.energy["friction"] == pytest.approx(-0.5 * 2.0 * 9.0 / 3.0, rel=1e-13)

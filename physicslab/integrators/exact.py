@@ -1,7 +1,7 @@
 """The solution in closed form, where there is one.
 
-What each cause gives is measured in another way than beside other methods: no power is integrated. The motion is
-exact, so what dampers and drag take is what the energy loses
+What each cause gives is measured in another way than beside other methods: no power is integrated. The
+motion is exact, so what dampers and drag take is what the energy loses
 (:mod:`physicslab.ode.closed_form_account`).
 """
 

@@ -8,20 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Velocity
-from physicslab.kernels.accounts import DAMPING, ENERGY, FIELDS, HAND, PX, PY, SPIN
-from physicslab.kernels.forces.bookings import (
-    ACCOUNTS,
-    BODIES,
-    CLOCK,
-    DAMPED,
-    END,
-    FIELD,
-    PLACES,
-    PULL,
-    RESISTANCE,
-    gather,
-    resist,
-)
+from physicslab.kernels.accounts import DAMPING, ENERGY, HAND, PX, PY, SPIN
+from physicslab.kernels.forces.bookings import ACCOUNTS, gather, resist
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
@@ -42,7 +30,7 @@ class BookKeeper:
     layout : StateLayout
         The place of each row.
     packed : sequence of (ForceSystem, PackedForce or None)
-        The forces; ``None`` for one that Python computes. Those that book themselves are given their accounts.
+        The forces; ``None`` for one that Python computes. Those that book themselves get their accounts.
     damping : float64 array
         Rates of damping; empty where nothing is damped.
     also : tuple of int
@@ -56,79 +44,74 @@ class BookKeeper:
         Where the account of each cause begins.
     count : int
         How many places there are behind the clock.
-    places : int64 array (PLACES,)
-        What integrators take.
+    rooms : dict of int to int
+        Of each cause whose forces are kept by themselves, coordinate by coordinate, where that begins.
+    places : int64 array
+        What integrators take (:data:`physicslab.kernels.forces.bookings.KEPT`).
+    layout : StateLayout
+        As given.
     """
 
     def __init__(
         self, state: State, layout: StateLayout, packed: Packed, damping: Numbers, also: tuple[int, ...],
         *, kicked: bool,
     ) -> None:  # fmt: skip
-        self._state, self._layout = state, layout
+        self._state, self.layout = state, layout
         free = state.bodies.inverse_mass[layout.moving] > 0.0
         goes = state.table(Velocity).present[layout.moving]
         self._movable, self._driven = layout.moving[free], layout.moving[goes & ~free]
-        causes = set(also) | ({DAMPING} if len(damping) else set())
-        foreign = [(system, force) for system, force in packed if force is None or force.books is None]
-        unstored = any(system.potential is None for system, _ in foreign)
-        if foreign:
-            causes |= {FIELDS}
-            if len(self._driven) and any(system.potential is not None for system, _ in foreign):
-                causes |= {HAND}
-        for _, force in packed:
-            if force is not None:
-                causes |= {cause for cause, _ in force.books or ()}
-                causes |= {force.cause} if force.anchors is not None else set()
+        foreign = [system for system, force in packed if force is None or force.books is None]
+        own = [force for _, force in packed if force is not None]
+        causes = set(also) | ({DAMPING} if len(damping) else set()) | {system.account for system in foreign}
+        if len(self._driven) and any(system.potential is not None for system in foreign):
+            causes.add(HAND)
+        for force in own:
+            causes |= {cause for cause, _ in force.books or ()}
+            causes |= {force.cause} if force.anchors is not None else set()
         first = layout.clock + 1
         self.slots = {cause: first + ACCOUNTS * number for number, cause in enumerate(sorted(causes))}
         self.count = ACCOUNTS * len(causes)
-        end = first + self.count
-        self.places = np.full(PLACES, -1, np.int64)
-        self.places[[CLOCK, END, BODIES]] = layout.clock, end, len(layout.moving)
-        self.places[[DAMPED, FIELD]] = self.slots.get(DAMPING, -1), self.slots.get(FIELDS, -1)
-        if kicked and unstored:
-            self.places[PULL] = self._room()
-        own = [force for _, force in packed if force is not None]
-        if kicked and any(force.keeps is not None for force in own):
-            self.places[RESISTANCE] = self._room()
+        kept = {system.account for system in foreign if system.potential is None}
+        kept |= {DAMPING} if any(force.keeps is not None for force in own) else set()
+        self.rooms = {cause: self._room() for cause in sorted(kept if kicked else ())}
+        pairs = [(self.slots[cause], room) for cause, room in self.rooms.items()]
+        head = layout.clock, first + ACCOUNTS * len(causes), len(layout.moving), self.slots.get(DAMPING, -1)
+        self.places = np.array((*head, *(place for pair in pairs for place in pair)), np.int64)
         for force in own:
             for cause, place in force.books or ():
                 force.indices[place] = self.slots[cause]
             if force.keeps is not None:
-                force.indices[force.keeps] = self.places[RESISTANCE]
+                force.indices[force.keeps] = self.rooms.get(DAMPING, -1)
 
     def _room(self) -> int:
         """Make room for a number for each coordinate; return where it begins."""
-        first = self._layout.clock + 1 + self.count
-        self.count += self._layout.clock
+        first = self.layout.clock + 1 + self.count
+        self.count += self.layout.clock
         return first
 
     def around(self, system: ForceSystem, force: PackedForce) -> list[PackedForce]:
         """Return the force, and before and after it what measures it, where it does not book all itself."""
-        measures: list[NDArray[np.int64]] = []
-        signs: list[float] = []
+        measures: list[tuple[NDArray[np.int64], float]] = []
         if force.anchors is not None:
             ends = np.stack((force.anchors, np.full(len(force.anchors), -1)), axis=1)
-            measures.append(self._indices(force.cause, ends, energy=False, momentum=True))
-            signs.append(-1.0)
+            measures.append((self._indices(force.cause, ends, energy=False, momentum=True), -1.0))
         if force.books is None:
-            unstored = system.potential is None
-            ends, kept = self._ends(self._movable), int(self.places[PULL]) if unstored else -1
-            measures.append(self._indices(FIELDS, ends, energy=unstored, momentum=True, kept=kept))
-            signs.append(1.0)
-            if not unstored and HAND in self.slots:
-                measures.append(self._indices(HAND, self._ends(self._driven), energy=True, momentum=False))
-                signs.append(-1.0)
-        pairs = list(zip(measures, signs, strict=True))
-        before = [PackedForce(gather, np.array([-sign]), indices) for indices, sign in pairs]
-        after = [PackedForce(gather, np.array([sign]), indices) for indices, sign in pairs]
+            stored, ends = system.potential is not None, self._ends(self._movable)
+            kept = -1 if stored else self.rooms.get(system.account, -1)
+            found = self._indices(system.account, ends, energy=not stored, momentum=True, kept=kept)
+            measures.append((found, 1.0))
+            if stored and HAND in self.slots:
+                driven = self._ends(self._driven)
+                measures.append((self._indices(HAND, driven, energy=True, momentum=False), -1.0))
+        before = [PackedForce(gather, np.array([-sign]), indices) for indices, sign in measures]
+        after = [PackedForce(gather, np.array([sign]), indices) for indices, sign in measures]
         return [*before, force, *after]
 
     def _ends(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return where x and the angle of rows are, -1 for an angle that forces do not change; (n, 2)."""
-        turn, driven = self._layout.turn[rows], self._state.bodies.inverse_mass[rows] == 0.0
+        turn, driven = self.layout.turn[rows], self._state.bodies.inverse_mass[rows] == 0.0
         turns = driven | (self._state.bodies.inverse_inertia[rows] > 0.0)
-        return np.stack((self._layout.place[rows], np.where(turns, turn, -1)), axis=1)
+        return np.stack((self.layout.place[rows], np.where(turns, turn, -1)), axis=1)
 
     def _indices(
         self, cause: int, ends: NDArray[np.int64], *, energy: bool, momentum: bool,
@@ -142,43 +125,43 @@ class BookKeeper:
         if not len(rates):
             return []
         weight = np.where(inverse_mass > 0.0, rates / np.where(inverse_mass > 0.0, inverse_mass, 1.0), 0.0)
-        indices = np.array((self.slots[DAMPING], len(self._layout.moving), len(rates)), np.int64)
+        indices = np.array((self.slots[DAMPING], len(self.layout.moving), len(rates)), np.int64)
         return [PackedForce(resist, weight, indices)]
 
 
 def book_in_python(
-    state: State, layout: StateLayout, slots: dict[int, int], pull: int, stored: bool,
-    change: tuple[Numbers, Numbers], q: Numbers, v: Numbers, force: Numbers,
+    state: State, book: BookKeeper, system: ForceSystem, change: tuple[Numbers, Numbers],
+    q: Numbers, v: Numbers, force: Numbers,
 ) -> None:  # fmt: skip
     """Book what a force in Python gives in a second.
 
     Parameters
     ----------
-    state, layout, slots
+    state, book
         Whose, and where.
-    pull : int
-        Where forces without potential are kept, coordinate by coordinate, or -1.
-    stored : bool
-        Whether the force has a potential.
+    system : ForceSystem
+        What acts.
     change : tuple of float64 arrays (rows, 2) and (rows,)
         The force [N] and the torque [N m].
     q, v, force : float64 arrays
         The state, and what takes the sums.
     """
+    layout, slots = book.layout, book.slots
     moving, turning = layout.moving, layout.turning
     n, d = 2 * len(moving), layout.moving_count
     moved = np.repeat(state.bodies.inverse_mass[moving] > 0.0, 2)
-    turned = state.bodies.inverse_inertia[turning] > 0.0
-    all_forces = np.concatenate((change[0][moving].ravel(), change[1][turning]))
-    free = np.concatenate((moved, turned))
-    given, account = np.where(free, all_forces, 0.0), slots[FIELDS]
+    free = np.concatenate((moved, state.bodies.inverse_inertia[turning] > 0.0))
+    every = np.concatenate((change[0][moving].ravel(), change[1][turning]))
+    given, account = np.where(free, every, 0.0), slots[system.account]
     x, y, fx, fy = q[:n:2], q[1:n:2], given[:n:2], given[1:n:2]
     force[account + PX] += fx.sum()
     force[account + PY] += fy.sum()
     force[account + SPIN] += (x * fy - y * fx).sum() + given[n:d].sum()
-    if not stored and pull >= 0:
-        force[pull : pull + d] += given
-    elif not stored:
+    if system.potential is not None:
+        if HAND in slots:
+            force[slots[HAND] + ENERGY] -= np.where(free, 0.0, every) @ v[:d]
+    elif system.account in book.rooms:
+        room = book.rooms[system.account]
+        force[room : room + d] += given
+    else:
         force[account + ENERGY] += given @ v[:d]
-    elif HAND in slots:
-        force[slots[HAND] + ENERGY] -= np.where(free, 0.0, all_forces) @ v[:d]

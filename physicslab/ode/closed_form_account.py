@@ -1,4 +1,4 @@
-"""What causes have given to bodies that moved in closed form: the integrals of their forces, also in closed form.
+"""What causes have given to bodies that moved in closed form: integrals of their forces, also in closed form.
 
 No power is integrated beside such a motion: it is exact, so what dampers and drag take is what the energy of
 their bodies loses, and what is left of the angular momentum of these is that of damping.

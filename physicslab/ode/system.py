@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.kernels.accounts import DAMPING, ENERGY, SPIN
-from physicslab.kernels.forces.bookings import ACCOUNTS, PULL
+from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT
 from physicslab.ode.bookings import BookKeeper, book_in_python
 from physicslab.state.packed import StateLayout
@@ -30,9 +30,9 @@ _CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, ctypes.c_double, _REAL, _REAL, 
 class OdeSystem:
     """Packed state and packed forces of a world in which nothing acts but forces.
 
-    ``q`` holds the coordinates as :class:`StateLayout` orders them, and then the time; ``v`` their rates (zero
-    for what is fixed, and there); q'' = ``inverse_mass`` * force - ``damping`` * v. Behind that, v takes what
-    causes give, in four places for each account that this world needs; :meth:`scatter` books it.
+    ``q`` holds the coordinates as :class:`StateLayout` orders them, and then the time; ``v`` their rates
+    (zero for what is fixed, and there); q'' = ``inverse_mass`` * force - ``damping`` * v. Behind that, v
+    takes what causes give, in four places for each account that this world needs; :meth:`scatter` books it.
 
     A force system that packs its force (:meth:`ForceSystem.packed`) is called without Python. One that does
     not is called back at its ``Stage.FORCE``, with the state that it reads in the world's tables, and the
@@ -54,7 +54,7 @@ class OdeSystem:
         ``calls``, and what books the damping, for methods that do not book it themselves.
     slots : dict of int to int
         Where the account of each cause that is booked begins.
-    places : int64 array (PLACES,)
+    places : int64 array
         What kernels must know of that (:mod:`physicslab.kernels.forces.bookings`).
     near : int64 array and int, optional
         An order of the coordinates in which those that forces couple are near, and how near; found
@@ -163,7 +163,13 @@ class OdeSystem:
         self._clock[0] = state.time
         given = self._nothing
         self.q = np.concatenate(
-            (position[moving].ravel(), transform["angle"][turning], position[fixed].ravel(), self._clock, given)
+            (
+                position[moving].ravel(),
+                transform["angle"][turning],
+                position[fixed].ravel(),
+                self._clock,
+                given,
+            )
         )
         still = np.zeros(2 * len(fixed) + 1)
         self.v = np.concatenate((linear[moving].ravel(), velocity["angular"][turning], still, given))
@@ -280,19 +286,19 @@ class OdeSystem:
         self.resistances = np.array(against, np.int64).reshape(-1, 3)
         python = [system for system, force in packed if force is None]
         if python:
-            callback = _CALLBACK(self._caller(state, python, size))
+            callback = _CALLBACK(self._caller(state, python, book, size))
             self._kept.append(callback)
             rows.append((ctypes.cast(callback, ctypes.c_void_p).value or 0, 0, 0))
         self.calls = np.array(rows, np.int64).reshape(-1, 3)
         self.damped_calls = np.array([*rows, *(force.call for force in damping)], np.int64).reshape(-1, 3)
 
-    def _caller(self, state: State, systems: Iterable[ForceSystem], size: int) -> Any:
+    def _caller(self, state: State, systems: Iterable[ForceSystem], book: BookKeeper, size: int) -> Any:
         """Return a C function that lets force systems written in Python act on the world's tables.
 
         It gets ``size`` numbers of each array.
         """
         methods = [(system, getattr(system, type(system).marked()[Stage.FORCE])) for system in systems]
-        layout, bodies, slots, pull = self.layout, state.bodies, self.slots, int(self.places[PULL])
+        layout, bodies = self.layout, state.bodies
         n, d, clock = 2 * len(layout.moving), layout.moving_count, layout.clock
 
         def call(q: Any, v: Any, _span: float, force: Any, parameters: Any, indices: Any) -> None:
@@ -309,8 +315,7 @@ class OdeSystem:
                     before = bodies.force.copy(), bodies.torque.copy()
                     method(state, 0.0)
                     change = bodies.force - before[0], bodies.torque - before[1]
-                    stored = system.potential is not None
-                    book_in_python(state, layout, slots, pull, stored, change, places, speeds, total)
+                    book_in_python(state, book, system, change, places, speeds, total)
                 # What is fixed stays where it is, be the force on it infinite: no product with zero.
                 pulled = bodies.inverse_mass[layout.moving] > 0.0
                 total[:n] += np.where(pulled[:, None], bodies.force[layout.moving], 0.0).ravel()

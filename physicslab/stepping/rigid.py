@@ -78,9 +78,7 @@ class Rigid:
         self.why_impulses, self.energy_added = "", 0.0
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
-        self._motion = RigidMotion(
-            self._ode, len(self._pairs), not schedule.interpreted
-        )
+        self._motion = RigidMotion(self._ode, len(self._pairs), not schedule.interpreted)
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
@@ -166,8 +164,8 @@ class Rigid:
         ode = self._ode
         accounts = np.array([ode.slots.get(cause, -1) for cause in (FRICTION, CONTACT, HAND)])
         return (
-            len(box), ode.inverse_mass, ode.damping, ode.damped_calls, outlines, walls, self._pairs, coefficients,
-            accounts,
+            len(box), ode.inverse_mass, ode.damping, ode.damped_calls, outlines, walls, self._pairs,
+            coefficients, accounts,
         )  # fmt: skip
 
     def _note(self, began: int, steps: int) -> None:

@@ -14,9 +14,10 @@ from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
 from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS, REACH
+from physicslab.kernels.rigid.pieces import StagesTuple
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
-from physicslab.stepping.rigid_bookings import ImpulseBook, book_overlap
+from physicslab.stepping.rigid_bookings import book_overlap
 
 __all__ = ["MAX_POINTS", "MadeStep", "RigidMotion"]
 
@@ -101,7 +102,7 @@ class MadeStep:
     refused: str = ""
 
 
-def _stages_of(n: int) -> tuple[NDArray[np.float64], ...]:
+def _stages_of(n: int) -> StagesTuple:
     """Return room for the stages of a piece with n coordinates, the clock and accounts among them."""
     return np.zeros((16, n)), np.zeros((16, n)), np.zeros(n), np.zeros(n), np.zeros(n)
 
@@ -197,16 +198,13 @@ class RigidMotion:
             return "bodies are too fast for short steps"
         h = left / max(count, 1)
         for k in range(count):
-            book = ImpulseBook(state, self._ode, made.impacts)
             time_stepping.drift(q, v, 0.5 * h)
             gained = time_stepping.kick(scene, self._stages[-1], q, v, h)
             none = _NONE * gained
             made.evaluations, made.closed = made.evaluations + 1, 0
-            book.kicked()
             why = self._resist(scene, state, at + (k + 0.5) * h, h, none, made)
             if why != motion.DONE:
                 return _WHY[why]
-            book.close(made.impacts)
             time_stepping.drift(q, v, 0.5 * h)
             # What is as slow as a short step makes it comes to rest; moved each time, it would not.
             rests = float(np.abs(v[: self._ode.layout.clock]).max(initial=0.0)) <= _RESTING * gained

@@ -30,12 +30,12 @@ class DragSystem(ForceSystem):
         moved = state.bodies.inverse_mass[rows] > 0.0
         rows = np.concatenate((rows[moved], rows[~moved]))
         parameters = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
-        indices = np.concatenate(([len(rows)], layout.place[rows], (-1, np.count_nonzero(moved), -1)))
+        indices: NDArray[np.int64] = np.concatenate(
+            ([len(rows)], layout.place[rows], (-1, int(np.count_nonzero(moved)), -1))
+        )
         books = ((DAMPING, len(rows) + 1),) if moved.any() else ()
         keeps = len(rows) + 3
-        return PackedForce(
-            packed_forces.drag, parameters, indices, drag_resistance, books=books, keeps=keeps
-        )
+        return PackedForce(packed_forces.drag, parameters, indices, drag_resistance, books=books, keeps=keeps)
 
     def needs_origin(self, state: State) -> bool:
         """Drag depends on velocities alone."""

@@ -86,7 +86,7 @@ class SpringSystem(ForceSystem):
     def _booked(
         self, state: State, places: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], tuple[tuple[int, int], ...]]:
-        """Return the indices of the kernel, of springs whose ends are at ``places`` (n, 4), and what it books."""
+        """Return the indices of the kernel, for ends at ``places`` (n, 4), and what it books."""
         bodies, n, moved = state.bodies, len(places), np.zeros(len(places), np.int64)
         goes, driven = state.table(Velocity).present, False
         for end, turn, moves, turns in (
@@ -106,7 +106,8 @@ class SpringSystem(ForceSystem):
             found.append((accounts.DAMPING, 2 + 4 * n))
         opened = np.flatnonzero(moved != bookings.ALL_MOVED)
         ends = np.stack((opened, moved[opened]), axis=1)
-        return np.concatenate(([n], places.ravel(), (-1, -1, -1, -1, len(opened)), ends.ravel())), tuple(found)
+        behind = (-1, -1, -1, -1, len(opened))
+        return np.concatenate(([n], places.ravel(), behind, ends.ravel())), tuple(found)
 
     def inputs(self, state: State, layout: StateLayout) -> bytes:
         """Return every number of every spring, and the angles of anchors that no force turns."""

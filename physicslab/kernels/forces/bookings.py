@@ -10,21 +10,22 @@ Powers and forces are those on the coordinates that forces move: on what has an 
 moment of inertia.
 """
 
+from typing import Any
+
 from physicslab.kernels import Numbers, Rows, fused, inlined
 from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.ode.fall_shares import fall_shares
 
 __all__ = [
-    "ACCOUNTS", "ALL_MOVED", "A_MOVES", "A_TURNS", "BODIES", "B_MOVES", "B_TURNS", "CLOCK", "DAMPED",
-    "END", "FIELD", "PLACES", "PULL", "RESISTANCE", "book_damping", "book_kick", "book_open_spring", "gather", "keep_pull", "resist",
+    "ACCOUNTS", "ALL_MOVED", "A_MOVES", "A_TURNS", "BODIES", "B_MOVES", "B_TURNS", "CLOCK", "DAMPED", "END",
+    "KEPT", "book_damping", "book_kick", "book_open_spring", "gather", "keep_pull", "resist",
 ]  # fmt: skip
 
-CLOCK, END, BODIES, DAMPED, FIELD, PULL, RESISTANCE, PLACES = range(8)
-"""What :attr:`physicslab.ode.system.OdeSystem.places` holds: where the time is; where the
-accounts behind it end; how many bodies move; the accounts of damping and of fields; where forces are kept by
-themselves, coordinate by coordinate, for methods that kick: of fields that store no energy, and of dampers and
-drag. -1 where there is none."""
+CLOCK, END, BODIES, DAMPED, KEPT = range(5)
+"""What :attr:`physicslab.ode.system.OdeSystem.places` holds: where the time is; where the accounts behind it
+end; how many bodies move; the account of damping, or -1. From ``KEPT`` on, for methods that kick, there are
+pairs: an account, and where the forces that it is about are kept by themselves, coordinate by coordinate."""
 ACCOUNTS = 4
 """How many places an account has."""
 A_MOVES, B_MOVES, A_TURNS, B_TURNS = 1, 2, 4, 8
@@ -33,7 +34,18 @@ ALL_MOVED = 15
 
 
 @inlined
-def keep_pull(force, kept, indices, s, x, y, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+def keep_pull(
+    force: Any,
+    kept: int,
+    indices: Any,
+    s: int,
+    x: float,
+    y: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+) -> None:
     """Keep the pull (x, y) of the damper of spring number s by itself; it acts at the arms a and b."""
     a, turn_a, b, turn_b = indices[1 + 4 * s], indices[2 + 4 * s], indices[3 + 4 * s], indices[4 + 4 * s]
     force[kept + a] += x
@@ -47,9 +59,10 @@ def keep_pull(force, kept, indices, s, x, y, ax, ay, bx, by):  # type: ignore[no
 
 
 @inlined
-def book_open_spring(  # type: ignore[no-untyped-def]
-    q, v, force, indices, s, moved, fx, fy, damper_x, damper_y, ax, ay, bx, by, store, damp, hand
-):
+def book_open_spring(
+    q: Any, v: Any, force: Any, indices: Any, s: int, moved: int, fx: float, fy: float, damper_x: float,
+    damper_y: float, ax: float, ay: float, bx: float, by: float, store: int, damp: int, hand: int,
+) -> None:  # fmt: skip
     """Book the momentum that spring number s brings in from outside, and the work of ends that are driven.
 
     The force on A is (fx, fy), of which (damper_x, damper_y) is the damper's; it acts at the arms a and b.
@@ -95,9 +108,9 @@ def book_open_spring(  # type: ignore[no-untyped-def]
 def gather(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Book the forces that are there by now, with a sign: before a force and after it, by its difference.
 
-    ``parameters``: the sign; ``indices``: the account; whether the energy counts, and the momentum; where each
-    force is kept by itself, or -1; how many bodies; of each where x and the angle are, -1 for one that is left
-    out.
+    ``parameters``: the sign; ``indices``: the account; whether the energy counts, and the momentum; where
+    each force is kept by itself, or -1; how many bodies; of each where x and the angle are, -1 for one that
+    is left out.
     """
     sign, account, kept = parameters[0], indices[0], indices[3]
     power, px, py, spin = 0.0, 0.0, 0.0, 0.0
@@ -128,8 +141,8 @@ def gather(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
 def resist(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Book what the damping of all motion takes.
 
-    ``parameters``: of each coordinate its rate of damping times its mass or moment of inertia. ``indices``: the
-    account, how many bodies move, and how many coordinates there are.
+    ``parameters``: of each coordinate its rate of damping times its mass or moment of inertia. ``indices``:
+    the account, how many bodies move, and how many coordinates there are.
     """
     account, bodies = indices[0], indices[1]
     power, px, py, spin = 0.0, 0.0, 0.0, 0.0
@@ -172,8 +185,8 @@ def book_kick(
 ) -> None:  # fmt: skip
     """Book on coordinate ``i`` what a kick of ``kick`` seconds does that changes its velocity by ``change``.
 
-    What is not stored: the work of damping at ``rate``, and that of fields, by the velocities on the way. To
-    be called before the velocity has changed.
+    What is not stored: the work of damping at ``rate``, and that of forces that are kept by themselves, by
+    the velocities on the way. To be called before the velocity has changed.
     """
     along = kick * v[i] + 0.5 * kick * change  # the integral of the velocity
     if rate > 0.0 and inverse_mass > 0.0:
@@ -181,7 +194,5 @@ def book_kick(
         along = kick * (v[i] * first + acceleration[i] * kick * second)
         work = (change * (v[i] + 0.5 * change) - acceleration[i] * along) / inverse_mass
         book_damping(v, places, q, i, work, -rate * along / inverse_mass)
-    if places[PULL] >= 0:
-        v[places[FIELD]] += acceleration[places[PULL] + i] * along
-    if places[RESISTANCE] >= 0:
-        v[places[DAMPED]] += acceleration[places[RESISTANCE] + i] * along
+    for k in range(KEPT, len(places), 2):
+        v[places[k]] += acceleration[places[k + 1] + i] * along

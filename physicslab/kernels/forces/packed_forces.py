@@ -5,6 +5,8 @@ place of an account (:mod:`physicslab.kernels.forces.bookings`), it also adds th
 a place of -1 is none. Where it keeps its force by itself, it books no energy.
 """
 
+from typing import Any
+
 import numpy as np
 
 from physicslab.kernels import allocating, always_inlined
@@ -87,7 +89,7 @@ def planet_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-u
 
 
 @always_inlined
-def _pull(q, v, span, force, parameters, indices, s):  # type: ignore[no-untyped-def]
+def _pull(q: Any, v: Any, span: float, force: Any, parameters: Any, indices: Any, s: int) -> Any:
     """Add the pull of spring number s to both ends.
 
     Returns the force on A, the damper's part of it, the power that it takes, and both arms [m] at which the
@@ -135,9 +137,9 @@ def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-
     or in the world's where the angle never changes [m], rest length, stiffness, damping. Over a span, what
     the springs store changes by just the work done, of the turning ends as well.
 
-    Behind the indices of the springs are the accounts of springs, damping and hand, where the forces of dampers
-    are kept by themselves, and how many springs have an end that forces do not move in all its coordinates;
-    of each of these its number, and which they do move
+    Behind the indices of the springs are the accounts of springs, damping and hand, where the forces of
+    dampers are kept by themselves, and how many springs have an end that forces do not move in all its
+    coordinates; of each of these its number, and which they do move
     (:func:`physicslab.kernels.forces.bookings.book_open_spring`).
     """
     n, lost, first = indices[0], 0.0, 0
@@ -176,8 +178,8 @@ def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-
 def drag(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add -(c + k |v|) v. ``parameters``: c and k of each.
 
-    ``indices``: how many, where x of each is, the account of damping, how many of them forces move, which come
-    first, and where their drag is kept by itself.
+    ``indices``: how many, where x of each is, the account of damping, how many of them forces move, which
+    come first, and where their drag is kept by itself.
     """
     n = indices[0]
     account, kept = indices[1 + n], indices[3 + n]

@@ -17,8 +17,8 @@ def rk4(
 ) -> int:  # fmt: skip
     """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
 
-    ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are carried on. Behind the clock, v takes
-    what causes give (:mod:`physicslab.kernels.forces.bookings`).
+    ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are carried on. Behind the clock, v
+    takes what causes give (:mod:`physicslab.kernels.forces.bookings`).
     """
     n, clock = len(inverse_mass), places[CLOCK]
     start = q[clock]

@@ -207,7 +207,8 @@ def _book(
 @allocating_kernel
 def dop853(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
-    calls: Calls, places: Rows, span: float, tolerance: float, period: float, max_evaluations: int, bodies: int,
+    calls: Calls, places: Rows, span: float, tolerance: float, period: float, max_evaluations: int,
+    bodies: int,
 ) -> int:  # fmt: skip
     """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
@@ -229,8 +230,21 @@ def dop853(
     rates, pushes = np.zeros((n, 16)), np.zeros((n + booked, 16))
     q_scale, v_scale = largest(q, n), largest(v, n)
     make_stages(
-        q, v, stage_q, stage_v, acceleration, rates, pushes, inverse_mass, damping, calls, clock, booked,
-        0.0, 0, 1,
+        q,
+        v,
+        stage_q,
+        stage_v,
+        acceleration,
+        rates,
+        pushes,
+        inverse_mass,
+        damping,
+        calls,
+        clock,
+        booked,
+        0.0,
+        0,
+        1,
     )
     if not _all_finite(acceleration, stage_v, n):
         return NOT_FINITE

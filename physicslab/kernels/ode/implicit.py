@@ -121,8 +121,8 @@ def _differentiate(
             for j in range(first, n, stride):
                 moved[order[j]] = x[order[j]] - shift
             _miss(
-                q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, below,
-                none,
+                q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h,
+                below, none,
             )  # fmt: skip
         for j in range(first, n, stride):
             moved[order[j]] = x[order[j]]
@@ -147,7 +147,9 @@ def _newton(
     residual = shifted
     before, evaluations, far = math.inf, 0, False
     for iteration in range(1, _MAX_ITERATIONS + 1):
-        _miss(q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss, given)
+        _miss(
+            q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss, given
+        )
         evaluations += 1
         if (iteration == 1 and not known) or iteration > _SLOW or far:
             evaluations += _differentiate(
@@ -221,8 +223,8 @@ def implicit_midpoint(
     coupled ones are within ``band`` of each other. Sums are compensated: ``q_low`` and ``v_low`` (n,) are the
     remainders of what moves, and are carried on. Forces are those of the time in the middle of the step.
 
-    Behind the clock, v takes what causes give (:mod:`physicslab.kernels.forces.bookings`) at the mean velocity.
-    Where that is not the mean of both ends, dampers and drag have done the work that this makes.
+    Behind the clock, v takes what causes give (:mod:`physicslab.kernels.forces.bookings`) at the mean
+    velocity. Where that is not the mean of both ends, dampers and drag have done the work that this makes.
     """
     n, m, clock = len(inverse_mass), len(order), places[CLOCK]
     start, given = q[clock], np.zeros(len(q) - clock - 1)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, allocating_kernel
-from physicslab.kernels.forces.bookings import CLOCK, END, PULL, RESISTANCE, book_kick
+from physicslab.kernels.forces.bookings import CLOCK, END, KEPT, book_kick
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add
 
@@ -24,10 +24,10 @@ def split(
     the kicks and is solved exactly: v(h) = v e^(-c h) + a (1 - e^(-c h)) / c. Sums are compensated:
     ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are carried on. The time goes on with
     the drifts, as the coordinates do. Behind it, v takes what causes give
-    (:mod:`physicslab.kernels.forces.bookings`), with ``places`` (PLACES,): in a kick, by the mean velocity.
+    (:mod:`physicslab.kernels.forces.bookings`), with ``places``: in a kick, by the mean velocity.
     """
     n, clock = len(inverse_mass), places[CLOCK]
-    start, kept = q[clock], places[PULL] >= 0 or places[RESISTANCE] >= 0
+    start, kept = q[clock], len(places) > KEPT
     acceleration = np.empty(len(q))
     undamped = np.empty(0)
     known, evaluations = False, 0

@@ -28,7 +28,12 @@ def book_contacts(
     What friction takes, force times sliding speed, and the momentum that comes in from what no force moves,
     with the work of what moves all the same. Normal forces do no work: what they hold together does not part.
     """
-    rows, points, measures, contacts = scene.rows, equations.points, equations.measures, scene.accounts[CONTACTS]
+    rows, points, measures, contacts = (
+        scene.rows,
+        equations.points,
+        equations.measures,
+        scene.accounts[CONTACTS],
+    )
     rubbed, work = 0.0, 0.0
     for i in range(count):
         along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]

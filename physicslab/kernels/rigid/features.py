@@ -1,9 +1,10 @@
 """Points where two bodies can touch: a corner or a centre of one against a face, corner or centre of another.
 
 Coordinates are packed as :meth:`physicslab.state.packed.StateLayout.of_rows` has them: x and y of every row,
-then all angles, then the clock; behind it v has accounts, which go on as speeds do, and q has nothing. A point is a row of whole numbers: its pair, the body ``ONE`` with its
-feature, the body ``OTHER`` with its vertex, and what the point does. The normal leads from ONE to OTHER, the
-tangent is the normal turned counter-clockwise.
+then all angles, then the clock; behind it v has accounts, which go on as speeds do, and q has nothing. A
+point is a row of whole numbers: its pair, the body ``ONE`` with its feature, the body ``OTHER`` with its
+vertex, and what the point does. The normal leads from ONE to OTHER, the tangent is the normal turned counter-
+clockwise.
 """
 
 import math
@@ -18,10 +19,10 @@ from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Pairs
 
 __all__ = [
-    "BIAS_N", "BIAS_T", "BOX", "CENTRE", "CONTACTS", "CORNER", "DRIVEN", "FEATURE", "GAP", "GIVEN", "HEIGHT", "KIND", "MARGIN",
-    "MEASURES", "MU", "NA", "NB", "NX", "NY", "ONE", "OTHER", "OUTLINE_FIELDS", "PAIR", "POINT_FIELDS",
-    "PX", "PY", "RADIUS", "REACH", "RESTITUTION", "RUBBING", "STATUS", "TA", "TB", "VERTEX", "VN", "VT", "WALL",
-    "WIDTH", "Points", "Scene", "SceneTuple", "face_of", "measure", "named_scene", "vertex_of",
+    "BIAS_N", "BIAS_T", "BOX", "CENTRE", "CONTACTS", "CORNER", "DRIVEN", "FEATURE", "GAP", "GIVEN", "HEIGHT",
+    "KIND", "MARGIN", "MEASURES", "MU", "NA", "NB", "NX", "NY", "ONE", "OTHER", "OUTLINE_FIELDS", "PAIR",
+    "POINT_FIELDS", "PX", "PY", "RADIUS", "REACH", "RESTITUTION", "RUBBING", "STATUS", "TA", "TB", "VERTEX",
+    "VN", "VT", "WALL", "WIDTH", "Points", "Scene", "SceneTuple", "face_of", "measure", "named_scene", "vertex_of",
 ]  # fmt: skip
 
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
