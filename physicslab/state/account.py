@@ -53,15 +53,18 @@ class Account:
         What there was after the last step.
     held : tuple of int
         The entities that a hand held then.
-    columns : tuple
+    columns : tuple, optional
         The arrays that a balance is measured from, and the revision of the rows that they belong to.
+    seen : object, optional
+        What the last balance depends on, in short: while that is the same, so is the balance.
     """
 
     def __init__(self) -> None:
         self.sums: NDArray[np.float64] = np.zeros((CAUSES, 4))
         self.since = 0.0
         self.held: tuple[int, ...] = ()
-        self.columns: tuple[int, tuple[Any, ...]] = -1, (None, None)
+        self.columns: tuple[int, tuple[Any, ...], tuple[Any, ...]] | None = None
+        self.seen: object | None = None
         self.start: Balance | None = None
         self.last = _NOTHING
         self._before = self.sums.copy()
@@ -104,3 +107,4 @@ class Account:
         """Go back."""
         np.copyto(self.sums, kept.sums)
         _, self.since, self.start, self.last, self.held = kept
+        self.seen = None

@@ -46,7 +46,7 @@ class StageAccounts:
         self._other = free[0].account if free else (SPRINGS if springs else GRAVITY)
         self._pulls = {force: np.zeros_like(state.bodies.pull) for force in free}
         self._follows_way = bool(others)
-        self._before: tuple[NDArray[np.float64], NDArray[np.float64]]
+        self._before: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
         self._start: tuple[NDArray[np.float64], NDArray[np.float64]]
         self._booked = self._kicked = 0.0
 
@@ -72,14 +72,14 @@ class StageAccounts:
         if stage is Stage.KICK:
             self._book_kick(state, share, h)
         elif stage in _OF_CONTACTS:
-            velocity = state.table(Velocity)
-            self._before = velocity["linear"].copy(), velocity["angular"].copy()
+            velocity, position = state.table(Velocity), state.table(Transform)["position"]
+            self._before = position.copy(), velocity["linear"].copy(), velocity["angular"].copy()
             self._booked = _booked_within(state)
             if stage is Stage.RELAX and self._follows_way:
                 self._book_way(state)
 
     def _book_kick(self, state: State, share: float, h: float) -> None:
-        """Book the impulses of forces and, with the last kick, those of damping."""
+        """Book the impulses of forces, and those of damping."""
         bodies, physics, velocity = state.bodies, state.physics, state.table(Velocity)
         position, inverse = state.table(Transform)["position"], inverse_in(state)
         if state.has_forces:
@@ -88,12 +88,11 @@ class StageAccounts:
                 bodies.sub_integrated, self._gravity.x, self._gravity.y, self._other, share * h,
                 state.account.sums,
             )  # fmt: skip
-        damped = physics.linear_damping > 0.0 or physics.angular_damping > 0.0
-        if damped and self._kicked + share >= 1.0:
+        if physics.linear_damping > 0.0 or physics.angular_damping > 0.0:
             work.book_damping(
                 position, velocity["linear"], velocity["angular"], bodies.force, bodies.torque, *inverse,
-                bodies.sub_integrated, physics.linear_damping, physics.angular_damping, self._kicked * h,
-                share * h, state.account.sums,
+                bodies.sub_integrated, physics.linear_damping, physics.angular_damping, share * h,
+                (0.5 - self._kicked - 0.5 * share) * h, state.account.sums,
             )  # fmt: skip
         self._kicked += share
 
@@ -103,7 +102,7 @@ class StageAccounts:
             return
         velocity, mass, bodies = state.table(Velocity), state.table(Mass), state.bodies
         work.book_contacts(
-            state.table(Transform)["position"], velocity["linear"], velocity["angular"], *self._before,
+            velocity["linear"], velocity["angular"], *self._before,
             bodies.force, bodies.torque, mass["mass"], mass["inertia"], *inverse_in(state), bodies.unkicked,
             h if stage is Stage.SOLVE and state.has_forces else 0.0,
             _booked_within(state) - self._booked, state.account.sums,
@@ -119,7 +118,7 @@ class StageAccounts:
         rows = np.concatenate((np.repeat(kicked, 2), kicked & (bodies.awake_inverse_inertia > 0.0)))
         for force, pull in self._pulls.items():
             sums[force.account, ENERGY] += float(pull[rows] @ way[rows])
-        driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0)
+        driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0) & ~bodies.sub_integrated
         if driven.any():
             rows = np.concatenate((np.repeat(driven, 2), driven))
             sums[HAND, ENERGY] -= float(bodies.pull[rows] @ way[rows])

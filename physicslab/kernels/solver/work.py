@@ -10,7 +10,6 @@ after.
 from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, fused, inlined, kernel
 from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
-from physicslab.kernels.energy import moments_of_mass
 from physicslab.kernels.motion import damped
 from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
 from physicslab.kernels.records import Point
@@ -37,8 +36,6 @@ __all__ = [
     "note_sliding",
 ]  # fmt: skip
 
-_LEFT = 1e-9
-"""Share of a speed that damping must leave in a kick, or the speed before cannot be told from that after."""
 _SLIDING, _RUBBING = 0, 1
 """What is noted of a point: how fast it slides [m/s], and its tangential impulse [N s]."""
 
@@ -184,10 +181,9 @@ def book_drivers(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
 
 @fused
 def book_gravity(
-    account: Vectors, position: Vectors, mass: Numbers, inverse_mass: Numbers, gx: float, gy: float, h: float
+    account: Vectors, total: float, mx: float, my: float, gx: float, gy: float, h: float
 ) -> None:
-    """Book the impulse of uniform gravity in ``h`` seconds, and its moment about the origin."""
-    total, mx, my = moments_of_mass(position, mass, inverse_mass)
+    """Book the impulse of uniform gravity in ``h`` seconds on a mass of such moments."""
     account[GRAVITY, PX] += h * total * gx
     account[GRAVITY, PY] += h * total * gy
     account[GRAVITY, SPIN] += h * (mx * gy - my * gx)
@@ -220,47 +216,41 @@ def book_kick(
 
 @inlined
 def _damped_change(
-    v: float, a: float, rate: float, first: float, last: float, m: float
+    v: float, a: float, decay: float, gain: float, h: float, later: float, m: float
 ) -> tuple[float, float]:
-    """Return the impulse of damping in a substep, and its work.
+    """Return the impulse of damping in a kick of ``h`` seconds at the velocity v, and its work.
 
-    ``v`` is a velocity between a kick of ``first`` seconds and one of ``last``, ``a`` the acceleration by
-    forces.
+    ``later`` is by how much the middle of the substep comes after that of the kick [s].
     """
-    decay, gain = damped(rate, first)
-    start = (v - a * gain) / decay if decay > _LEFT else v
-    decay, gain = damped(rate, last)
     end = v * decay + a * gain
-    impulse = m * (end - start - a * (first + last))
-    return impulse, 0.5 * impulse * (start + end)
+    impulse = m * (end - v - a * h)
+    return impulse, impulse * (0.5 * (v + end) + a * later)
 
 
 @kernel
 def book_damping(
     position: Vectors, linear: Vectors, angular: Numbers, force: Vectors, torque: Numbers,
     inverse_mass: Numbers, inverse_inertia: Numbers, sub_integrated: Flags, linear_damping: float,
-    angular_damping: float, first: float, last: float, account: Vectors,
+    angular_damping: float, h: float, later: float, account: Vectors,
 ) -> None:  # fmt: skip
-    """Book the damping of a substep before its last kick, of ``last`` seconds; others had ``first`` seconds.
+    """Book what damping takes in a kick of ``h`` seconds, before that is made.
 
-    The impulse of damping does its work at the mean of the velocities at both ends, as of any force.
+    The middle of the substep comes ``later`` seconds after that of the kick: what forces give until then
+    belongs to the mean velocity at which the impulse of damping does its work.
     """
+    decay, gain = damped(linear_damping, h)
+    angular_decay, angular_gain = damped(angular_damping, h)
     for i in range(len(inverse_mass)):
         if inverse_mass[i] == 0.0 or sub_integrated[i]:
             continue
         m, x, y = 1.0 / inverse_mass[i], position[i, 0], position[i, 1]
-        px, along = _damped_change(
-            linear[i, 0], force[i, 0] * inverse_mass[i], linear_damping, first, last, m
-        )
-        py, across = _damped_change(
-            linear[i, 1], force[i, 1] * inverse_mass[i], linear_damping, first, last, m
-        )
+        ax, ay = force[i, 0] * inverse_mass[i], force[i, 1] * inverse_mass[i]
+        px, along = _damped_change(linear[i, 0], ax, decay, gain, h, later, m)
+        py, across = _damped_change(linear[i, 1], ay, decay, gain, h, later, m)
         turned, around = 0.0, 0.0
         if inverse_inertia[i] > 0.0:
-            turned, around = _damped_change(
-                angular[i], torque[i] * inverse_inertia[i], angular_damping, first, last,
-                1.0 / inverse_inertia[i],
-            )  # fmt: skip
+            turn, inertia = torque[i] * inverse_inertia[i], 1.0 / inverse_inertia[i]
+            turned, around = _damped_change(angular[i], turn, angular_decay, angular_gain, h, later, inertia)
         account[DAMPING, ENERGY] += along + across + around
         account[DAMPING, PX] += px
         account[DAMPING, PY] += py
@@ -269,12 +259,13 @@ def book_damping(
 
 @kernel
 def book_contacts(
-    position: Vectors, linear: Vectors, angular: Numbers, before: Vectors, before_angular: Numbers,
+    linear: Vectors, angular: Numbers, position: Vectors, before: Vectors, before_angular: Numbers,
     force: Vectors, torque: Numbers, mass: Numbers, inertia: Numbers, inverse_mass: Numbers,
     inverse_inertia: Numbers, unkicked: Flags, h: float, booked: float, account: Vectors,
 ) -> None:  # fmt: skip
     """Book the work and the impulses of a stage that has changed velocities, from ``before`` to those of now.
 
+    ``position`` is that of before, as what is moved apart is booked by itself.
     ``h`` is the time [s] for which forces act in the substep, except on rows that are ``unkicked``: 0 where
     they have no part in it. ``booked`` is the work [J] of these impulses that is in an account already.
     """
