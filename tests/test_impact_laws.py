@@ -22,7 +22,7 @@ from physicslab.kernels.solver import blow, impact_log
 from physicslab.kernels.solver.impact_pose import Meeting
 from physicslab.prefabs import box, circle
 from physicslab.stepping.rigid import Rigid
-from physicslab.stepping.rigid_motion import MadeStep
+from physicslab.stepping.rigid_motion import MadeStep, _stages_of
 from physicslab.systems.standard import standard_systems
 
 one_blow: Any = compiled(blow.one_blow)
@@ -268,6 +268,7 @@ class Cluster:
             self.world.compile(rigid.kernels)
             self._ode.gather(self.world)
             self.scene = rigid._scene(self.world)
+        self._motion._stages = _stages_of(len(self._ode.q))
 
     def place(self, random: np.random.Generator) -> None:
         """Let all touch: two discs, or a corner, or two faces, and the third where it touches the second."""
@@ -300,7 +301,8 @@ class Cluster:
     def strike(self, random: np.random.Generator) -> tuple[float, float, float] | None:
         """Resolve an impact of random masses; return what it gave, and what accounts miss, as shares."""
         self.place(random)
-        rows, inverse, v = self.scene[0], self.scene[1], self._ode.v
+        rows, inverse = self.scene[0], self.scene[1]
+        v = self._ode.v[: self._ode.layout.clock]
         v[:] = 0.0
         mass = 10.0 ** random.uniform(-3.0, 3.0, 3)
         for number, kind in enumerate(self.kinds):
@@ -324,14 +326,14 @@ class Cluster:
         self.scene[7][:, 1] = min(max(random.uniform(-0.2, 1.2), 0.0), 1.0)
         self.world.account.sums[:] = 0.0
         free = inverse > 0.0
-        old = v[:-1].copy()
+        old = v.copy()
         made = MadeStep(np.zeros((0, 0), np.int64), np.zeros((0, 0)), np.zeros(0))
         why, _ = self._motion._collide(self.scene, self.world, 0.0, made)
         if why != motion.DONE or not made.impacts:
             return None
         before, after = (
             0.5 * (old[free] ** 2 / inverse[free]).sum(),
-            0.5 * (v[:-1][free] ** 2 / inverse[free]).sum(),
+            0.5 * (v[free] ** 2 / inverse[free]).sum(),
         )
         sums = self.world.account.sums
         booked = sums[accounts.IMPACTS, 0] + sums[accounts.FRICTION, 0]
