@@ -11,7 +11,7 @@ from physicslab.state.account import Balance
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
 
-__all__ = ["balance_of", "held_in"]
+__all__ = ["balance_of", "held_in", "motion_arguments"]
 
 
 def held_in(state: State) -> tuple[int, ...]:
@@ -28,8 +28,13 @@ def motion_arguments(state: State) -> tuple[Any, ...]:
     )  # fmt: skip
 
 
-def balance_of(state: State, forces: Sequence[ForceSystem]) -> Balance:
-    """Return energy and momentum as they are now; all rows and masses must be up to date."""
+def balance_of(
+    state: State, forces: Sequence[ForceSystem], potential: dict[str, float] | None = None
+) -> Balance:
+    """Return energy and momentum as they are now; all rows and masses must be up to date.
+
+    What each force stores [J] is added to ``potential`` by the force's name, where that is given.
+    """
     kept = state.account.columns
     if kept[0] == state.entity_index.revision and kept[1][-2] is state.bodies.inverse_mass:
         found = direct_entry(energy.motion_totals)(*kept[1])
@@ -44,5 +49,8 @@ def balance_of(state: State, forces: Sequence[ForceSystem]) -> Balance:
         if force.potential is None:
             continue
         g = force.uniform_acceleration(state) if force.is_engine else None
-        total += force.potential_energy(state) if g is None else -(g.x * mx + g.y * my)
+        stored = force.potential_energy(state) if g is None else -(g.x * mx + g.y * my)
+        total += stored
+        if potential is not None:
+            potential[force.potential] = potential.get(force.potential, 0.0) + stored
     return Balance(total, px, py, spin)
