@@ -236,6 +236,17 @@ class World(State):
         self.motion_edits += 1
         self.fastest_rates.clear()
 
+    @quiet
+    def book_edits(self) -> None:
+        """Book what was changed since the last step, or since this was called last, in the accounts.
+
+        Each step does so first. Called before and after an edit it keeps that apart from what a hand has
+        done between the same two steps.
+        """
+        with self.active():
+            self._synchronise()
+            self.account.book(balance_of(self, self.schedule.forces), held_in(self))
+
     def install(self, *systems: System) -> None:
         """Add systems to this world, after those of the same stage.
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
-from desk import FRAME, Desk, empty_world
+from desk import Desk, empty_world
 from recording import RecordingCanvas
 from test_hud import frame, recorded, row
 
@@ -111,6 +111,8 @@ def test_the_work_of_the_hand_is_its_own_account() -> None:
     frame(desk, canvas)
     assert measure_energy(world).kinetic > 4.0
     assert row(desk, "by hand and driven bodies") == quantity(measure_energy(world).kinetic, "J")
+    desk.window.selection.entities = ()
+    frame(desk, canvas)
     assert any(words.startswith("Given: hand") for words in desk.ui.words)
     assert "Where the energy came from" in desk.ui.words
     assert abs(measure_account(world).energy["numerical"]) < 1e-12
