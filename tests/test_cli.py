@@ -21,6 +21,7 @@ from physicslab import cli, load_scene, save_scene
 from physicslab.commands import COMMANDS, progress
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
+from physicslab.components.quantities import ENERGY_CAUSES
 from physicslab.diagnostics.run_report import find_not_finite
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
@@ -154,6 +155,7 @@ def test_run_writes_a_row_a_step_and_body(capsys: pytest.CaptureFixture[str]) ->
         "time [s]", "entity", "x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "omega [rad/s]",
         "kinetic linear [J]", "kinetic angular [J]", "potential gravity [J]", "potential spring [J]",
         "energy [J]", "px [kg m/s]", "py [kg m/s]", "angular momentum [kg m^2/s]",
+        *(f"account {cause} [J]" for cause in ENERGY_CAUSES), "error of energy [J]",
     ]  # fmt: skip
     assert [row[1] for row in rows[1:]] == 4 * ["floor", "ball"]
     assert [float(row[0]) for row in rows[1::2]] == [0.0, 1 / 60, 2 / 60, 3 / 60]
