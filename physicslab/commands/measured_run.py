@@ -12,6 +12,7 @@ from physicslab.commands.progress import Progress
 from physicslab.commands.step_watch import StepWatch
 from physicslab.diagnostics.account import Accounts
 from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.ledger import LedgerWriter
 from physicslab.diagnostics.overflow import find_overflow
 from physicslab.diagnostics.run_report import RunRecord
 from physicslab.diagnostics.warnings import find_warnings
@@ -61,6 +62,8 @@ class MeasuredRun:
     every : float, optional
         The time [s] between what is kept: the first step that ends at or after each multiple of it, counted
         from the start; every step if it is 0.
+    ledger : LedgerWriter, optional
+        What writes the impacts, after each call of a stepper.
 
     Attributes
     ----------
@@ -78,10 +81,12 @@ class MeasuredRun:
         at_most: float | None = None,
         recorder: Recorder | None = None,
         every: float = 0.0,
+        ledger: LedgerWriter | None = None,
     ) -> None:
         self.record, self.stopped = RunRecord(name, Audit(world)), ""
         self._world, self._tiers, self._at_most = world, tiers, at_most
         self._recorder, self._every, self._kept_at = recorder, every, -math.inf
+        self._ledger = ledger
         self._watch = StepWatch(world)
         self._label = shortened(printable(name))
         self._start = world.time
@@ -143,6 +148,8 @@ class MeasuredRun:
         if done is None:
             return False
         made = done - record.steps
+        if self._ledger is not None:
+            self._ledger.write()
         if self._tiers.interpreted_s > interpreted:
             record.interpreted_steps += made
             record.interpreted_s += self._tiers.interpreted_s - interpreted

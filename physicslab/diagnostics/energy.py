@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels import energy
-from physicslab.stepping.accounting import balance_of, motion_arguments
+from physicslab.stepping.accounting import balance_of, motion_totals_of
 from physicslab.world import World
 
 __all__ = [
@@ -58,8 +57,7 @@ class Momentum:
 
 def _motion(world: World) -> tuple[float, float, float, float, float, float, float]:
     world.synchronise()
-    world.compile((energy.motion_totals,))
-    return energy.motion_totals(*motion_arguments(world))
+    return motion_totals_of(world)
 
 
 def measure_kinetic(world: World) -> tuple[float, float]:
