@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+import pygame
 import pytest
 from desk import Desk, empty_world
 from recording import RecordingCanvas
@@ -17,8 +18,10 @@ from physicslab.prefabs import circle, pendulum
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.view.canvas.quantities import length_of, percentage, quantity, vector_quantity
-from physicslab.view.panels.figures import EnergyWatch
+from physicslab.view.canvas.theme import DARK
+from physicslab.view.panels.figures import EnergyWatch, measure_world
 from physicslab.view.panels.scale_bar import draw_scale_bar
+from physicslab.view.workbench.energy_flows import parts_of
 from physicslab.world import World
 
 
@@ -116,6 +119,79 @@ def test_the_work_of_the_hand_is_its_own_account() -> None:
     assert any(words.startswith("Given: hand") for words in desk.ui.words)
     assert "Where the energy came from" in desk.ui.words
     assert abs(measure_account(world).energy["numerical"]) < 1e-12
+
+
+@pytest.mark.parametrize("scene", ["slope", "bounces", "spring_chain", "solar_system", "dominoes"])
+def test_both_bars_of_the_energy_are_equally_long(scene: str) -> None:
+    world = load_scene(scene)
+    watch = EnergyWatch()
+    for _ in world.stepping(seconds=2.0, stride=30):
+        figures = measure_world(world, watch)
+        came, went = parts_of(figures, DARK)
+        assert all(part.energy >= 0.0 for part in (*came, *went)), "a part has a length"
+        whole = sum(part.energy for part in came)
+        error = figures.audit.account.energy["numerical"]
+        assert sum(part.energy for part in went) == pytest.approx(whole + error, rel=1e-9, abs=1e-9)
+    assert whole > 0.0
+
+
+def test_a_body_in_the_hand_and_out_of_it_leaves_the_rest_as_it_was() -> None:
+    world = empty_world()
+    circle(world, (0, 8), mass=1.0)
+    circle(world, (3, 5), mass=2.0)
+    desk, canvas = recorded(world)
+    desk.frames(5)
+    desk.press(*world.component(world.entities()[1], Transform).position)
+    desk.frames(30)
+    desk.window.selection.entities = ()
+    frame(desk, canvas)
+    assert any("in the hand" in words for words in desk.ui.words)
+    desk.release(3, 5)
+    desk.key("space")
+    desk.window.selection.entities = ()
+    frame(desk, canvas)
+    assert not any("in the hand" in words for words in desk.ui.words)
+    account = measure_account(world)
+    assert abs(account.energy["hand"]) < 2.0 * 9.81, "what it weighs from the origin up is not counted"
+
+
+def test_parts_of_the_bar_have_their_names_as_far_as_there_is_room() -> None:
+    world = load_scene("slope")
+    desk, canvas = recorded(world)
+    desk.frames(120)
+    desk.key("space")
+    frame(desk, canvas)
+    assert "kinetic" in desk.ui.words and {"friction", "fri", "f"} & set(desk.ui.words)
+    assert any(words.startswith("Taken: friction") for words in desk.ui.words)
+
+
+def test_a_place_on_the_time_line_has_the_accounts_of_then() -> None:
+    desk, canvas = recorded(load_scene("slope"))
+    desk.frames(40)
+    history = desk.window.edits.history
+    step, then = history.step_count, measure_account(desk.world)
+    desk.frames(60)
+    desk.key("space")
+    desk.frames(2)
+    history.seek(step)
+    frame(desk, canvas)
+    assert measure_account(desk.world) == then
+    assert row(desk, "by friction") == quantity(then.energy["friction"], "J")
+
+
+def test_a_scene_that_is_started_again_has_new_accounts() -> None:
+    desk, canvas = recorded(load_scene("slope"))
+    desk.window.source = "slope"
+    desk.frames(60)
+    desk.key("space")
+    frame(desk, canvas)
+    assert "by friction" in desk.ui.rows
+    desk.key("r", pygame.KMOD_CTRL)
+    desk.frames(2)
+    frame(desk, canvas)
+    assert desk.world.time < 0.1
+    account = measure_account(desk.world)
+    assert account.since == 0.0 and abs(account.energy["friction"]) < 0.1
 
 
 def test_a_body_that_is_put_elsewhere_while_paused_is_an_edit() -> None:

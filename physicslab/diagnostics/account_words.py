@@ -20,7 +20,7 @@ ACCOUNT_WORDS: dict[str, str] = {
     "joints": "joints",
     "gravity": "gravity",
     "springs": "springs",
-    "numerical": "error of the method",
+    "numerical": "error",
 }
 """What each account is called where there is room for words."""
 

@@ -8,12 +8,15 @@ import numpy as np
 
 from physicslab.diagnostics.account import Accounts, measure_account
 from physicslab.diagnostics.energy import Energy
+from physicslab.stepping.accounting import held_in
 from physicslab.world import World
 
 __all__ = ["Audit"]
 
 _NEGLIGIBLE = 1e-12
 """Share of the energy exchanged below which an account is rounding."""
+_ROUNDING = 1e-15
+"""Share of the largest energy below which it is so, where hardly any is exchanged."""
 _OUTSIDE = ("edits", "hand", "numerical")
 """The accounts whose size is no measure of what is exchanged: a body that comes, goes or is taken into a hand
 brings or takes all of its potential energy, which depends on where that is zero."""
@@ -42,7 +45,7 @@ class Audit:
     latest : Energy
         The energy at the last sample.
     lowest : float
-        The lowest potential energy seen [J].
+        The lowest potential energy seen while no body was in a hand [J].
     largest_change, largest_error : float
         The largest size, so far, of E - E0 and of ``numerical`` [J]; NaN once either was no number.
     """
@@ -54,20 +57,20 @@ class Audit:
         self.largest_change = self.largest_error = self.exchanged = 0.0
         self.lowest = self._low = math.inf
         self._high = -math.inf
-        self._take(found)
+        self._take(found, is_held=False)
         self.initial = self.account.start.energy
 
     def sample(self, world: World) -> None:
         """Read the accounts as they are now."""
-        self._take(measure_account(world))
+        self._take(measure_account(world), is_held=bool(held_in(world)))
 
     @np.errstate(all="ignore")
-    def _take(self, found: Accounts) -> None:
+    def _take(self, found: Accounts, *, is_held: bool) -> None:
         self.account = account = found if self._begin is None else found.after(self._begin)
         self.latest: Energy = account.parts
         booked = account.energy
         stored = sum(self.latest.potential.values())
-        self.lowest = min(self.lowest, stored)
+        self.lowest = self.lowest if is_held else min(self.lowest, stored)
         inside = stored - booked["edits"] - booked["hand"]
         self._low, self._high = min(self._low, inside), max(self._high, inside)
         sizes = (abs(value) for name, value in booked.items() if name not in _OUTSIDE)
@@ -80,7 +83,8 @@ class Audit:
     @property
     def notable(self) -> dict[str, float]:
         """The accounts of energy at the last sample [J] that are more than rounding, without the error."""
-        least = _NEGLIGIBLE * self.exchanged
+        ends = self.account.start.energy, self.account.now.energy
+        least = max(_NEGLIGIBLE * self.exchanged, _ROUNDING * max(map(abs, ends)))
         booked = self.account.energy.items()
         return {name: value for name, value in booked if name != "numerical" and not abs(value) <= least}
 

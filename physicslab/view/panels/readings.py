@@ -42,7 +42,7 @@ def _energy_lines(figures: WorldFigures) -> list[Line]:
           for name, value in flows(audit.notable)),
         Line("Error of the method", quantity(audit.account.energy["numerical"], "J")),
         Line("largest so far", quantity(audit.largest_error, "J"), "detail"),
-        Line("of the energy exchanged", percentage(audit.error), "detail"),
+        Line("largest, as a share", percentage(audit.error), "detail"),
         Line("counted since", f"{audit.account.since:.2f} s", "detail"),
     ]  # fmt: skip
 

@@ -72,16 +72,22 @@ def _short(energy: float) -> str:
 def parts_of(figures: WorldFigures, theme: Theme) -> tuple[list[Part], list[Part]]:
     """Return of what the energy came, and where it is: two lists whose sums differ by the error alone.
 
-    Potential energy is counted from the lowest seen, as where it is zero has no meaning.
+    Potential energy is counted from the lowest seen, as where it is zero has no meaning. What a body in a hand
+    takes below that is left out of both.
     """
     audit = figures.audit
     start = audit.account.start.energy - audit.lowest
     stored = sum(audit.latest.potential.values()) - audit.lowest
+    below = max(-stored, 0.0)
     came = [Part("at the start", start, theme.faint)]
-    went = [Part("kinetic", audit.latest.kinetic, theme.velocity), Part("potential", stored, theme.force)]
+    went = [
+        Part("kinetic", audit.latest.kinetic, theme.velocity),
+        Part("potential", stored + below, theme.force),
+    ]
     for name, value in flows(audit.notable):
         colour = theme.bodies[_COLOURS[name]] if name in _COLOURS else theme.kinematic
-        (came if value > 0.0 else went).append(Part(_named(name, figures), abs(value), colour))
+        energy = max(-value - below, 0.0) if name == "hand" and value < 0.0 else abs(value)
+        (came if value > 0.0 else went).append(Part(_named(name, figures), energy, colour))
     return came, went
 
 
