@@ -72,8 +72,8 @@ def _short(energy: float) -> str:
 def parts_of(figures: WorldFigures, theme: Theme) -> tuple[list[Part], list[Part]]:
     """Return of what the energy came, and where it is: two lists whose sums differ by the error alone.
 
-    Potential energy is counted from the lowest seen, as where it is zero has no meaning. What a body in a hand
-    takes below that is left out of both.
+    Potential energy is counted from the lowest seen, as where it is zero has no meaning. What a body in a
+    hand takes below that is left out of both.
     """
     audit = figures.audit
     start = audit.account.start.energy - audit.lowest
