@@ -108,6 +108,7 @@ def _row(problem: Problem, row: Row) -> dict[str, Any]:
         "time": problem.seconds,
         "error": finite(found.error),
         "energy_drift": finite(seen.energy),
+        "energy_numerical": finite(seen.numerical),
         "momentum_error": finite(seen.momentum),
         "angular_momentum_error": finite(seen.angular_momentum),
         "omega_max_dt": finite(seen.rate_dt),

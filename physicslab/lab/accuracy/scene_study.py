@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Trail, Transform, Velocity
-from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.audit import Audit
 from physicslab.ecs.config import SimulationConfig
 from physicslab.integrators import INTEGRATORS
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error
@@ -65,7 +65,7 @@ class SceneRow:
     tightest : float, optional
         The same from where the tightest method has it; ``None`` where there is no such method.
     energy : float, optional
-        The relative drift of the energy at the end; ``None`` where what is driven changes it.
+        The error of the energy at the end, as a share of the energy exchanged: what no account explains.
     failure : str
         Why there are no figures.
     """
@@ -226,14 +226,14 @@ def _fill(
     """Run a scene by a configuration, and write its cost and its errors into a row."""
     for _ in range(_REPEATS):  # the shortest: the first also compiles, and other programs run as well
         world = _prepared(load, simulation)
-        drift = Drift(world)
+        audit = Audit(world)
         taken, places = cpu_time(partial(_end, world, seconds))
         row.cpu_s = min(row.cpu_s or taken, taken)
         if taken > _REPEATED_BELOW_S:
             break
     row.evaluations = world.force_evaluations
-    drift.sample(world)
-    row.energy = drift.error
+    audit.sample(world)
+    row.energy = audit.error
     row.half_step = _apart(places, _end(_prepared(load, finer_settings(simulation, 2)), seconds))
     if best is not None:
         row.tightest = _apart(places, best)
