@@ -276,4 +276,4 @@ def test_accuracy_writes_how_the_digits_of_a_scene_become_fewer(
     assert scene["name"] == "two_planets" and scene["horizon_s"] is None
     assert [look["seconds"] for look in scene["looks"]][-1] == 3.0 and len(scene["looks"]) == 24
     assert all(len(look["bodies"]) == 2 for look in scene["looks"])
-    assert "no rounding grows to another future" in capsys.readouterr().out
+    assert "no rounding was seen to grow to another future" in capsys.readouterr().out

@@ -29,6 +29,8 @@ DEFAULT_S = 5.0
 """How long a scene is run, where nothing else is asked for."""
 _ESTIMATE_SHARE, _HORIZON_SHARE = 0.3, 0.4
 """Of the work of a study, roughly, that is done after the estimate, and after the horizon was looked for."""
+_HORIZON_TIMES = 6.0
+"""How many times as long the horizon is looked for: it is often later than errors are compared."""
 _TIGHTEST = 1e-17
 _SUBSTEP_FACTORS = (0.5, 1.0, 2.0, 4.0)
 """The rungs of a ladder of steps: so many times the scene's own substeps."""
@@ -104,7 +106,7 @@ class SceneStudy:
         Its methods.
     horizon_s : float, optional
         The time from the start [s] at which an error of one rounding has grown to another future; ``None``
-        where none does within the run.
+        where none does within six times that long.
     """
 
     name: str
@@ -136,7 +138,8 @@ def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S
             study.estimate = found
         else:
             yield _ESTIMATE_SHARE * found
-    horizon = find_horizon(with_ids(write_scene(load())), study.estimate.bodies, seconds)
+    document = with_ids(write_scene(load()))
+    horizon = find_horizon(document, study.estimate.bodies, _HORIZON_TIMES * seconds)
     study.horizon_s = yield from scaled(horizon, _ESTIMATE_SHARE, _HORIZON_SHARE)
     best, study.tightest = study.estimate.reference, "rigid contacts"
     if best is None:
