@@ -172,6 +172,16 @@ def test_digits_of_the_energy_are_those_by_which_it_is_kept(integrator: str, sub
     assert found.energy == pytest.approx(-math.log10(abs(end.total - start.total) / scale), abs=1.0)
 
 
+def test_energy_that_friction_has_taken_is_a_share_of_what_there_was() -> None:
+    """A disc that has come to rest has no energy left; what error is left is that of what it had."""
+
+    def load() -> World:
+        (world,) = CONTACTS["roll_groove"].build(SimulationConfig(contacts="soft"))
+        return world
+
+    assert trust(load, 2.0).energy > 4.0
+
+
 def test_momentum_has_all_digits_where_it_is_kept_and_positions_have_none() -> None:
     """Two bodies on a spring whose steps are far too long for it: where they are is lost, momentum is not."""
 

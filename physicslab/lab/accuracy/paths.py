@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -34,11 +34,11 @@ class Path:
     states : array of floats
         Columns x, y [m], angle [rad], vx, vy [m/s], spin [rad/s] of n bodies (k, n, 6).
     energy, energy_scale : array of floats
-        The total energy [J], and the largest of it and its parts (k,).
+        The total energy [J], and the largest of it and its parts since the start (k,).
     momentum : array of floats
         That of the whole world [kg m/s] (k, 2).
     momentum_scale : array of floats
-        The sum of the sizes of the momenta of bodies [kg m/s] (k,).
+        The largest sum of the sizes of the momenta of bodies since the start [kg m/s] (k,).
     """
 
     states: NDArray[np.float64]
@@ -93,26 +93,31 @@ def run_path(
     """
     rows = rows_of(world, bodies)
     began = time.perf_counter() - world.compile_s  # kernels may have to be compiled first
-    looks, reached = [], 0.0
+    looks, reached = [_look(world, rows)], 0.0
     for moment in moments:
         for _ in world.stepping(seconds=moment - reached, stride=1 if math.isfinite(budget_s) else _WHOLE):
             if time.perf_counter() - began - world.compile_s > budget_s:
                 raise OutOfTime(f"given up after {budget_s:g} s, at t = {world.time:.3g} s")
         reached = moment
-        looks.append([np.array(found, np.float64) for found in _look(world, rows)])
-    return Path(*(np.array(found) for found in zip(*looks, strict=True)))
+        looks.append(_look(world, rows))
+    states, energy, energy_scale, momentum, momentum_scale = (
+        np.array([look[n] for look in looks]) for n in range(5)
+    )
+    largest = (np.maximum.accumulate(scale)[1:] for scale in (energy_scale, momentum_scale))
+    return Path(states[1:], energy[1:], next(largest), momentum[1:], next(largest))
 
 
-def _look(world: World, rows: list[int]) -> Iterator[object]:
-    """Yield what a path has of a world as it is now."""
+def _look(world: World, rows: list[int]) -> tuple[NDArray[np.float64], float, float, list[float], float]:
+    """Return what a path has of a world as it is now, in its order."""
     transform, velocity = world.table(Transform), world.table(Velocity)
     columns = (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
-    yield np.column_stack([column[rows] for column in columns])
-    energy = measure_energy(world)
-    yield energy.total
-    yield max(map(abs, (energy.total, energy.kinetic, *energy.potential.values())))
-    momentum = measure_momentum(world).linear
-    yield momentum.x, momentum.y
+    energy, momentum = measure_energy(world), measure_momentum(world).linear
     batch = world.batch(Transform, Velocity, Mass)
     speeds = np.hypot(*velocity["linear"][batch.rows].T)
-    yield float(np.sum(world.table(Mass)["mass"][batch.rows] * speeds))
+    return (
+        np.column_stack([column[rows] for column in columns]),
+        energy.total,
+        max(map(abs, (energy.total, energy.kinetic, *energy.potential.values()))),
+        [momentum.x, momentum.y],
+        float(np.sum(world.table(Mass)["mass"][batch.rows] * speeds)),
+    )

@@ -70,8 +70,8 @@ class Trust:
     worst : str
         That body.
     energy, momentum : float
-        Digits of the total energy, as a share of the largest of it and its parts, and of the momentum, as a
-        share of the sum of those of all bodies.
+        Digits of the total energy, as a share of the largest of it and its parts since the start, and of the
+        momentum, as a share of the largest sum of those of all bodies.
     entities : dict of str to float
         How many digits of the position of each body agree in all ways to compute it.
     horizon_s : float, optional
