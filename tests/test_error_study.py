@@ -206,9 +206,9 @@ def test_the_horizon_of_a_chaotic_scene_is_shown_in_plain_words(
     desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text(json.dumps(json.loads({report!r})))")
     measured(desk)
     desk.frames(SETTLED)
-    told = [words for words in desk.ui.words if "It has no error but a horizon" in words]
-    assert len(told) == (horizon is not None)
-    assert all(f"{horizon:.3g} s from the start" in words and "energy" in words for words in told)
+    seen = [words for words in desk.ui.words if "It has no error but a horizon" in words]
+    assert len(seen) == (horizon is not None)
+    assert all(f"{horizon:.3g} s from the start" in words and "energy" in words for words in seen)
 
 
 def test_a_click_on_a_mark_of_the_plot_takes_its_method_and_step(tmp_path: Path) -> None:

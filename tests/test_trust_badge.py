@@ -63,7 +63,7 @@ def watched(tmp_path: Path, deed: str = "write()", *, bodies: int = 1) -> Desk:
 
 
 def until(desk: Desk, what: str) -> None:
-    """Let frames go by until the badge says something."""
+    """Let frames go by until the badge shows some words."""
     deadline = time.monotonic() + 60.0
     while what not in desk.ui.words and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -213,7 +213,7 @@ def test_many_bodies_are_left_out_with_the_reason(tmp_path: Path) -> None:
     assert any(f"{BODIES_LIMIT + 1:,} bodies can move" in words for words in desk.ui.words)
 
 
-def test_a_failure_is_told_in_its_own_words_and_not_tried_again(tmp_path: Path) -> None:
+def test_a_failure_is_shown_in_its_own_words_and_not_tried_again(tmp_path: Path) -> None:
     desk = watched(tmp_path, "sys.exit('physicslab: too strange')")
     until(desk, "digits: not found")
     desk.frames(90)

@@ -1,4 +1,4 @@
-"""Until when a scene can be foretold: how fast a start that is displaced parts from it."""
+"""Until when a scene can be predicted: how fast a start that is displaced parts from it."""
 
 from __future__ import annotations
 

@@ -126,7 +126,7 @@ def _estimate_lines(study: SceneStudy) -> list[str]:
 
 
 def _horizon_words(horizon_s: float | None) -> str:
-    """Return until when a scene can be foretold."""
+    """Return until when a scene can be predicted."""
     if horizon_s is None:
         return "no rounding was seen to grow to another future"
     return f"one of many possible futures {horizon_s:.3g} s after the start, by whatever method"

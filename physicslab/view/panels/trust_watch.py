@@ -17,7 +17,7 @@ from physicslab.world import World
 
 __all__ = ["BODIES_LIMIT", "RUNS", "Finding", "TrustWatch"]
 
-_NICELY = "import os, sys; getattr(os, 'nice', int)(10); from physicslab.cli import main; sys.exit(main())"
+_NICELY = "import os, sys; getattr(os, 'nice', int)(5); from physicslab.cli import main; sys.exit(main())"
 _COMMAND = (sys.executable, "-c", _NICELY, "accuracy")
 """Frames go first: the process takes what they leave of the machine."""
 BODIES_LIMIT = 500

@@ -84,7 +84,7 @@ def _frame(ui: Ui) -> None:
 
 
 def _words(trust: TrustWatch, now: float) -> tuple[str, ...]:
-    """Return what the badge says, the longest first."""
+    """Return what is written on the badge, the longest first."""
     found = trust.finding(now)
     if not trust.wanted:
         return (_ASKED,)
