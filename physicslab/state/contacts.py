@@ -77,8 +77,8 @@ class Contacts:
         longer for that); those located in time are there in any case.
     """
 
-    LOGGED = 32_768
-    """How many impacts are kept."""
+    LOGGED = 100_000
+    """How many impacts are kept; their memory is taken as they come."""
 
     proximity_count = _count(near_counts.PROXIMITY, "How many near pairs have no record.")
     recorded = _count(near_counts.RECORDED, "How many near pairs have records.")
@@ -126,6 +126,13 @@ class Contacts:
         """The log for the impacts of the contact step: of no length where they are not read."""
         return self.log if self.read else self.log[:0]
 
+    def lengthen_log(self, length: int) -> None:
+        """Let the log hold so many impacts, no fewer than now; those in it stay."""
+        last = np.arange(max(0, self.logged - len(self.log)), self.logged)
+        log: NDArray[Any] = np.zeros(length, IMPACT)
+        log[last % length] = self.log[last % len(self.log)]
+        self.log = log
+
     def forget_impacts(self, first: int, count: int) -> None:
         """Remove ``count`` impacts from number ``first`` on from the log; later ones move up."""
         kept = self.log[np.arange(first + count, self.logged) % len(self.log)]
@@ -141,6 +148,7 @@ class Contacts:
         self.proximity: NDArray[np.uint32] = np.zeros(2 * capacity, np.uint32)
         self.activation_distance: NDArray[np.float64] = np.zeros(capacity)
         self.rotations: NDArray[np.float64] = np.zeros((0, 3))
+        self.slips: NDArray[np.float64] = np.zeros((0, 2))
         self.table: NDArray[np.int64] = np.zeros(16, np.int64)
         self.sleeping: NDArray[np.int64] = np.zeros(capacity, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.

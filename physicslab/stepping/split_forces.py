@@ -117,6 +117,7 @@ class SplitForces:
             rates = force.rates(state)
             if rates is not None:
                 self.predictable &= rates * h <= _MAX_PREDICTABLE
+        bodies.unkicked[:] = bodies.sub_integrated & ~self.predictable
 
     def begin(self, state: State) -> None:
         """Take the present forces and masses; they are kept for a step."""

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Velocity
+from physicslab.kernels.accounts import DAMPING
 from physicslab.kernels.forces import packed_forces
 from physicslab.kernels.forces.resistance import drag_resistance
 from physicslab.state.packed import PackedForce, StateLayout
@@ -19,6 +20,7 @@ class DragSystem(ForceSystem):
     """Slows every body that has Drag. It dissipates energy and stores none."""
 
     needs = (Drag, Velocity, Mass)
+    account = DAMPING
     kernels = (packed_forces.drag,)
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:

@@ -8,11 +8,13 @@ from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
 from physicslab.kernels.wide.float64x8 import (
     Wide,
     choose,
+    everywhere,
     greater,
     lesser,
     put,
     put_numbers,
     put_vectors,
+    sum_of,
     take,
     take_numbers,
     take_vectors,
@@ -177,8 +179,11 @@ def _velocities(slots: Slots, k: int, motion: Motion) -> tuple[Wide, Wide, Wide,
 
 
 @fused
-def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> None:
-    """Solve a block of discs; normal impulses turn no disc, so friction does not depend on them."""
+def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> Wide:
+    """Solve a block of discs; normal impulses turn no disc, so friction does not depend on them.
+
+    Returns the tangential impulses so far times the speeds of sliding: the work of friction [J].
+    """
     data, at = slots.data, k * DISC_ROWS
     vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
@@ -189,6 +194,7 @@ def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     push = one_normal(impulse, change)
     put(data, at + ONE + IMPULSE, impulse + push)
     across = nx * vy - ny * vx - rb * wb - ra * wa
+    rubbed = take(data, at + ONE + TANGENT_IMPULSE) * across
     friction_impulse = _update_friction(data, at + ONE, take(data, at + FRICTION), across)
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
@@ -196,6 +202,7 @@ def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
     put_numbers(motion.angular, slots.a, k * WIDE, wa - take(data, at + INERTIA_A) * ra * friction_impulse)
     put_numbers(motion.angular, slots.b, k * WIDE, wb - take(data, at + INERTIA_B) * rb * friction_impulse)
+    return rubbed
 
 
 @fused
@@ -207,11 +214,12 @@ def _levers(data: Numbers, point: int, nx: Wide, ny: Wide) -> tuple[Wide, Wide, 
 
 
 @fused
-def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> None:
+def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> Wide:
     """Solve a block of boxes: both normal impulses, then both points' friction.
 
     Velocities at the points are computed once; the effect of one point's impulse on the other's velocity is
     added (by the effective mass between them), which is a shorter dependency than the bodies' velocities.
+    Returns what :func:`_sweep_discs` does.
     """
     data, at = slots.data, k * BOX_ROWS
     vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
@@ -232,8 +240,10 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     put(data, at + TWO + IMPULSE, impulse2 + push2)
     wa, wb = wa - ia * (n1a * push1 + n2a * push2), wb + ib * (n1b * push1 + n2b * push2)
     tangent1, tangent2 = take(data, at + ONE + TANGENT_IMPULSE), take(data, at + TWO + TANGENT_IMPULSE)
+    sliding1, sliding2 = across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a
+    rubbed = tangent1 * sliding1 + tangent2 * sliding2
     friction1, friction2 = two_frictions(
-        tangent1, tangent2, across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a,
+        tangent1, tangent2, sliding1, sliding2,
         take(data, at + ONE + TANGENT_MASS), take(data, at + TWO + TANGENT_MASS),
         friction * (impulse1 + push1), friction * (impulse2 + push2),
         ma + mb + ia * t1a * t2a + ib * t1b * t2b,
@@ -246,15 +256,21 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
     put_numbers(motion.angular, slots.a, k * WIDE, wa - ia * (t1a * friction1 + t2a * friction2))
     put_numbers(motion.angular, slots.b, k * WIDE, wb + ib * (t1b * friction1 + t2b * friction2))
+    return rubbed
 
 
 @inlined
-def sweep_wide(near: Near, motion: Motion, drift: float, soft: SoftConstraint) -> None:
-    """Solve all blocks once. Separations are first advanced by ``drift`` s at the present velocities."""
+def sweep_wide(near: Near, motion: Motion, drift: float, soft: SoftConstraint) -> float:
+    """Solve all blocks once. Separations are first advanced by ``drift`` s at the present velocities.
+
+    Returns the work of friction [J]: the tangential impulses there were, times the speeds of sliding.
+    """
+    rubbed = everywhere(0.0)
     for number in range(near.counts[DISC_BLOCKS]):
-        _sweep_discs(near.discs, near.discs.order[number], motion, drift, soft)
+        rubbed = rubbed + _sweep_discs(near.discs, near.discs.order[number], motion, drift, soft)
     for number in range(near.counts[BOX_BLOCKS]):
-        _sweep_boxes(near.boxes, near.boxes.order[number], motion, drift, soft)
+        rubbed = rubbed + _sweep_boxes(near.boxes, near.boxes.order[number], motion, drift, soft)
+    return sum_of(rubbed)
 
 
 @fused
