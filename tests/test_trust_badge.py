@@ -131,6 +131,20 @@ def test_digits_are_those_until_now_and_are_found_for_more_as_time_goes_on(tmp_p
     watch.stop()
 
 
+def test_a_figure_that_does_not_reach_until_now_shows_until_when_it_does(tmp_path: Path) -> None:
+    desk = watched(tmp_path)
+    until(desk, "11 digits")
+    watch, (bob,) = desk.window.trust, desk.world.batch(Velocity).entities.tolist()
+    desk.window.selection.take(bob)
+    watch._command = (sys.executable, "-c", "import time; time.sleep(600)")
+    end = watch._findings[-1].until
+    while desk.world.time <= end + 0.1:
+        desk.frames(20)
+    assert watch.running and f"6 digits until {end:.3g} s" in desk.ui.words
+    assert desk.ui.rows["Position"] == f"6 digits until {end:.3g} s"
+    watch.stop()
+
+
 def test_an_edit_drops_what_was_found_and_begins_again_from_there(tmp_path: Path) -> None:
     desk = watched(tmp_path)
     until(desk, "11 digits")
@@ -161,7 +175,11 @@ def test_an_edit_ends_the_process_that_is_under_way(tmp_path: Path) -> None:
     process, place = desk.window.trust._process, desk.window.trust._place
     assert process is not None and place is not None
     tap(desk, "g")
-    assert process.poll() is not None and not Path(place.name).exists()
+    process.wait(10.0)
+    deadline = time.monotonic() + 10.0
+    while Path(place.name).exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not Path(place.name).exists()
     until(desk, "checking 0%")
     desk.window.trust.stop()
 

@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 import tempfile
+import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -89,6 +90,19 @@ class LabProcess:
         if self._place is not None:
             self._place.cleanup()
             self._place = None
+
+    def abandon(self) -> None:
+        """Stop it without waiting for its end, which takes longer than a frame has."""
+        process, place, self._process, self._place = self._process, self._place, None, None
+        if process is None or place is None:
+            return
+        process.kill()
+
+        def clear() -> None:
+            process.wait()
+            place.cleanup()
+
+        threading.Thread(target=clear, name="lab process", daemon=True).start()
 
     @property
     def _report(self) -> Path:

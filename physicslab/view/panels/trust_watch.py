@@ -30,6 +30,8 @@ _LEFT = 0.8
 """The share of the time they were found for after which they are found for more."""
 _SETTLED_S = 0.5
 """How long nothing must have been edited [s] before it is begun."""
+_LOOK_S = 0.1
+"""How often it is looked at how far it is [s]."""
 _PATIENCE_S = 120.0
 """After how long it is given up [s]."""
 _SAME_S = 1e-9
@@ -92,7 +94,7 @@ class TrustWatch(LabProcess):
         self._bodies: tuple[int, ...] = ()
         self._seen: tuple[World, int] | None = None
         self._is_still = True  # whether nothing was edited since the frame before
-        self._settled = self._began = 0.0
+        self._settled = self._began = self._next_look = 0.0
         self._snapshot: WorldSnapshot | None = None
         self._writing: Iterator[bytes | None] | None = None
         self._scene: list[bytes] = []
@@ -141,20 +143,20 @@ class TrustWatch(LabProcess):
         if not self._is_still or not self.wanted or self.left_out or self.failure:
             return
         if self.running:
-            self._look(now)
+            if now >= self._next_look:
+                self._look(now)
         elif now - self._settled >= _SETTLED_S and self._is_due(world.time):
             self._start(world, now)
 
     def toggle(self) -> None:
         """Have digits checked, or no longer."""
         self.wanted = not self.wanted
-        self.stop()
+        self.abandon()
         self._drop()
 
     def _forget(self, seen: tuple[World, int], now: float) -> None:
         """Drop what was found, and what is under way: the world was edited."""
-        if self.running:
-            self.stop()
+        self.abandon()
         self._seen, self._settled = seen, now
         self._snapshot = self._writing = None
         self._scene, self._bodies, self.left_out = [], (), ""
@@ -216,12 +218,12 @@ class TrustWatch(LabProcess):
 
     def _look(self, now: float) -> None:
         """Look whether it has ended; read what it found, or give it up."""
-        report = self.ended()
+        self._next_look, report = now + _LOOK_S, self.ended()
         if report:
             (found,) = report["scenes"]
             self._read(found)
         elif report is None and now - self._began > _PATIENCE_S:
-            self.stop()
+            self.abandon()
             self.failure = f"given up after {_PATIENCE_S:g} s"
 
     def _read(self, found: dict[str, Any]) -> None:

@@ -67,10 +67,14 @@ def _width(ui: Ui, words: str) -> float:
 
 def build_body_digits(ui: Ui, world: World, window: Window, entity: int) -> None:
     """Write to how many digits the position of a body is good, where that is known."""
-    digits = window.trust.digits_of(entity, world.time)
-    if digits is None:
+    digits, found = window.trust.digits_of(entity, world.time), window.trust.finding(world.time)
+    if digits is None or found is None:
         return
-    words = "one of many" if window.trust.is_beyond(world.time) else f"good to {_counted(digits)}"
+    words = f"good to {_counted(digits)}"
+    if window.trust.is_beyond(world.time):
+        words = "one of many"
+    elif found.until < world.time:
+        words = f"{_counted(digits)} until {found.until:.3g} s"
     ui.row("Position", words, _sentence(window.trust, world, world.time))
 
 
@@ -118,7 +122,7 @@ def _sentence(trust: TrustWatch, world: World, now: float) -> str:
     if trust.left_out or (trust.failure and found is None):
         return trust.left_out or f"Digits could not be checked: {trust.failure}"
     if found is None:
-        return f"Digits are being checked, from t = {trust.since:.4g} s (the last edit) on"
+        return f"Digits are being checked from t = {trust.since:.4g} s on, the last edit"
     if trust.is_beyond(now):
         return (
             f"One rounding has grown to another future since t = {trust.horizon:.3g} s, by whatever method. "
