@@ -47,16 +47,17 @@ def box(of: World, x: float, y: float, *, mass: float = 2.0, v: tuple[float, flo
     of.spawn(Transform((x, y)), Velocity(v), Mass(mass), Shape.box(0.5, 0.5), Material(0.0, 0.5))
 
 
-def closes(found: Accounts) -> None:
+def closes(found: Accounts, *, overlapping: bool = False) -> None:
     """Assert that nothing is left of energy and momentum but rounding of the largest term."""
     terms = [abs(value) for value in found.energy.values()]
     assert abs(found.energy["numerical"]) <= 1e-11 * max(*terms, 1.0)
     for axis in ("x", "y"):
         terms = [abs(getattr(impulse, axis)) for impulse in found.momentum.values()]
         assert abs(getattr(found.momentum["numerical"], axis)) <= 1e-11 * max(*terms, 1.0)
-    # An impact of bodies that overlap acts at two points, one on each: the rest is the method's error.
     turned = found.angular_momentum
-    assert abs(turned["numerical"]) <= 1e-3 * max(*(abs(value) for value in turned.values()), 1.0)
+    rest = abs(turned["numerical"]) / max(*(abs(value) for value in turned.values()), 1.0)
+    # Impacts of bodies that overlap act at two points, one on each: that is an error, and shown as one.
+    assert rest <= (1e-2 if overlapping else 1e-11)
 
 
 STAGED = pytest.mark.parametrize("staged", [False, True])
@@ -150,7 +151,7 @@ def test_both_ways_to_make_a_step_book_the_same(seed: int, e: float, damping: fl
             of.spawn(Transform(where), Velocity(tuple(speed), 1.0), Mass(1.0 + n), shape, Material(e, 0.3))
         of.run(seconds=1.0)
         both.append(measure_account(of))
-        closes(both[-1])
+        closes(both[-1], overlapping=True)
     for one, other in zip(both[0].energy.items(), both[1].energy.items(), strict=True):
         scale = max(1.0, *(abs(value) for value in both[0].energy.values()))
         assert one[0] == other[0] and abs(one[1] - other[1]) <= 1e-10 * scale
@@ -170,7 +171,7 @@ def test_a_step_that_fails_leaves_nothing_in_the_account() -> None:
 
 
 def test_a_crowd_books_friction_too() -> None:
-    """Wide contacts book to first order: sliding boxes lose all to friction within that."""
+    """Wide contacts book by the speeds of two substeps: sliding boxes lose all to friction within that."""
     of = world()
     floor(of)
     for n in range(80):
@@ -179,6 +180,5 @@ def test_a_crowd_books_friction_too() -> None:
     assert of.contacts.wide.filled > 0
     of.run(seconds=0.4)
     found = measure_account(of)
-    # A substep takes 0.02 m/s of 1 m/s; sliding is booked at the end of each.
-    assert found.energy["friction"] == pytest.approx(-40.0, rel=0.025)
+    assert found.energy["friction"] == pytest.approx(-40.0, rel=6e-3)
     closes(found)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.contacts.arguments import bounds_of, materials_of, motion_of, sizes_of
 from physicslab.contacts.near_pairs import list_all
+from physicslab.kernels.accounts import GRAVITY, PX
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.events import events, path
 from physicslab.kernels.wide import slots
@@ -117,6 +118,7 @@ class EventDriven:
     def _run_until_rest(self, state: State, h: float, parts: int, steps: int) -> int:
         """Make the steps in which nothing rests, of ``parts`` parts each; return how many they are."""
         start, collisions, logged = copy_motion(state), state.collisions, state.contacts.logged
+        booked = state.account.sums.copy()
         while steps:
             self._begin(state)
             gone, why = 0.0, events.CAME_TO_REST
@@ -128,6 +130,7 @@ class EventDriven:
                 return steps
             set_motion(state, start)
             state.collisions, state.contacts.logged = collisions, logged
+            state.account.sums[:] = booked
             self._urgent, steps = -1, min(int(gone / h), steps - 1)
         self._left = state.steps
         return 0
@@ -203,18 +206,21 @@ class EventDriven:
         For ballistic bodies, resting ones follow a path from their known start, velocity and end. Where an
         event comes before that end, resting bodies go back and advance to the event.
         """
-        in_contact = self._mode == events.IN_CONTACT
+        in_contact, ballistic = self._mode == events.IN_CONTACT, self._mode == events.BALLISTIC
         start = Moment.of(state, np.flatnonzero(self._left_to_contacts()))
-        end = self._advance_resting(state, start, offset, span, dt)
+        end = self._advance_resting(state, start, offset, span, dt, ballistic)
         impacts, elapsed = state.collisions - start.collisions, span
-        if (self._mode == events.BALLISTIC).any():
+        if ballistic.any():
             self._lead_resting(in_contact, start.motion, end, span, dt)
             set_motion(state, start.motion)
+            resting = state.account.sums.copy()
             elapsed, _ = self._run_events(state, span, dt, offset)
             motion = copy_motion(state)
             if elapsed < span:
+                flown = state.account.sums - resting
                 start.restore(state, impacts)
-                end = self._advance_resting(state, start, offset, elapsed, dt)
+                end = self._advance_resting(state, start, offset, elapsed, dt, ballistic)
+                state.account.sums += flown
             for whole, part in zip(motion, end, strict=True):
                 whole[in_contact] = part[in_contact]
             set_motion(state, motion)
@@ -223,11 +229,21 @@ class EventDriven:
             self._mode[released] = events.BALLISTIC
         return elapsed
 
-    def _advance_resting(self, state: State, start: Moment, offset: float, span: float, dt: float) -> Motion:
-        """Advance resting bodies by ``span`` s, if they can move within it; return the motion of all."""
+    def _advance_resting(
+        self, state: State, start: Moment, offset: float, span: float, dt: float, ballistic: NDArray[np.bool_]
+    ) -> Motion:
+        """Advance resting bodies by ``span`` s, if they can move within it; return the motion of all.
+
+        The contact step moves ``ballistic`` ones as well, which is not booked.
+        """
         if span <= _SHORT * dt:
             return copy_motion(state)
-        return self._resting.advance(state, start.pairs, state.time + offset, span)
+        end = self._resting.advance(state, start.pairs, state.time + offset, span)
+        mass, (gx, gy) = state.table(Mass)["mass"][ballistic], span * self._gravity
+        position, velocity = start.motion[0][ballistic], start.motion[2][ballistic]
+        x, y = mass @ (position + 0.5 * span * velocity)
+        state.account.sums[GRAVITY, PX:] -= (mass.sum() * gx, mass.sum() * gy, x * gy - y * gx)
+        return end
 
     def _lead_resting(
         self, in_contact: NDArray[np.bool_], start: Motion, end: Motion, span: float, dt: float

@@ -118,7 +118,7 @@ class StageAccounts:
         rows = np.concatenate((np.repeat(kicked, 2), kicked & (bodies.awake_inverse_inertia > 0.0)))
         for force, pull in self._pulls.items():
             sums[force.account, ENERGY] += float(pull[rows] @ way[rows])
-        driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0)
+        driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0) & ~bodies.sub_integrated
         if driven.any():
             rows = np.concatenate((np.repeat(driven, 2), driven))
             sums[HAND, ENERGY] -= float(bodies.pull[rows] @ way[rows])

@@ -27,9 +27,15 @@ class DragSystem(ForceSystem):
         """Return the drag for compiled integrators."""
         table, rows = state.table(Drag), state.batch(*self.needs).rows
         rows = rows[layout.place[rows] >= 0]  # rows that take no part have no coordinates
+        moved = state.bodies.inverse_mass[rows] > 0.0
+        rows = np.concatenate((rows[moved], rows[~moved]))
         parameters = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
-        indices = np.concatenate(([len(rows)], layout.place[rows]))
-        return PackedForce(packed_forces.drag, parameters, indices, drag_resistance)
+        indices: NDArray[np.int64] = np.concatenate(
+            ([len(rows)], layout.place[rows], (-1, int(np.count_nonzero(moved)), -1))
+        )
+        books = ((DAMPING, len(rows) + 1),) if moved.any() else ()
+        keeps = len(rows) + 3
+        return PackedForce(packed_forces.drag, parameters, indices, drag_resistance, books=books, keeps=keeps)
 
     def needs_origin(self, state: State) -> bool:
         """Drag depends on velocities alone."""

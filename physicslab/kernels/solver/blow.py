@@ -22,7 +22,7 @@ _HALVINGS = 48
 """Bisections for the restitution of two points that makes no energy."""
 _SEPARATE = 1.0 + 1e-9
 """One, and so much more that two points of a pair are never quite one."""
-_ROUNDING = 1e-12
+_ROUNDING = 1e-13
 """Share of the work of the impulses up to which a gain of energy is rounding."""
 
 

@@ -144,8 +144,8 @@ def relax(contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: f
     """Go through all contacts without correction, so that pushing bodies apart leaves no velocity behind.
 
     ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call. What
-    friction takes in a crowd, which has wide contacts, is booked to first order in ``h``, by the impulses of
-    :func:`solve` and the speeds now: there are too many to look at twice.
+    friction takes in a crowd, which has wide contacts, is booked by the impulses of :func:`solve` and the
+    speeds now and a substep ago (at scalar ones, by those now): there are too many points to look at twice.
     """
     rubbed = follow_drift(contacts, motion, h)
     rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0), h

@@ -1,5 +1,6 @@
 """Impulses at wide contacts, eight at a time, by the formulas of ``kernels/solver/impulse.py``."""
 
+import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, fused, inlined
@@ -26,6 +27,7 @@ from physicslab.kernels.wide.layout import (
     ARM_BY,
     BOX_ROWS,
     DISC_ROWS,
+    DISC_SLIDING,
     FRICTION,
     IMPULSE,
     INERTIA_A,
@@ -40,6 +42,7 @@ from physicslab.kernels.wide.layout import (
     RADIUS_B,
     SEPARATION,
     SIZE,
+    SLIDING,
     TANGENT_IMPULSE,
     TANGENT_MASS,
     TWO,
@@ -170,6 +173,18 @@ def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide
 
 
 @fused
+def _rubbed(data: Numbers, sliding: int, impulse: Wide, v: Wide) -> Wide:
+    """Return the work of tangential impulses [J] at the mean of the speeds of sliding, now and a substep ago.
+
+    The latter are in the row ``sliding``, and are set to the present ones.
+    """
+    before = take(data, sliding)
+    put(data, sliding, v)
+    mean: Wide = choose(before < math.inf, 0.5 * (before + v), v)
+    return impulse * mean
+
+
+@fused
 def _velocities(slots: Slots, k: int, motion: Motion) -> tuple[Wide, Wide, Wide, Wide, Wide, Wide]:
     """Return the velocities and angular velocities of A and of B in a block."""
     vax, vay = take_vectors(motion.linear, slots.a, k * WIDE)
@@ -182,7 +197,7 @@ def _velocities(slots: Slots, k: int, motion: Motion) -> tuple[Wide, Wide, Wide,
 def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> Wide:
     """Solve a block of discs; normal impulses turn no disc, so friction does not depend on them.
 
-    Returns the tangential impulses so far times the speeds of sliding: the work of friction [J].
+    Returns the work of friction [J] where there is a ``drift``, as in the first sweep after the impulses.
     """
     data, at = slots.data, k * DISC_ROWS
     vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
@@ -194,7 +209,9 @@ def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     push = one_normal(impulse, change)
     put(data, at + ONE + IMPULSE, impulse + push)
     across = nx * vy - ny * vx - rb * wb - ra * wa
-    rubbed = take(data, at + ONE + TANGENT_IMPULSE) * across
+    rubbed = everywhere(0.0)
+    if drift != 0.0:
+        rubbed = _rubbed(data, at + DISC_SLIDING, take(data, at + ONE + TANGENT_IMPULSE), across)
     friction_impulse = _update_friction(data, at + ONE, take(data, at + FRICTION), across)
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
@@ -241,7 +258,10 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     wa, wb = wa - ia * (n1a * push1 + n2a * push2), wb + ib * (n1b * push1 + n2b * push2)
     tangent1, tangent2 = take(data, at + ONE + TANGENT_IMPULSE), take(data, at + TWO + TANGENT_IMPULSE)
     sliding1, sliding2 = across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a
-    rubbed = tangent1 * sliding1 + tangent2 * sliding2
+    rubbed = everywhere(0.0)
+    if drift != 0.0:
+        rubbed = _rubbed(data, at + ONE + SLIDING, tangent1, sliding1)
+        rubbed = rubbed + _rubbed(data, at + TWO + SLIDING, tangent2, sliding2)
     friction1, friction2 = two_frictions(
         tangent1, tangent2, sliding1, sliding2,
         take(data, at + ONE + TANGENT_MASS), take(data, at + TWO + TANGENT_MASS),
@@ -263,7 +283,7 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
 def sweep_wide(near: Near, motion: Motion, drift: float, soft: SoftConstraint) -> float:
     """Solve all blocks once. Separations are first advanced by ``drift`` s at the present velocities.
 
-    Returns the work of friction [J]: the tangential impulses there were, times the speeds of sliding.
+    Returns the work of the tangential impulses so far [J], where there is a drift.
     """
     rubbed = everywhere(0.0)
     for number in range(near.counts[DISC_BLOCKS]):
