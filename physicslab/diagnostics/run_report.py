@@ -264,7 +264,10 @@ def _trust_words(report: Mapping[str, Any]) -> str:
     """Return what can be relied on, on a line."""
     if report["digits"] is None:
         return f"cannot be measured: {report['failure']}"
-    words = f"{report['digits']:.1f} digits of every position at the end, fewest of {report['worst']}"
+    words = (
+        f"{report['digits']:.1f} digits of every position at the end, fewest of {report['worst']}; "
+        f"{report['energy']:.1f} of the energy"
+    )
     if report["horizon_s"] is None:
         return f"{words}; no rounding grows to another future"
     return f"{words}; one of many possible futures {report['horizon_s']:.3g} s after the start"

@@ -74,6 +74,7 @@ class HudSystem(System):
         window.dashboard.follow(world, window.edits.history)
         if window.error_study.poll():
             self._announce(window.error_study.failure)
+        window.trust.follow(world, window.now)
         taken = self._draw_over_world(world)
         interface.build(world, self._figures, self._details, self._measures, elapsed)
         interface.draw(window.canvas)
