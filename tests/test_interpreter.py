@@ -141,6 +141,8 @@ def planets() -> None:
         world = scene(*rocks, physics={"gravity_mode": "planet", "softening": 0.1, "softening_law": law})
         world.run(steps=2)
         measure_energy(world)
+    sun: Entity = {"Transform": {"position": [9.0, 0.5]}, "Mass": {"mass": 2.0}}
+    scene(sun, *rocks, physics={"gravity_mode": "planet"}).run(steps=2)
     touching = [body(2.0 * i, 0.0, "disc") for i in range(5)]
     world = scene(*touching, physics={"gravity_mode": "planet"})
     world.step()

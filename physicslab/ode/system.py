@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.kernels.accounts import DAMPING, ENERGY, SPIN
-from physicslab.kernels.forces.bookings import ACCOUNTS
+from physicslab.kernels.forces.bookings import ACCOUNTS, END
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT
 from physicslab.ode.bookings import BookKeeper, book_in_python
 from physicslab.state.packed import StateLayout
@@ -161,18 +161,15 @@ class OdeSystem:
         moving, turning, fixed = self.layout.moving, self.layout.turning, self.layout.fixed
         position, linear = transform["position"], velocity["linear"]
         self._clock[0] = state.time
-        given = self._nothing
         self.q = np.concatenate(
             (
                 position[moving].ravel(),
                 transform["angle"][turning],
                 position[fixed].ravel(),
-                self._clock,
-                given,
+                *self._behind,
             )
         )
-        still = np.zeros(2 * len(fixed) + 1)
-        self.v = np.concatenate((linear[moving].ravel(), velocity["angular"][turning], still, given))
+        self.v = np.concatenate((linear[moving].ravel(), velocity["angular"][turning], self._still))
         self._low = None
         self._start = (self.q.copy(), self.v.copy()) if self.interpreted else None
 
@@ -214,9 +211,9 @@ class OdeSystem:
 
     def _book(self, state: State) -> None:
         """Book what causes have given since the state was gathered."""
-        for cause, slot in self.slots.items():
-            state.account.sums[cause] += self.v[slot : slot + ACCOUNTS]
-            self.v[slot : slot + ACCOUNTS] = 0.0
+        if len(self._causes):
+            given = self.v[self.layout.clock + 1 : self.places[END]].reshape(-1, ACCOUNTS)
+            state.account.sums[self._causes] += given
 
     def _book_steady(self, state: State, spin: NDArray[np.float64], decay: float) -> None:
         """Book what damping has taken of the rotation of bodies that no force turns."""
@@ -266,7 +263,9 @@ class OdeSystem:
             for system in self.forces
         ]
         book = BookKeeper(state, self.layout, packed, self.damping, self._also, kicked=self._kicked)
-        self.slots, self.places, self._nothing = book.slots, book.places, np.zeros(book.count)
+        self.slots, self.places, self._causes = book.slots, book.places, np.array([*book.slots], np.int64)
+        self._behind = self._clock, np.zeros(book.count)
+        self._still = np.zeros(2 * len(self.layout.fixed) + 1 + book.count)
         forces = [force for _, force in packed if force is not None]
         # After the number of coordinates: resistances get several velocities in one array.
         size = self.layout.clock + 1 + book.count

@@ -16,7 +16,7 @@ from physicslab.kernels.rigid.features import (
     Scene,
 )
 
-__all__ = ["book_contacts", "book_stop"]
+__all__ = ["book_contacts", "book_speeds"]
 
 
 @fused
@@ -61,18 +61,22 @@ def book_contacts(
 
 
 @inlined
-def book_stop(scene: Scene, q: Numbers, v: Numbers) -> None:
-    """Book that all bodies are about to stop: what holds them takes what is left of their motion."""
-    contacts = scene.accounts[CONTACTS]
+def book_speeds(scene: Scene, q: Numbers, v: Numbers, sign: float) -> None:
+    """Book the motion there is to contacts, with a sign: before they change speeds and after that."""
+    contacts, energy, px, py, spin = scene.accounts[CONTACTS], 0.0, 0.0, 0.0, 0.0
     for row in range(scene.rows):
         x, y, turning = 2 * row, 2 * row + 1, 2 * scene.rows + row
         if scene.inverse_mass[x] > 0.0:
-            px, py = v[x] / scene.inverse_mass[x], v[y] / scene.inverse_mass[y]
-            v[contacts + ENERGY] -= 0.5 * (px * v[x] + py * v[y])
-            v[contacts + PX] -= px
-            v[contacts + PY] -= py
-            v[contacts + SPIN] -= q[x] * py - q[y] * px
+            ix, iy = v[x] / scene.inverse_mass[x], v[y] / scene.inverse_mass[y]
+            energy += 0.5 * (ix * v[x] + iy * v[y])
+            px += ix
+            py += iy
+            spin += q[x] * iy - q[y] * ix
         if scene.inverse_mass[turning] > 0.0:
             momentum = v[turning] / scene.inverse_mass[turning]
-            v[contacts + ENERGY] -= 0.5 * momentum * v[turning]
-            v[contacts + SPIN] -= momentum
+            energy += 0.5 * momentum * v[turning]
+            spin += momentum
+    v[contacts + ENERGY] += sign * energy
+    v[contacts + PX] += sign * px
+    v[contacts + PY] += sign * py
+    v[contacts + SPIN] += sign * spin

@@ -2,7 +2,7 @@
 
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
-from physicslab.kernels.rigid.bookings import book_contacts
+from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
 from physicslab.kernels.rigid.complementarity import solve_equations
 from physicslab.kernels.rigid.equations import FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
@@ -147,7 +147,8 @@ def constrained_acceleration(
 def project(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
     """Move bodies by the least that closes the gaps of closed points, and remove their speeds across.
 
-    What sticks loses its speed along the surface as well.
+    What sticks loses its speed along the surface as well. Speeds that counted as none are taken by contacts;
+    what moving bodies does to energy and momentum is an error.
     """
     for turn in range(3):
         measure_all(scene, equations, count, q, v)
@@ -157,4 +158,9 @@ def project(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbe
             equations.vectors[FREE, 2 * i] = gap if turn < 2 else equations.measures[i, VN]
             equations.vectors[FREE, 2 * i + 1] = 0.0 if turn < 2 else equations.measures[i, VT]
         solve_equations(equations, count, 0.0)
-        apply(scene, equations, count, q if turn < 2 else v)
+        if turn < 2:
+            apply(scene, equations, count, q)
+        else:
+            book_speeds(scene, q, v, -1.0)
+            apply(scene, equations, count, v)
+            book_speeds(scene, q, v, 1.0)

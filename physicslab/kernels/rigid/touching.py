@@ -4,6 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
+from physicslab.kernels.rigid.bookings import book_speeds
 from physicslab.kernels.rigid.complementarity import SETTLED, solve_complementarity, solve_equations
 from physicslab.kernels.rigid.constraints import apply, assemble, find_free_rates, measure_all
 from physicslab.kernels.rigid.detect import find_points, seen_from
@@ -226,7 +227,9 @@ def hold_closed(
         equations.points[i, STATUS] = SLIDES_ON
         equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = equations.measures[i, VN], 0.0
     solve_equations(equations, count, 0.0)
+    book_speeds(scene, q, v, -1.0)
     apply(scene, equations, count, v)
+    book_speeds(scene, q, v, 1.0)
     measure_all(scene, equations, count, q, v)
     accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
     find_free_rates(scene, equations, count, acceleration)
