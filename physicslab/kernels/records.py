@@ -77,14 +77,46 @@ IMPACT = np.dtype(
         ("wall", np.int64),  # which of the bounds, -1 for a pair of bodies
         ("normal_x", np.float64),  # unit, from A to B
         ("normal_y", np.float64),
-        ("x", np.float64),  # where they met [m]
+        ("x", np.float64),  # where they met, the point with the larger impulse [m]
         ("y", np.float64),
         ("approach_speed", np.float64),  # before the impact [m/s]
-        ("normal_impulse", np.float64),  # [N s], on B; the tangent is the normal turned counter-clockwise
+        # The impulses of all points [N s], on B; the tangent is the normal turned counter-clockwise.
+        ("normal_impulse", np.float64),
         ("tangent_impulse", np.float64),
+        ("points", np.int64),  # 1 or 2
+        ("x_2", np.float64),  # the second point and the part of the impulses there; 0 where there is one
+        ("y_2", np.float64),
+        ("normal_impulse_2", np.float64),
+        ("tangent_impulse_2", np.float64),
+        ("center_ax", np.float64),  # where both bodies were at that moment [m, rad]
+        ("center_ay", np.float64),
+        ("angle_a", np.float64),
+        ("center_bx", np.float64),
+        ("center_by", np.float64),
+        ("angle_b", np.float64),
+        ("before_ax", np.float64),  # how they moved before [m/s, rad/s]
+        ("before_ay", np.float64),
+        ("before_wa", np.float64),
+        ("before_bx", np.float64),
+        ("before_by", np.float64),
+        ("before_wb", np.float64),
+        ("after_ax", np.float64),  # and after
+        ("after_ay", np.float64),
+        ("after_wa", np.float64),
+        ("after_bx", np.float64),
+        ("after_by", np.float64),
+        ("after_wb", np.float64),
+        ("inverse_mass_a", np.float64),  # [1/kg]; 0 of what an impact does not move
+        ("inverse_inertia_a", np.float64),  # [1/(kg m^2)]
+        ("inverse_mass_b", np.float64),
+        ("inverse_inertia_b", np.float64),
+        ("restitution", np.float64),  # those that the materials have
+        ("friction", np.float64),
+        ("law", np.int64),  # NEWTON, ENERGETIC or LOWERED of physicslab.kernels.solver.blow
+        ("alone", np.int64),  # 0 where other pairs acted on one of the bodies at the same moment, else 1
     ]
 )
-"""One impact whose time was located exactly."""
+"""One impact: when, where and between which bodies; their motion before and after it, and its impulses."""
 
 Manifolds = Annotated[NDArray[np.void], from_dtype(MANIFOLD)[::1]]
 """An array of MANIFOLD (n,)."""

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform, Velocity
+from physicslab.components import Mass, Transform, Velocity
 from physicslab.contacts.arguments import bounds_of, materials_of, motion_of, sizes_of
 from physicslab.contacts.near_pairs import list_all
 from physicslab.kernels.broad import near_pairs
@@ -38,6 +38,8 @@ __all__ = ["EventDriven"]
 
 _ACCELERATION = slice(8, 10)
 """The columns of a path's acceleration."""
+_MASS = 12
+"""The column of the mass that gravity accelerates."""
 _SHORT = 1e-6
 """Share of a step that is too short for resting bodies to move."""
 _MAX_PARTS = 1000
@@ -254,12 +256,13 @@ class EventDriven:
             self._paths[:, _ACCELERATION],
             ballistic[:, None] * self._gravity,
         )
+        self._paths[:, _MASS] = np.where(ballistic, state.table(Mass)["mass"], 0.0)
         elapsed, impacts, why, pair = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,
             self._paths, self._mode, self._face, self._due, self._impact_positions,
             motion_of(state), sizes_of(state), materials_of(state),
             (bodies.inverse_mass, bodies.inverse_inertia), self._bounds,
-            contacts.log, contacts.logged, state.time + offset, span, dt, self._urgent,
+            state.account.sums, contacts.log, contacts.logged, state.time + offset, span, dt, self._urgent,
         )  # fmt: skip
         # The impact of a woken body is resolved first, or the body would come to rest again at once.
         self._urgent = pair if why == events.WOKEN else -1

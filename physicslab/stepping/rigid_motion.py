@@ -301,8 +301,9 @@ class RigidMotion:
             if why != motion.DONE or not approaching:
                 return why, count, last
             new, solved, energetic, lowered, last, work = motion.collide(
-                scene, self._equations, count, self._room, self._ode.q, self._ode.v, max(rest, none), rate,
-                state.entity_index.entities, contacts.log, contacts.logged, time,
+                scene, self._equations, count, self._room, self._ode.q, self._ode.v, self._stages[3],
+                self._stages[-1], max(rest, none), rate, state.entity_index.entities, contacts.log,
+                contacts.logged, time, state.account.sums,
             )  # fmt: skip
             contacts.logged += new
             made.impacts += new

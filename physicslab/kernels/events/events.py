@@ -10,6 +10,7 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels.accounts import IMPACTS
 from physicslab.kernels.arguments import (
     Bounds,
     BoundsTuple,
@@ -28,7 +29,18 @@ from physicslab.kernels.events.path_impact import resolve_ballistic_impacts
 from physicslab.kernels.narrow.contact import effective_masses, mix
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.records import Impacts, Manifold, Manifolds, Points
-from physicslab.kernels.solver.impact_log import write_impact
+from physicslab.kernels.solver.blow import NEWTON
+from physicslab.kernels.solver.impact_log import (
+    Masses,
+    Pair,
+    Pose,
+    Speeds,
+    Struck,
+    book_impact,
+    in_order,
+    write_impact,
+)
+from physicslab.kernels.solver.impact_pose import Meeting
 from physicslab.kernels.twins import endless
 
 __all__ = [
@@ -59,7 +71,8 @@ class Flight(NamedTuple):
     """What is known of ballistic motion: the pairs, the bodies, and when each pair meets.
 
     Records and points of the pairs, and how many there are; paths, modes and motions of the bodies; of each
-    pair the face, when it meets, and where B was at its last impact; then sizes, masses and bounds.
+    pair the face, when it meets, and where B was at its last impact; then sizes, masses and bounds, and the
+    account that impacts and gravity add to.
     """
 
     manifolds: Manifolds
@@ -74,6 +87,7 @@ class Flight(NamedTuple):
     sizes: Sizes
     inverse: Inverse
     bounds: Bounds
+    account: Vectors
 
 
 @inlined
@@ -137,6 +151,42 @@ def _begin_all(flight: Flight, materials: Materials) -> tuple[int, float]:
     return why, _MIN_SPEED_RATIO * fastest
 
 
+@inlined
+def _speeds(flight: Flight, a: int, b: int) -> Speeds:
+    """Return how two rows move whose paths begin now."""
+    paths, angular = flight.paths, flight.motion.angular
+    return Speeds(
+        paths[a, 4] + paths[a, 5], paths[a, 6] + paths[a, 7], angular[a],
+        paths[b, 4] + paths[b, 5], paths[b, 6] + paths[b, 7], angular[b],
+    )  # fmt: skip
+
+
+@inlined
+def _bounce(flight: Flight, p: int, log: Impacts, number: int, time: float, approach: float) -> None:
+    """Resolve an impact of a pair whose paths begin now, and book it; write it, if they do ``approach``."""
+    manifold, one, two = flight.manifolds[p], flight.points[2 * p], flight.points[2 * p + 1]
+    paths, angle, inverse = flight.paths, flight.motion.angle, flight.inverse
+    a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+    before = _speeds(flight, a, b)
+    blow = resolve_ballistic_impacts(manifold, one, two, paths, flight.motion.angular, inverse)
+    struck = in_order(
+        Struck(
+            Meeting(nx, ny, one.arm_ax, one.arm_ay, one.arm_bx, one.arm_by),
+            Meeting(nx, ny, two.arm_ax, two.arm_ay, two.arm_bx, two.arm_by),
+            blow,
+        )
+    )
+    after = _speeds(flight, a, b)
+    pose = Pose(paths[a, 0], paths[a, 2], angle[a], paths[b, 0], paths[b, 2], angle[b])
+    masses = Masses(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
+    book_impact(flight.account, struck, pose, before, after, masses, IMPACTS)
+    if approach > 0.0:
+        pair = Pair(
+            manifold.entity_a, manifold.entity_b, manifold.wall, manifold.restitution, manifold.friction
+        )
+        write_impact(log, number, pair, time, approach, struck, pose, before, after, masses, NEWTON, True)
+
+
 @fused
 def _meet(
     flight: Flight, p: int, log: Impacts, number: int, start: float, now: float, low: float, dt: float
@@ -159,22 +209,18 @@ def _meet(
         manifold.count = 0
         return why, 0
     if mode[a] != FIXED:
-        advance_to(paths, a, angle, angular, now, low)
+        advance_to(paths, a, angle, angular, now, low, flight.account)
     if mode[b] != FIXED:
-        advance_to(paths, b, angle, angular, now, low)
+        advance_to(paths, b, angle, angular, now, low, flight.account)
     due[p, 3] = due[p, 3] + 1.0 if now - due[p, 2] <= _SAME_TIME * dt else 0.0
     due[p, 2], due[p, 4] = now, float(number)
     e = manifold.restitution
     if why == CAME_TO_REST or (e < 1.0 and due[p, 3] > _MAX_REPEATS):
         manifold.restitution = 0.0
-    normal, tangent = one.impact_normal + two.impact_normal, one.impact_tangent + two.impact_tangent
-    resolve_ballistic_impacts(manifold, one, two, paths, angular, flight.inverse)
+    _bounce(flight, p, log, number, start + (now + low), approach)
     manifold.restitution, manifold.count, manifold.found = e, 0, 0
     flight.impact_position[p, 0], flight.impact_position[p, 1] = x, y
-    if approach <= 0.0:
-        return why, 0
-    write_impact(log, number, manifold, one, two, one, start + (now + low), x, y, approach, normal, tangent)
-    return why, 1
+    return why, 1 if approach > 0.0 else 0
 
 
 @fused
@@ -183,7 +229,7 @@ def _end_all(flight: Flight, now: float, low: float) -> None:
     paths, (position, angle, linear, angular) = flight.paths, flight.motion
     for i in range(len(flight.mode)):
         if flight.mode[i] != FIXED:
-            advance_to(paths, i, angle, angular, now, low)
+            advance_to(paths, i, angle, angular, now, low, flight.account)
             position[i, 0], position[i, 1] = paths[i, 0], paths[i, 2]
             linear[i, 0], linear[i, 1] = paths[i, 4], paths[i, 6]
 
@@ -193,14 +239,16 @@ def run_events(
     manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, due: Vectors,
     impact_position: Vectors, motion: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, bounds: BoundsTuple,
-    log: Impacts, logged: int, start: float, span: float, dt: float, urgent: int,
+    account: Vectors, log: Impacts, logged: int, start: float, span: float, dt: float, urgent: int,
 ) -> tuple[float, int, int, int]:  # fmt: skip
     """Move bodies from impact to impact for ``span`` seconds, or until one comes to rest or is woken.
 
-    ``paths`` (rows, 12) holds the accelerations [m/s^2] in columns 8 and 9, ``mode`` that of each row;
+    ``paths`` (rows, 13) holds the accelerations [m/s^2] in columns 8 and 9 and in column 12 the mass [kg] of
+    what gravity pulls, ``mode`` that of each row;
     ``face`` (pairs,) and ``due`` (pairs, 5) are work space; ``impact_position`` (pairs, 2) receives where B
-    was at the pair's last impact [m]. Impacts are logged from number ``logged`` on, with times from ``start``
-    [s]; a step has ``dt`` seconds. ``urgent`` is a pair that meets now, before all others, or -1.
+    was at the pair's last impact [m]. What impacts and gravity give is added to ``account``
+    (:mod:`physicslab.kernels.accounts`). Impacts are logged from number ``logged`` on, with times from
+    ``start`` [s]; a step has ``dt`` seconds. ``urgent`` is a pair that meets now, before all others, or -1.
 
     Returns
     -------
@@ -210,7 +258,7 @@ def run_events(
     now, low, impacts, window, within, p = 0.0, 0.0, 0, 0.0, 0, -1
     flight = Flight(
         manifolds, points, count, paths, mode, Motion(*motion), face, due, impact_position,
-        Sizes(*sizes), Inverse(*inverse), Bounds(*bounds),
+        Sizes(*sizes), Inverse(*inverse), Bounds(*bounds), account,
     )  # fmt: skip
     why, min_speed = _begin_all(flight, Materials(*materials))
     if why == OVERLAP:

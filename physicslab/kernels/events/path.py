@@ -1,21 +1,22 @@
 """Ballistic paths: motion under constant accelerations, with the rounding remainders kept.
 
-A path is a row of numbers: place, velocity and start, each with the remainder that rounding would drop, and
-the acceleration. Only an impact of the body begins a new path; between impacts it is evaluated in closed
-form, so that no error adds up, however many impacts other bodies have.
+A path is a row of numbers: place, velocity and start, each with the remainder that rounding would drop, the
+acceleration, and the mass of what gravity accelerates. Only an impact of the body begins a new path; between
+impacts it is evaluated in closed form, so that no error adds up, however many impacts other bodies have.
 """
 
 from physicslab.kernels import Numbers, Vectors, inlined
+from physicslab.kernels.accounts import GRAVITY, PX, PY, SPIN
 from physicslab.kernels.events.meeting import Course
 from physicslab.kernels.ode.compensated import add_pair, multiply
 
 __all__ = ["FIELDS", "advance_to", "begin", "place", "push", "seen_from", "velocity"]
 
-FIELDS = 12
+FIELDS = 13
 """Numbers of a path."""
-_X, _VX, _A, _T = 0, 4, 8, 10
+_X, _VX, _A, _T, _M = 0, 4, 8, 10, 12
 """Where its parts begin: x and its remainder, y and its remainder; the same of velocities; accelerations; the
-start."""
+start; the mass."""
 
 
 @inlined
@@ -68,9 +69,24 @@ def seen_from(paths: Vectors, a: int, b: int, now: float, low: float) -> Course:
 
 
 @inlined
-def advance_to(paths: Vectors, i: int, angle: Numbers, angular: Numbers, now: float, low: float) -> None:
-    """Begin a new path of row i where the old one is at the time ``now + low``."""
-    angle[i] += _advanced(paths, i, now, low) * angular[i]
+def advance_to(
+    paths: Vectors, i: int, angle: Numbers, angular: Numbers, now: float, low: float, account: Vectors
+) -> None:
+    """Begin a new path of row i where the old one is at the time ``now + low``.
+
+    What gravity has given on the old one is added to the account: m g s, and about the origin the integral of
+    x x m g, which is (x s + v s^2 / 2) x m g for a parabola.
+    """
+    s = _advanced(paths, i, now, low)
+    angle[i] += s * angular[i]
+    px, py = paths[i, _M] * paths[i, _A] * s, paths[i, _M] * paths[i, _A + 1] * s
+    middle_x, middle_y = (
+        paths[i, _X] + 0.5 * s * paths[i, _VX],
+        paths[i, _X + 2] + 0.5 * s * paths[i, _VX + 2],
+    )
+    account[GRAVITY, PX] += px
+    account[GRAVITY, PY] += py
+    account[GRAVITY, SPIN] += middle_x * py - middle_y * px
     x, x_low, y, y_low = place(paths, i, now, low)
     vx, vx_low, vy, vy_low = velocity(paths, i, now, low)
     paths[i, _X], paths[i, _X + 1], paths[i, _X + 2], paths[i, _X + 3] = x, x_low, y, y_low

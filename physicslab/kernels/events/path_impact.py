@@ -5,6 +5,7 @@ from physicslab.kernels.arguments import Inverse
 from physicslab.kernels.events.path import push
 from physicslab.kernels.ode.compensated import add_pair, multiply
 from physicslab.kernels.records import Manifold, Point
+from physicslab.kernels.solver.blow import Blow
 
 __all__ = ["resolve_ballistic_impacts"]
 
@@ -83,8 +84,11 @@ def _friction_impulse(manifold: Manifold, point: Point, j: float, sliding: float
 @inlined
 def _hit(
     manifold: Manifold, point: Point, j: float, v: float, paths: Vectors, angular: Numbers, inverse: Inverse
-) -> None:
-    """Apply a normal impulse and its friction to the paths of A and B, and record them."""
+) -> float:
+    """Apply a normal impulse and its friction to the paths of A and B, and record them.
+
+    Returns the tangential impulse [N s].
+    """
     a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
     along = 0.0
     if manifold.friction > 0.0:
@@ -99,24 +103,26 @@ def _hit(
     point.approach_speed = max(point.approach_speed, -v)
     point.impact_normal += j
     point.impact_tangent += along
+    return along
 
 
 @inlined
 def resolve_ballistic_impacts(
     manifold: Manifold, one: Point, two: Point, paths: Vectors, angular: Numbers, inverse: Inverse
-) -> None:
-    """Bounce a pair whose paths begin now and whose points are filled."""
+) -> Blow:
+    """Bounce a pair whose paths begin now and whose points are filled; return the impulses."""
     a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
     v1, low1 = _speed_against(paths, angular, a, b, one, nx, ny)
+    along1, along2, left, j2 = 0.0, 0.0, 0.0, 0.0
     if manifold.count == 2:
         v2, _ = _speed_against(paths, angular, a, b, two, nx, ny)
         j1, j2 = _bounce(manifold, one, two, True, True, v1, v2, inverse)
         if j2 > 0.0:
-            _hit(manifold, two, j2, v2, paths, angular, inverse)
+            along2 = _hit(manifold, two, j2, v2, paths, angular, inverse)
     else:
         j1, _ = _bounce(manifold, one, two, True, False, v1, 0.0, inverse)
     if j1 > 0.0:
-        _hit(manifold, one, j1, v1, paths, angular, inverse)
+        along1 = _hit(manifold, one, j1, v1, paths, angular, inverse)
     if manifold.count == 1 and j1 > 0.0:
         # The rounding of j is the same at every impact of a pair and would add up: it is corrected.
         v, low = _speed_against(paths, angular, a, b, one, nx, ny)
@@ -124,3 +130,4 @@ def resolve_ballistic_impacts(
         push(paths, a, -inverse.mass[a], left * nx, left * ny)
         push(paths, b, inverse.mass[b], left * nx, left * ny)
     manifold.impact_count += 1
+    return Blow(max(j1, 0.0) + left, along1, max(j2, 0.0), along2)

@@ -10,7 +10,8 @@ points at once, and their restitutions are lowered until no energy is made.
 
 import math
 
-from physicslab.kernels import Numbers, Rows, fused, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
+from physicslab.kernels.accounts import CONTACT, IMPACTS
 from physicslab.kernels.energetic import energetic_blow
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
@@ -24,6 +25,7 @@ from physicslab.kernels.rigid.features import (
     NX,
     NY,
     ONE,
+    OTHER,
     PAIR,
     POINT_FIELDS,
     PX,
@@ -33,6 +35,18 @@ from physicslab.kernels.rigid.features import (
     VT,
     Scene,
 )
+from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON, Blow
+from physicslab.kernels.solver.impact_log import (
+    Masses,
+    Pair,
+    Pose,
+    Speeds,
+    Struck,
+    book_impact,
+    in_order,
+    write_impact,
+)
+from physicslab.kernels.solver.impact_pose import Meeting
 
 __all__ = ["approaches", "resolve_blows"]
 
@@ -166,52 +180,146 @@ def _find_impulses(blow: Equations, n: int, rest: float, rate: float) -> tuple[b
     return False, 0, 1
 
 
-@fused
-def _write(
-    scene: Scene, blow: Equations, n: int, rest: float, entities: Rows, log: Impacts, logged: int, time: float
-) -> int:
-    """Write a round of impacts to the log; return how many pairs they were."""
-    written, written_pair = 0, -1
-    for i in range(n):
-        if blow.vectors[UNKNOWN, 2 * i] <= 0.0 or blow.measures[i, VN] >= -rest:
+@inlined
+def _speeds(scene: Scene, v: Numbers, late: float, acceleration: Numbers, a: int, b: int) -> Speeds:
+    """Return how a pair moves at the moment of its impact, ``late`` seconds ago by the forces."""
+    wa, wb = 2 * scene.rows + a, 2 * scene.rows + b
+    return Speeds(
+        v[2 * a] - late * acceleration[2 * a], v[2 * a + 1] - late * acceleration[2 * a + 1],
+        v[wa] - late * acceleration[wa],
+        v[2 * b] - late * acceleration[2 * b], v[2 * b + 1] - late * acceleration[2 * b + 1],
+        v[wb] - late * acceleration[wb],
+    )  # fmt: skip
+
+
+@inlined
+def _meeting(scene: Scene, blow: Equations, i: int, q: Numbers) -> Meeting:
+    """Return the normal from A to B of a point's pair, and its arms."""
+    pair = blow.points[i, PAIR]
+    a, b = scene.pairs[pair, 0], scene.pairs[pair, 1]
+    sign = 1.0 if blow.points[i, ONE] == a else -1.0
+    x, y = blow.measures[i, PX], blow.measures[i, PY]
+    return Meeting(
+        sign * blow.measures[i, NX], sign * blow.measures[i, NY],
+        x - q[2 * a], y - q[2 * a + 1], x - q[2 * b], y - q[2 * b + 1],
+    )  # fmt: skip
+
+
+@inlined
+def _two_points(scene: Scene, blow: Equations, i: int, end: int, q: Numbers) -> Struck:
+    """Return the points ``i`` to ``end`` of a pair as two, at the ends of the line on which they are.
+
+    Where there are more, the impulses of those between are shared out to the ends by the law of the lever.
+    """
+    first = _meeting(scene, blow, i, q)
+    low, high, at_low, at_high = 0.0, 0.0, i, i
+    for k in range(i + 1, end):
+        to = _meeting(scene, blow, k, q)
+        along = (to.arm_by - first.arm_by) * first.nx - (to.arm_bx - first.arm_bx) * first.ny
+        if blow.vectors[UNKNOWN, 2 * k] > 0.0 and along < low:
+            low, at_low = along, k
+        if blow.vectors[UNKNOWN, 2 * k] > 0.0 and along > high:
+            high, at_high = along, k
+    one, two = _meeting(scene, blow, at_low, q), _meeting(scene, blow, at_high, q)
+    normal1, tangent1, normal2, tangent2 = 0.0, 0.0, 0.0, 0.0
+    for k in range(i, end):
+        at = _meeting(scene, blow, k, q)
+        along = (at.arm_by - one.arm_by) * one.nx - (at.arm_bx - one.arm_bx) * one.ny
+        share = along / (high - low) if at_high != at_low else 0.0
+        # Along the directions of the first point: where faces meet, those of all are the same.
+        cosine, sine = at.nx * one.nx + at.ny * one.ny, one.nx * at.ny - one.ny * at.nx
+        n, t = blow.vectors[UNKNOWN, 2 * k], blow.vectors[UNKNOWN, 2 * k + 1]
+        n, t = n * cosine - t * sine, n * sine + t * cosine
+        normal1, tangent1 = normal1 + (1.0 - share) * n, tangent1 + (1.0 - share) * t
+        normal2, tangent2 = normal2 + share * n, tangent2 + share * t
+    return in_order(Struck(one, two, Blow(normal1, tangent1, normal2, tangent2)))
+
+
+@inlined
+def _alone(scene: Scene, blow: Equations, n: int, i: int, end: int) -> bool:
+    """Whether no other pair's impulse acts on what the points ``i`` to ``end`` move."""
+    pair, alone = blow.points[i, PAIR], True
+    for body in (scene.pairs[pair, 0], scene.pairs[pair, 1]):
+        if scene.inverse_mass[2 * body] == 0.0:
             continue
-        pair = blow.points[i, PAIR]
-        same = i > 0 and blow.points[i - 1, PAIR] == pair and written_pair == pair
-        if not same:
-            written += 1
-            written_pair = pair
-        if len(log) == 0:
-            continue
-        record = log[(logged + written - 1) % len(log)]
-        a, b = scene.pairs[pair, 0], scene.pairs[pair, 1]
-        sign = 1.0 if blow.points[i, ONE] == a else -1.0
-        if same:
-            record.normal_impulse += blow.vectors[UNKNOWN, 2 * i]
-            record.tangent_impulse += blow.vectors[UNKNOWN, 2 * i + 1]
-            record.approach_speed = max(record.approach_speed, -blow.measures[i, VN])
-            continue
-        record.time, record.wall = time, scene.pairs[pair, 2]
-        record.entity_a, record.entity_b = entities[a] if scene.pairs[pair, 2] < 0 else 0, entities[b]
-        record.normal_x, record.normal_y = sign * blow.measures[i, NX], sign * blow.measures[i, NY]
-        record.x, record.y = blow.measures[i, PX], blow.measures[i, PY]
-        record.approach_speed = -blow.measures[i, VN]
-        record.normal_impulse, record.tangent_impulse = (
-            blow.vectors[UNKNOWN, 2 * i],
-            blow.vectors[UNKNOWN, 2 * i + 1],
+        for k in range(n):
+            other = (k < i or k >= end) and (blow.points[k, ONE] == body or blow.points[k, OTHER] == body)
+            acts = blow.vectors[UNKNOWN, 2 * k] != 0.0 or blow.vectors[UNKNOWN, 2 * k + 1] != 0.0
+            alone = alone and not (other and acts)
+    return alone
+
+
+@inlined
+def _book(
+    scene: Scene, blow: Equations, i: int, end: int, q: Numbers, pose: Pose, before: Speeds, after: Speeds,
+    masses: Masses, cause: int, account: Vectors,
+) -> None:  # fmt: skip
+    """Book the impulses of the points ``i`` to ``end`` of a pair, two by two."""
+    for k in range(i, end, 2):
+        one, two, n2, t2 = _meeting(scene, blow, k, q), _meeting(scene, blow, k, q), 0.0, 0.0
+        if k + 1 < end:
+            two = _meeting(scene, blow, k + 1, q)
+            n2, t2 = blow.vectors[UNKNOWN, 2 * k + 2], blow.vectors[UNKNOWN, 2 * k + 3]
+        struck = Struck(
+            one, two, Blow(blow.vectors[UNKNOWN, 2 * k], blow.vectors[UNKNOWN, 2 * k + 1], n2, t2)
         )
+        book_impact(account, struck, pose, before, after, masses, cause)
+
+
+@fused
+def _note_round(
+    scene: Scene, blow: Equations, n: int, q: Numbers, old: Numbers, v: Numbers, rest: float, rate: float,
+    acceleration: Numbers, law: int, entities: Rows, log: Impacts, logged: int, time: float, account: Vectors,
+) -> int:  # fmt: skip
+    """Book a round of impulses that has changed the speeds ``old`` to ``v``, and log its impacts.
+
+    In a short step all forces have acted already, and those of its second half are not part of the moment;
+    what does not approach there is the load of a resting contact. Returns how many pairs met.
+    """
+    written, i = 0, 0
+    late = 1.0 / rate if rate > 0.0 else 0.0
+    while i < n:
+        pair, end, approach, restitution = blow.points[i, PAIR], i, 0.0, 0.0
+        while end < n and blow.points[end, PAIR] == pair:
+            speed = -blow.measures[end, VN]
+            if blow.vectors[UNKNOWN, 2 * end] > 0.0 and speed > max(rest, approach):
+                approach, restitution = speed, blow.measures[end, RESTITUTION]
+            end += 1
+        a, b, wall = scene.pairs[pair, 0], scene.pairs[pair, 1], scene.pairs[pair, 2]
+        ra, rb, mass = 2 * scene.rows + a, 2 * scene.rows + b, scene.inverse_mass
+        masses = Masses(mass[2 * a], mass[ra], mass[2 * b], mass[rb])
+        pose = Pose(q[2 * a], q[2 * a + 1], q[ra], q[2 * b], q[2 * b + 1], q[rb])
+        before = _speeds(scene, old, late, acceleration, a, b)
+        after = _speeds(scene, v, late, acceleration, a, b)
+        cause = CONTACT if rate > 0.0 and approach == 0.0 else IMPACTS
+        _book(scene, blow, i, end, q, pose, before, after, masses, cause, account)
+        if approach > 0.0:
+            if len(log) > 0:
+                ids = Pair(
+                    entities[a] if wall < 0 else 0, entities[b], wall, restitution, blow.measures[i, MU]
+                )
+                write_impact(
+                    log, logged + written, ids, time, approach, _two_points(scene, blow, i, end, q), pose,
+                    _speeds(scene, old, 0.0, acceleration, a, b), _speeds(scene, v, 0.0, acceleration, a, b),
+                    masses, law, _alone(scene, blow, n, i, end),
+                )  # fmt: skip
+            written += 1
+        i = end
     return written
 
 
 @fused
 def resolve_blows(
-    scene: Scene, equations: Equations, count: int, blow: Equations, q: Numbers, v: Numbers, rest: float,
-    rate: float, entities: Rows, log: Impacts, logged: int, time: float,
+    scene: Scene, equations: Equations, count: int, blow: Equations, q: Numbers, v: Numbers, old: Numbers,
+    acceleration: Numbers, rest: float, rate: float, entities: Rows, log: Impacts, logged: int, time: float,
+    account: Vectors,
 ) -> tuple[int, bool, int, int, int, int]:  # fmt: skip
     """Let all points that approach faster than ``rest`` bounce, until none does.
 
-    Those that do not bounce may use up their gap in 1 / ``rate`` seconds. Returns how many impacts there
-    were, whether each could be resolved, how many obeyed Stronge's law, how often restitutions were lowered,
-    how many points the last impulses act at, and how many rounds there were.
+    Those that do not bounce may use up their gap in 1 / ``rate`` seconds. ``old`` is room for speeds. What
+    the impulses give is added to ``account``. Returns how many impacts there were, whether each could be
+    resolved, how many obeyed Stronge's law, how often restitutions were lowered, how many points the last
+    impulses act at, and how many rounds there were.
     """
     impacts, energetic, lowered, last = 0, 0, 0, 0
     most = _SHORT_ROUNDS if rate > 0.0 else _MAX_ROUNDS
@@ -225,6 +333,12 @@ def resolve_blows(
         if not solved:
             return impacts, False, energetic, lowered, last, turn
         energetic, lowered, last = energetic + by_energy, lowered + less, n
-        impacts += _write(scene, blow, n, rest, entities, log, logged + impacts, time)
+        for i in range(len(v)):
+            old[i] = v[i]
         apply(scene, blow, n, v)
+        law = ENERGETIC if by_energy > 0 else (LOWERED if less > 0 else NEWTON)
+        impacts += _note_round(
+            scene, blow, n, q, old, v, rest, rate, acceleration, law, entities, log, logged + impacts, time,
+            account,
+        )  # fmt: skip
     return impacts, True, energetic, lowered, last, most

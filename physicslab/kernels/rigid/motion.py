@@ -165,18 +165,20 @@ def touch(
 @kernel
 def collide(
     scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, q: Numbers, v: Numbers,
-    none: float, rate: float, entities: Rows, log: Impacts, logged: int, time: float,
+    old: Numbers, acceleration: Numbers, none: float, rate: float, entities: Rows, log: Impacts, logged: int,
+    time: float, account: Vectors,
 ) -> tuple[int, bool, int, int, int, int]:  # fmt: skip
     """Let those of ``count`` points that approach in (q, v) bounce.
 
-    Speeds up to ``none`` are none [m/s]; points that would touch in 1 / ``rate`` seconds do. Returns how many
-    impacts there were, whether impulses were found, how many impacts obeyed Stronge's law, how often
+    Speeds up to ``none`` are none [m/s]; points that would touch in 1 / ``rate`` seconds do. ``old`` is room
+    for speeds, ``acceleration`` what forces cause; what the impulses give is added to ``account``. Returns
+    how many impacts there were, whether impulses were found, how many impacts obeyed Stronge's law, how often
     restitutions were lowered to keep the energy, how many points the last impulses act at, which are left in
     ``room``, and the work of all rounds (1 + n^4 / 500 for n points).
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
     new, solved, by_energy, kept, last, rounds = resolve_blows(
-        of, points, count, scratch, q, v, none, rate, entities, log, logged, time
+        of, points, count, scratch, q, v, old, acceleration, none, rate, entities, log, logged, time, account
     )
     return new, solved, by_energy, kept, last, rounds * (500 + count * count * count * count) // 500
 

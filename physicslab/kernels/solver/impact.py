@@ -4,10 +4,29 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import always_inlined, fused, inlined
+from physicslab.kernels.accounts import IMPACTS
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion, Sizes
 from physicslab.kernels.records import Manifold, Point
-from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON, Lever, Weights, one_blow, two_blows
-from physicslab.kernels.solver.impact_log import write_impact
+from physicslab.kernels.solver.blow import (
+    ENERGETIC,
+    LOWERED,
+    NEWTON,
+    Blow,
+    Lever,
+    Weights,
+    one_blow,
+    two_blows,
+)
+from physicslab.kernels.solver.impact_log import (
+    Masses,
+    Pair,
+    Pose,
+    Speeds,
+    Struck,
+    book_impact,
+    in_order,
+    write_impact,
+)
 from physicslab.kernels.solver.impact_pose import Meeting, is_known, meeting_at
 from physicslab.kernels.solver.impulse import follow_drift, relative_velocity
 
@@ -38,21 +57,19 @@ class Approach(NamedTuple):
 
 
 @inlined
-def _shift(
-    a: int, b: int, before: tuple[float, float, float, float, float, float], motion: Motion, t: float
-) -> None:
+def _shift(a: int, b: int, before: Speeds, motion: Motion, t: float) -> None:
     """Move A and B to where they would be, had their velocities changed at the time t from now, not now.
 
     Each has moved with the old velocity until t and moves with the new one from there on: x -= t (v_new -
     v_old).
     """
     position, angle, linear, angular = motion
-    position[a, 0] -= t * (linear[a, 0] - before[0])
-    position[a, 1] -= t * (linear[a, 1] - before[1])
-    angle[a] -= t * (angular[a] - before[2])
-    position[b, 0] -= t * (linear[b, 0] - before[3])
-    position[b, 1] -= t * (linear[b, 1] - before[4])
-    angle[b] -= t * (angular[b] - before[5])
+    position[a, 0] -= t * (linear[a, 0] - before.ax)
+    position[a, 1] -= t * (linear[a, 1] - before.ay)
+    angle[a] -= t * (angular[a] - before.wa)
+    position[b, 0] -= t * (linear[b, 0] - before.bx)
+    position[b, 1] -= t * (linear[b, 1] - before.by)
+    angle[b] -= t * (angular[b] - before.wb)
 
 
 @inlined
@@ -113,10 +130,11 @@ def _strike(
 def _exchange(
     manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, motion: Motion, sizes: Sizes,
     inverse: Inverse, pull: float, t: float,
-) -> tuple[float, float, float, float, int]:  # fmt: skip
+) -> tuple[Struck, float, int]:  # fmt: skip
     """Bounce a pair at the time t, with the normal, the arms and the speeds of that time.
 
-    Returns the normal impulses [N s] and the approach speeds [m/s] of its points, and which law they obey.
+    Returns the points with their impulses, all 0 where it turns away until then, the approach speed at the
+    first of them [m/s], and which law they obey.
     """
     a, b = manifold.a, manifold.b
     weights = Weights(inverse.mass[a] + inverse.mass[b], inverse.inertia[a], inverse.inertia[b])
@@ -130,7 +148,8 @@ def _exchange(
         blow, law = two_blows(lever1, lever2, weights, e, mu)
         _strike(manifold, one, where1, lever1, blow.normal1, blow.tangent1, motion, inverse)
         _strike(manifold, two, where2, lever2, blow.normal2, blow.tangent2, motion, inverse)
-        return blow.normal1, blow.normal2, lever1.v, lever2.v, law
+        v = lever1.v if blow.normal1 >= blow.normal2 else lever2.v
+        return in_order(Struck(where1, where2, blow)), -v, law
     point = one if meets_1 else two
     if is_known(manifold, motion, sizes):
         where = Meeting(
@@ -140,12 +159,10 @@ def _exchange(
         where = meeting_at(manifold, point, motion, sizes, t)
     lever = _lever(where, a, b, motion, pull * t)
     if lever.v >= 0.0:  # it turns away until then
-        return 0.0, 0.0, 0.0, 0.0, NEWTON
+        return Struck(where, where, Blow(0.0, 0.0, 0.0, 0.0)), 0.0, NEWTON
     normal, tangent, law = one_blow(lever, weights, e, mu)
     _strike(manifold, point, where, lever, normal, tangent, motion, inverse)
-    if meets_1:
-        return normal, 0.0, lever.v, 0.0, law
-    return 0.0, normal, 0.0, lever.v, law
+    return Struck(where, where, Blow(normal, tangent, 0.0, 0.0)), -lever.v, law
 
 
 @inlined
@@ -174,9 +191,59 @@ def _meeting_times(
 
 
 @inlined
+def _speeds(a: int, b: int, motion: Motion) -> Speeds:
+    """Return how a pair moves now."""
+    linear, angular = motion.linear, motion.angular
+    return Speeds(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
+
+
+@inlined
+def _gained(speeds: Speeds, a: int, b: int, inverse: Inverse, acting: Acting, t: float) -> Speeds:
+    """Return speeds, with what the forces add to them within the time t."""
+    if not acting.any or t == 0.0:
+        return speeds
+    force, torque = acting.force, acting.torque
+    ma, mb = t * inverse.mass[a], t * inverse.mass[b]
+    return Speeds(
+        speeds.ax + ma * force[a, 0], speeds.ay + ma * force[a, 1],
+        speeds.wa + t * inverse.inertia[a] * torque[a],
+        speeds.bx + mb * force[b, 0], speeds.by + mb * force[b, 1],
+        speeds.wb + t * inverse.inertia[b] * torque[b],
+    )  # fmt: skip
+
+
+@inlined
+def _note(
+    manifold: Manifold, struck: Struck, approach: float, old: Speeds, motion: Motion, inverse: Inverse,
+    acting: Acting, t: float, forced: bool, law: int, log: Log, number: int,
+) -> None:  # fmt: skip
+    """Book an impact that has taken place at the time t from now, and write it to the log.
+
+    Half-way through leapfrog's substep velocities are those of now, and are ``forced`` until t.
+    """
+    a, b, position, angle = manifold.a, manifold.b, motion.position, motion.angle
+    since = t if forced else 0.0
+    before = _gained(old, a, b, inverse, acting, since)
+    after = _gained(_speeds(a, b, motion), a, b, inverse, acting, since)
+    pose = Pose(
+        position[a, 0] + t * old.ax, position[a, 1] + t * old.ay, angle[a] + t * old.wa,
+        position[b, 0] + t * old.bx, position[b, 1] + t * old.by, angle[b] + t * old.wb,
+    )  # fmt: skip
+    masses = Masses(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
+    book_impact(log.account, struck, pose, before, after, masses, IMPACTS)
+    if len(log.impacts) > 0:
+        pair = Pair(
+            manifold.entity_a, manifold.entity_b, manifold.wall, manifold.restitution, manifold.friction
+        )
+        write_impact(
+            log.impacts, number, pair, log.time + t, approach, struck, pose, before, after, masses, law, True
+        )
+
+
+@inlined
 def _resolve_pair(
     manifold: Manifold, one: Point, two: Point, motion: Motion, sizes: Sizes, inverse: Inverse,
-    pull: float, t1: float, t2: float, log: Log, number: int,
+    acting: Acting, pull: float, t1: float, t2: float, forced: bool, log: Log, number: int,
 ) -> tuple[bool, int]:  # fmt: skip
     """Bounce a pair of which one point meets, or both do, at ``t1`` and ``t2`` from now.
 
@@ -184,21 +251,16 @@ def _resolve_pair(
     """
     meets_1, meets_2 = abs(t1) < math.inf, abs(t2) < math.inf
     t = min(t1, t2) if meets_1 and meets_2 else (t1 if meets_1 else t2)
-    a, b, position, linear, angular = manifold.a, manifold.b, motion.position, motion.linear, motion.angular
-    before = (linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
-    earlier = one.impact_normal + two.impact_normal, one.impact_tangent + two.impact_tangent
-    j1, j2, v1, v2, law = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, inverse, pull, t)
-    if (j1 > 0.0 or j2 > 0.0) and len(log.impacts) > 0:
-        where, v = (one, v1) if j1 >= j2 else (two, v2)
-        x, y = position[b, 0] + t * before[3], position[b, 1] + t * before[4]
-        write_impact(
-            log.impacts, number, manifold, one, two, where, log.time + t, x, y, -v, earlier[0], earlier[1]
-        )
-    _shift(a, b, before, motion, t)
+    before = _speeds(manifold.a, manifold.b, motion)
+    struck, approach, law = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, inverse, pull, t)
+    met = struck.blow.normal1 > 0.0
+    if met:
+        _note(manifold, struck, approach, before, motion, inverse, acting, t, forced, law, log, number)
+    _shift(manifold.a, manifold.b, before, motion, t)
     if manifold.swept == 1 and manifold.restitution > 0.0:
         # Its normal is not that of now: the solver must not push along it.
         one.ahead = two.ahead = 1
-    return j1 > 0.0 or j2 > 0.0, law
+    return met, law
 
 
 @fused
@@ -272,8 +334,9 @@ def _resolve_once(
         t1, t2 = _meeting_times(manifold, one, two, motion, Approach(v1, v2, pull, resting_speed), window)
         if abs(t1) < math.inf or abs(t2) < math.inf:
             met, law = _resolve_pair(
-                manifold, one, two, motion, sizes, inverse, pull, t1, t2, log, logged + bounced
-            )
+                manifold, one, two, motion, sizes, inverse, acting, pull, t1, t2, window.start < 0.0, log,
+                logged + bounced,
+            )  # fmt: skip
             bounced += 1 if met else 0
             manifold.impact_count += 1 if met else 0
             energetic += 1 if law == ENERGETIC else 0
