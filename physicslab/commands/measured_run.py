@@ -11,6 +11,7 @@ from typing import Protocol
 from physicslab.commands.progress import Progress
 from physicslab.commands.step_watch import StepWatch
 from physicslab.diagnostics.energy import Drift, Energy
+from physicslab.diagnostics.ledger import LedgerWriter
 from physicslab.diagnostics.overflow import find_overflow
 from physicslab.diagnostics.run_report import RunRecord
 from physicslab.diagnostics.warnings import find_warnings
@@ -60,6 +61,8 @@ class MeasuredRun:
     every : float, optional
         The time [s] between what is kept: the first step that ends at or after each multiple of it, counted
         from the start; every step if it is 0.
+    ledger : LedgerWriter, optional
+        What writes the impacts, after each call of a stepper.
 
     Attributes
     ----------
@@ -77,10 +80,12 @@ class MeasuredRun:
         at_most: float | None = None,
         recorder: Recorder | None = None,
         every: float = 0.0,
+        ledger: LedgerWriter | None = None,
     ) -> None:
         self.record, self.stopped = RunRecord(name, Drift(world)), ""
         self._world, self._tiers, self._at_most = world, tiers, at_most
         self._recorder, self._every, self._kept_at = recorder, every, -math.inf
+        self._ledger = ledger
         self._watch = StepWatch(world)
         self._label = shortened(printable(name))
         self._start = world.time
@@ -142,6 +147,8 @@ class MeasuredRun:
         if done is None:
             return False
         made = done - record.steps
+        if self._ledger is not None:
+            self._ledger.write()
         if self._tiers.interpreted_s > interpreted:
             record.interpreted_steps += made
             record.interpreted_s += self._tiers.interpreted_s - interpreted

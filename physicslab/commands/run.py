@@ -9,8 +9,9 @@ import os
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
+from typing import TextIO
 
 from physicslab.commands.assignments import add_assignments, assign
 from physicslab.commands.command_error import FAILED, CommandError
@@ -19,6 +20,7 @@ from physicslab.commands.numbers import STEP_LIMIT, count, duration, positive_co
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.desktop.rescue import save_last_good
+from physicslab.diagnostics.ledger import LedgerWriter
 from physicslab.diagnostics.run_report import find_not_finite, run_report, run_summary
 from physicslab.diagnostics.trajectory import TrajectoryWriter
 from physicslab.ecs.component import InvalidValue
@@ -60,6 +62,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--every", metavar="S", type=positive_duration, help=spacing)
     words = "compute the run in other ways too: how many digits of each position agree, and until when"
     add("--trust", action="store_true", help=words)
+    impacts = "write every impact of the run: when, where, how fast before and after, what it took (-)"
+    add("--ledger", metavar="FILE", help=impacts)
     add("--png", metavar="FILE", help="draw the final state, without a window (- for stdout)")
 
 
@@ -81,13 +85,17 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
     name = world.name or Path(arguments.scene).stem
     label = shortened(printable(name))
     seconds = _DEFAULT_S if arguments.seconds is None and arguments.steps is None else arguments.seconds
-    with outputs["csv"].stream() if "csv" in outputs else nullcontext() as stream:
+    with _stream(outputs, "csv") as stream, _stream(outputs, "ledger") as impacts:
         table = None if stream is None else TrajectoryWriter(stream, world)
+        ledger = None if impacts is None else LedgerWriter(impacts, world)
         try:
-            run = MeasuredRun(world, name, tiers, arguments.at_most, table, arguments.every or 0.0)
+            run = MeasuredRun(world, name, tiers, arguments.at_most, table, arguments.every or 0.0, ledger)
             run.go(seconds, arguments.steps)
         except Diverged as error:
             raise CommandError(f"{label}: {error}; {_rescue(world, name, outputs)}", FAILED) from error
+    if ledger is not None and ledger.lost and sys.stderr is not None:
+        lines = f"--ledger: {ledger.lost} of {ledger.lost + ledger.rows} impacts are not in it"
+        print(f"physicslab: {label}: {lines}: too many between two readings", file=sys.stderr)
     report, stopped = run_report(world, run.record), run.stopped
     place = find_not_finite(report)
     if place is not None:
@@ -106,6 +114,11 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
     if stopped:
         raise CommandError(f"{label}: {stopped}", FAILED)
     return 0
+
+
+def _stream(outputs: Mapping[str, Output], kind: str) -> AbstractContextManager[TextIO | None]:
+    """Return the stream of an output that is written bit by bit, ``None`` where it is not wanted."""
+    return outputs[kind].stream() if kind in outputs else nullcontext()
 
 
 def _trust(arguments: Namespace, label: str, seconds: float) -> dict[str, object]:
@@ -142,7 +155,7 @@ def _rescue(world: World, name: str, outputs: Mapping[str, Output]) -> str:
 
 def _outputs(arguments: Namespace) -> dict[str, Output]:
     """Return the outputs that were asked for, all of them writable and none in the way of another."""
-    wanted = {kind: getattr(arguments, kind) for kind in ("json", "csv", "png")}
+    wanted = {kind: getattr(arguments, kind) for kind in ("json", "csv", "ledger", "png")}
     outputs = {kind: Output(f"--{kind}", path) for kind, path in wanted.items() if path is not None}
     for kind, output in outputs.items():
         if arguments.scene not in SCENES and output.is_same_as(arguments.scene):

@@ -77,8 +77,8 @@ class Contacts:
         longer for that); those located in time are there in any case.
     """
 
-    LOGGED = 32_768
-    """How many impacts are kept."""
+    LOGGED = 100_000
+    """How many impacts are kept; their memory is taken as they come."""
 
     proximity_count = _count(near_counts.PROXIMITY, "How many near pairs have no record.")
     recorded = _count(near_counts.RECORDED, "How many near pairs have records.")
@@ -125,6 +125,13 @@ class Contacts:
     def step_log(self) -> NDArray[Any]:
         """The log for the impacts of the contact step: of no length where they are not read."""
         return self.log if self.read else self.log[:0]
+
+    def lengthen_log(self, length: int) -> None:
+        """Let the log hold so many impacts, no fewer than now; those in it stay."""
+        last = np.arange(max(0, self.logged - len(self.log)), self.logged)
+        log: NDArray[Any] = np.zeros(length, IMPACT)
+        log[last % length] = self.log[last % len(self.log)]
+        self.log = log
 
     def forget_impacts(self, first: int, count: int) -> None:
         """Remove ``count`` impacts from number ``first`` on from the log; later ones move up."""

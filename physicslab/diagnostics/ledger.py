@@ -1,0 +1,238 @@
+"""The ledger of impacts: what each did, derived from the records that the steppers write.
+
+Normal n from A to B, tangent t = n turned counter-clockwise, u = velocity of B's point against A's. With the
+arms r from the centres to the point and v, w the velocities at the moment of the impact,
+
+    u = v_b + w_b x r_b - v_a - w_a x r_a,    vn = u . n,    vt = u . t.
+
+An impulse J on B changes v_b by J / m_b and w_b by r_b x J / I_b, and acts as -J on A. Its work on both is
+J . (u- + u+) / 2, with u before and after all impulses of the moment: this is exact, as velocities are linear
+in the impulses. The sum over the points of a pair, negative, is what the impact took.
+"""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from typing import Any, TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON
+from physicslab.state.state import State
+
+__all__ = ["LAWS", "WALLS", "ImpactColumns", "LedgerWriter", "names_of", "read_impacts", "speeds_at"]
+
+WALLS = ("bounds left", "bounds bottom", "bounds right", "bounds top")
+"""What the world's bounds are called, by the number of the wall."""
+LAWS = {NEWTON: "Newton", ENERGETIC: "Stronge", LOWERED: "Newton, restitution lowered"}
+"""The laws of :mod:`physicslab.kernels.solver.blow` in words."""
+_STICKS = 1e-9
+"""Share of the speeds before an impact up to which the sliding after it is none."""
+_GROWS_FROM = 0.25
+"""Share of the ring that is filled between two readings from which on it is doubled."""
+_MAX_RING = 1_600_000
+"""Largest number of impacts in the ring."""
+_BLOCK = 65_536
+"""Rows that are computed at a time."""
+
+type Floats = NDArray[np.float64]
+type LastTimes = dict[tuple[int, int, int], float]
+"""When each pair met last [s], by entities and wall."""
+
+
+@dataclass(frozen=True, slots=True)
+class ImpactColumns:
+    """What follows from the records of impacts, an array of each (n,).
+
+    Speeds are those of B's point against A's, at the point with the larger impulse.
+
+    Attributes
+    ----------
+    vn_before, vn_after : float64 arrays
+        Along the normal [m/s]; negative where they approach.
+    vt_before, vt_after : float64 arrays
+        Along the tangent [m/s].
+    e_found : float64 array
+        -vn_after / vn_before; NaN where the point did not approach.
+    sticks : bool array
+        Whether the surfaces leave without sliding, held by friction: vt_after is none.
+    energy_lost : float64 array
+        -J . (u- + u+) / 2 of all points [J]: the kinetic energy of both bodies before minus after, by the
+        impulses of this pair alone. What a kinematic or held body gives by its motion is not part of it.
+    since : float64 array
+        Seconds since the last impact of the same pair; NaN for the first.
+    """
+
+    vn_before: Floats
+    vn_after: Floats
+    vt_before: Floats
+    vt_after: Floats
+    e_found: Floats
+    sticks: NDArray[np.bool_]
+    energy_lost: Floats
+    since: Floats
+
+
+def speeds_at(records: NDArray[Any], x: Floats, y: Floats, moment: str) -> tuple[Floats, Floats]:
+    """Return the speeds of B against A at points, along normal and tangent.
+
+    Parameters
+    ----------
+    records : array of IMPACT (n,)
+        The impacts.
+    x, y : float64 arrays (n,)
+        Points [m].
+    moment : "before" or "after"
+        Which velocities of the bodies.
+
+    Returns
+    -------
+    vn, vt : float64 arrays (n,)
+        [m/s].
+    """
+    ax, ay, wa = (records[f"{moment}_{part}"] for part in ("ax", "ay", "wa"))
+    bx, by, wb = (records[f"{moment}_{part}"] for part in ("bx", "by", "wb"))
+    ux = bx - wb * (y - records["center_by"]) - ax + wa * (y - records["center_ay"])
+    uy = by + wb * (x - records["center_bx"]) - ay - wa * (x - records["center_ax"])
+    nx, ny = records["normal_x"], records["normal_y"]
+    return ux * nx + uy * ny, uy * nx - ux * ny
+
+
+def read_impacts(records: NDArray[Any], last: LastTimes | None = None) -> ImpactColumns:
+    """Return the derived columns of impacts, in the order of the records.
+
+    Parameters
+    ----------
+    records : array of IMPACT (n,)
+        The impacts, in the order in which they were logged.
+    last : dict, optional
+        When each pair met last before them; brought up to date. Without it, the first of each pair has no
+        last.
+
+    Returns
+    -------
+    ImpactColumns
+        The columns, each (n,).
+    """
+    vn_before, vt_before = speeds_at(records, records["x"], records["y"], "before")
+    vn_after, vt_after = speeds_at(records, records["x"], records["y"], "after")
+    with np.errstate(all="ignore"):
+        e_found = np.where(vn_before < 0.0, -vn_after / vn_before, np.nan)
+    none = np.abs(vt_after) <= _STICKS * (np.abs(vn_before) + np.abs(vt_before))
+    normal, tangent = records["normal_impulse"], records["tangent_impulse"]
+    normal_2, tangent_2 = records["normal_impulse_2"], records["tangent_impulse_2"]
+    second = [speeds_at(records, records["x_2"], records["y_2"], moment) for moment in ("before", "after")]
+    work = (normal - normal_2) * (vn_before + vn_after) + (tangent - tangent_2) * (vt_before + vt_after)
+    work += normal_2 * (second[0][0] + second[1][0]) + tangent_2 * (second[0][1] + second[1][1])
+    return ImpactColumns(
+        vn_before, vn_after, vt_before, vt_after, e_found, none & (records["friction"] > 0.0),
+        0.0 - 0.5 * work, _since_last(records, {} if last is None else last),
+    )  # fmt: skip
+
+
+def _since_last(records: NDArray[Any], last: LastTimes) -> Floats:
+    """Return how long since the last impact of each pair [s], and note the last ones."""
+    since = np.full(len(records), np.nan)
+    a, b, wall, times = (records[name] for name in ("entity_a", "entity_b", "wall", "time"))
+    order = np.lexsort((times, wall, b, a))
+    if not len(order):
+        return since
+    same = np.zeros(len(order), np.bool_)
+    same[1:] = (a[order][1:] == a[order][:-1]) & (b[order][1:] == b[order][:-1])
+    same[1:] &= wall[order][1:] == wall[order][:-1]
+    later = np.flatnonzero(same)
+    since[order[later]] = times[order[later]] - times[order[later - 1]]
+    ends = np.append(np.flatnonzero(~same)[1:], len(order)) - 1
+    for begin, end in zip(order[~same].tolist(), order[ends].tolist(), strict=True):
+        key = int(a[begin]), int(b[begin]), int(wall[begin])
+        if key in last:
+            since[begin] = times[begin] - last[key]
+        last[key] = float(times[end])
+    return since
+
+
+def names_of(state: State, records: NDArray[Any]) -> tuple[list[str], list[str]]:
+    """Return what A and B of each impact are called; the bounds by their walls."""
+    entities = np.unique(np.concatenate((records["entity_a"], records["entity_b"]))).tolist()
+    names = {entity: state.label(entity) for entity in entities if entity}
+    pairs = zip(records["entity_a"].tolist(), records["wall"].tolist(), strict=True)
+    first = [names[entity] if wall < 0 else WALLS[wall] for entity, wall in pairs]
+    return first, [names[entity] for entity in records["entity_b"].tolist()]
+
+
+_HEADER = (
+    "time [s]", "A", "B", "x [m]", "y [m]", "normal x", "normal y",
+    "normal speed before [m/s]", "normal speed after [m/s]",
+    "tangential speed before [m/s]", "tangential speed after [m/s]",
+    "normal impulse [N s]", "tangential impulse [N s]", "friction", "restitution asked", "restitution found",
+    "kinetic energy lost [J]", "since the pair's last [s]", "law", "points", "other impulses at once",
+)  # fmt: skip
+
+
+class LedgerWriter:
+    """Writes every impact of a world to a stream as CSV, from now on: a row each, in the order of the log.
+
+    The world's ring of impacts is read between steps, and doubled where one reading finds much of it filled.
+    Numbers keep every bit. A cell is empty where there is nothing to tell: a pair's first impact has no last.
+
+    Parameters
+    ----------
+    stream : text stream
+        Opened with ``newline=""``.
+    state : State
+        Whose impacts; from now on all of them are logged.
+
+    Attributes
+    ----------
+    rows : int
+        How many impacts were written.
+    lost : int
+        How many were overwritten in the ring before they could be read.
+    """
+
+    def __init__(self, stream: TextIO, state: State) -> None:
+        state.contacts.read = True
+        self._rows = csv.writer(stream, lineterminator="\n")
+        self._rows.writerow(_HEADER)
+        self._state, self._next = state, int(state.contacts.logged)
+        self._last: LastTimes = {}
+        self.rows = self.lost = 0
+
+    def write(self) -> None:
+        """Write the impacts since the last call."""
+        contacts = self._state.contacts
+        logged, ring = int(contacts.logged), len(contacts.log)
+        new = logged - self._next
+        if new <= 0:
+            return
+        self.lost += max(new - ring, 0)
+        for first in range(max(self._next, logged - ring), logged, _BLOCK):
+            number = np.arange(first, min(first + _BLOCK, logged))
+            self._write(contacts.log[number % ring])
+        self._next = logged
+        if new > _GROWS_FROM * ring and ring < _MAX_RING:
+            contacts.lengthen_log(2 * ring)
+
+    def _write(self, records: NDArray[Any]) -> None:
+        """Write some impacts."""
+        found, (a, b) = read_impacts(records, self._last), names_of(self._state, records)
+        columns = (
+            records["time"].tolist(), a, b,
+            *(records[name].tolist() for name in ("x", "y", "normal_x", "normal_y")),
+            found.vn_before.tolist(), found.vn_after.tolist(),
+            found.vt_before.tolist(), found.vt_after.tolist(),
+            records["normal_impulse"].tolist(), records["tangent_impulse"].tolist(),
+            np.where(found.sticks, "sticks", "slips").tolist(),
+            records["restitution"].tolist(), _or_empty(found.e_found), found.energy_lost.tolist(),
+            _or_empty(found.since), [LAWS[law] for law in records["law"].tolist()],
+            records["points"].tolist(), np.where(records["alone"] == 1, "no", "yes").tolist(),
+        )  # fmt: skip
+        self._rows.writerows(zip(*columns, strict=True))
+        self.rows += len(records)
+
+
+def _or_empty(values: Floats) -> list[float | str]:
+    """Return numbers as a list, with nothing in the place of NaN."""
+    return ["" if value != value else value for value in values.tolist()]
