@@ -193,6 +193,25 @@ class Collision:
         relative = b.at(spot.arm_b) - a.at(spot.arm_a)
         return relative.dot(self.normal), relative.dot(self.tangent)
 
+    @property
+    def speed_scale(self) -> float:
+        """The largest speed of a centre, or at the contact [m/s]: what speeds are compared with."""
+        motions = [motion for body in (self.a, self.b) for motion in (body.before, body.after)]
+        contact = [abs(part) for spot in self.spots for part in self.approach(spot)]
+        return max(*(motion.linear.magnitude for motion in motions), *contact)
+
+    @property
+    def turning_scale(self) -> float:
+        """The largest angular velocity that there is, or that these impulses could cause [rad/s]."""
+        found = [abs(motion.angular) for body in (self.a, self.b) for motion in (body.before, body.after)]
+        for spot in self.spots:
+            impulse = math.hypot(spot.normal_impulse, spot.tangent_impulse)
+            found += [
+                arm.magnitude * impulse * body.inverse_inertia
+                for arm, body in ((spot.arm_a, self.a), (spot.arm_b, self.b))
+            ]
+        return max(found)
+
     # ---- energy and frames ---------------------------------------------------------------------------------
 
     @property

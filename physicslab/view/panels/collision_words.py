@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from physicslab.diagnostics.collision import ENERGETIC, LOWERED, Body, Collision, Motion, Result
+from physicslab.diagnostics.collision import ENERGETIC, LOWERED, Body, Collision, Result
 from physicslab.ecs.text import printable
+from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.drawable_text import shortened
-from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity
+from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity, without_rounding
 from physicslab.world import World
 
 __all__ = ["AGREES", "WALLS", "Step", "body_name", "law_steps", "story"]
@@ -63,7 +64,7 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
     spot = max(collision.spots, key=lambda one: one.normal_impulse)
     vn, vt = collision.approach(spot)
     left, slides = collision.approach(spot, after=True)
-    told = [f"{names[1]} met {names[0]} at {quantity(-vn, 'm/s')} along the normal n."]
+    told = [f"B ({names[1]}) met A ({names[0]}) at {quantity(-vn, 'm/s')} along the normal n."]
     if len(collision.spots) == 2:
         told.append("Two points met at once, as where a box lands flat: both impulses are found together.")
     told.append(_bounce(collision, result, -left / vn if vn else 0.0))
@@ -90,7 +91,12 @@ def _rotation(collision: Collision) -> Iterator[str]:
     """Yield why a blow beside the centre is softer."""
     response = collision.responses[0]
     plain, turning = 1.0 / response.apart, 1.0 / response.kn
-    if turning < _SOFTER * plain:
+    if len(collision.spots) == 2:
+        yield (
+            f"One point by itself would give way by turning, and act like {quantity(turning, 'kg')} and not "
+            f"like {quantity(plain, 'kg')}; two at once hold each other, so that it turns less."
+        )
+    elif turning < _SOFTER * plain:
         yield (
             f"The blow passes beside a centre of mass, so the contact gives way by turning: it acts like "
             f"{quantity(turning, 'kg')}, and not like {quantity(plain, 'kg')} as without rotation. Such a blow "
@@ -153,6 +159,7 @@ def _one_over(inverse: float) -> str:
 def _masses(collision: Collision) -> Iterator[Step]:
     a, b = collision.a, collision.b
     response = collision.responses[0]
+    reach = max(arm.magnitude for spot in collision.spots for arm in (spot.arm_a, spot.arm_b))
     both = f"{_one_over(a.inverse_mass)} + {_one_over(b.inverse_mass)}"
     yield Step(
         "Mass that the blow meets if neither body could turn", "1/m = 1/m_A + 1/m_B", both,
@@ -160,7 +167,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
     )  # fmt: skip
     for k, one in enumerate(collision.responses):
         turned = " + ".join(
-            f"{_number(arm)}²·{_one_over(body.inverse_inertia)}"
+            f"{_number(without_rounding(arm, reach))}²·{_one_over(body.inverse_inertia)}"
             for arm, body in ((one.normal_a, a), (one.normal_b, b))
         )
         of = f" at point {k + 1}" if len(collision.responses) == 2 else ""
@@ -171,7 +178,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
         )  # fmt: skip
     if collision.friction > 0.0:
         turned = " + ".join(
-            f"{_number(arm)}²·{_one_over(body.inverse_inertia)}"
+            f"{_number(without_rounding(arm, reach))}²·{_one_over(body.inverse_inertia)}"
             for arm, body in ((response.across_a, a), (response.across_b, b))
         )
         yield Step(
@@ -179,7 +186,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
             "1/m_t = 1/m_A + 1/m_B + (r_A×t)²/I_A + (r_B×t)²/I_B", f"{both} + {turned}",
             f"m_t = {quantity(1.0 / response.kt, 'kg')}",
         )  # fmt: skip
-        if response.coupling:
+        if without_rounding(response.coupling, response.kn):
             yield Step(
                 "Coupling: how a push along n makes the contact slide",
                 "c = (r_A×n)(r_A×t)/I_A + (r_B×n)(r_B×t)/I_B",
@@ -196,7 +203,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
 def _impulses_of_one(collision: Collision, result: Result) -> list[Step]:
     response, (vn, vt) = collision.responses[0], collision.approach(collision.spots[0])
     e, mu = result.restitution, collision.friction
-    kn, kt, c = response.kn, response.kt, response.coupling
+    kn, kt, c = response.kn, response.kt, without_rounding(response.coupling, response.kn)
     normal, tangent = result.normal[0], result.tangent[0]
     steps = [
         Step("Approach along n, before", "v_n = (v_B + ω_B×r_B - v_A - ω_A×r_A)·n", "", quantity(vn, "m/s")),
@@ -273,16 +280,15 @@ def _compared(
 def _motions(collision: Collision, result: Result) -> Iterator[Step]:
     """Yield the motions after, beside those that the solver gave."""
     bodies = (("A", collision.a, result.a, "-"), ("B", collision.b, result.b, "+"))
-    speed = max(motion.linear.magnitude for _, body, *_ in bodies for motion in (body.before, body.after))
-    turning = max(_turning_scale(body, collision) for _, body, *_ in bodies)
+    speed, turning, pressed = collision.speed_scale, collision.turning_scale, collision.impulse.magnitude
     for name, body, motion, sign in bodies:
         if not body.is_free:
             continue
         yield Step(
             f"Velocity of {name} after", f"v_{name}' = v_{name} {sign} (J_n n + J_t t)/m_{name}",
-            f"{vector_quantity(body.before.linear, '')}{sign} {vector_quantity(collision.impulse, '')}"
+            f"{_vector(body.before.linear, speed, '')}{sign} {_vector(collision.impulse, pressed, '')}"
             f"·{_one_over(body.inverse_mass)}",
-            vector_quantity(motion.linear, "m/s"), vector_quantity(body.after.linear, "m/s"),
+            _vector(motion.linear, speed, "m/s"), _vector(body.after.linear, speed, "m/s"),
             (motion.linear - body.after.linear).magnitude / speed if speed else 0.0,
         )  # fmt: skip
         if body.inverse_inertia > 0.0:
@@ -290,7 +296,8 @@ def _motions(collision: Collision, result: Result) -> Iterator[Step]:
                 f"Turning of {name} after", f"ω_{name}' = ω_{name} {sign} r_{name}×(J_n n + J_t t)/I_{name}",
                 f"{_number(body.before.angular)} {sign} {_number(_torque(body, collision))}"
                 f"·{_one_over(body.inverse_inertia)}",
-                quantity(motion.angular, "rad/s"), quantity(body.after.angular, "rad/s"),
+                quantity(without_rounding(motion.angular, turning), "rad/s"),
+                quantity(without_rounding(body.after.angular, turning), "rad/s"),
                 abs(motion.angular - body.after.angular) / turning if turning else 0.0,
             )  # fmt: skip
 
@@ -305,11 +312,6 @@ def _torque(body: Body, collision: Collision) -> float:
     )
 
 
-def _turning_scale(body: Body, collision: Collision) -> float:
-    """Return the largest angular velocity that a body has or could be given by these impulses [rad/s]."""
-    motions: tuple[Motion, ...] = (body.before, body.after)
-    size = max(
-        (spot.arm_a if body is collision.a else spot.arm_b).magnitude * spot.normal_impulse
-        for spot in collision.spots
-    )
-    return max(*(abs(motion.angular) for motion in motions), size * body.inverse_inertia)
+def _vector(value: Vector2, scale: float, unit: str) -> str:
+    """Return a vector whose components are none where they are rounding beside ``scale``."""
+    return vector_quantity(Vector2(*(without_rounding(part, scale) for part in value)), unit)

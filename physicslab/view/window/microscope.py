@@ -47,6 +47,8 @@ class Microscope:
         The impact; ``None`` while the microscope is closed.
     collision, result : Collision, Result
         That impact, and what the law makes of it.
+    number : int
+        How many impacts were shown.
     frame : str
         The observer, one of ``FRAMES``.
     shows_formula : bool, optional
@@ -59,6 +61,7 @@ class Microscope:
 
     def __init__(self) -> None:
         self.record: Any | None = None
+        self.number = 0
         self.collision: Collision
         self.result: Result
         self.frame = "Lab"
@@ -72,9 +75,15 @@ class Microscope:
         """Whether an impact is shown."""
         return self.record is not None
 
+    @property
+    def state(self) -> tuple[object, ...]:
+        """What panels show of it."""
+        return self.number, self.is_open, self.waits_for, self.slow is None, self.frame
+
     def show(self, record: Any) -> None:
         """Show an impact; the record is copied."""
         self.record = record.copy()
+        self.number += 1
         self.collision = read_collision(record)
         self.result = resolve(self.collision)
 

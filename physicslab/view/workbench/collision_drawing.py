@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from physicslab.components import Shape
 from physicslab.diagnostics.collision import Body, Collision
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.quantities import quantity
+from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.workbench.sketch import Place, Sketch, sketch
@@ -20,10 +20,10 @@ _REACH = 0.36
 """Length of the longest arrow of the bodies, as a share of the smaller side of the drawing."""
 _BIGGEST = 1.6
 """How much of a large body is in sight, in sizes of the smaller one."""
-_ROOM = 1.2
+_ROOM = 1.08
 _CORNERS = 48
-_NONE = 1e-12
-"""Share of the largest arrow below which one is rounding, and not drawn."""
+_SHORT = 2.0
+"""Arrows shorter than that are not drawn [px]."""
 
 
 def colours_of(theme: Theme) -> tuple[Colour, Colour]:
@@ -57,7 +57,7 @@ def draw_bodies(ui: Ui, world: World, seen: Collision, size: tuple[float, float]
             start = at(body.centre)
             for motion, mark, before in ((body.before, "", True), (body.after, "′", False)):
                 way = per_speed * motion.linear
-                if motion.linear.magnitude <= _NONE * max(speeds):
+                if way.magnitude < _SHORT:
                     continue
                 end = start[0] + way.x, start[1] - way.y
                 paper.arrow(start, end, colour, before=before)
@@ -106,7 +106,7 @@ def _draw_body(
 
 def _draw_axes(paper: Sketch, seen: Collision, origin: Place) -> None:
     """Draw the directions of normal and tangent at the contact."""
-    theme, length = paper.ui.theme, 3.2 * paper.ui.size
+    theme, length = paper.ui.theme, 4.4 * paper.ui.size
     for way, name in ((seen.normal, "n"), (seen.tangent, "t")):
         end = origin[0] + length * way.x, origin[1] - length * way.y
         back = origin[0] - length * way.x, origin[1] + length * way.y
@@ -168,12 +168,16 @@ def draw_momenta(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
         for parts, names, colours, thin in chains:
             places = [at(tip) for tip in _tips(parts)]
             for start, end, name, colour in zip(places, places[1:], names, colours, strict=False):
+                if math.dist(start, end) < _SHORT:
+                    continue
                 paper.arrow(start, end, colour, before=thin)
                 paper.words(_beside(start, end, (0.9 if thin else -0.9) * ui.size), name, theme.text)
         if len(chains[1][0]) == 2:
             start, end = at(Vector2()), at(sum(before, Vector2()))
-            paper.line(start, end, theme.heading, 1.0, dashed=True)
-            paper.words(_beside(start, end, 0.0), "sum", theme.heading)
+            paper.disc(start, 3.0, theme.heading, theme.heading)
+            paper.disc(end, 5.0, theme.background, theme.heading, 1.5)
+            paper.words((start[0], start[1] + 0.9 * ui.size), "start", theme.faint)
+            paper.words((end[0], end[1] + 0.9 * ui.size), "sum", theme.faint)
 
 
 def _tips(parts: Sequence[Vector2]) -> list[Vector2]:
@@ -217,16 +221,18 @@ def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
         (a_along, a_turn), (b_along, b_turn) = seen.a.energies(a), seen.b.energies(b)
         parts.append(
             [
-                ("A moves", a_along, a_colour, False), ("A turns", a_turn, theme.fill(a_colour), False),
-                ("B moves", b_along, b_colour, False), ("B turns", b_turn, theme.fill(b_colour), False),
+                ("A moves|A", a_along, a_colour, False), ("A turns|A ω", a_turn, theme.fill(a_colour), False),
+                ("B moves|B", b_along, b_colour, False), ("B turns|B ω", b_turn, theme.fill(b_colour), False),
             ]
         )  # fmt: skip
     bounced, rubbed = seen.lost
-    parts[1] += [("lost in the bounce", bounced, theme.error, True), ("rubbed off", rubbed, theme.paused, True)]
+    parts[1] += [("lost in the bounce|lost", bounced, theme.error, True), ("rubbed off|rubbed", rubbed, theme.paused, True)]
     full = max(sum(max(part[1], 0.0) for part in bar) for bar in parts) or 1.0
-    label, high = 3.4 * ui.size, 1.3 * ui.size
+    totals = [sum(part[1] for part in bar[:4]) for bar in parts]
+    label, high = 7.6 * ui.size, 1.3 * ui.size
     with sketch(ui, width, 2.0 * high + 1.2 * ui.size) as paper:
-        for n, (words, bar) in enumerate(zip(("before", "after"), parts, strict=True)):
+        for n, (when, bar) in enumerate(zip(("before", "after"), parts, strict=True)):
+            words = f"{when} {quantity(totals[n], 'J')}"
             top = 0.4 * ui.size + n * (high + 0.4 * ui.size)
             paper.words((0.5 * label, top + 0.5 * high), words, theme.text)
             x = label + 0.4 * ui.size
@@ -238,27 +244,26 @@ def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
                 paper.bar((x, top), (end - 1.0, top + high), colour, hatched=hatched)
                 _label_bar(paper, name, (x, end), top + 0.5 * high, theme, plain=hatched or colour not in colours_of(theme))
                 x = end
-    _write_energies(ui, seen, parts)
+    _write_losses(ui, seen, full)
 
 
 def _label_bar(
     paper: Sketch, name: str, span: tuple[float, float], middle: float, theme: Theme, *, plain: bool
 ) -> None:
-    """Write what a part of a bar is, as far as there is room: 'A moves', else 'A'."""
+    """Write what a part of a bar is, in the longest of its names for which there is room."""
     per_letter = 0.56 * paper.ui.size
-    for words in (name, name.split()[0]):
-        if len(words) * per_letter < span[1] - span[0] and (words == name or len(words) == 1):
+    for words in name.split("|"):
+        if len(words) * per_letter < span[1] - span[0]:
             paper.words((0.5 * sum(span), middle), words, theme.text if plain else theme.background)
             return
 
 
-def _write_energies(ui: Ui, seen: Collision, parts: Sequence[Sequence[tuple[str, float, Colour, bool]]]) -> None:
-    before, after = sum(part[1] for part in parts[0]), sum(part[1] for part in parts[1][:4])
-    bounced, rubbed = seen.lost
-    ui.row("Kinetic energy before", quantity(before, "J"))
-    ui.row("Kinetic energy after", quantity(after, "J"))
-    ui.row("Lost in the bounce", quantity(bounced, "J"), "Taken by the normal impulse: restitution", lesser=True)
-    ui.row("Rubbed off", quantity(rubbed, "J"), "Taken by the friction impulse", lesser=True)
-    if seen.driven:
+def _write_losses(ui: Ui, seen: Collision, full: float) -> None:
+    """Write what was lost and to what; what is rounding beside the ``full`` energy [J] is none."""
+    bounced, rubbed = (without_rounding(part, full) for part in seen.lost)
+    ui.row("Lost in the bounce", quantity(bounced, "J"), "Taken by the normal impulse: restitution")
+    ui.row("Rubbed off", quantity(rubbed, "J"), "Taken by the friction impulse")
+    driven = without_rounding(seen.driven, full)
+    if driven:
         tip = "A body that nothing moves, but that moves as this observer sees it, does work on the other"
-        ui.row("Given by the one that nothing moves", quantity(seen.driven, "J"), tip, lesser=True)
+        ui.row("Given by the one that nothing moves", quantity(driven, "J"), tip)

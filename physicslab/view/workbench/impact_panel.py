@@ -27,9 +27,8 @@ _TIPS = (
     "Impulse along the surface", "Whether friction stopped the sliding",
     "Speed along the normal after the impact, as a share of the approach", "Kinetic energy that it took",
 )  # fmt: skip
-_HEIGHT = 16.0
-_FEW = 2.0
-"""Of the table, and down to which it shrinks, in heights of the text."""
+_HEIGHT = 11.0
+"""Of the table, in heights of the text."""
 _SLACK = 1.5
 
 
@@ -38,7 +37,7 @@ def build_impacts(ui: Ui, world: World, window: Window) -> None:
     left, top, width, height = window.room()
     wide = sum(_WIDTHS) * ui.size + len(_WIDTHS) * 2.0 * imgui.get_style().cell_padding.x + _SLACK * ui.size
     wide = min(wide, max(width, 0.6 * window.canvas.size[0]) - 2.0 * ui.size)
-    place = left + 0.5 * width, top + height - 0.5 * (_HEIGHT + 7.0) * ui.size
+    place = left + 0.5 * width, top + height - 0.5 * (_HEIGHT + 6.5) * ui.size
     with ui.floating("Impacts", place, docks=True) as stays:
         _build_head(ui, world, window)
         rows = window.impacts.order(window.selection.entities)
@@ -50,7 +49,7 @@ def build_impacts(ui: Ui, world: World, window: Window) -> None:
             imgui.push_text_wrap_pos(size.x)
             ui.faint(_nothing(window), wrapped=False)
             imgui.pop_text_wrap_pos()
-            imgui.dummy(ImVec2(size.x, _FEW * ui.size))
+            imgui.dummy(ImVec2(size.x, max(size.y - 3.0 * ui.size, 1.0)))
     if not stays[0]:
         window.impacts.shown = False
 

@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.diagnostics.collision import Collision
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.quantities import quantity
+from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.controls import impact_actions
 from physicslab.view.panels.collision_words import AGREES, Step, body_name, law_steps, story
 from physicslab.view.toolkit.ui import Ui
@@ -21,9 +21,9 @@ __all__ = ["build_microscope"]
 
 _PICTURE, _WORDS = 24.0, 29.0
 """Widths of the drawings and of the words beside them, in heights of the text."""
-_TALL, _LOW = 38.0, 16.0
+_TALL, _LOW = 38.0, 13.0
 """Height of both where there is room, and height of the bodies' drawing."""
-_SMALL = 10.0
+_SMALL = 8.6
 """Height of the drawings below that."""
 _SHARE = 0.94
 """How much of the window it may take."""
@@ -161,12 +161,15 @@ def _build_velocities(ui: Ui, seen: Collision) -> None:
     for words in ("", "along n", "along t", "turning"):
         imgui.table_next_column()
         ui.faint(words, wrapped=False)
+    speed, turning = seen.speed_scale, seen.turning_scale
     for name, body in (("A", seen.a), ("B", seen.b)):
         for when, motion in (("before", body.before), ("after", body.after)):
             imgui.table_next_row()
+            along, across = motion.linear.dot(seen.normal), motion.linear.dot(seen.tangent)
             cells = (
-                f"{name} {when}", quantity(motion.linear.dot(seen.normal), "m/s"),
-                quantity(motion.linear.dot(seen.tangent), "m/s"), quantity(motion.angular, "rad/s"),
+                f"{name} {when}", quantity(without_rounding(along, speed), "m/s"),
+                quantity(without_rounding(across, speed), "m/s"),
+                quantity(without_rounding(motion.angular, turning), "rad/s"),
             )  # fmt: skip
             for words in cells:
                 imgui.table_next_column()
@@ -180,14 +183,16 @@ def _build_momentum(ui: Ui, seen: Collision) -> None:
         seen.a.momentum(a) + seen.b.momentum(b)
         for a, b in ((seen.a.before, seen.b.before), (seen.a.after, seen.b.after))
     )
-    ui.row("Momentum before", _vector(before), "Of all that impulses move of the two")
-    ui.row("Momentum after", _vector(after))
+    scale = max(body.momentum(m).magnitude for body in (seen.a, seen.b) for m in (body.before, body.after))
+    ui.row("Momentum before", _vector(before, scale), "Of all that impulses move of the two")
+    ui.row("Momentum after", _vector(after, scale))
     if not (seen.a.is_free and seen.b.is_free):
         ui.row("Impulse on it", quantity(seen.impulse.magnitude, "N s"), "What the other one, that nothing moves, gave")
 
 
-def _vector(value: Vector2) -> str:
-    return f"({quantity(value.x, '').strip()}, {quantity(value.y, '').strip()}) kg m/s"
+def _vector(value: Vector2, scale: float) -> str:
+    x, y = (quantity(without_rounding(part, scale), "").strip() for part in value)
+    return f"({x}, {y}) kg m/s"
 
 
 def _build_verdict(ui: Ui, steps: list[Step], *, is_alone: bool) -> None:
