@@ -16,6 +16,7 @@ from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.energetic import energetic_blow
@@ -362,61 +363,90 @@ def blow_of_one(
 
 
 def _blow_of_two(collision: Collision, restitution: float) -> _Blow:
-    """Return the impulses of two points at a restitution: those that contradict none of the laws.
+    """Return the impulses of two points at a restitution: those that break none of the laws.
 
     Each point that is pressed leaves with e times its approach, the other no slower than that; friction stops
-    the sliding, or is mu times the normal impulses against it. All cases are tried.
+    its sliding, or is mu times its normal impulse against that. All cases are tried.
     """
-    (one, two), (first, second) = collision.responses, collision.spots
-    (v1, vt), (v2, _) = collision.approach(first), collision.approach(second)
-    k12, mu = collision.between, collision.friction
-    matrix = np.array(
-        [
-            [one.kn, k12, one.coupling],
-            [k12, two.kn, two.coupling],
-            [one.coupling, two.coupling, 0.5 * (one.kt + two.kt)],
-        ]
-    )
-    gained = np.array([-(1.0 + restitution) * v1, -(1.0 + restitution) * v2, -vt])
-    best: tuple[float, float, float, bool] = (0.0, 0.0, 0.0, False)
-    worst = math.inf
-    for pressed, share in product(((0, 1), (0,), (1,)), (None, 1.0, -1.0) if mu > 0.0 else (0.0,)):
-        impulses = _case(matrix, gained, pressed, share, mu)
-        wrong = max(_contradictions(matrix, gained, impulses, share, mu))
+    matrix, speeds = _matrix_of_two(collision), np.array([*zip(*map(collision.approach, collision.spots))])
+    before = speeds.ravel()  # both approaches, both slidings
+    wanted = np.concatenate((-restitution * before[:2], (0.0, 0.0)))
+    mu, worst, best = collision.friction, math.inf, np.zeros(4)
+    states = ("sticks", 1.0, -1.0, None) if mu > 0.0 else (0.0, None)
+    for case in sorted(product(states, repeat=2), key=lambda case: case.count(None)):
+        impulses = _of_case(matrix, wanted - before, case, mu)
+        wrong = max(_broken(matrix, before, wanted, impulses, case, mu))
         if wrong < worst:
-            worst, best = wrong, (*impulses.tolist(), share is None)
+            worst, best = wrong, impulses
         if wrong <= _ROUNDING:
             break
-    n1, n2, tangent, sticks = best
-    shared = tangent / (n1 + n2) if n1 + n2 > 0.0 else 0.0
-    return (n1, n2), (shared * n1, shared * n2), sticks
+    left = (matrix @ best + before)[2:][best[:2] > 0.0]
+    sticks = bool(len(left)) and mu > 0.0 and float(abs(left).max()) <= _STUCK * float(abs(before).max())
+    n1, n2, t1, t2 = best.tolist()
+    return (n1, n2), (t1, t2), sticks
 
 
-def _case(matrix: Any, gained: Any, pressed: Sequence[int], share: float | None, mu: float) -> Any:
-    """Return both normal impulses and friction where these points are pressed; it sticks without a share."""
-    rows = [*pressed, 2] if share is None else list(pressed)
-    columns = matrix[:, rows].copy()
-    if share is not None:
-        columns += share * mu * matrix[:, [2]]
-    found = np.zeros(3)
-    found[rows] = np.linalg.lstsq(columns[rows], gained[rows], rcond=_SINGULAR)[0]
-    if share is not None:
-        found[2] = share * mu * (found[0] + found[1])
+type _State = str | float | None
+"""What a point does: it ``"sticks"``, slides under friction of that sign, or is not pressed."""
+
+
+def _matrix_of_two(collision: Collision) -> NDArray[np.float64]:
+    """Return how both approaches and both slidings answer impulses at both points (4, 4) [1/kg]."""
+    a, b, (one, two) = collision.a, collision.b, collision.spots
+    ways = ((one, collision.normal), (two, collision.normal), (one, collision.tangent), (two, collision.tangent))
+    matrix = np.zeros((4, 4))
+    for i, (spot, way) in enumerate(ways):
+        for k, (other, push) in enumerate(ways):
+            turned = a.inverse_inertia * spot.arm_a.cross(way) * other.arm_a.cross(push)
+            turned += b.inverse_inertia * spot.arm_b.cross(way) * other.arm_b.cross(push)
+            matrix[i, k] = (a.inverse_mass + b.inverse_mass) * way.dot(push) + turned
+    return matrix
+
+
+def _of_case(
+    matrix: NDArray[np.float64], gained: NDArray[np.float64], case: Sequence[_State], mu: float
+) -> NDArray[np.float64]:
+    """Return normal and friction impulses of both points (4,) where each does what the case says."""
+    rows, columns = [], []
+    for k, state in enumerate(case):
+        if state is None:
+            continue
+        column = np.zeros(4)
+        column[k] = 1.0
+        if isinstance(state, float):
+            column[2 + k] = state * mu
+        rows.append(k)
+        columns.append(column)
+    for k, state in enumerate(case):
+        if state == "sticks":
+            rows.append(2 + k)
+            columns.append(np.eye(4)[2 + k])
+    if not rows:
+        return np.zeros(4)
+    basis = np.array(columns).T
+    found: NDArray[np.float64] = basis @ np.linalg.lstsq((matrix @ basis)[rows], gained[rows], rcond=_SINGULAR)[0]
+    if list(case) == ["sticks", "sticks"] and found[0] + found[1] > 0.0:  # of what both hold each has a share
+        found[2:] = found[2:].sum() * found[:2] / found[:2].sum()
     return found
 
 
-def _contradictions(matrix: Any, gained: Any, found: Any, share: float | None, mu: float) -> Iterator[float]:
-    """Yield by how much impulses contradict each law, as a share of the largest speed or impulse."""
-    left = matrix @ found - gained  # how much faster than asked each point leaves; how it slides then
-    speed, scale = float(abs(gained).max()) or 1.0, float(abs(found).sum()) or 1.0
-    for k in range(2):
-        yield -float(found[k]) / scale
-        yield -float(left[k]) / speed if found[k] <= 0.0 else abs(float(left[k])) / speed
-    if share is None:
-        yield (abs(float(found[2])) - mu * float(found[0] + found[1])) / scale
-        yield abs(float(left[2])) / speed
-    elif share:
-        yield share * float(left[2]) / speed
+def _broken(
+    matrix: NDArray[np.float64], before: NDArray[np.float64], wanted: NDArray[np.float64],
+    found: NDArray[np.float64], case: Sequence[_State], mu: float,
+) -> Iterator[float]:  # fmt: skip
+    """Yield by how much impulses break each law, as a share of the largest speed or impulse."""
+    after = matrix @ found + before
+    speed, scale = float(abs(before).max()) or 1.0, float(abs(found).sum()) or 1.0
+    for k, state in enumerate(case):
+        missing = float(wanted[k] - after[k]) / speed
+        normal, tangent, sliding = float(found[k]), float(found[2 + k]), float(after[2 + k])
+        yield -normal / scale
+        yield missing if state is None else abs(missing)
+        if state == "sticks":
+            yield abs(sliding) / speed
+            yield (abs(tangent) - mu * normal) / scale
+        elif isinstance(state, float):
+            yield state * sliding / speed if mu > 0.0 else 0.0
 
 
 def _gain(collision: Collision, found: _Blow) -> float:
