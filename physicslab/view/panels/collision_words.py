@@ -7,17 +7,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from physicslab.diagnostics.collision import ENERGETIC, LOWERED, Body, Collision, Result
+from physicslab.diagnostics.ledger import WALLS
 from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity, without_rounding
 from physicslab.world import World
 
-__all__ = ["AGREES", "WALLS", "Step", "body_name", "law_steps", "story"]
+__all__ = ["AGREES", "Step", "body_name", "law_steps", "story"]
 
 AGREES = 1e-9
 """Relative difference up to which the solver's figure and the one worked out here are the same."""
-WALLS = ("left wall", "floor of the bounds", "right wall", "ceiling of the bounds")
 _LETTERS = 24
 _SOFTER = 0.99
 """Share of the mass without rotation below which it is said that rotation makes the blow softer."""
