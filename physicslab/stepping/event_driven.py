@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.contacts.arguments import bounds_of, materials_of, motion_of, sizes_of
 from physicslab.contacts.near_pairs import list_all
+from physicslab.kernels.accounts import GRAVITY, PX
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.events import events, path
 from physicslab.kernels.wide import slots
@@ -117,6 +118,7 @@ class EventDriven:
     def _run_until_rest(self, state: State, h: float, parts: int, steps: int) -> int:
         """Make the steps in which nothing rests, of ``parts`` parts each; return how many they are."""
         start, collisions, logged = copy_motion(state), state.collisions, state.contacts.logged
+        booked = state.account.sums.copy()
         while steps:
             self._begin(state)
             gone, why = 0.0, events.CAME_TO_REST
@@ -128,6 +130,7 @@ class EventDriven:
                 return steps
             set_motion(state, start)
             state.collisions, state.contacts.logged = collisions, logged
+            state.account.sums[:] = booked
             self._urgent, steps = -1, min(int(gone / h), steps - 1)
         self._left = state.steps
         return 0
@@ -210,11 +213,14 @@ class EventDriven:
         if (self._mode == events.BALLISTIC).any():
             self._lead_resting(in_contact, start.motion, end, span, dt)
             set_motion(state, start.motion)
+            resting = state.account.sums.copy()
             elapsed, _ = self._run_events(state, span, dt, offset)
             motion = copy_motion(state)
             if elapsed < span:
+                ballistic = state.account.sums - resting
                 start.restore(state, impacts)
                 end = self._advance_resting(state, start, offset, elapsed, dt)
+                state.account.sums += ballistic
             for whole, part in zip(motion, end, strict=True):
                 whole[in_contact] = part[in_contact]
             set_motion(state, motion)
@@ -227,7 +233,16 @@ class EventDriven:
         """Advance resting bodies by ``span`` s, if they can move within it; return the motion of all."""
         if span <= _SHORT * dt:
             return copy_motion(state)
-        return self._resting.advance(state, start.pairs, state.time + offset, span)
+        end = self._resting.advance(state, start.pairs, state.time + offset, span)
+        self._book_no_fall(state, start.motion, span)
+        return end
+
+    def _book_no_fall(self, state: State, start: Motion, span: float) -> None:
+        """Take back what gravity gave to ballistic bodies in a contact step, which moves all for ``span`` s."""
+        ballistic = self._mode == events.BALLISTIC
+        mass, (gx, gy) = state.table(Mass)["mass"][ballistic], span * self._gravity
+        x, y = mass @ (start[0][ballistic] + 0.5 * span * start[2][ballistic])
+        state.account.sums[GRAVITY, PX:] -= (mass.sum() * gx, mass.sum() * gy, x * gy - y * gx)
 
     def _lead_resting(
         self, in_contact: NDArray[np.bool_], start: Motion, end: Motion, span: float, dt: float

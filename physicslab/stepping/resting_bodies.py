@@ -72,6 +72,8 @@ class Moment:
         Those of which the contacts are kept.
     manifolds, points : arrays of records (pairs,) and (pairs, 2)
         These contacts.
+    booked : float64 array (CAUSES, 4)
+        The sums of the account.
     """
 
     motion: Motion
@@ -80,13 +82,15 @@ class Moment:
     pairs: NDArray[np.int64]
     manifolds: NDArray[Any]
     points: NDArray[Any]
+    booked: NDArray[np.float64]
 
     @classmethod
     def of(cls, state: State, pairs: NDArray[np.int64]) -> Moment:
         """Return the present one."""
         contacts = state.contacts
         manifolds, points = contacts.manifolds[pairs], contacts.points.reshape(-1, 2)[pairs]
-        return cls(copy_motion(state), state.collisions, contacts.logged, pairs, manifolds, points)
+        booked = state.account.sums.copy()
+        return cls(copy_motion(state), state.collisions, contacts.logged, pairs, manifolds, points, booked)
 
     def restore(self, state: State, impacts: int) -> None:
         """Go back there, and take back the first ``impacts`` that came since."""
@@ -94,6 +98,7 @@ class Moment:
         if state.contacts.read:
             state.contacts.forget_impacts(self.logged, impacts)
         set_motion(state, self.motion)
+        state.account.sums[:] = self.booked
         state.contacts.manifolds[self.pairs] = self.manifolds
         state.contacts.points.reshape(-1, 2)[self.pairs] = self.points
 

@@ -24,7 +24,7 @@ _SINGULAR = 1e-12
 """Share of the responses of both points below which their determinant is none."""
 _SEPARATE = 1.0 + 1e-9
 """One, and so much more that two points of a pair are never quite one."""
-_ROUNDING = 1e-12
+_ROUNDING = 1e-13
 """Share of the work of the impulses up to which a gain of energy is rounding."""
 
 

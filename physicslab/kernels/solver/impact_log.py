@@ -101,7 +101,7 @@ def shares_of(along: float, across: float) -> tuple[float, float]:
     mean of its speeds is not the speed at which friction acted. Neither gives energy then.
     """
     both = along + across
-    rubbed = min(max(across, both), 0.0) if both <= 0.0 else across
+    rubbed = min(max(across, min(both, 0.0)), 0.0)
     return both - rubbed, rubbed
 
 
