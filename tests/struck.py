@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from physicslab import World
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.systems.standard import standard_systems
 
 KINDS = ("step", "no forces", "rigid", "exact", "flat", "symplectic_euler")
@@ -18,7 +19,7 @@ KINDS = ("step", "no forces", "rigid", "exact", "flat", "symplectic_euler")
 
 def random_world(kind: str, random: np.random.Generator) -> World:
     """Return a world of a few bodies in a box of walls that will strike each other."""
-    gravity = (0.0, 0.0) if kind == "no forces" else (float(random.uniform(-3.0, 3.0)), -9.81)
+    gravity = Vector2() if kind == "no forces" else Vector2(float(random.uniform(-3.0, 3.0)), -9.81)
     physics = PhysicsConfig(
         gravity=gravity, bounds=(-3.0, -3.0, 3.0, 3.0), bounds_restitution=float(random.random()),
         bounds_friction=float(random.choice((0.0, 0.3, 0.8))),

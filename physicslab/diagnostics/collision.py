@@ -185,7 +185,7 @@ class Collision:
 
     @property
     def between(self) -> float:
-        """How a normal impulse at the first of two points changes the normal velocity of the second [1/kg]."""
+        """How a normal impulse at the first point changes the normal velocity of the second [1/kg]."""
         return self._response(self.spots[0], self.spots[-1]).kn
 
     def approach(self, spot: Spot, *, after: bool = False) -> tuple[float, float]:
@@ -327,7 +327,11 @@ def _blow(collision: Collision, restitution: float) -> _Blow:
     """Return the normal and friction impulse of each point [N s] at a restitution, and whether they stick."""
     if len(collision.spots) == 2:
         return _blow_of_two(collision, restitution)
-    response, (vn, vt), mu = collision.responses[0], collision.approach(collision.spots[0]), collision.friction
+    response, (vn, vt), mu = (
+        collision.responses[0],
+        collision.approach(collision.spots[0]),
+        collision.friction,
+    )
     if collision.law != ENERGETIC:
         normal, tangent, sticks = blow_of_one(response, vn, vt, restitution, mu)
         return (normal,), (tangent,), sticks
@@ -368,8 +372,8 @@ def _blow_of_two(collision: Collision, restitution: float) -> _Blow:
     Each point that is pressed leaves with e times its approach, the other no slower than that; friction stops
     its sliding, or is mu times its normal impulse against that. All cases are tried.
     """
-    matrix, speeds = _matrix_of_two(collision), np.array([*zip(*map(collision.approach, collision.spots))])
-    before = speeds.ravel()  # both approaches, both slidings
+    matrix, speeds = _matrix_of_two(collision), [collision.approach(spot) for spot in collision.spots]
+    before = np.array(speeds).T.ravel()  # both approaches, both slidings
     wanted = np.concatenate((-restitution * before[:2], (0.0, 0.0)))
     mu, worst, best = collision.friction, math.inf, np.zeros(4)
     states = ("sticks", 1.0, -1.0, None) if mu > 0.0 else (0.0, None)
@@ -393,7 +397,12 @@ type _State = str | float | None
 def _matrix_of_two(collision: Collision) -> NDArray[np.float64]:
     """Return how both approaches and both slidings answer impulses at both points (4, 4) [1/kg]."""
     a, b, (one, two) = collision.a, collision.b, collision.spots
-    ways = ((one, collision.normal), (two, collision.normal), (one, collision.tangent), (two, collision.tangent))
+    ways = (
+        (one, collision.normal),
+        (two, collision.normal),
+        (one, collision.tangent),
+        (two, collision.tangent),
+    )
     matrix = np.zeros((4, 4))
     for i, (spot, way) in enumerate(ways):
         for k, (other, push) in enumerate(ways):
@@ -424,7 +433,9 @@ def _of_case(
     if not rows:
         return np.zeros(4)
     basis = np.array(columns).T
-    found: NDArray[np.float64] = basis @ np.linalg.lstsq((matrix @ basis)[rows], gained[rows], rcond=_SINGULAR)[0]
+    found: NDArray[np.float64] = (
+        basis @ np.linalg.lstsq((matrix @ basis)[rows], gained[rows], rcond=_SINGULAR)[0]
+    )
     if list(case) == ["sticks", "sticks"] and found[0] + found[1] > 0.0:  # of what both hold each has a share
         found[2:] = found[2:].sum() * found[:2] / found[:2].sum()
     return found

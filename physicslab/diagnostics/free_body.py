@@ -128,7 +128,9 @@ def last_step(world: World, entity: int) -> LastStep | None:
     history. Impacts are those of the world's log (``contacts.read``).
     """
     checkpoint, dt = world.checkpoint, world.time - world.checkpoint.time
-    if not 0.0 < dt <= _LONGEST * world.simulation.dt or len(checkpoint.columns[0]) != len(world.bodies.force):
+    if not 0.0 < dt <= _LONGEST * world.simulation.dt or len(checkpoint.columns[0]) != len(
+        world.bodies.force
+    ):
         return None
     present = forces_on(world, entity)
     row = world.entity_index.row_of[entity]
@@ -172,7 +174,9 @@ def _impacts(world: World, entity: int) -> dict[str, Vector2]:
         if entity not in (a, b):
             continue
         normal = Vector2(float(record["normal_x"]), float(record["normal_y"]))
-        on_b = float(record["normal_impulse"]) * normal + float(record["tangent_impulse"]) * normal.perpendicular
+        on_b = (
+            float(record["normal_impulse"]) * normal + float(record["tangent_impulse"]) * normal.perpendicular
+        )
         other = a if entity == b else b
         name = f"impact, with {world.label(other) if other else 'the wall'}"
         found[name] = found.get(name, Vector2()) + (on_b if entity == b else -on_b)

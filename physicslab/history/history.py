@@ -236,7 +236,7 @@ class History:
         return 0, self._places.line.steps_before(self._end)
 
     def step_at(self, moment: float) -> int:
-        """Return the first step of the line after which its clock shows at least a time [s]; else the last."""
+        """Return the first step of the line that ends at a time [s] or later; the last if none does."""
         seconds, steps, last = self.start, 0, self.steps_range[1]
         for piece in self._places.line.between(0, self._end):
             if not isinstance(piece, Steps):

@@ -163,7 +163,7 @@ def _two_normals(
 
 
 class _Rubbing(NamedTuple):
-    """Friction impulses of two points under normal impulses: t1 = o1 + a1 n1 + b1 n2, t2 = o2 + a2 n1 + b2 n2.
+    """Friction of two points under normal impulses: t1 = o1 + a1 n1 + b1 n2, t2 = o2 + a2 n1 + b2 n2.
 
     Where points that stick slide alike, the first has what both hold.
     """

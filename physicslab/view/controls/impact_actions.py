@@ -13,7 +13,15 @@ from physicslab.view.controls.picking import body_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["clicked_impact", "close_up", "go_beside", "pause_at_next", "run_slowly", "save_table", "toggle_impacts"]
+__all__ = [
+    "clicked_impact",
+    "close_up",
+    "go_beside",
+    "pause_at_next",
+    "run_slowly",
+    "save_table",
+    "toggle_impacts",
+]
 
 type Deed = Callable[[World, Window], None]
 
@@ -69,7 +77,9 @@ def pause_at_next(world: World, window: Window) -> None:
     chosen = tuple(entity for entity in window.selection.entities if world.has(entity, Velocity))
     microscope.waits_for = chosen
     window.error, window.pace.paused = "", False
-    names = " or ".join(world.label(entity) for entity in chosen[:2]) if len(chosen) < 3 else "what is selected"
+    names = (
+        " or ".join(world.label(entity) for entity in chosen[:2]) if len(chosen) < 3 else "what is selected"
+    )
     window.notify(f"Time stands still at the next impact{' of ' + names if chosen else ''}")
 
 

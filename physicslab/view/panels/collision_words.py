@@ -73,8 +73,8 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
     told += list(_law(collision, result))
     if not collision.alone:
         told.append(
-            "Other bodies struck one of these two at the same moment. What is worked out here is this pair by "
-            "itself; the motions after are those of all impacts together, and may differ from it."
+            "Other bodies struck one of these two at the same moment. What is worked out here is this pair "
+            "by itself; the motions after are those of all impacts together, and may differ from it."
         )
     return told
 
@@ -99,11 +99,12 @@ def _rotation(collision: Collision) -> Iterator[str]:
     elif turning < _SOFTER * plain:
         yield (
             f"The blow passes beside a centre of mass, so the contact gives way by turning: it acts like "
-            f"{quantity(turning, 'kg')}, and not like {quantity(plain, 'kg')} as without rotation. Such a blow "
-            f"is softer."
+            f"{quantity(turning, 'kg')}, and not like {quantity(plain, 'kg')} as without rotation. Such a "
+            f"blow is softer."
         )
     else:
-        yield f"The blow goes through the centres: rotation does not soften it. It acts like {quantity(plain, 'kg')}."
+        acts = f"It acts like {quantity(plain, 'kg')}."
+        yield f"The blow goes through the centres: rotation does not soften it. {acts}"
 
 
 def _friction(collision: Collision, result: Result, before: float, after: float) -> str:
@@ -114,8 +115,8 @@ def _friction(collision: Collision, result: Result, before: float, after: float)
     if collision.tangent_impulse == 0.0 and abs(before) < AGREES * (1.0 + abs(after)):
         return "Nothing slides, so there is no friction impulse."
     return (
-        f"It slides: friction is at its limit, mu = {collision.friction:.3g} times the normal impulse, and the "
-        f"sliding goes from {quantity(before, 'm/s')} to {quantity(after, 'm/s')}."
+        f"It slides: friction is at its limit, mu = {collision.friction:.3g} times the normal impulse, and "
+        f"the sliding goes from {quantity(before, 'm/s')} to {quantity(after, 'm/s')}."
     )
 
 
@@ -128,8 +129,8 @@ def _law(collision: Collision, result: Result) -> Iterator[str]:
         )
     elif collision.law == LOWERED:
         yield (
-            f"With e = {collision.restitution:.3g} this impact would make energy, so restitution was lowered to "
-            f"{result.restitution:.4g}: the largest that makes none."
+            f"With e = {collision.restitution:.3g} this impact would make energy, so restitution was lowered "
+            f"to {result.restitution:.4g}: the largest that makes none."
         )
 
 
@@ -139,7 +140,11 @@ def _law(collision: Collision, result: Result) -> Iterator[str]:
 def law_steps(collision: Collision, result: Result) -> list[Step]:
     """Return the working, line by line; figures of the solver are those of the record."""
     steps = [*_masses(collision)]
-    steps += _impulses_of_two(collision, result) if len(collision.spots) == 2 else _impulses_of_one(collision, result)
+    steps += (
+        _impulses_of_two(collision, result)
+        if len(collision.spots) == 2
+        else _impulses_of_one(collision, result)
+    )
     return [*steps, *_motions(collision, result)]
 
 
@@ -226,7 +231,10 @@ def _impulses_of_one(collision: Collision, result: Result) -> list[Step]:
         shown = "+" if sign > 0.0 else "-"
         words = "It slides: friction is mu J_n, and changes v_n through the coupling"
         ways = (
-            (f"J_n = -(1+e) v_n / (1/m_n {shown} mu c)", f"{gained} / ({kn:.4g} {shown} {mu:.4g}·{_number(c)})"),
+            (
+                f"J_n = -(1+e) v_n / (1/m_n {shown} mu c)",
+                f"{gained} / ({kn:.4g} {shown} {mu:.4g}·{_number(c)})",
+            ),
             (f"J_t = {shown}mu J_n", f"{shown}{mu:.4g}·{normal:.4g}"),
         )
     else:
@@ -246,7 +254,8 @@ def _impulses_of_two(collision: Collision, result: Result) -> list[Step]:
     ]
     steps.append(
         Step(
-            "Each point also moves the other", "k = 1/m_A + 1/m_B + (r_A1×n)(r_A2×n)/I_A + (r_B1×n)(r_B2×n)/I_B",
+            "Each point also moves the other",
+            "k = 1/m_A + 1/m_B + (r_A1×n)(r_A2×n)/I_A + (r_B1×n)(r_B2×n)/I_B",
             "", f"k = {quantity(collision.between, '1/kg')}",
         )
     )  # fmt: skip
@@ -268,7 +277,9 @@ def _compared(
     scale = collision.normal_impulse
     found = (sum(result.normal), collision.normal_impulse), (sum(result.tangent), collision.tangent_impulse)
     for (formula, numbers), (value, solver), name in zip(ways, found, ("J_n", "J_t"), strict=True):
-        shown = words if name == "J_n" else ("Friction: it sticks" if result.sticks else "Friction: it slides")
+        shown = (
+            words if name == "J_n" else ("Friction: it sticks" if result.sticks else "Friction: it slides")
+        )
         if name == "J_t" and collision.friction == 0.0:
             shown = "Friction: there is none"
         yield Step(

@@ -64,7 +64,7 @@ class ImpactList:
         self._put(self.records[:0])
 
     def follow(self, world: World, history: History) -> None:
-        """Take in what the world's log has since the last call; the first call begins with the next impact."""
+        """Take in what the log has since the last call; the first call begins with the next impact."""
         if world is not self._world:
             self._world = world
             self.clear()

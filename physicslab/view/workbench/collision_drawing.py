@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from physicslab.components import Shape
 from physicslab.diagnostics.collision import Body, Collision
@@ -15,6 +15,9 @@ from physicslab.view.workbench.sketch import Place, Sketch, sketch
 from physicslab.world import World
 
 __all__ = ["draw_bodies", "draw_contact", "draw_energies", "draw_momenta"]
+
+type Projection = Callable[[Vector2], Place]
+"""Where a place or a momentum is in a drawing."""
 
 _REACH = 0.36
 """Length of the longest arrow of the bodies, as a share of the smaller side of the drawing."""
@@ -55,7 +58,7 @@ def draw_bodies(ui: Ui, world: World, seen: Collision, size: tuple[float, float]
             paper.disc(at(spot.place), 4.0, theme.contact_normal, theme.background)
         for name, body, colour in zip("AB", (seen.a, seen.b), colours_of(theme), strict=True):
             start = at(body.centre)
-            for motion, mark, before in ((body.before, "", True), (body.after, "′", False)):
+            for motion, mark, before in ((body.before, "", True), (body.after, "'", False)):
                 way = per_speed * motion.linear
                 if way.magnitude < _SHORT:
                     continue
@@ -76,8 +79,8 @@ def _extent(world: World, body: Body, seen: Collision) -> float:
 
 
 def _draw_body(
-    paper: Sketch, world: World, body: Body, seen: Collision, at, scale: float, colour: Colour
-) -> None:  # type: ignore[no-untyped-def]
+    paper: Sketch, world: World, body: Body, seen: Collision, at: Projection, scale: float, colour: Colour
+) -> None:
     theme = paper.ui.theme
     fill = theme.fill(colour)
     shape = world.component(body.entity, Shape) if body.entity and world.has(body.entity, Shape) else None
@@ -144,6 +147,10 @@ def draw_contact(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
             paper.words(_beyond(origin, end, 0.8 * ui.size), words, theme.text)
 
 
+type _Chain = tuple[list[Vector2], tuple[str, ...], tuple[Colour, ...], bool]
+"""Momenta put tip to tail, their names and colours, and whether they are those before."""
+
+
 def draw_momenta(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
     """Draw momenta tip to tail: the sum of both is the same arrow before and after.
 
@@ -153,15 +160,15 @@ def draw_momenta(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
     before, after = ([b.momentum(m) for b, m in zip((seen.a, seen.b), ms, strict=True)]
                      for ms in ((seen.a.before, seen.b.before), (seen.a.after, seen.b.after)))  # fmt: skip
     if seen.a.is_free and seen.b.is_free:
-        chains = [
+        chains: list[_Chain] = [
             (before, ("pA", "pB"), (a_colour, b_colour), True),
-            (after, ("pA′", "pB′"), (a_colour, b_colour), False),
+            (after, ("pA'", "pB'"), (a_colour, b_colour), False),
         ]
     else:
         free, colour, name, sign = (1, b_colour, "B", 1.0) if seen.b.is_free else (0, a_colour, "A", -1.0)
         chains = [
             ([before[free], sign * seen.impulse], (f"p{name}", "J"), (colour, theme.normal_impulse), True),
-            ([after[free]], (f"p{name}′",), (colour,), False),
+            ([after[free]], (f"p{name}'",), (colour,), False),
         ]
     with sketch(ui, *size) as paper:
         at = _fitted([part for chain in chains for part in _tips(chain[0])], size, 1.6 * ui.size)
@@ -188,12 +195,13 @@ def _tips(parts: Sequence[Vector2]) -> list[Vector2]:
     return tips
 
 
-def _fitted(places: Sequence[Vector2], size: tuple[float, float], margin: float):  # type: ignore[no-untyped-def]
+def _fitted(places: Sequence[Vector2], size: tuple[float, float], margin: float) -> Projection:
     """Return what maps places into a drawing, all of them in sight."""
     xs, ys = [place.x for place in places], [place.y for place in places]
     spans = max(xs) - min(xs), max(ys) - min(ys)
     scale = min(
-        max(side - 2.0 * margin, 1.0) / span if span > 0.0 else math.inf for side, span in zip(size, spans, strict=True)
+        max(side - 2.0 * margin, 1.0) / span if span > 0.0 else math.inf
+        for side, span in zip(size, spans, strict=True)
     )
     scale = 0.0 if math.isinf(scale) else scale
     x, y = 0.5 * (max(xs) + min(xs)), 0.5 * (max(ys) + min(ys))
@@ -226,7 +234,10 @@ def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
             ]
         )  # fmt: skip
     bounced, rubbed = seen.lost
-    parts[1] += [("lost in the bounce|lost", bounced, theme.error, True), ("rubbed off|rubbed", rubbed, theme.paused, True)]
+    parts[1] += [
+        ("lost in the bounce|lost", bounced, theme.error, True),
+        ("rubbed off|rubbed", rubbed, theme.paused, True),
+    ]
     full = max(sum(max(part[1], 0.0) for part in bar) for bar in parts) or 1.0
     totals = [sum(part[1] for part in bar[:4]) for bar in parts]
     label, high = 7.6 * ui.size, 1.3 * ui.size
@@ -242,7 +253,14 @@ def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
                     continue
                 end = x + energy * across
                 paper.bar((x, top), (end - 1.0, top + high), colour, hatched=hatched)
-                _label_bar(paper, name, (x, end), top + 0.5 * high, theme, plain=hatched or colour not in colours_of(theme))
+                _label_bar(
+                    paper,
+                    name,
+                    (x, end),
+                    top + 0.5 * high,
+                    theme,
+                    plain=hatched or colour not in colours_of(theme),
+                )
                 x = end
     _write_losses(ui, seen, full)
 

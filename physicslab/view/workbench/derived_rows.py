@@ -93,8 +93,22 @@ def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
     if step is None:
         return
     largest = max(largest, step.inertia.magnitude)
-    _vector_row(ui, "m a", step.inertia, largest, "N", "Mass times mean acceleration in the last step, without impacts")
-    _vector_row(ui, "Difference", total - step.inertia, largest, "N", "The sum is of now, the acceleration of the last step")
+    _vector_row(
+        ui,
+        "m a",
+        step.inertia,
+        largest,
+        "N",
+        "Mass times mean acceleration in the last step, without impacts",
+    )
+    _vector_row(
+        ui,
+        "Difference",
+        total - step.inertia,
+        largest,
+        "N",
+        "The sum is of now, the acceleration of the last step",
+    )
     if not is_brief:
         _build_impulses(ui, step)
 

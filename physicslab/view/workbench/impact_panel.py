@@ -72,7 +72,9 @@ def _build_head(ui: Ui, world: World, window: Window) -> None:
         impacts.only_selected = not impacts.only_selected
     ui.same_line_if_room("Pause at the next")
     waits = window.microscope.waits_for is not None
-    tip = "Let time run until what is selected (or anything) strikes something, and stand still there (Shift+Z)"
+    tip = (
+        "Let time run until what is selected (or anything) strikes something, and stand still there (Shift+Z)"
+    )
     if ui.button("Pause at the next", tip, on=waits):
         window.deeds.append(impact_actions.pause_at_next)
     ui.same_line_if_room("CSV")

@@ -27,6 +27,8 @@ _SMALL = 8.6
 """Height of the drawings below that."""
 _SHARE = 0.94
 """How much of the window it may take."""
+_RESTING = 1e-4
+"""Speed of approach [m/s] up to which rigid contacts may take a point for resting."""
 _FLAT = 0.6
 """Height of a drawing as a share of its width, at most."""
 
@@ -60,7 +62,7 @@ def build_microscope(ui: Ui, world: World, window: Window) -> None:
 
 def _room(ui: Ui, window: Window) -> tuple[float, float, bool]:
     """Return the width and height of what is below the head [px], and whether words are beside drawings."""
-    width, height = window.canvas.size
+    width = window.canvas.size[0]
     across = window.room()[2] - 2.5 * ui.size
     beside = across >= (_PICTURE + _WORDS) * ui.size
     wide = (_PICTURE + _WORDS) * ui.size if beside else min(max(across, 0.6 * width), _WORDS * ui.size)
@@ -104,14 +106,17 @@ def _go_on(words: str, end: float, *, is_first: bool) -> None:
     if is_first:
         return
     imgui.same_line()
-    if imgui.get_cursor_pos_x() + imgui.calc_text_size(words).x + 2.0 * imgui.get_style().frame_padding.x > end:
+    if (
+        imgui.get_cursor_pos_x() + imgui.calc_text_size(words).x + 2.0 * imgui.get_style().frame_padding.x
+        > end
+    ):
         imgui.new_line()
 
 
 def _build_drawings(ui: Ui, world: World, window: Window, wide: float) -> None:
     seen = window.microscope.seen
     draw_bodies(ui, world, seen, (wide, min(_LOW * ui.size, _FLAT * wide)))
-    ui.faint("Thin and dashed: before. Thick: after (with ′).")
+    ui.faint("Thin and dashed: before. Thick: after (with ').")
     half, gap = 0.5 * (wide - ui.size), ui.size
     high = min(_SMALL * ui.size, half)
     ui.faint("B against A at the contact", wrapped=False)
@@ -132,7 +137,10 @@ def _build_words(ui: Ui, world: World, window: Window) -> None:
     """Build what happened in words, the velocities, and the law with its numbers."""
     microscope = window.microscope
     collision, result = microscope.collision, microscope.result
-    names = body_name(world, collision.a.entity, collision.wall), body_name(world, collision.b.entity, collision.wall)
+    names = (
+        body_name(world, collision.a.entity, collision.wall),
+        body_name(world, collision.b.entity, collision.wall),
+    )
     for sentence in story(collision, result, names):
         ui.text(sentence, wrapped=True)
     ui.gap(0.3)
@@ -140,12 +148,15 @@ def _build_words(ui: Ui, world: World, window: Window) -> None:
     _build_momentum(ui, microscope.seen)
     ui.gap(0.3)
     shown = window.level == "Engineer" if microscope.shows_formula is None else microscope.shows_formula
-    if ui.button("The law with its numbers", "The formula line by line, beside what the solver did", on=shown):
+    if ui.button(
+        "The law with its numbers", "The formula line by line, beside what the solver did", on=shown
+    ):
         microscope.shows_formula = shown = not shown
     if not shown:
         return
     steps = law_steps(collision, result)
-    _build_verdict(ui, steps, is_alone=collision.alone)
+    slowest = min(-collision.approach(spot)[0] for spot in collision.spots)
+    _build_verdict(ui, steps, is_alone=collision.alone, is_slow=slowest < _RESTING)
     for step in steps:
         _build_step(ui, step)
 
@@ -187,7 +198,11 @@ def _build_momentum(ui: Ui, seen: Collision) -> None:
     ui.row("Momentum before", _vector(before, scale), "Of all that impulses move of the two")
     ui.row("Momentum after", _vector(after, scale))
     if not (seen.a.is_free and seen.b.is_free):
-        ui.row("Impulse on it", quantity(seen.impulse.magnitude, "N s"), "What the other one, that nothing moves, gave")
+        ui.row(
+            "Impulse on it",
+            quantity(seen.impulse.magnitude, "N s"),
+            "What the other one, that nothing moves, gave",
+        )
 
 
 def _vector(value: Vector2, scale: float) -> str:
@@ -195,15 +210,30 @@ def _vector(value: Vector2, scale: float) -> str:
     return f"({x}, {y}) kg m/s"
 
 
-def _build_verdict(ui: Ui, steps: list[Step], *, is_alone: bool) -> None:
+def _build_verdict(ui: Ui, steps: list[Step], *, is_alone: bool, is_slow: bool) -> None:
     """Write whether the solver did what the law says."""
     worst = max(step.difference for step in steps)
+    slow = "What approaches as slowly as this may count as resting, and is not let bounce."
     if worst <= AGREES:
-        ui.text(f"The solver did what the law gives: they differ by {worst:.1e} at most.", ui.theme.heading, wrapped=True)
+        ui.text(
+            f"The solver did what the law gives: they differ by {worst:.1e} at most.",
+            ui.theme.heading,
+            wrapped=True,
+        )
     elif not is_alone:
-        ui.text("The solver resolved several impacts together here; this pair by itself would differ.", ui.theme.paused, wrapped=True)
+        ui.text(
+            "The solver resolved several impacts together here; this pair by itself would differ.",
+            ui.theme.paused,
+            wrapped=True,
+        )
     else:
-        ui.text(f"The solver differs from the law by {worst:.1e} of the largest figure.", ui.theme.error, wrapped=True)
+        ui.text(
+            f"The solver differs from the law by {worst:.1e} of the largest figure.",
+            ui.theme.error,
+            wrapped=True,
+        )
+        if is_slow:
+            ui.faint(slow)
 
 
 def _build_step(ui: Ui, step: Step) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
@@ -66,12 +67,12 @@ class Sketch:
         neck = end[0] - head * dx, end[1] - head * dy
         self.line(start, neck, colour, THIN if before else THICK, dashed=before)
         half = 0.5 * head
-        corners = (end, (neck[0] - half * dy, neck[1] + half * dx), (neck[0] + half * dy, neck[1] - half * dx))
-        self._paper.add_triangle_filled(*(self._at(corner) for corner in corners), packed(colour))
+        left, right = (neck[0] - half * dy, neck[1] + half * dx), (neck[0] + half * dy, neck[1] - half * dx)
+        self._paper.add_triangle_filled(self._at(end), self._at(left), self._at(right), packed(colour))
 
     def polygon(self, corners: Sequence[Place], fill: Colour, rim: Colour, width: float = 2.0) -> None:
         """Draw a convex outline that is filled."""
-        places = [self._at(corner) for corner in corners]
+        places: Any = [self._at(corner) for corner in corners]
         self._paper.add_convex_poly_filled(places, packed(fill))
         self._paper.add_polyline(places, packed(rim), width, imgui.ImDrawFlags_.closed)
 
@@ -93,7 +94,7 @@ class Sketch:
             x += 6.0
 
     def words(self, place: Place, words: str, colour: Colour) -> None:
-        """Write words with their middle at a place, within the sketch and over no others where there is room."""
+        """Write words with their middle at a place, or near it where others are; all within the sketch."""
         size = imgui.calc_text_size(words)
         x = min(max(place[0] - 0.5 * size.x, 0.0), max(self.width - size.x, 0.0))
         y = min(max(place[1] - 0.5 * size.y, 0.0), max(self.height - size.y, 0.0))
