@@ -193,7 +193,7 @@ CONTROLS: tuple[Control, ...] = (
     Control("Shift+Z", "pause at the next impact", "shift+z", impact_actions.pause_at_next, minor=True,
             group="measure", state=lambda _, window: window.microscope.waits_for is not None,
             tip="Time stands still when what is selected strikes something, and the microscope opens"),
-    Control("Ctrl+Shift+Y", "slowly through the impact", "ctrl+shift+y", impact_actions.run_slowly,
+    Control("Shift+Tab", "slowly through the impact", "shift+tab", impact_actions.run_slowly,
             minor=True, group="measure", state=lambda _, window: window.microscope.slow is not None,
             tip="Goes to shortly before the impact in the microscope, and lets time run slowly"),
     Control("A", "keep scales", "a", actions.toggle_scales, minor=True, group="show",

@@ -65,8 +65,10 @@ def draw_bodies(ui: Ui, world: World, seen: Collision, size: tuple[float, float]
                 end = start[0] + way.x, start[1] - way.y
                 paper.arrow(start, end, colour, before=before)
                 paper.words(_beyond(start, end, ui.size), f"v{name}{mark}", theme.text)
-            inside = min(max(start[0], 0.0), width), min(max(start[1], 0.0), height)
-            paper.words((inside[0], inside[1] + 0.9 * ui.size), name, theme.heading)
+            if not (0.0 < start[0] < width and 0.0 < start[1] < height) or body.entity == 0:
+                side, (x, y) = -4.0 if name == "A" else 4.0, at(middle)
+                start = x + side * ui.size * seen.normal.x, y - side * ui.size * seen.normal.y
+            paper.words((start[0], start[1] + 0.9 * ui.size), name, theme.heading)
 
 
 def _extent(world: World, body: Body, seen: Collision) -> float:
@@ -104,7 +106,8 @@ def _draw_body(
             for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1))
         ]
         paper.polygon(corners, fill, colour)
-    paper.disc(at(body.centre), 2.5, colour, colour)
+    if body.entity:
+        paper.disc(at(body.centre), 2.5, colour, colour)
 
 
 def _draw_axes(paper: Sketch, seen: Collision, origin: Place) -> None:

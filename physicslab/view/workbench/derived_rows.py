@@ -116,12 +116,12 @@ def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
 def _build_impulses(ui: Ui, step: LastStep) -> None:
     """Write the impulses of the last step, their sum, and the change of momentum."""
     ui.gap(0.2)
-    ui.faint(f"In the last step, of {quantity(step.dt, 's')}")
+    ui.faint(f"Impulses in the last step, of {quantity(step.dt, 's')}")
     parts = step.impulses
     largest = max((impulse.magnitude for impulse in parts.values()), default=0.0)
     largest = max(largest, step.change.magnitude)
     for name, impulse in parts.items():
-        _vector_row(ui, f"Impulse: {name}", impulse, largest, "N s", "")
+        _vector_row(ui, name.capitalize(), impulse, largest, "N s", "")
     _vector_row(ui, "Sum of impulses", sum(parts.values(), Vector2()), largest, "N s", "Of all of them")
     _vector_row(ui, "Change of momentum", step.change, largest, "kg m/s", "From before the step to after it")
     tip = "What the impulses leave: forces of contacts and springs are not the same all through a step"

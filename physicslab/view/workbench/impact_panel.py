@@ -34,10 +34,10 @@ _SLACK = 1.5
 
 def build_impacts(ui: Ui, world: World, window: Window) -> None:
     """Build the table in a window of its own."""
-    left, top, width, height = window.room()
+    left, top, width, _ = window.room()
     wide = sum(_WIDTHS) * ui.size + len(_WIDTHS) * 2.0 * imgui.get_style().cell_padding.x + _SLACK * ui.size
     wide = min(wide, max(width, 0.6 * window.canvas.size[0]) - 2.0 * ui.size)
-    place = left + 0.5 * width, top + height - 0.5 * (_HEIGHT + 6.5) * ui.size
+    place = left + 0.5 * width, top + 0.5 * (_HEIGHT + 7.5) * ui.size
     with ui.floating("Impacts", place, docks=True) as stays:
         _build_head(ui, world, window)
         rows = window.impacts.order(window.selection.entities)
@@ -93,10 +93,12 @@ def _build_table(ui: Ui, world: World, window: Window, rows: Any, size: ImVec2) 
     imgui.table_setup_scroll_freeze(0, 1)
     for head, width in zip(_HEADS, _WIDTHS, strict=True):
         imgui.table_setup_column(head, imgui.TableColumnFlags_.width_fixed, width * ui.size)
+    imgui.push_style_color(imgui.Col_.table_header_bg, packed(ui.theme.key))
     imgui.table_next_row(imgui.TableRowFlags_.headers)
     for n in range(len(_HEADS)):
         imgui.table_next_column()
         _build_heading(ui, window, n)
+    imgui.pop_style_color()
     clipper = imgui.ListClipper()
     clipper.begin(len(rows))
     while clipper.step():
@@ -138,7 +140,7 @@ def _build_row(ui: Ui, world: World, window: Window, n: int, record: Any) -> Non
     cells = (
         f"{record['time']:.4f} s", a, b, quantity(float(record["approach_speed"]), "m/s"),
         quantity(float(record["normal_impulse"]), "N s"), quantity(float(record["tangent_impulse"]), "N s"),
-        "sticks" if sticks else "slides", "-" if math.isnan(found) else f"{found:.4f}",
+        "sticks" if sticks else "slides", "-" if math.isnan(found) else f"{round(found, 4) + 0.0:.4f}",
         quantity(float(record["energy_lost"]), "J"),
     )  # fmt: skip
     shown = window.microscope.record
@@ -147,7 +149,7 @@ def _build_row(ui: Ui, world: World, window: Window, n: int, record: Any) -> Non
     imgui.table_next_column()
     clicked, _ = imgui.selectable(f"##row {n}", is_shown, imgui.SelectableFlags_.span_all_columns)
     ui.note(f"Impact {n + 1}")
-    imgui.same_line()
+    imgui.same_line(0.0, 0.0)
     ui.text(cells[0])
     for words in cells[1:]:
         imgui.table_next_column()
