@@ -63,7 +63,7 @@ def test_damping_drag_and_springs_are_accounted_for_to_the_order_of_the_step() -
 
     coarse, fine = left(0.02), left(0.005)
     assert coarse < 0.05 * 30.0 * 0.5
-    assert fine < coarse / 8.0  # of second order: 16
+    assert fine < coarse / 5.0  # springs are of second order, leapfrog's kicks under drag of first
 
 
 def test_there_is_no_last_step_before_the_first_after_a_long_run_and_of_what_nothing_moves() -> None:
