@@ -14,7 +14,7 @@ from physicslab.kernels.accounts import CONTACT
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
 from physicslab.state.state import State
-from physicslab.stepping.accounting import balance_of, held_in
+from physicslab.stepping.accounting import close_account, open_account
 from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.forces import add_up_forces
 from physicslab.stepping.plan import StepPlan, default_plan, plan_for_jumps
@@ -109,12 +109,12 @@ class World(State):
         The clock is the caller's. Where that fails or is broken off, the world goes back to before the step.
         """
         with Undoing(self, self._motion):
-            account, forces = self.account, self.schedule.forces
-            account.open(balance_of(self, forces), held_in(self), self.time)
+            forces = self.schedule.forces
+            open_account(self, forces)
             self.schedule.run(Stage.PREPARE, self, h)
             made = self._advance(h, steps)
             rest = CONTACT if self.stepper is not None and self.stepper.contacts_take_the_rest else None
-            account.close(balance_of(self, forces), rest)
+            close_account(self, forces, rest)
             self.schedule.run(Stage.FINISH, self, h * steps)
         self.steps += made.steps
         self.step_divisions = made.divisions

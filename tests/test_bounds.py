@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from physicslab.components import Material, Shape, Transform, Velocity
 from physicslab.contacts.outlines import outlines_of, overlap
+from physicslab.diagnostics.account import measure_account
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene
@@ -104,7 +105,7 @@ def test_what_comes_back_brings_no_energy_but_what_is_booked() -> None:
     before = measure_energy(world).total
     world.step()
     assert world.brought_back == 1
-    booked, came = world.energy_brought_back, measure_energy(world).total - before
+    booked, came = measure_account(world).energy["overlap"], measure_energy(world).total - before
     assert booked == pytest.approx(came, abs=0.05 * abs(came)) and booked > 0.0
     for _ in range(120):
         world.step()
@@ -139,7 +140,7 @@ def test_many_are_brought_back_at_once_and_a_run_has_the_bits_of_its_steps() -> 
 def test_where_nothing_is_outside_nothing_is_brought_back() -> None:
     world = load_scene("sandbox")
     world.run(seconds=3.0)
-    assert world.brought_back == 0 and world.energy_brought_back == 0.0
+    assert world.brought_back == 0 and measure_account(world).energy["overlap"] == 0.0
 
 
 def test_a_body_larger_than_the_world_stays_where_it_is() -> None:

@@ -13,9 +13,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from physicslab import World
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels import accounts
+from physicslab.kernels.rigid import motion
+from physicslab.kernels.rigid.features import HEIGHT, RADIUS, REACH, WIDTH
 from physicslab.kernels.solver import blow, impact_log
 from physicslab.kernels.solver.impact_pose import Meeting
+from physicslab.prefabs import box, circle
+from physicslab.stepping.rigid import Rigid
+from physicslab.stepping.rigid_motion import MadeStep
+from physicslab.systems.standard import standard_systems
 
 one_blow: Any = compiled(blow.one_blow)
 two_blows: Any = compiled(blow.two_blows)
@@ -233,3 +241,133 @@ def test_the_impulse_of_a_floor_at_rest_is_that_of_the_impact() -> None:
     impulse = 2.0 * 1.5 * 3.0
     assert sums[accounts.IMPACTS].tolist() == pytest.approx([-9.0 * 0.75, 0.0, impulse, 3.0 * impulse])
     assert not sums[accounts.HAND].any()
+
+
+# ---- rigid bodies, several points at once ------------------------------------------------------------------
+
+
+class Cluster:
+    """Three bodies, of which two or three touch, that rigid impacts are resolved for, over and over."""
+
+    def __init__(self, kinds: str, fixed: bool, wall: bool) -> None:
+        physics = PhysicsConfig(gravity_mode="none", bounds=(-50, -50, 50, 50) if wall else None)
+        simulation = SimulationConfig(contacts="rigid", collisions="step")
+        self.world = World(*standard_systems(), physics=physics, simulation=simulation)
+        for number, kind in enumerate(kinds):
+            place = (3.0 * number, 0.0)
+            static = fixed and number == 0
+            if kind == "o":
+                circle(self.world, place, radius=0.5, static=static)
+            else:
+                box(self.world, place, width=1.0, height=0.6, static=static)
+        self.world.synchronise()
+        (rigid,) = (s for s in self.world.steppers.usable if isinstance(s, Rigid))
+        self.kinds, self.fixed, self.wall = kinds, fixed, wall
+        with self.world.active():
+            self._motion, self._ode = rigid._motion, rigid._ode
+            self.world.compile(rigid.kernels)
+            self._ode.gather(self.world)
+            self.scene = rigid._scene(self.world)
+
+    def place(self, random: np.random.Generator) -> None:
+        """Let all touch: two discs, or a corner, or two faces, and the third where it touches the second."""
+        rows, q, outlines = self.scene[0], self._ode.q, self.scene[4]
+        size = 10.0 ** random.uniform(-0.5, 0.5, 3)
+        for number, kind in enumerate(self.kinds):
+            row = 1 + number
+            width, height = 2.0 * size[number], 2.0 * size[number] * 10.0 ** random.uniform(-0.7, 0.0)
+            lengths = (0.0, width, height) if kind == "b" else (size[number], 0.0, 0.0)
+            outlines[row, RADIUS : HEIGHT + 1] = lengths
+            outlines[row, REACH] = size[number] if kind == "o" else 0.5 * math.hypot(width, height)
+        self.scene[7][:, 2] = 2.0 * outlines[1:4, RADIUS].max() + outlines[1:4, HEIGHT].max()
+        x = 0.0
+        for number, kind in enumerate(self.kinds):
+            row = 1 + number
+            angle = random.uniform(-1.0, 1.0) if kind == "b" and number and random.random() < 0.6 else 0.0
+            reach = outlines[row, RADIUS]
+            shift = 0.0
+            if kind == "b":
+                half_x, half_y = 0.5 * outlines[row, WIDTH], 0.5 * outlines[row, HEIGHT]
+                reach = half_x * abs(math.cos(angle)) + half_y * abs(math.sin(angle))
+                shift = random.uniform(-0.3, 0.3) * half_y
+            if number:
+                x += reach
+            q[2 * row], q[2 * row + 1], q[2 * rows + row] = x, shift, angle
+            x += reach
+        if self.wall:
+            self.scene[5][2] = x
+
+    def strike(self, random: np.random.Generator) -> tuple[float, float, float] | None:
+        """Resolve an impact of random masses; return what it gave, and what accounts miss, as shares."""
+        self.place(random)
+        rows, inverse, v = self.scene[0], self.scene[1], self._ode.v
+        v[:] = 0.0
+        mass = 10.0 ** random.uniform(-3.0, 3.0, 3)
+        for number, kind in enumerate(self.kinds):
+            row, lengths = 1 + number, self.scene[4][1 + number]
+            square = (
+                lengths[RADIUS] ** 2 / 2.0
+                if kind == "o"
+                else (lengths[WIDTH] ** 2 + lengths[HEIGHT] ** 2) / 12
+            )
+            free = not (self.fixed and number == 0)
+            inverse[2 * row] = inverse[2 * row + 1] = 1.0 / mass[number] if free else 0.0
+            inverse[2 * rows + row] = 1.0 / (mass[number] * square) if free else 0.0
+            if free:
+                v[2 * row : 2 * row + 2] = random.normal(0.0, 1.0, 2) - (number, 0.0)
+                v[2 * rows + row] = random.normal()
+        if not self.fixed and not self.wall:  # in the frame of the centre of mass
+            for axis in range(2):
+                columns = slice(2 + axis, 2 + axis + 2 * len(self.kinds), 2)
+                v[columns] -= mass[: len(self.kinds)] @ v[columns] / mass[: len(self.kinds)].sum()
+        self.scene[7][:, 0] = max(random.uniform(-0.3, 2.0), 0.0)
+        self.scene[7][:, 1] = min(max(random.uniform(-0.2, 1.2), 0.0), 1.0)
+        self.world.account.sums[:] = 0.0
+        free = inverse > 0.0
+        old = v[:-1].copy()
+        made = MadeStep(np.zeros((0, 0), np.int64), np.zeros((0, 0)), np.zeros(0))
+        why, _ = self._motion._collide(self.scene, self.world, 0.0, made)
+        if why != motion.DONE or not made.impacts:
+            return None
+        before, after = (
+            0.5 * (old[free] ** 2 / inverse[free]).sum(),
+            0.5 * (v[:-1][free] ** 2 / inverse[free]).sum(),
+        )
+        sums = self.world.account.sums
+        booked = sums[accounts.IMPACTS, 0] + sums[accounts.FRICTION, 0]
+        assert not sums[accounts.HAND].any() and not sums[accounts.CONTACT].any()
+        worst = max(booked, sums[accounts.IMPACTS, 0], sums[accounts.FRICTION, 0], after - before)
+        heavy = 1.0 / inverse[2 : 2 + 2 * len(self.kinds)].clip(1e-300)
+        heavy[heavy > 1e200] = 0.0
+        new, earlier = heavy * v[2 : 2 + 2 * len(self.kinds)], heavy * old[2 : 2 + 2 * len(self.kinds)]
+        change, scale = new - earlier, np.abs(new).sum() + np.abs(earlier).sum()
+        unbalanced = np.abs((change[::2].sum(), change[1::2].sum()) - sums[accounts.IMPACTS, 1:3]).max()
+        return worst / before, abs(after - before - booked) / before, unbalanced / scale
+
+
+def _check_rigid(count: int) -> int:
+    """Resolve about so many random impacts; return how many there were."""
+    random, struck = np.random.default_rng(11), 0
+    clusters = [
+        Cluster(kinds, fixed, wall)
+        for kinds in ("oo", "ob", "bo", "bb", "ooo", "bob", "obo", "bbb")
+        for fixed, wall in ((False, False), (True, False), (False, True))
+    ]
+    for cluster in clusters:
+        found = [cluster.strike(random) for _ in range(count // len(clusters))]
+        worst = np.array([shares for shares in found if shares is not None])
+        assert len(worst) > 0.3 * len(found), (cluster.kinds, len(worst))
+        struck += len(worst)
+        given, missed, unbalanced = worst.max(axis=0)
+        assert given <= 1e-12, cluster.kinds
+        assert missed <= 1e-12 and unbalanced <= 1e-12, cluster.kinds
+    return struck
+
+
+def test_rigid_impacts_give_no_energy_and_are_booked_to_rounding() -> None:
+    assert _check_rigid(10_000) > 5_000
+
+
+@pytest.mark.slow
+def test_a_million_rigid_impacts_give_no_energy() -> None:
+    assert _check_rigid(1_500_000) > 1_000_000

@@ -25,6 +25,7 @@ from desk import bits
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.desktop import compiling
 from physicslab.desktop.small_scenes import INTERPRETING_LIMIT, SmallScenes
+from physicslab.diagnostics.account import measure_account
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
@@ -177,6 +178,15 @@ def springs_beside_contacts() -> None:
     assert world.plan.split_forces is SPRING_SPLITTING
 
 
+def damped_beside_contacts() -> None:
+    """Let discs fall through air, one of them under a spring, so that the stages are called one by one."""
+    hung = {"Spring": {"b": "e1", "stiffness": 90.0, "rest_length": 1.1, "damping": 0.5}}
+    discs = [body(1.15 * i, 0.51, "disc", **(hung if i == 2 else {})) for i in range(4)]
+    world = scene(FLOOR, *discs, physics={"linear_damping": 0.1}, contacts="soft", collisions="step")
+    world.run(steps=3)
+    assert measure_account(world).energy["damping"] < 0.0
+
+
 def forces_by_hand() -> None:
     """Call what only other kernels call, or none any more."""
     random, n = np.random.default_rng(2), 4
@@ -277,7 +287,15 @@ def recorded() -> None:
 def test_every_kernel_gives_the_same_bits_as_python() -> None:
     calls: Counter[str] = Counter()
     scenes = built_in, heaps, heavy_loads, sleepers, planets, smooth_motion, rigid_contacts, impacts
-    for drive in (*scenes, springs_beside_contacts, forces_by_hand, drawn, recorded, panels):
+    for drive in (
+        *scenes,
+        springs_beside_contacts,
+        damped_beside_contacts,
+        forces_by_hand,
+        drawn,
+        recorded,
+        panels,
+    ):
         with compared(calls):
             drive()
     own = {name_of(jitted) for jitted in KERNELS if jitted.__module__.startswith("physicslab.")}

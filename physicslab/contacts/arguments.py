@@ -62,11 +62,13 @@ def near_in(state: State) -> NearTuple:
     contacts, rows = state.contacts, len(state.entity_index)
     if len(contacts.rotations) != rows:
         contacts.rotations = np.full((rows, 3), np.nan)
+    if len(contacts.slips) < len(contacts.points):
+        contacts.slips = np.zeros((len(contacts.points), 2))
     return (
         contacts.counts, contacts.manifolds, contacts.points, contacts.scalar, contacts.touching,
         contacts.wide.discs.slots, contacts.wide.boxes.slots,
         contacts.proximity, contacts.activation_distance, state.entity_index.entities,
-        contacts.rotations, state.account.sums,
+        contacts.rotations, state.account.sums, contacts.slips,
     )  # fmt: skip
 
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.kernels.accounts import CONTACT
 from physicslab.kernels.sleep import edits, islands
 from physicslab.state.state import State
 
@@ -94,6 +95,7 @@ def wake(state: State, marked: _Marks) -> _Marks:
 def fall_asleep(state: State, falling: _Marks) -> None:
     """Put bodies to sleep."""
     sleep, velocity, bodies = state.sleep, state.table(Velocity), state.bodies
+    _book_rest(state, falling)
     velocity["linear"][falling] = velocity["angular"][falling] = 0.0
     sleep.rest[falling] = sleep.slowest[falling] = 0.0
     sleep.forces[falling, :2] = bodies.force[falling]
@@ -106,6 +108,19 @@ def fall_asleep(state: State, falling: _Marks) -> None:
     _begin(state)
     contacts.rescale((count > 0) & (falling[a] | falling[b]), contacts.impulse_dt, _impulse_dt(state))
     set_inactive(state)
+
+
+def _book_rest(state: State, falling: _Marks) -> None:
+    """Book that contacts take what is left of the motion of bodies that fall asleep."""
+    position, velocity, mass = state.table(Transform)["position"], state.table(Velocity), state.table(Mass)
+    free = falling & (state.bodies.inverse_mass > 0.0)
+    turning = free & (state.bodies.inverse_inertia > 0.0)
+    momentum = mass["mass"][free, None] * velocity["linear"][free]
+    turned = mass["inertia"][turning] * velocity["angular"][turning]
+    energy = (momentum * velocity["linear"][free]).sum() + turned @ velocity["angular"][turning]
+    x, y = position[free].T
+    spin = (x * momentum[:, 1] - y * momentum[:, 0]).sum() + turned.sum()
+    state.account.sums[CONTACT] -= (0.5 * energy, *momentum.sum(axis=0), spin)
 
 
 def _begin(state: State) -> None:

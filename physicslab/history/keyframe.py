@@ -34,7 +34,6 @@ type _Columns = tuple[_Array, ...]
 
 _COUNTS = (
     "time", "steps", "substeps", "step_divisions", "force_evaluations", "collisions", "brought_back",
-    "energy_brought_back",
 )  # fmt: skip
 """What else a world counts."""
 

@@ -1,10 +1,17 @@
-"""The solution in closed form, where there is one."""
+"""The solution in closed form, where there is one.
+
+What each cause gives is measured in another way than beside other methods: no power is integrated. The
+motion is exact, so what dampers and drag take is what the energy loses
+(:mod:`physicslab.ode.closed_form_account`).
+"""
 
 from __future__ import annotations
 
 from physicslab.integrators.integrator import Integrator
+from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.closed_form import closed_form
+from physicslab.ode.closed_form_account import given_in_closed_form
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 
@@ -12,7 +19,12 @@ __all__ = ["EXACT"]
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
-    position, velocity = closed_form(state, ode.forces).advanced(state, steps * h)
+    form = closed_form(state, ode.forces)
+    position, velocity = form.advanced(state, steps * h)
+    for cause, given in given_in_closed_form(state, form, position, velocity, steps * h).items():
+        slot = ode.slots.get(cause)
+        if slot is not None:
+            ode.v[slot : slot + ACCOUNTS] = given
     n = 2 * len(ode.layout.moving)
     ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
     turning = slice(n, ode.layout.moving_count)

@@ -30,8 +30,9 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         # Each coordinate of the mean velocity is next to the same one of the end velocity less the mean.
         order, band = np.stack((order, order + len(order)), axis=1).ravel(), 2 * band + 1
     made = implicit_midpoint(
-        eq.q, eq.v, q_low, v_low, eq.inverse_mass, eq.damping, eq.calls, eq.resistances, order, band, h, steps
-    )
+        eq.q, eq.v, q_low, v_low, eq.inverse_mass, eq.damping, eq.damped_calls, eq.resistances, eq.places,
+        order, band, h, steps,
+    )  # fmt: skip
     if made < 0:
         raise StepTooSmall(
             f"no part of the implicit step of {h:.3g} s has a solution; more substeps may help"

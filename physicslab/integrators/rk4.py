@@ -13,7 +13,7 @@ __all__ = ["RK4"]
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     eq = ode
     q_low, v_low = eq.remainders(state)
-    return rk4(eq.q, eq.v, q_low, v_low, eq.inverse_mass, eq.damping, eq.calls, h, steps)
+    return rk4(eq.q, eq.v, q_low, v_low, eq.inverse_mass, eq.damping, eq.damped_calls, eq.places, h, steps)
 
 
 RK4 = Integrator(

@@ -29,6 +29,7 @@ def splitting(*, drifts: tuple[float, ...], kicks: tuple[float, ...]) -> Flow:
             eq.calls,
             drift_shares,
             kick_shares,
+            eq.places,
             h,
             steps,
         )

@@ -34,6 +34,7 @@ SPRING_SPLITTING = Integrator(
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, III.5.1",
     flow=splitting(drifts=_DRIFTS, kicks=_KICKS),
     kernels=(split,),
+    kicks=True,
     positions_only=True,
     phase_share=1.18e-6,
     phase_order=6,

@@ -71,7 +71,8 @@ class Near(NamedTuple):
 
     Then the slots of discs and of boxes; the pairs without records, the distance at which each gets one [m],
     the entities of all rows, and the angle of each box when its cosine and sine were computed, and those; the
-    account that contacts and impacts add to (:mod:`physicslab.kernels.accounts`).
+    account that contacts and impacts add to (:mod:`physicslab.kernels.accounts`); room for what is noted of
+    the points of scalar pairs within a substep (:mod:`physicslab.kernels.solver.work`).
     """
 
     counts: Rows
@@ -86,6 +87,7 @@ class Near(NamedTuple):
     entities: Rows
     rotations: Vectors
     account: Vectors
+    slips: Vectors
 
 
 class Contacts(NamedTuple):
@@ -165,7 +167,19 @@ InverseTuple = tuple[Numbers, Numbers]
 ActingTuple = tuple[Vectors, Numbers, bool]
 BoundsTuple = tuple[Numbers, float, float]
 NearTuple = tuple[
-    Rows, Manifolds, Points, Rows, Rows, SlotsTuple, SlotsTuple, Couples, Numbers, Rows, Vectors, Vectors
+    Rows,
+    Manifolds,
+    Points,
+    Rows,
+    Rows,
+    SlotsTuple,
+    SlotsTuple,
+    Couples,
+    Numbers,
+    Rows,
+    Vectors,
+    Vectors,
+    Vectors,
 ]
 SoftnessTuple = tuple[float, float, float]
 PlanTuple = tuple[int, int, float, float, float]
@@ -179,9 +193,9 @@ def named_near(plain: NearTuple) -> Near:
     """Give names to a tuple, and to the slots within it."""
     (
         counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities,
-        rotations, account,
+        rotations, account, slips,
     ) = plain  # fmt: skip
     return Near(
         counts, manifolds, points, scalar, touching, Slots(*discs), Slots(*boxes),
-        proximity, activation_distance, entities, rotations, account,
+        proximity, activation_distance, entities, rotations, account, slips,
     )  # fmt: skip

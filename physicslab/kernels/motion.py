@@ -2,9 +2,9 @@
 
 import math
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 
-__all__ = ["clear", "derive_masses", "drift", "find_not_finite", "kick", "predict"]
+__all__ = ["clear", "damped", "derive_masses", "drift", "find_not_finite", "kick", "predict"]
 
 
 @kernel
@@ -14,17 +14,17 @@ def derive_masses(
     kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
     awake_inverse_mass: Numbers, awake_inverse_inertia: Numbers, asleep: Flags,
-) -> tuple[float, int, int]:  # fmt: skip
+) -> tuple[float, int, int, int]:  # fmt: skip
     """Compute each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
 
     Returns the ratio of the greatest mass that can be moved to the least, of what has a shape, 1 if none has;
     and the first row of which the moment of inertia is not finite, or -1; and the first row of
-    which a size is not above 0, or -1.
+    which a size is not above 0, or -1; and how many rows have a velocity that nothing changes.
 
     A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. A body without velocity or mass, or one that is
     held, has infinite mass; one too small to have an inverse inertia does not turn.
     """
-    lightest, heaviest, infinite, sizeless = 0.0, math.inf, -1, -1
+    lightest, heaviest, infinite, sizeless, driven = 0.0, math.inf, -1, -1, 0
     for i in range(len(mass)):
         if kind[i] == 1:
             sized = 0.0 < radius[i] < math.inf
@@ -42,6 +42,7 @@ def derive_masses(
             else:
                 inertia[i] = 0.0
         moves_freely = has_velocity[i] and has_mass[i] and not held[i]
+        driven += 1 if has_velocity[i] and not moves_freely else 0
         inverse_mass[i] = 1.0 / mass[i] if moves_freely else 0.0
         turns_freely = moves_freely and inertia[i] > 0.0 and not fixed_rotation[i]
         inverse = 1.0 / inertia[i] if turns_freely else 0.0
@@ -54,7 +55,7 @@ def derive_masses(
             lightest, heaviest = max(lightest, inverse_mass[i]), min(heaviest, inverse_mass[i])
         if infinite < 0 and not math.isfinite(inertia[i]):
             infinite = i
-    return (lightest / heaviest if lightest > 0.0 else 1.0), infinite, sizeless
+    return (lightest / heaviest if lightest > 0.0 else 1.0), infinite, sizeless, driven
 
 
 @kernel
@@ -64,6 +65,14 @@ def clear(force: Vectors, torque: Numbers) -> None:
         force[i, 0] = 0.0
         force[i, 1] = 0.0
         torque[i] = 0.0
+
+
+@inlined
+def damped(rate: float, h: float) -> tuple[float, float]:
+    """Return the factors of v and of a that v' = a - ``rate`` v makes of a speed v in ``h`` seconds."""
+    if rate > 0.0:
+        return math.exp(-rate * h), -math.expm1(-rate * h) / rate
+    return 1.0, h
 
 
 @kernel
@@ -78,14 +87,8 @@ def kick(
 
     v(h) = v e^(-c h) + a (1 - e^(-c h)) / c, so that half kicks compose to whole ones.
     """
-    decay, gain = 1.0, h
-    if linear_damping > 0.0:
-        decay = math.exp(-linear_damping * h)
-        gain = -math.expm1(-linear_damping * h) / linear_damping
-    angular_decay, angular_gain = 1.0, h
-    if angular_damping > 0.0:
-        angular_decay = math.exp(-angular_damping * h)
-        angular_gain = -math.expm1(-angular_damping * h) / angular_damping
+    decay, gain = damped(linear_damping, h)
+    angular_decay, angular_gain = damped(angular_damping, h)
     for i in range(len(inverse_mass)):
         if inverse_mass[i] > 0.0 and not sub_integrated[i]:
             linear[i, 0] = linear[i, 0] * decay + force[i, 0] * inverse_mass[i] * gain

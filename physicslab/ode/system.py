@@ -11,7 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
+from physicslab.kernels.accounts import DAMPING, ENERGY, SPIN
+from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT
+from physicslab.ode.bookings import BookKeeper, book_in_python
 from physicslab.state.packed import StateLayout
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
@@ -27,8 +30,9 @@ _CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, ctypes.c_double, _REAL, _REAL, 
 class OdeSystem:
     """Packed state and packed forces of a world in which nothing acts but forces.
 
-    ``q`` holds the coordinates as :class:`StateLayout` orders them, and last the time; ``v`` their rates
-    (zero for what is fixed, and last); q'' = ``inverse_mass`` * force - ``damping`` * v.
+    ``q`` holds the coordinates as :class:`StateLayout` orders them, and then the time; ``v`` their rates
+    (zero for what is fixed, and there); q'' = ``inverse_mass`` * force - ``damping`` * v. Behind that, v
+    takes what causes give, in four places for each account that this world needs; :meth:`scatter` books it.
 
     A force system that packs its force (:meth:`ForceSystem.packed`) is called without Python. One that does
     not is called back at its ``Stage.FORCE``, with the state that it reads in the world's tables, and the
@@ -46,6 +50,12 @@ class OdeSystem:
         Rates of damping [1/s]; empty where nothing is damped.
     calls, resistances : int64 arrays (n, 3)
         What kernels call for the forces, and for their resistance to motion.
+    damped_calls : int64 array (n, 3)
+        ``calls``, and what books the damping, for methods that do not book it themselves.
+    slots : dict of int to int
+        Where the account of each cause that is booked begins.
+    places : int64 array
+        What kernels must know of that (:mod:`physicslab.kernels.forces.bookings`).
     near : int64 array and int, optional
         An order of the coordinates in which those that forces couple are near, and how near; found
         once by the method that needs it, as it depends on the layout alone.
@@ -68,6 +78,10 @@ class OdeSystem:
         The rows that take part; all by default.
     every_row : bool, optional
         Whether every row has its coordinates and its angle, be it fixed or not.
+    also : tuple of int, optional
+        Causes that need an account besides those of the forces.
+    kicked : bool, optional
+        Whether a splitting method is to advance it.
     """
 
     def __init__(
@@ -77,8 +91,10 @@ class OdeSystem:
         part: NDArray[np.bool_] | None = None,
         *,
         every_row: bool = False,
+        also: tuple[int, ...] = (),
+        kicked: bool = False,
     ) -> None:
-        self.forces = tuple(forces)
+        self.forces, self._also, self._kicked = tuple(forces), also, kicked
         self.interpreted = any(not type(system).packs() for system in self.forces)
         self.layout = (
             StateLayout.of_rows(len(state.entity_index))
@@ -92,7 +108,6 @@ class OdeSystem:
         self.tolerance = state.simulation.tolerance
         self._error: BaseException | None = None
         self._clock = np.zeros(1)
-        self._still = np.zeros(2 * len(self.layout.fixed) + 1)
         self._settings = self._look(state)
         self._packed_of: tuple[Any, ...] | None = None
 
@@ -105,11 +120,11 @@ class OdeSystem:
 
     def gather(self, state: State) -> None:
         """Take the state, the masses and the forces from the world's tables."""
-        self.gather_state(state)
         inputs = self._inputs(state)
         if inputs is None or inputs != self._packed_of:
             self._gather_laws(state)
             self._packed_of = inputs
+        self.gather_state(state)
 
     def _inputs(self, state: State) -> tuple[Any, ...] | None:
         """Return what masses and packed forces are made of, or ``None`` where a force does not give that."""
@@ -146,10 +161,18 @@ class OdeSystem:
         moving, turning, fixed = self.layout.moving, self.layout.turning, self.layout.fixed
         position, linear = transform["position"], velocity["linear"]
         self._clock[0] = state.time
+        given = self._nothing
         self.q = np.concatenate(
-            (position[moving].ravel(), transform["angle"][turning], position[fixed].ravel(), self._clock)
+            (
+                position[moving].ravel(),
+                transform["angle"][turning],
+                position[fixed].ravel(),
+                self._clock,
+                given,
+            )
         )
-        self.v = np.concatenate((linear[moving].ravel(), velocity["angular"][turning], self._still))
+        still = np.zeros(2 * len(fixed) + 1)
+        self.v = np.concatenate((linear[moving].ravel(), velocity["angular"][turning], still, given))
         self._low = None
         self._start = (self.q.copy(), self.v.copy()) if self.interpreted else None
 
@@ -171,6 +194,7 @@ class OdeSystem:
         self._raise()
         layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
         self._write(state, self.q, self.v)
+        self._book(state)
         n = layout.moving_count
         if self._low is not None:
             state.remainders = Remainders(self._keys, self.q[:n], self.v[:n], *self._low)
@@ -186,6 +210,21 @@ class OdeSystem:
             free = state.bodies.inverse_mass[steady] > 0.0
             transform["angle"][steady] += spin * np.where(free, -np.expm1(-c * span) / c, span)
             velocity["angular"][steady] = np.where(free, spin * np.exp(-c * span), spin)
+            self._book_steady(state, spin, c * span)
+
+    def _book(self, state: State) -> None:
+        """Book what causes have given since the state was gathered."""
+        for cause, slot in self.slots.items():
+            state.account.sums[cause] += self.v[slot : slot + ACCOUNTS]
+            self.v[slot : slot + ACCOUNTS] = 0.0
+
+    def _book_steady(self, state: State, spin: NDArray[np.float64], decay: float) -> None:
+        """Book what damping has taken of the rotation of bodies that no force turns."""
+        inverse = state.bodies.inverse_inertia[self.layout.steady]
+        turns = inverse > 0.0
+        momentum = spin[turns] / inverse[turns]
+        state.account.sums[DAMPING, ENERGY] += 0.5 * float(momentum @ spin[turns]) * np.expm1(-2.0 * decay)
+        state.account.sums[DAMPING, SPIN] += float(momentum.sum()) * np.expm1(-decay)
 
     def _note_rates(self, state: State) -> None:
         """Note the fastest rates that forces met, wherever within the steps that was."""
@@ -226,46 +265,57 @@ class OdeSystem:
             (system, system.packed(state, self.layout) if type(system).packs() else None)
             for system in self.forces
         ]
+        book = BookKeeper(state, self.layout, packed, self.damping, self._also, kicked=self._kicked)
+        self.slots, self.places, self._nothing = book.slots, book.places, np.zeros(book.count)
         forces = [force for _, force in packed if force is not None]
         # After the number of coordinates: resistances get several velocities in one array.
+        size = self.layout.clock + 1 + book.count
         resisting = [
-            (force.resistance, force.parameters, np.concatenate(([len(self.q)], force.indices)))
+            (force.resistance, force.parameters, np.concatenate(([size], force.indices)))
             for force in forces
             if force.resistance is not None
         ]
         self._measured = [(system, force) for system, force in packed if force and force.steepest is not None]
-        self._kept: list[Any] = [*forces, *resisting]  # while C may read them
-        state.compile([*(force.kernel for force in forces), *(kernel for kernel, _, _ in resisting)])
-        rows = [
-            (force.kernel.address, force.parameters.ctypes.data, force.indices.ctypes.data)
-            for force in forces
-        ]
+        damping = book.damping(self.damping, self.inverse_mass)
+        booked = [call for system, force in packed if force for call in book.around(system, force)]
+        self._kept: list[Any] = [*booked, *resisting, damping]  # while C may read them
+        kernels = [force.kernel for force in (*booked, *damping)]
+        state.compile([*kernels, *(kernel for kernel, _, _ in resisting)])
+        rows = [force.call for force in booked]
         against = [(kernel.address, n.ctypes.data, indices.ctypes.data) for kernel, n, indices in resisting]
         self.resistances = np.array(against, np.int64).reshape(-1, 3)
         python = [system for system, force in packed if force is None]
         if python:
-            callback = _CALLBACK(self._caller(state, python))
+            callback = _CALLBACK(self._caller(state, python, book, size))
             self._kept.append(callback)
             rows.append((ctypes.cast(callback, ctypes.c_void_p).value or 0, 0, 0))
         self.calls = np.array(rows, np.int64).reshape(-1, 3)
+        self.damped_calls = np.array([*rows, *(force.call for force in damping)], np.int64).reshape(-1, 3)
 
-    def _caller(self, state: State, systems: Iterable[ForceSystem]) -> Any:
-        """Return a C function that lets force systems written in Python act on the world's tables."""
-        methods = [getattr(system, type(system).marked()[Stage.FORCE]) for system in systems]
+    def _caller(self, state: State, systems: Iterable[ForceSystem], book: BookKeeper, size: int) -> Any:
+        """Return a C function that lets force systems written in Python act on the world's tables.
+
+        It gets ``size`` numbers of each array.
+        """
+        methods = [(system, getattr(system, type(system).marked()[Stage.FORCE])) for system in systems]
         layout, bodies = self.layout, state.bodies
-        n, d, size, clock = 2 * len(layout.moving), layout.moving_count, len(self.q), layout.clock
+        n, d, clock = 2 * len(layout.moving), layout.moving_count, layout.clock
 
         def call(q: Any, v: Any, _span: float, force: Any, parameters: Any, indices: Any) -> None:
             if self._error is not None:
                 return
             start, state.time = state.time, float(q[clock])
             try:
-                self._write(state, np.ctypeslib.as_array(q, (size,)), np.ctypeslib.as_array(v, (size,)))
+                places, speeds = np.ctypeslib.as_array(q, (size,)), np.ctypeslib.as_array(v, (size,))
+                total = np.ctypeslib.as_array(force, (size,))
+                self._write(state, places, speeds)
                 bodies.force[:] = 0.0
                 bodies.torque[:] = 0.0
-                for method in methods:
+                for system, method in methods:
+                    before = bodies.force.copy(), bodies.torque.copy()
                     method(state, 0.0)
-                total = np.ctypeslib.as_array(force, (size,))
+                    change = bodies.force - before[0], bodies.torque - before[1]
+                    book_in_python(state, book, system, change, places, speeds, total)
                 # What is fixed stays where it is, be the force on it infinite: no product with zero.
                 pulled = bodies.inverse_mass[layout.moving] > 0.0
                 total[:n] += np.where(pulled[:, None], bodies.force[layout.moving], 0.0).ravel()

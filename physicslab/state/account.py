@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels.accounts import CAUSES, EDITS, HAND
+from physicslab.kernels import direct_entry
+from physicslab.kernels.accounts import CAUSES, EDITS, HAND, book_rest
 
 __all__ = ["Account", "Balance", "KeptAccount"]
 
@@ -52,15 +53,18 @@ class Account:
         What there was after the last step.
     held : tuple of int
         The entities that a hand held then.
-    columns : tuple
+    columns : tuple, optional
         The arrays that a balance is measured from, and the revision of the rows that they belong to.
+    seen : object, optional
+        What the last balance depends on, in short: while that is the same, so is the balance.
     """
 
     def __init__(self) -> None:
         self.sums: NDArray[np.float64] = np.zeros((CAUSES, 4))
         self.since = 0.0
         self.held: tuple[int, ...] = ()
-        self.columns: tuple[int, tuple[Any, ...]] = -1, (None, None)
+        self.columns: tuple[int, tuple[Any, ...], tuple[Any, ...]] | None = None
+        self.seen: object | None = None
         self.start: Balance | None = None
         self.last = _NOTHING
         self._before = self.sums.copy()
@@ -91,8 +95,8 @@ class Account:
     def close(self, now: Balance, rest: int | None) -> None:
         """End a step at a balance; all that is not booked goes to the cause ``rest``, if one is given."""
         if rest is not None:
-            booked = self.sums.sum(axis=0) - self._before.sum(axis=0)
-            self.sums[rest] += np.subtract(now, self.last) - booked
+            change = [new - old for new, old in zip(now, self.last, strict=True)]
+            direct_entry(book_rest)(self.sums, self._before, rest, *change)
         self.last = now
 
     def keep(self) -> KeptAccount:
@@ -103,3 +107,4 @@ class Account:
         """Go back."""
         np.copyto(self.sums, kept.sums)
         _, self.since, self.start, self.last, self.held = kept
+        self.seen = None

@@ -32,6 +32,8 @@ class Bodies:
         What :func:`physicslab.state.masses.derive_masses` takes, and for which rows.
     sub_integrated : bool array (rows,)
         The rows with a method of their own between contacts (:class:`physicslab.stepping.split_forces`).
+    unkicked : bool array (rows,)
+        Those of them whose velocity within a step is not that of kicks, nor predicted as if it were.
     """
 
     def __init__(self) -> None:
@@ -51,6 +53,7 @@ class Bodies:
         self.awake_inverse_mass: NDArray[np.float64] = np.zeros(rows)
         self.awake_inverse_inertia: NDArray[np.float64] = np.zeros(rows)
         self.sub_integrated: NDArray[np.bool_] = np.zeros(rows, np.bool_)
+        self.unkicked: NDArray[np.bool_] = np.zeros(rows, np.bool_)
 
     def set_inactive(self, asleep: NDArray[np.bool_]) -> None:
         """Give sleeping bodies an infinite mass in the simulation."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Spring, Transform, Velocity
+from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.force_calls import ForceKernel
 from physicslab.state.state import State
 
@@ -29,6 +30,16 @@ class PackedForce:
         :mod:`physicslab.kernels.forces.resistance`).
     steepest : int, optional
         Where in ``parameters`` the kernel leaves the square of the fastest rate that it met [1/s^2].
+    books : tuple of (int, int), optional
+        The accounts to which the kernel itself adds what it gives, each with where in ``indices`` the kernel
+        looks for its place (-1: it books nothing). ``None`` where it does not: what it gives is then measured
+        around it, and booked as that of a field.
+    keeps : int, optional
+        Where in ``indices`` the kernel looks for a place to keep by itself what it takes without storing it.
+    anchors : int64 array, optional
+        The places of fixed ends, where all else that it acts on is moved by what acts on these, reversed.
+    cause : int
+        The account of what comes in by the anchors.
     """
 
     kernel: ForceKernel
@@ -36,6 +47,10 @@ class PackedForce:
     indices: NDArray[np.int64]
     resistance: ForceKernel | None = None
     steepest: int | None = None
+    books: tuple[tuple[int, int], ...] | None = None
+    keeps: int | None = None
+    anchors: NDArray[np.int64] | None = None
+    cause: int = FIELDS
 
     @property
     def call(self) -> tuple[int, int, int]:
@@ -47,7 +62,7 @@ class StateLayout:
     """The place of each row of a world among the packed coordinates.
 
     First two coordinates for every row that moves, then an angle for every row that forces may turn, then the
-    two coordinates of the rows that stay where they are, the world itself among them, and last the time.
+    two coordinates of the rows that stay where they are, the world itself among them, and then the time.
 
     Attributes
     ----------

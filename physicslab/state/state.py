@@ -56,8 +56,6 @@ class State:
         How often forces were evaluated, and how many impacts there were.
     brought_back : int
         How often a body beyond the bounds was put elsewhere, as something fixed held it there.
-    energy_brought_back : float
-        By how much that changed the energy [J].
     has_forces : bool
         Whether a force system runs.
     event_driven, rigid_contacts : bool
@@ -107,7 +105,6 @@ class State:
         self.time, self.steps, self.revision, self.motion_edits = 0.0, 0, 0, 0
         self.substeps, self.step_divisions = self._simulation.substeps, 1
         self.force_evaluations = self.collisions = self.brought_back = 0
-        self.energy_brought_back = 0.0
         self._waited_before = seconds_waited()
         self.generation = 0
         self.has_forces = self.event_driven = self.rigid_contacts = False

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from physicslab.components import Held, Mass, Transform, Velocity
-from physicslab.kernels import direct_entry, energy
+from physicslab.kernels import digest, direct_entry, energy
 from physicslab.state.account import Balance
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
 
-__all__ = ["balance_of", "held_in"]
+__all__ = ["balance_of", "close_account", "held_in", "open_account"]
 
 
 def held_in(state: State) -> tuple[int, ...]:
@@ -19,26 +21,26 @@ def held_in(state: State) -> tuple[int, ...]:
     return tuple(state.table(Held).handles)
 
 
-def motion_arguments(state: State) -> tuple[Any, ...]:
-    """Return what :func:`physicslab.kernels.energy.motion_totals` takes."""
+def _columns(state: State) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """Return what kernels take: the columns of a balance, and those of a digest, bit by bit."""
+    kept, revision = state.account.columns, state.entity_index.revision
+    if kept is not None and kept[0] == revision and kept[1][-2] is state.bodies.inverse_mass:
+        return kept[1], kept[2]
+    state.compile((energy.motion_totals, digest.digest_sums))
     velocity, mass, transform = state.table(Velocity), state.table(Mass), state.table(Transform)
-    return (
-        transform["position"], velocity["linear"], velocity["angular"], mass["mass"], mass["inertia"],
-        state.bodies.inverse_mass, state.bodies.inverse_inertia,
-    )  # fmt: skip
+    bodies = state.bodies
+    own = mass["mass"], mass["inertia"], bodies.inverse_mass, bodies.inverse_inertia
+    motion = transform["position"], velocity["linear"], velocity["angular"]
+    bits = transform["position"], transform["angle"], velocity["linear"], velocity["angular"], *own
+    words = tuple(column.reshape(-1).view(np.int64) for column in bits)
+    state.account.columns = revision, (*motion, *own), words
+    return (*motion, *own), words
 
 
 def balance_of(state: State, forces: Sequence[ForceSystem]) -> Balance:
     """Return energy and momentum as they are now; all rows and masses must be up to date."""
-    kept = state.account.columns
-    if kept[0] == state.entity_index.revision and kept[1][-2] is state.bodies.inverse_mass:
-        found = direct_entry(energy.motion_totals)(*kept[1])
-    else:
-        state.compile((energy.motion_totals,))
-        arguments = motion_arguments(state)
-        found = energy.motion_totals(*arguments)
-        state.account.columns = state.entity_index.revision, arguments
-    translation, rotation, px, py, spin, mx, my = found
+    columns, _ = _columns(state)
+    translation, rotation, px, py, spin, mx, my = direct_entry(energy.motion_totals)(*columns)
     total = translation + rotation
     for force in forces:
         if force.potential is None:
@@ -46,3 +48,26 @@ def balance_of(state: State, forces: Sequence[ForceSystem]) -> Balance:
         g = force.uniform_acceleration(state) if force.is_engine else None
         total += force.potential_energy(state) if g is None else -(g.x * mx + g.y * my)
     return Balance(total, px, py, spin)
+
+
+def _seen(state: State, forces: Sequence[ForceSystem]) -> object | None:
+    """Return what a balance depends on, in short; ``None`` where a force may depend on more."""
+    if not all(force.is_engine for force in forces):
+        return None
+    _, words = _columns(state)
+    settings = [force.settings(state) for force in forces]
+    return direct_entry(digest.digest_sums)(*words), state.physics, settings, state.entity_index.revision
+
+
+def open_account(state: State, forces: Sequence[ForceSystem]) -> None:
+    """Begin a step: what was changed since the last one is an edit, or a hand's."""
+    account, seen = state.account, _seen(state, forces)
+    unchanged = seen is not None and seen == account.seen and account.start is not None
+    now = account.last if unchanged else balance_of(state, forces)
+    account.open(now, held_in(state), state.time)
+
+
+def close_account(state: State, forces: Sequence[ForceSystem], rest: int | None) -> None:
+    """End a step; all that is not booked goes to the cause ``rest``, if one is given."""
+    state.account.close(balance_of(state, forces), rest)
+    state.account.seen = _seen(state, forces)

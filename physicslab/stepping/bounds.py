@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.contacts.islands import wake_neighbours
 from physicslab.contacts.outlines import Outlines, exits, outlines_of, overlap, overlapping
+from physicslab.kernels.accounts import OVERLAP
 from physicslab.kernels.solver.separate import BEYOND
 from physicslab.state.state import State
+from physicslab.stepping.accounting import balance_of
 from physicslab.systems.schedule import Schedule
 
 __all__ = ["bring_back"]
@@ -138,20 +140,12 @@ def _put(
 ) -> None:
     """Put bodies elsewhere, without the velocity that led outwards, and note what energy that brought."""
     position, linear = state.table(Transform)["position"], state.table(Velocity)["linear"]
-    before = _energy(state, schedule, rows)
+    before = balance_of(state, schedule.forces)
     position[rows] = places
     for wall, inwards in enumerate(_INWARDS):
         out = rows[beyond[:, wall]]
         linear[out] -= np.minimum(linear[out] @ inwards, 0.0)[:, None] * inwards
-    state.energy_brought_back += _energy(state, schedule, rows) - before
+    state.account.sums[OVERLAP] += np.subtract(balance_of(state, schedule.forces), before)
     state.brought_back += len(rows)
     state.contacts.forget(rows, len(state.entity_index))
     wake_neighbours(state, state.entity_index.entities[rows])
-
-
-def _energy(state: State, schedule: Schedule, rows: NDArray[np.int64]) -> float:
-    """Return the kinetic energy of some bodies, and what all forces store [J]."""
-    velocity = state.table(Velocity)["linear"][rows]
-    kinetic = 0.5 * float(((velocity**2).sum(axis=1) / state.bodies.inverse_mass[rows]).sum())
-    stored = (force.potential_energy(state) for force in schedule.forces if force.potential is not None)
-    return kinetic + sum(stored)

@@ -9,6 +9,7 @@ from physicslab.state.state import State
 from physicslab.stepping.bounds import bring_back
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.split_forces import OF_SPLIT_FORCES, SplitForces
+from physicslab.stepping.stage_accounts import StageAccounts
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.schedule import Schedule
@@ -37,7 +38,8 @@ class Contact:
         self._split: SplitForces | None = None
         if plan.split_forces is not None:
             self._split = SplitForces(state, schedule.forces, plan.split_forces, plan.split_steps)
-        self.kernels: tuple[Any, ...] = tuple(schedule.kernels(state))
+        self._accounts = StageAccounts(state, schedule.forces)
+        self.kernels: tuple[Any, ...] = (*schedule.kernels(state), *self._accounts.kernels)
         self.reason = plan.reason
 
     @classmethod
@@ -88,11 +90,17 @@ class Contact:
     def _go_through_one(self, state: State, start: float, h: float) -> None:
         """Go through the stages of a substep; the clock goes on as the positions do."""
         run, split, drifted = self._schedule.run, self._split, 0.0
+        accounts = self._accounts
+        accounts.begin_substep(state)
         for stage, share in self._stages:
             state.time = start + drifted * h
-            if stage is not Stage.PREDICT:
+            accounts.begin(stage, state, share, h)
+            if stage is Stage.FORCE and accounts.notes_forces:
+                self._schedule.run_forces(state, share * h, accounts.note_force)
+            elif stage is not Stage.PREDICT:
                 run(stage, state, share * h)
             if split is not None and stage in OF_SPLIT_FORCES:
                 split.take_part(stage, state, share * h)
+            accounts.end(stage, state, h)
             if stage is Stage.DRIFT:
                 drifted += share

@@ -65,7 +65,7 @@ class EventDriven:
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
-        self._schedule, self._resting = schedule, RestingBodies(schedule, plan)
+        self._schedule, self._resting = schedule, RestingBodies(state, schedule, plan)
         self.reason = plan.collision_reason
         self._leaves_rest = plan.contacts == "rigid"
         self._left = -1
@@ -206,21 +206,21 @@ class EventDriven:
         For ballistic bodies, resting ones follow a path from their known start, velocity and end. Where an
         event comes before that end, resting bodies go back and advance to the event.
         """
-        in_contact = self._mode == events.IN_CONTACT
+        in_contact, ballistic = self._mode == events.IN_CONTACT, self._mode == events.BALLISTIC
         start = Moment.of(state, np.flatnonzero(self._left_to_contacts()))
-        end = self._advance_resting(state, start, offset, span, dt)
+        end = self._advance_resting(state, start, offset, span, dt, ballistic)
         impacts, elapsed = state.collisions - start.collisions, span
-        if (self._mode == events.BALLISTIC).any():
+        if ballistic.any():
             self._lead_resting(in_contact, start.motion, end, span, dt)
             set_motion(state, start.motion)
             resting = state.account.sums.copy()
             elapsed, _ = self._run_events(state, span, dt, offset)
             motion = copy_motion(state)
             if elapsed < span:
-                ballistic = state.account.sums - resting
+                flown = state.account.sums - resting
                 start.restore(state, impacts)
-                end = self._advance_resting(state, start, offset, elapsed, dt)
-                state.account.sums += ballistic
+                end = self._advance_resting(state, start, offset, elapsed, dt, ballistic)
+                state.account.sums += flown
             for whole, part in zip(motion, end, strict=True):
                 whole[in_contact] = part[in_contact]
             set_motion(state, motion)
@@ -229,20 +229,21 @@ class EventDriven:
             self._mode[released] = events.BALLISTIC
         return elapsed
 
-    def _advance_resting(self, state: State, start: Moment, offset: float, span: float, dt: float) -> Motion:
-        """Advance resting bodies by ``span`` s, if they can move within it; return the motion of all."""
+    def _advance_resting(
+        self, state: State, start: Moment, offset: float, span: float, dt: float, ballistic: NDArray[np.bool_]
+    ) -> Motion:
+        """Advance resting bodies by ``span`` s, if they can move within it; return the motion of all.
+
+        The contact step moves ``ballistic`` ones as well, which is not booked.
+        """
         if span <= _SHORT * dt:
             return copy_motion(state)
         end = self._resting.advance(state, start.pairs, state.time + offset, span)
-        self._book_no_fall(state, start.motion, span)
-        return end
-
-    def _book_no_fall(self, state: State, start: Motion, span: float) -> None:
-        """Take back what gravity gave to ballistic bodies in a contact step, which moves all for ``span`` s."""
-        ballistic = self._mode == events.BALLISTIC
         mass, (gx, gy) = state.table(Mass)["mass"][ballistic], span * self._gravity
-        x, y = mass @ (start[0][ballistic] + 0.5 * span * start[2][ballistic])
+        position, velocity = start.motion[0][ballistic], start.motion[2][ballistic]
+        x, y = mass @ (position + 0.5 * span * velocity)
         state.account.sums[GRAVITY, PX:] -= (mass.sum() * gx, mass.sum() * gy, x * gy - y * gx)
+        return end
 
     def _lead_resting(
         self, in_contact: NDArray[np.bool_], start: Motion, end: Motion, span: float, dt: float

@@ -34,7 +34,7 @@ class Flow:
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator
-        self._ode = OdeSystem(state, schedule.forces)
+        self._ode = OdeSystem(state, schedule.forces, kicked=self._method.kicks)
         self._ode.tolerance = tolerance_for(state, schedule.forces)
         self.kernels: tuple[Any, ...] = self._method.kernels
         self.reason = plan.reason

@@ -12,6 +12,7 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.kernels.events import events
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.stage_accounts import StageAccounts
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import Stage
@@ -108,14 +109,16 @@ class RestingBodies:
 
     Parameters
     ----------
+    state : State
+        Whose bodies.
     schedule : Schedule
         The systems that make the contact step.
     plan : StepPlan
         Its stages.
     """
 
-    def __init__(self, schedule: Schedule, plan: StepPlan) -> None:
-        self._schedule = schedule
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
+        self._schedule, self._accounts = schedule, StageAccounts(state, schedule.forces)
         self._stages = [part for part in plan.stages.substep if part[0] is not Stage.BROAD_PHASE]
 
     def begin_step(self, state: State) -> None:
@@ -153,8 +156,11 @@ class RestingBodies:
         # Kernels of the stages are compiled at their first call: most are not called here.
         for substep in range(substeps):
             state.moment = began + (substep + 0.5) * span / substeps
+            self._accounts.begin_substep(state)
             for stage, share in self._stages:
+                self._accounts.begin(stage, state, share, span / substeps)
                 self._schedule.run(stage, state, share * span / substeps)
+                self._accounts.end(stage, state, span / substeps)
         near["count"][others] = 0
         # The contact stage has cleared the records of impacts; those of the ballistic part are added again.
         new = impact_count > near["impact_count"]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape, Velocity
 from physicslab.components.shape import BOX
+from physicslab.kernels.accounts import CONTACT, FRICTION, HAND
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.features import OUTLINE_FIELDS
@@ -68,7 +69,8 @@ class Rigid:
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule = schedule
         self.reason = plan.contact_reason
-        self._ode = OdeSystem(state, schedule.forces, every_row=True)
+        causes = (FRICTION, CONTACT, HAND) if _is_anything_driven(state) else (FRICTION, CONTACT)
+        self._ode = OdeSystem(state, schedule.forces, every_row=True, also=causes)
         self._pairs = pairs_that_may_meet(state)
         self._records = RigidRecords(self._pairs)
         self._refused, self.left_to_soft, self.why_soft = -1, 0, ""
@@ -76,9 +78,7 @@ class Rigid:
         self.why_impulses, self.energy_added = "", 0.0
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
-        self._motion = RigidMotion(
-            self._ode, len(state.entity_index), len(self._pairs), not schedule.interpreted
-        )
+        self._motion = RigidMotion(self._ode, len(self._pairs), not schedule.interpreted)
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
@@ -118,17 +118,18 @@ class Rigid:
     def _step(self, scene: tuple[Any, ...], state: State, at: float, h: float, parts: int) -> MadeStep:
         """Make a step from time ``at`` in parts; where one cannot be made, all is as before the step."""
         q, v, impacts, added = self._ode.q, self._ode.v, 0, 0.0
-        before, logged = (q.copy(), v.copy()), state.contacts.logged
+        before, logged, booked = (q.copy(), v.copy()), state.contacts.logged, state.account.sums.copy()
+        clock = self._ode.layout.clock
         for part in range(parts):
             moment = at + part * h / parts
-            q[-1], v[-1] = moment, 1.0  # the clock goes by one second a second
+            q[clock], v[clock] = moment, 1.0  # the clock goes by one second a second
             step = self._motion.step(scene, state, moment, h / parts)
             state.force_evaluations += step.evaluations
             self.energetic_impacts += step.energetic
             self.restitutions_lowered += step.lowered
             if step.refused:
                 q[:], v[:] = before
-                state.contacts.logged = logged
+                state.contacts.logged, state.account.sums[:] = logged, booked
                 return step
             if step.by_impulses:
                 self.by_impulses, self.why_impulses = self.by_impulses + 1, step.by_impulses
@@ -142,7 +143,7 @@ class Rigid:
         """Return what the kernels take of the state, beside the state of motion."""
         shape, material, physics = state.table(Shape), state.table(Material), state.physics
         present = np.concatenate((np.repeat(state.table(Velocity).present, 2), state.table(Velocity).present))
-        self._ode.v[:-1][~present] = 0.0
+        self._ode.v[: len(present)][~present] = 0.0
         width, height, radius = shape["width"], shape["height"], shape["radius"]
         box = shape["kind"] == BOX
         reach = np.where(box, 0.5 * np.hypot(width, height), radius)
@@ -161,11 +162,20 @@ class Rigid:
         coefficients[:, 2] = np.where(walled, size[b], np.minimum(size[a], size[b]))
         walls: NDArray[np.float64] = np.array(physics.bounds or (0.0, 0.0, 0.0, 0.0))
         ode = self._ode
+        accounts = np.array([ode.slots.get(cause, -1) for cause in (FRICTION, CONTACT, HAND)])
         return (
-            len(box), ode.inverse_mass, ode.damping, ode.calls, outlines, walls, self._pairs, coefficients
+            len(box), ode.inverse_mass, ode.damping, ode.damped_calls, outlines, walls, self._pairs,
+            coefficients, accounts,
         )  # fmt: skip
 
     def _note(self, began: int, steps: int) -> None:
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - began)
         for name in self._within:
             self._schedule.note(name, steps, 0)  # their time is part of the loop's
+
+
+def _is_anything_driven(state: State) -> bool:
+    """Whether anything moves, or may be moved, that no force moves: then contacts with it do work."""
+    velocity, bodies = state.table(Velocity), state.bodies
+    turned = (bodies.inverse_inertia == 0.0) & (velocity["angular"] != 0.0)
+    return bool((velocity.present & ((bodies.inverse_mass == 0.0) | turned)).any())

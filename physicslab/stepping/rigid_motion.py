@@ -9,11 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.kernels.accounts import PX
+from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
 from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS, REACH
+from physicslab.kernels.rigid.pieces import StagesTuple
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
+from physicslab.stepping.rigid_bookings import book_overlap
 
 __all__ = ["MAX_POINTS", "MadeStep", "RigidMotion"]
 
@@ -98,6 +102,11 @@ class MadeStep:
     refused: str = ""
 
 
+def _stages_of(n: int) -> StagesTuple:
+    """Return room for the stages of a piece with n coordinates, the clock and accounts among them."""
+    return np.zeros((16, n)), np.zeros((16, n)), np.zeros(n), np.zeros(n), np.zeros(n)
+
+
 class RigidMotion:
     """Moves the bodies of a world as a constrained system.
 
@@ -111,9 +120,9 @@ class RigidMotion:
         Whether forces depend on the state of motion alone.
     """
 
-    def __init__(self, ode: OdeSystem, rows: int, pairs: int, steady: bool) -> None:
+    def __init__(self, ode: OdeSystem, pairs: int, steady: bool) -> None:
         self._ode, self._steady, self._pairs = ode, steady, pairs
-        m, n = 2 * MAX_POINTS, 3 * rows + 1
+        m = 2 * MAX_POINTS
         self._equations, self._room = (
             (
                 np.zeros((MAX_POINTS, POINT_FIELDS), np.int64), np.zeros((MAX_POINTS, MEASURES)),
@@ -122,12 +131,14 @@ class RigidMotion:
             )
             for _ in range(2)
         )  # fmt: skip
-        self._stages = np.zeros((16, n)), np.zeros((16, n)), np.zeros(n), np.zeros(n), np.zeros(n)
+        self._stages = _stages_of(0)
         self._start = np.zeros((6, max(MAX_POINTS, pairs)))
         self._changed = np.full((MAX_POINTS, POINT_FIELDS), -1)
 
     def step(self, scene: tuple[Any, ...], state: State, at: float, h: float) -> MadeStep:
         """Make a step of ``h`` seconds from time ``at``, by events, and by impulses where they accumulate."""
+        if len(self._stages[2]) != len(self._ode.q):
+            self._stages = _stages_of(len(self._ode.q))
         made = MadeStep(self._equations[0], self._equations[1], self._equations[3][UNKNOWN])
         done = self._by_events(scene, state, at, h, made)
         if made.by_impulses:
@@ -156,6 +167,8 @@ class RigidMotion:
                 made.by_impulses = _WHY[why]
                 return done
             made.closed = count
+            if still:
+                self._go_on_at_rest(h - done)
             if done >= h or still:
                 return h
             piece, evaluations, foreseen = motion.advance_piece(
@@ -194,7 +207,7 @@ class RigidMotion:
                 return _WHY[why]
             time_stepping.drift(q, v, 0.5 * h)
             # What is as slow as a short step makes it comes to rest; moved each time, it would not.
-            rests = float(np.abs(v[:-1]).max(initial=0.0)) <= _RESTING * gained
+            rests = float(np.abs(v[: self._ode.layout.clock]).max(initial=0.0)) <= _RESTING * gained
             if rests and k < count - 1:
                 continue
             refused = self._move_apart(scene, state, math.inf, made, pay=True)
@@ -203,6 +216,12 @@ class RigidMotion:
         made.forces /= h
         self._find_forces(scene, state, at + left, made)
         return ""
+
+    def _go_on_at_rest(self, span: float) -> None:
+        """Book what holds bodies at rest, and what pulls at them, for ``span`` seconds: they do no work."""
+        first = self._ode.layout.clock + 1
+        given = self._stages[-1][first:].reshape(-1, ACCOUNTS)
+        self._ode.v[first:].reshape(-1, ACCOUNTS)[:, PX:] += span * given[:, PX:]
 
     def _time_to_pass(self, scene: tuple[Any, ...]) -> float:
         """Return for how long nothing can pass through half of the smallest size [s]."""
@@ -233,9 +252,8 @@ class RigidMotion:
         noted, less what the bodies ``pay`` for it with their speeds.
         """
         q, v, deepest = self._ode.q, self._ode.v, 0.0
-        rounding = (
-            _ROUNDING * float(np.abs(q[:-1]).max(initial=0.0)) / float(scene[7][:, 2].min(initial=math.inf))
-        )
+        largest = float(np.abs(q[: self._ode.layout.clock]).max(initial=0.0))
+        rounding = _ROUNDING * largest / float(scene[7][:, 2].min(initial=math.inf))
         before = None
         for _ in range(_SEPARATIONS):
             why, count, rest, deepest, _ = self._touch(scene, q, _NEAR * deepest)
@@ -245,9 +263,12 @@ class RigidMotion:
                 return "squares of speeds or accelerations are not finite"
             if deepest <= max(_SEPARATE, rounding):
                 if before is not None:
-                    made.energy_added += time_stepping.take_work(
+                    at_first = v.copy()
+                    added, change = time_stepping.take_work(
                         scene, self._equations, count, self._stages, before, q, v, pay
                     )
+                    made.energy_added += added
+                    book_overlap(state, self._ode, before, at_first, change)
                 return ""
             before = q.copy() if before is None else before
             if deepest > allowed or not time_stepping.separate(scene, self._equations, count, q, v):

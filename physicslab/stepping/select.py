@@ -58,7 +58,7 @@ class Steppers:
 
 def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Steppers:
     """Return the steppers for a world; its method is chosen, and nothing is compiled yet."""
-    state.bodies.sub_integrated[:] = False
+    state.bodies.sub_integrated[:] = state.bodies.unkicked[:] = False
     state.window = plan.stages.window
     state.kick_before_contacts = plan.kick_before_contacts
     others = [system for system in schedule.running if not system.is_engine]

@@ -93,7 +93,7 @@ class SplitForces:
     def __init__(self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int) -> None:
         self._method, self._steps = method, steps
         rows = sub_integrated_rows(state, forces)
-        self._ode = OdeSystem(state, forces, rows)
+        self._ode = OdeSystem(state, forces, rows, kicked=method.kicks)
         # Contacts are accurate to far fewer digits than free motion: more would only take time.
         self._ode.tolerance = max(state.simulation.tolerance, _TOLERANCE)
         state.bodies.sub_integrated[:] = rows & state.table(Velocity).present
@@ -117,6 +117,7 @@ class SplitForces:
             rates = force.rates(state)
             if rates is not None:
                 self.predictable &= rates * h <= _MAX_PREDICTABLE
+        bodies.unkicked[:] = bodies.sub_integrated & ~self.predictable
 
     def begin(self, state: State) -> None:
         """Take the present forces and masses; they are kept for a step."""

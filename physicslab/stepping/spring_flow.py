@@ -7,11 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Spring, Transform, Velocity
+from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.contacts.arguments import motion_of
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS
-from physicslab.kernels.ode.spring_flow import LinksTuple, PlacesTuple, spring_flow
+from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, PX, PY, SPIN, SPRINGS
+from physicslab.kernels.ode.spring_flow import (
+    BY_GRAVITY,
+    BY_HAND,
+    BY_SPRINGS,
+    GIVEN,
+    LinksTuple,
+    PlacesTuple,
+    spring_flow,
+)
 from physicslab.kernels.wide.layout import WIDE
 from physicslab.state.packed import StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
@@ -108,6 +117,9 @@ class SpringFlow:
         self._places: PlacesTuple = (
             layout.moving, self._place, speed, pull, self._known, gain, self._gravity
         )  # fmt: skip
+        driven = np.flatnonzero(inverse[layout.moving] == 0.0)
+        self._ends = np.concatenate((driven, np.arange(m, unused)))
+        self._given, self._weight = np.zeros(GIVEN), Vector2(0.0, 0.0)
         self._physics: object = None
 
     def begin(self, state: State) -> None:
@@ -117,6 +129,7 @@ class SpringFlow:
             gravity = sum((g for g in uniform if g is not None), start=Vector2(0.0, 0.0))
             pulled = state.bodies.inverse_mass[self._moving] > 0.0
             self._gravity[:] = np.outer(pulled, (gravity.x, gravity.y)).ravel()
+            self._weight = gravity * float(state.table(Mass)["mass"][self._moving][pulled].sum())
             self._physics = state.physics
         transform, first = state.table(Transform), len(self._moving)
         for end, springs, anchors in self._fixed:
@@ -132,4 +145,14 @@ class SpringFlow:
 
         Nothing is changed where it does.
         """
-        return spring_flow(motion_of(state), self._places, self._links, DRIFTS, KICKS, h, steps)
+        given, sums = self._given, state.account.sums
+        made = spring_flow(
+            motion_of(state), self._places, self._links, DRIFTS, KICKS, h, steps, self._ends, given
+        )
+        if made >= 0:
+            sums[SPRINGS, PX:] += given[BY_SPRINGS : BY_SPRINGS + 3]
+            sums[HAND, ENERGY] += given[BY_HAND]
+            sums[GRAVITY, PX] += self._weight.x * h * steps
+            sums[GRAVITY, PY] += self._weight.y * h * steps
+            sums[GRAVITY, SPIN] += given[BY_GRAVITY]
+        return made

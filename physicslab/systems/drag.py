@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Velocity
+from physicslab.kernels.accounts import DAMPING
 from physicslab.kernels.forces import packed_forces
 from physicslab.kernels.forces.resistance import drag_resistance
 from physicslab.state.packed import PackedForce, StateLayout
@@ -19,15 +20,22 @@ class DragSystem(ForceSystem):
     """Slows every body that has Drag. It dissipates energy and stores none."""
 
     needs = (Drag, Velocity, Mass)
+    account = DAMPING
     kernels = (packed_forces.drag,)
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the drag for compiled integrators."""
         table, rows = state.table(Drag), state.batch(*self.needs).rows
         rows = rows[layout.place[rows] >= 0]  # rows that take no part have no coordinates
+        moved = state.bodies.inverse_mass[rows] > 0.0
+        rows = np.concatenate((rows[moved], rows[~moved]))
         parameters = np.stack((table["linear"][rows], table["quadratic"][rows]), axis=1).ravel()
-        indices = np.concatenate(([len(rows)], layout.place[rows]))
-        return PackedForce(packed_forces.drag, parameters, indices, drag_resistance)
+        indices: NDArray[np.int64] = np.concatenate(
+            ([len(rows)], layout.place[rows], (-1, int(np.count_nonzero(moved)), -1))
+        )
+        books = ((DAMPING, len(rows) + 1),) if moved.any() else ()
+        keeps = len(rows) + 3
+        return PackedForce(packed_forces.drag, parameters, indices, drag_resistance, books=books, keeps=keeps)
 
     def needs_origin(self, state: State) -> bool:
         """Drag depends on velocities alone."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.ecs.vector import Vector2
+from physicslab.kernels import accounts
 from physicslab.kernels.forces import gravity, packed_forces
 from physicslab.kernels.forces.tree_pull import MAX_ERROR, RMS_ERROR, THETA
 from physicslab.state.packed import PackedForce, StateLayout
@@ -67,13 +68,19 @@ class GravitySystem(ForceSystem):
         physics, mass = state.physics, state.table(Mass)["mass"]
         if physics.gravity_mode == "linear":
             rows = np.flatnonzero((state.bodies.inverse_mass > 0.0) & (layout.place >= 0))
-            indices = np.concatenate(([len(rows)], layout.place[rows]))
-            parameters = np.concatenate(((physics.gravity.x, physics.gravity.y), mass[rows]))
-            return PackedForce(packed_forces.uniform_gravity, parameters, indices)
+            indices = np.concatenate(([len(rows)], layout.place[rows], (-1,)))
+            total = mass[rows].sum()
+            parameters = np.concatenate(((physics.gravity.x, physics.gravity.y), mass[rows], (total,)))
+            books = ((accounts.GRAVITY, len(indices) - 1),) if len(rows) else ()
+            return PackedForce(packed_forces.uniform_gravity, parameters, indices, books=books)
         rows = self._attracting
         indices = np.concatenate(([len(rows), physics.softening_law == "plummer"], layout.place[rows]))
         parameters = np.concatenate(((physics.G, physics.softening), mass[rows], (0.0,)))
-        return PackedForce(packed_forces.planet_gravity, parameters, indices, steepest=2 + len(rows))
+        anchors = layout.place[rows[state.bodies.inverse_mass[rows] == 0.0]]
+        return PackedForce(
+            packed_forces.planet_gravity, parameters, indices, steepest=2 + len(rows), books=(),
+            anchors=anchors if len(anchors) else None, cause=accounts.GRAVITY,
+        )  # fmt: skip
 
     def needs_origin(self, state: State) -> bool:
         """Only the pull of bodies that stay where they are depends on it."""

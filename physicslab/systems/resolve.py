@@ -84,6 +84,6 @@ class ResolveSystem(System):
     def relax(self, state: State, h: float) -> None:
         """Remove the velocity that came from correcting overlap."""
         entries.relax_stage(
-            near_in(state), motion_of(state), inverse_in(state), self.softness,
+            near_in(state), motion_of(state), inverse_in(state), acting_in(state), self.softness,
             h, state.simulation.iterations or 0,
         )  # fmt: skip

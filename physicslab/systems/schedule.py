@@ -6,6 +6,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from physicslab.kernels import working_ns
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage, System
@@ -123,6 +126,16 @@ class Schedule:
         """Call every running system of ``stage``, in order, and note what each cost."""
         for call, timing in self._calls.get(stage, ()):
             self._timed(call, timing, state, h)
+
+    def run_forces(
+        self, state: State, h: float, note: Callable[[System, NDArray[np.float64], State], None]
+    ) -> None:
+        """Run ``Stage.FORCE``; ``note`` is called after each system, with the forces from before it."""
+        for system in self.running:
+            if Stage.FORCE in self._marked[system]:
+                before = state.bodies.pull.copy()
+                self.call(system, getattr(system, self._marked[system][Stage.FORCE]), state, h)
+                note(system, before, state)
 
     def run_others(self, kind: type[System], stage: Stage, state: State, h: float) -> None:
         """Call every running system of ``stage`` but the one of this type, whose work was done otherwise."""

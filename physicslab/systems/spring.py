@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Name, Spring, Transform, Velocity
 from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import InvalidValue
-from physicslab.kernels.forces import packed_forces, springs
+from physicslab.kernels import accounts
+from physicslab.kernels.forces import bookings, packed_forces, springs
 from physicslab.kernels.forces.resistance import damper_resistance
 from physicslab.state.packed import PackedForce, StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
@@ -67,7 +68,7 @@ class SpringSystem(ForceSystem):
         for end, anchors in zip(ends, ("anchor_a", "anchor_b"), strict=True):
             turns = spring[anchors][rows].any(axis=1)  # the middle of a body stays where it is
             places += [layout.place[end], np.where(turns, layout.turn[end], -1)]
-        indices = np.concatenate(([len(rows)], np.stack(places, axis=1).ravel()))
+        indices, books = self._booked(state, np.stack(places, axis=1))
         parameters = np.empty((len(rows), 7))
         for column, end, anchors in ((0, ends[0], "anchor_a"), (2, ends[1], "anchor_b")):
             steady = np.where(layout.turn[end] < 0, angle[end], 0.0)
@@ -77,7 +78,36 @@ class SpringSystem(ForceSystem):
         for column, name in enumerate(("rest_length", "stiffness", "damping"), 4):
             parameters[:, column] = spring[name][rows]
         resistance = damper_resistance if self.sees_velocity(state) else None
-        return PackedForce(packed_forces.springs, parameters.ravel(), indices, resistance)
+        return PackedForce(
+            packed_forces.springs, parameters.ravel(), indices, resistance, books=books,
+            keeps=4 + 4 * len(rows) if resistance else None,
+        )  # fmt: skip
+
+    def _booked(
+        self, state: State, places: NDArray[np.int64]
+    ) -> tuple[NDArray[np.int64], tuple[tuple[int, int], ...]]:
+        """Return the indices of the kernel, for ends at ``places`` (n, 4), and what it books."""
+        bodies, n, moved = state.bodies, len(places), np.zeros(len(places), np.int64)
+        goes, driven = state.table(Velocity).present, False
+        for end, turn, moves, turns in (
+            (self._a, places[:, 1], bookings.A_MOVES, bookings.A_TURNS),
+            (self._b, places[:, 3], bookings.B_MOVES, bookings.B_TURNS),
+        ):
+            shifted = bodies.inverse_mass[end] > 0.0
+            turned = (turn < 0) | (bodies.inverse_inertia[end] > 0.0)
+            moved |= np.where(shifted, moves, 0) | np.where(turned, turns, 0)
+            driven |= bool((goes[end] & ~(shifted & turned)).any())
+        found = []
+        if (moved != bookings.ALL_MOVED).any():
+            found.append((accounts.SPRINGS, 1 + 4 * n))
+        if driven:
+            found.append((accounts.HAND, 3 + 4 * n))
+        if self.sees_velocity(state):
+            found.append((accounts.DAMPING, 2 + 4 * n))
+        opened = np.flatnonzero(moved != bookings.ALL_MOVED)
+        ends = np.stack((opened, moved[opened]), axis=1)
+        behind = (-1, -1, -1, -1, len(opened))
+        return np.concatenate(([n], places.ravel(), behind, ends.ravel())), tuple(found)
 
     def inputs(self, state: State, layout: StateLayout) -> bytes:
         """Return every number of every spring, and the angles of anchors that no force turns."""

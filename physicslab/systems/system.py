@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.vector import Vector2
+from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
@@ -176,6 +177,8 @@ class ForceSystem(System):
     It must also return the energy that its force stores, so that the total stays right when a force is added.
     """
 
+    account: ClassVar[int] = FIELDS
+    """Where the work of a force that stores no energy is booked (:mod:`physicslab.kernels.accounts`)."""
     potential: ClassVar[str | None] = None
     """The name under which the energy is reported; ``None`` for a force that stores none."""
 

@@ -1,11 +1,17 @@
 """Gravity, springs and drag over packed coordinates, as :mod:`physicslab.kernels.forces.force_calls` has it.
 
-Each works by the same formulas as the loop over columns in the module of that force.
+Each works by the same formulas as the loop over columns in the module of that force. Where one is given the
+place of an account (:mod:`physicslab.kernels.forces.bookings`), it also adds there what it gives in a second;
+a place of -1 is none. Where it keeps its force by itself, it books no energy.
 """
+
+from typing import Any
 
 import numpy as np
 
-from physicslab.kernels import allocating
+from physicslab.kernels import allocating, always_inlined
+from physicslab.kernels.accounts import PX, PY, SPIN
+from physicslab.kernels.forces.bookings import book_open_spring, keep_pull
 from physicslab.kernels.forces.drag import drag_factor
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT, attract, inverse_cube
@@ -16,11 +22,23 @@ __all__ = ["drag", "planet_gravity", "springs", "uniform_gravity"]
 
 @force_kernel
 def uniform_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
-    """Add m g. ``parameters``: gx, gy, then the masses; ``indices``: how many, then where x of each is."""
-    for p in range(indices[0]):
-        i = indices[1 + p]
-        force[i] += parameters[2 + p] * parameters[0]
-        force[i + 1] += parameters[2 + p] * parameters[1]
+    """Add m g. ``parameters``: gx, gy, the masses, and their sum.
+
+    ``indices``: how many, where x of each is, and the account of gravity.
+    """
+    n, gx, gy = indices[0], parameters[0], parameters[1]
+    account, mx, my = indices[1 + n], 0.0, 0.0
+    for p in range(n):
+        i, mass = indices[1 + p], parameters[2 + p]
+        force[i] += mass * gx
+        force[i + 1] += mass * gy
+        mx += mass * q[i]
+        my += mass * q[i + 1]
+    if account < 0:
+        return
+    force[account + PX] += parameters[2 + n] * gx
+    force[account + PY] += parameters[2 + n] * gy
+    force[account + SPIN] += mx * gy - my * gx
 
 
 @allocating
@@ -70,6 +88,46 @@ def planet_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-u
     parameters[2 + n] = max(parameters[2 + n], abs(G) * steepest)
 
 
+@always_inlined
+def _pull(q: Any, v: Any, span: float, force: Any, parameters: Any, indices: Any, s: int) -> Any:
+    """Add the pull of spring number s to both ends.
+
+    Returns the force on A, the damper's part of it, the power that it takes, and both arms [m] at which the
+    force acts.
+    """
+    w, p = 1 + 4 * s, 7 * s
+    a, turn_a, b, turn_b = indices[w], indices[w + 1], indices[w + 2], indices[w + 3]
+    ax, ay, bx, by = parameters[p], parameters[p + 1], parameters[p + 2], parameters[p + 3]
+    spin_a, spin_b, near_a, near_b, give_a, give_b = 0.0, 0.0, 1.0, 1.0, 1.0, 1.0
+    if turn_a >= 0:
+        ax, ay = turned(q[turn_a], ax, ay)
+        near_a, give_a = turn_over(span * v[turn_a])
+        spin_a = give_a * v[turn_a]
+    if turn_b >= 0:
+        bx, by = turned(q[turn_b], bx, by)
+        near_b, give_b = turn_over(span * v[turn_b])
+        spin_b = give_b * v[turn_b]
+    dx = q[b] + near_b * bx - q[a] - near_a * ax
+    dy = q[b + 1] + near_b * by - q[a + 1] - near_a * ay
+    vx = v[b] - spin_b * by - v[a] + spin_a * ay
+    vy = v[b + 1] + spin_b * bx - v[a + 1] - spin_a * ax
+    rest, stiffness, damping = parameters[p + 4], parameters[p + 5], parameters[p + 6]
+    if span == 0.0:
+        fx, fy, nx, ny, rate = spring_pull(dx, dy, vx, vy, rest, stiffness, damping)
+    else:
+        fx, fy, nx, ny, rate = mean_spring_pull(dx, dy, vx, vy, span, rest, stiffness, damping)
+    force[a] += fx
+    force[a + 1] += fy
+    force[b] -= fx
+    force[b + 1] -= fy
+    if turn_a >= 0:
+        force[turn_a] += give_a * (ax * fy - ay * fx)
+    if turn_b >= 0:
+        force[turn_b] -= give_b * (bx * fy - by * fx)
+    slowed = damping * rate
+    return fx, fy, slowed * nx, slowed * ny, slowed * rate, give_a * ax, give_a * ay, give_b * bx, give_b * by
+
+
 @force_kernel
 def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add the pull of springs and dampers to both ends.
@@ -78,45 +136,71 @@ def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-
     that never changes. ``parameters``: seven a spring: the anchors at A and B in the body's own directions,
     or in the world's where the angle never changes [m], rest length, stiffness, damping. Over a span, what
     the springs store changes by just the work done, of the turning ends as well.
+
+    Behind the indices of the springs are the accounts of springs, damping and hand, where the forces of
+    dampers are kept by themselves, and how many springs have an end that forces do not move in all its
+    coordinates; of each of these its number, and which they do move
+    (:func:`physicslab.kernels.forces.bookings.book_open_spring`).
     """
-    for s in range(indices[0]):
-        w, p = 1 + 4 * s, 7 * s
-        a, turn_a, b, turn_b = indices[w], indices[w + 1], indices[w + 2], indices[w + 3]
-        ax, ay, bx, by = parameters[p], parameters[p + 1], parameters[p + 2], parameters[p + 3]
-        spin_a, spin_b, near_a, near_b, give_a, give_b = 0.0, 0.0, 1.0, 1.0, 1.0, 1.0
-        if turn_a >= 0:
-            ax, ay = turned(q[turn_a], ax, ay)
-            near_a, give_a = turn_over(span * v[turn_a])
-            spin_a = give_a * v[turn_a]
-        if turn_b >= 0:
-            bx, by = turned(q[turn_b], bx, by)
-            near_b, give_b = turn_over(span * v[turn_b])
-            spin_b = give_b * v[turn_b]
-        dx = q[b] + near_b * bx - q[a] - near_a * ax
-        dy = q[b + 1] + near_b * by - q[a + 1] - near_a * ay
-        vx = v[b] - spin_b * by - v[a] + spin_a * ay
-        vy = v[b + 1] + spin_b * bx - v[a + 1] - spin_a * ax
-        if span == 0.0:
-            fx, fy = spring_pull(dx, dy, vx, vy, parameters[p + 4], parameters[p + 5], parameters[p + 6])
+    n, lost, first = indices[0], 0.0, 0
+    behind = 1 + 4 * n
+    store, damp, hand, kept, count = (
+        indices[behind], indices[behind + 1], indices[behind + 2], indices[behind + 3], indices[behind + 4]
+    )  # fmt: skip
+    if store < 0:
+        count = 0
+    for turn in range(count + 1):
+        end = indices[behind + 5 + 2 * turn] if turn < count else n
+        if damp < 0:
+            for s in range(first, end):
+                _pull(q, v, span, force, parameters, indices, s)
         else:
-            fx, fy = mean_spring_pull(
-                dx, dy, vx, vy, span, parameters[p + 4], parameters[p + 5], parameters[p + 6]
+            for s in range(first, end):
+                _, _, x, y, power, ax, ay, bx, by = _pull(q, v, span, force, parameters, indices, s)
+                lost += power
+                if kept >= 0:
+                    keep_pull(force, kept, indices, s, x, y, ax, ay, bx, by)
+        if turn < count:
+            fx, fy, x, y, power, ax, ay, bx, by = _pull(q, v, span, force, parameters, indices, end)
+            lost += power
+            if kept >= 0:
+                keep_pull(force, kept, indices, end, x, y, ax, ay, bx, by)
+            moved = indices[behind + 6 + 2 * turn]
+            book_open_spring(
+                q, v, force, indices, end, moved, fx, fy, x, y, ax, ay, bx, by, store, damp, hand
             )
-        force[a] += fx
-        force[a + 1] += fy
-        force[b] -= fx
-        force[b + 1] -= fy
-        if turn_a >= 0:
-            force[turn_a] += give_a * (ax * fy - ay * fx)
-        if turn_b >= 0:
-            force[turn_b] -= give_b * (bx * fy - by * fx)
+            first = end + 1
+    if damp >= 0 and kept < 0:
+        force[damp] -= lost
 
 
 @force_kernel
 def drag(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
-    """Add -(c + k |v|) v. ``indices``: how many, then where x of each is; ``parameters``: c and k of each."""
-    for p in range(indices[0]):
+    """Add -(c + k |v|) v. ``parameters``: c and k of each.
+
+    ``indices``: how many, where x of each is, the account of damping, how many of them forces move, which
+    come first, and where their drag is kept by itself.
+    """
+    n = indices[0]
+    account, kept = indices[1 + n], indices[3 + n]
+    booked = indices[2 + n] if account >= 0 else 0
+    power, px, py, spin = 0.0, 0.0, 0.0, 0.0
+    for p in range(n):
         i = indices[1 + p]
         f = drag_factor(v[i], v[i + 1], parameters[2 * p], parameters[2 * p + 1])
-        force[i] -= f * v[i]
-        force[i + 1] -= f * v[i + 1]
+        fx, fy = f * v[i], f * v[i + 1]
+        force[i] -= fx
+        force[i + 1] -= fy
+        if p < booked:
+            power += fx * v[i] + fy * v[i + 1]
+            px += fx
+            py += fy
+            spin += q[i] * fy - q[i + 1] * fx
+            if kept >= 0:
+                force[kept + i] -= fx
+                force[kept + i + 1] -= fy
+    if account >= 0:
+        force[account] -= power if kept < 0 else 0.0
+        force[account + PX] -= px
+        force[account + PY] -= py
+        force[account + SPIN] -= spin

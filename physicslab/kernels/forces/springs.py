@@ -2,36 +2,38 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, kernel
 
 __all__ = ["mean_spring_pull", "spring_potential", "spring_pull", "turn_over", "turned"]
 
 
-@inlined
+@always_inlined
 def turned(angle: float, anchor_x: float, anchor_y: float) -> tuple[float, float]:
     """Return a local anchor [m] turned into the directions of the world."""
     c, s = math.cos(angle), math.sin(angle)
     return c * anchor_x - s * anchor_y, s * anchor_x + c * anchor_y
 
 
-@inlined
+@always_inlined
 def spring_pull(
     dx: float, dy: float, vx: float, vy: float, rest_length: float, stiffness: float, damping: float
-) -> tuple[float, float]:
+) -> tuple[float, float, float, float, float]:
     """Return the force on A [N], k (length - rest_length) + c (rate of lengthening) along A to B.
 
     (dx, dy) leads from A to B [m] and changes at (vx, vy) [m/s]. Ends that coincide have no line between
-    them; only then is there no force.
+    them; only then is there no force. After the force come the direction of the line, and the rate of
+    lengthening [m/s].
     """
     length = math.sqrt(dx * dx + dy * dy)
     if length == 0.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     nx, ny = dx / length, dy / length
-    pull = stiffness * (length - rest_length) + damping * (nx * vx + ny * vy)
-    return pull * nx, pull * ny
+    rate = nx * vx + ny * vy
+    pull = stiffness * (length - rest_length) + damping * rate
+    return pull * nx, pull * ny, nx, ny, rate
 
 
-@inlined
+@always_inlined
 def turn_over(angle: float) -> tuple[float, float]:
     """Return the ratio of an arm's mean, and of its mean rate, over a turn by ``angle`` to its middle.
 
@@ -43,25 +45,27 @@ def turn_over(angle: float) -> tuple[float, float]:
     return math.cos(half), math.sin(half) / half
 
 
-@inlined
+@always_inlined
 def mean_spring_pull(
     dx: float, dy: float, vx: float, vy: float, span: float,
     rest_length: float, stiffness: float, damping: float,
-) -> tuple[float, float]:  # fmt: skip
+) -> tuple[float, float, float, float, float]:  # fmt: skip
     """Return the force on A [N] whose work is all that the spring's energy loses while B goes on steadily.
 
     The line from A to B goes within ``span`` seconds from l0 = d - span/2 v to l1 = d + span/2 v. The pull is
     k ((|l0| + |l1|) / 2 - rest_length) along (l0 + l1) / (|l0| + |l1|), and the damper's by the mean rate of
-    lengthening (LaBudde & Greenspan, J. Comput. Phys. 15 (1974) 134).
+    lengthening (LaBudde & Greenspan, J. Comput. Phys. 15 (1974) 134). After the force come that direction
+    and that rate, as :func:`spring_pull` has them.
     """
     rx, ry = 0.5 * span * vx, 0.5 * span * vy
     lengths = math.sqrt((dx - rx) * (dx - rx) + (dy - ry) * (dy - ry))
     lengths += math.sqrt((dx + rx) * (dx + rx) + (dy + ry) * (dy + ry))
     if lengths == 0.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     nx, ny = 2.0 * dx / lengths, 2.0 * dy / lengths
-    pull = stiffness * (0.5 * lengths - rest_length) + damping * (nx * vx + ny * vy)
-    return pull * nx, pull * ny
+    rate = nx * vx + ny * vy
+    pull = stiffness * (0.5 * lengths - rest_length) + damping * rate
+    return pull * nx, pull * ny, nx, ny, rate
 
 
 @kernel

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from physicslab.kernels import Numbers, allocating_kernel
+from physicslab.kernels import Numbers, Rows, allocating_kernel
+from physicslab.kernels.forces.bookings import CLOCK, END
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add
 
@@ -12,13 +13,15 @@ __all__ = ["rk4"]
 @allocating_kernel
 def rk4(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
-    calls: Calls, h: float, steps: int,
+    calls: Calls, places: Rows, h: float, steps: int,
 ) -> int:  # fmt: skip
     """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
 
-    ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are carried on.
+    ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are carried on. Behind the clock, v
+    takes what causes give (:mod:`physicslab.kernels.forces.bookings`).
     """
-    n, clock, start = len(inverse_mass), len(q) - 1, q[len(q) - 1]
+    n, clock = len(inverse_mass), places[CLOCK]
+    start = q[clock]
     stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
     q_sum, v_sum = np.empty(n), np.empty(n)
     for step in range(steps):
@@ -37,6 +40,8 @@ def rk4(
                 v_sum[i] += weight * acceleration[i]
                 stage_q[i] = q[i] + reach * stage_v[i]
                 stage_v[i] = v[i] + reach * acceleration[i]
+            for i in range(clock + 1, places[END]):
+                v[i] += weight * acceleration[i]
         for i in range(n):
             q[i], q_low[i] = add(q[i], q_low[i], q_sum[i])
             v[i], v_low[i] = add(v[i], v_low[i], v_sum[i])

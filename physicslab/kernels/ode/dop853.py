@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Vectors, allocating_kernel, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, always_inlined, inlined
+from physicslab.kernels.accounts import PX, PY, SPIN
+from physicslab.kernels.forces.bookings import ACCOUNTS, CLOCK, END
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add, add_pair
 from physicslab.kernels.ode.dop853_tableau import (
@@ -49,18 +51,20 @@ def largest(values: Numbers, n: int) -> float:
     return found
 
 
-@inlined
+@always_inlined
 def make_stages(
     q: Numbers, v: Numbers, stage_q: Numbers, stage_v: Numbers, acceleration: Numbers, rates: Vectors,
-    pushes: Vectors, inverse_mass: Numbers, damping: Numbers, calls: Calls, h: float, first: int, end: int,
+    pushes: Vectors, inverse_mass: Numbers, damping: Numbers, calls: Calls, clock: int, booked: int, h: float,
+    first: int, end: int,
 ) -> None:  # fmt: skip
     """Compute stages ``first`` to ``end - 1`` of a step from (q, v).
 
     ``rates`` and ``pushes`` (n, 16) take how much q' has changed since the start of the step, and v', of each
     stage; those of the stages before ``first`` are there. ``stage_q`` and ``stage_v`` are left at the last
     stage. Neither the speed at the start nor the weights are rounded where it would act alike in every step.
+    Below the n coordinates, ``pushes`` takes as many as are ``booked`` behind the clock.
     """
-    n, clock = len(inverse_mass), len(q) - 1
+    n = len(inverse_mass)
     for stage in range(first, end):
         stage_q[clock] = q[clock] + NODES[stage] * h
         for i in range(n):
@@ -75,6 +79,8 @@ def make_stages(
         accelerate(stage_q, stage_v, acceleration, inverse_mass, damping, calls)
         for i in range(n):
             pushes[i, stage] = acceleration[i]
+        for i in range(booked):
+            pushes[n + i, stage] = acceleration[clock + 1 + i]
 
 
 @inlined
@@ -114,10 +120,12 @@ def step_error(
 
 
 @inlined
-def first_step(pushes: Vectors, q_scale: float, v_scale: float, span: float, tolerance: float) -> float:
+def first_step(
+    pushes: Vectors, n: int, q_scale: float, v_scale: float, span: float, tolerance: float
+) -> float:
     """Return a careful guess at a first step [s] from the state and its acceleration (stage 0)."""
     push = 0.0
-    for i in range(len(pushes)):
+    for i in range(n):
         push = max(push, abs(pushes[i, 0]))
     guess = math.inf
     if q_scale > 0.0:
@@ -172,10 +180,35 @@ def _restore_origin(q: Numbers, q_low: Numbers, bodies: int, origin: Numbers) ->
         q[2 * i + 1], q_low[2 * i + 1] = add_pair(q[2 * i + 1], q_low[2 * i + 1], origin[1], origin[3])
 
 
+@inlined
+def _move_torques(pushes: Vectors, n: int, booked: int, x: float, y: float) -> None:
+    """Take the torques of the first stage of a step about (x, y) instead of the origin."""
+    for account in range(n, n + booked, ACCOUNTS):
+        pushes[account + SPIN, 0] -= x * pushes[account + PY, 0] - y * pushes[account + PX, 0]
+
+
+@inlined
+def _book(
+    v: Numbers, pushes: Vectors, n: int, clock: int, booked: int, origin: Numbers, taken: float
+) -> None:
+    """Book what causes have given in a step; their torques were about ``origin``."""
+    for i in range(booked):
+        given = 0.0
+        for stage in range(LAST):
+            given += WEIGHTS[LAST, stage] * pushes[n + i, stage]
+        v[clock + 1 + i] += taken * given
+        pushes[n + i, 0] = pushes[n + i, LAST]
+        if i % ACCOUNTS == PX:
+            v[clock + 1 + i - PX + SPIN] -= origin[1] * taken * given
+        elif i % ACCOUNTS == PY:
+            v[clock + 1 + i - PY + SPIN] += origin[0] * taken * given
+
+
 @allocating_kernel
 def dop853(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
-    calls: Calls, span: float, tolerance: float, period: float, max_evaluations: int, bodies: int,
+    calls: Calls, places: Rows, span: float, tolerance: float, period: float, max_evaluations: int,
+    bodies: int,
 ) -> int:  # fmt: skip
     """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
@@ -188,16 +221,35 @@ def dop853(
 
     Where no force depends on the origin, ``bodies`` is how many pairs of coordinates the first ones are, and
     else 0: in a close passage the origin is moved there, so that the distance has all its digits.
+
+    Behind the clock, v takes what causes give (:mod:`physicslab.kernels.forces.bookings`).
     """
-    n, clock, start = len(inverse_mass), len(q) - 1, q[len(q) - 1]
+    n, clock = len(inverse_mass), places[CLOCK]
+    start, booked = q[clock], places[END] - places[CLOCK] - 1
     stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
-    rates, pushes = np.zeros((n, 16)), np.zeros((n, 16))
+    rates, pushes = np.zeros((n, 16)), np.zeros((n + booked, 16))
     q_scale, v_scale = largest(q, n), largest(v, n)
-    make_stages(q, v, stage_q, stage_v, acceleration, rates, pushes, inverse_mass, damping, calls, 0.0, 0, 1)
+    make_stages(
+        q,
+        v,
+        stage_q,
+        stage_v,
+        acceleration,
+        rates,
+        pushes,
+        inverse_mass,
+        damping,
+        calls,
+        clock,
+        booked,
+        0.0,
+        0,
+        1,
+    )
     if not _all_finite(acceleration, stage_v, n):
         return NOT_FINITE
     evaluations, done, done_low = 1, 0.0, 0.0
-    h = first_step(pushes, q_scale, v_scale, span, tolerance)
+    h = first_step(pushes, n, q_scale, v_scale, span, tolerance)
     grow, last_error, last_taken = _MAX_GROWTH, math.inf, 1.0
     spent, mark = 0, 0.0
     origin, moved_origin = np.zeros(4), False
@@ -207,6 +259,7 @@ def dop853(
             break
         near = _body_of_nearest(q, bodies)
         if near >= 0:
+            _move_torques(pushes, n, booked, q[2 * near], q[2 * near + 1])
             _move_origin(q, q_low, bodies, origin, q[2 * near], q[2 * near + 1])
             moved_origin, q_scale = True, largest(q, n)
         last = h >= left
@@ -221,7 +274,7 @@ def dop853(
             break
         make_stages(
             q, v, stage_q, stage_v, acceleration, rates, pushes,
-            inverse_mass, damping, calls, taken, 1, LAST + 1,
+            inverse_mass, damping, calls, clock, booked, taken, 1, LAST + 1,
         )  # fmt: skip
         evaluations += LAST
         spent += LAST
@@ -251,6 +304,7 @@ def dop853(
             q[i], q_low[i] = add(q[i], q_low[i], taken * moved)
             v[i], v_low[i] = add(v[i], v_low[i], taken * pushed)
             pushes[i, 0] = pushes[i, LAST]
+        _book(v, pushes, n, clock, booked, origin, taken)
         done, done_low = add(done, done_low, taken)
         q[clock] = start + done
         if last:

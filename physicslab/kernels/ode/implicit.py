@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined
+from physicslab.kernels.forces.bookings import CLOCK, DAMPED
 from physicslab.kernels.forces.force_calls import Calls, accelerate_over
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.ode.dop853 import largest
@@ -63,11 +64,13 @@ def _solve(matrix: Vectors, pivots: Rows, band: int, right: Numbers) -> None:
 def _miss(
     q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
     inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
+    given: Numbers,
 ) -> None:  # fmt: skip
     """Compute the residual of the equations of the step at ``x``.
 
     It holds the mean velocity u; where something resists motion, then y, the end velocity less u.
-    ``stack`` holds y, u and v one after the other, each as long as q.
+    ``stack`` holds y, u and v one after the other, each as long as q. ``given`` takes what causes give in a
+    second, or a part of that.
     """
     n, size = len(inverse_mass), len(q)
     mean = stack[size : 2 * size]
@@ -75,6 +78,8 @@ def _miss(
         mean[i] = x[i]
         stage_q[i] = q[i] + 0.5 * h * x[i]
     accelerate_over(stage_q, mean, h, acceleration, inverse_mass, damping, calls)
+    for i in range(len(given)):
+        given[i] = acceleration[size - len(given) + i]
     if len(x) == n:
         for i in range(n):
             miss[i] = v[i] + 0.5 * h * acceleration[i] - x[i]
@@ -104,19 +109,21 @@ def _differentiate(
     stride = min(2 * band + 1, n)
     # A rotation curves so much within the shift that strong dampers need central differences.
     both = n > len(inverse_mass)
-    moved, below = x.copy(), miss.copy()
+    moved, below, none = x.copy(), miss.copy(), np.empty(0)
     for first in range(stride):
         for j in range(first, n, stride):
             moved[order[j]] = x[order[j]] + shift
         _miss(
-            q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, shifted
-        )
+            q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, shifted,
+            none,
+        )  # fmt: skip
         if both:
             for j in range(first, n, stride):
                 moved[order[j]] = x[order[j]] - shift
             _miss(
-                q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, below
-            )
+                q, v, moved, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h,
+                below, none,
+            )  # fmt: skip
         for j in range(first, n, stride):
             moved[order[j]] = x[order[j]]
             for i in range(max(j - 2 * band, 0), min(j + 2 * band + 1, n)):
@@ -130,7 +137,7 @@ def _differentiate(
 def _newton(
     q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
     inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
-    shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool,
+    shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool, given: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
     """Solve for ``x``, beginning with what is in it; return iterations (-1: no convergence) and evaluations.
 
@@ -140,7 +147,9 @@ def _newton(
     residual = shifted
     before, evaluations, far = math.inf, 0, False
     for iteration in range(1, _MAX_ITERATIONS + 1):
-        _miss(q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss)
+        _miss(
+            q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss, given
+        )
         evaluations += 1
         if (iteration == 1 and not known) or iteration > _SLOW or far:
             evaluations += _differentiate(
@@ -168,7 +177,7 @@ def _newton(
 def _search(
     q: Numbers, v: Numbers, x: Numbers, stage_q: Numbers, stack: Numbers, acceleration: Numbers,
     inverse_mass: Numbers, damping: Numbers, calls: Calls, resistances: Calls, h: float, miss: Numbers,
-    shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool,
+    shifted: Numbers, order: Rows, band: int, matrix: Vectors, pivots: Rows, known: bool, given: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
     """Solve for ``x`` as :func:`_newton` does, from where there is a solution nearby.
 
@@ -181,7 +190,7 @@ def _search(
             x[i] = guess * v[i] if i < len(inverse_mass) else 0.0
         iterations, tried = _newton(
             q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, h, miss,
-            shifted, order, band, matrix, pivots, known and guess == 0,
+            shifted, order, band, matrix, pivots, known and guess == 0, given,
         )  # fmt: skip
         evaluations += tried
         if iterations > 0:
@@ -189,10 +198,20 @@ def _search(
     return -1, evaluations
 
 
+@inlined
+def _work_beside_mean(v: Numbers, x: Numbers, inverse_mass: Numbers) -> float:
+    """Return the work [J] of the change of velocities, by the mean of both ends less that of the step."""
+    n, work = len(inverse_mass), 0.0
+    for i in range(n):
+        if inverse_mass[i] > 0.0:
+            work += 0.5 * (x[i] - v[i] + x[n + i]) * (v[i] - x[i] + x[n + i]) / inverse_mass[i]
+    return work
+
+
 @allocating_kernel
 def implicit_midpoint(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
-    calls: Calls, resistances: Calls, order: Rows, band: int, h: float, steps: int,
+    calls: Calls, resistances: Calls, places: Rows, order: Rows, band: int, h: float, steps: int,
 ) -> int:  # fmt: skip
     """Advance by ``steps`` steps of ``h`` seconds.
 
@@ -203,8 +222,12 @@ def implicit_midpoint(
     u = v + h/2 a. ``order`` is the order of u, and of y = v + h a - u behind it where there is a Z, in which
     coupled ones are within ``band`` of each other. Sums are compensated: ``q_low`` and ``v_low`` (n,) are the
     remainders of what moves, and are carried on. Forces are those of the time in the middle of the step.
+
+    Behind the clock, v takes what causes give (:mod:`physicslab.kernels.forces.bookings`) at the mean
+    velocity. Where that is not the mean of both ends, dampers and drag have done the work that this makes.
     """
-    n, m, clock, start = len(inverse_mass), len(order), len(q) - 1, q[len(q) - 1]
+    n, m, clock = len(inverse_mass), len(order), places[CLOCK]
+    start, given = q[clock], np.zeros(len(q) - clock - 1)
     stage_q, x, miss, shifted = q.copy(), np.zeros(m), np.empty(m), np.empty(m)
     acceleration, stack = np.empty(len(q)), np.zeros(3 * len(q))
     matrix, pivots = np.zeros((m, m)), np.zeros(m, np.int64)
@@ -216,7 +239,7 @@ def implicit_midpoint(
             stage_q[clock] = start + (step + (done + 0.5 * part) / _PARTS) * h
             iterations, tried = _search(
                 q, v, x, stage_q, stack, acceleration, inverse_mass, damping, calls, resistances, span, miss,
-                shifted, order, band, matrix, pivots, known,
+                shifted, order, band, matrix, pivots, known, given,
             )  # fmt: skip
             evaluations += tried
             if iterations < 0 and part == 1:
@@ -225,6 +248,10 @@ def implicit_midpoint(
             if iterations < 0:
                 part //= 2
                 continue
+            for i in range(len(given)):
+                v[clock + 1 + i] += span * given[i]
+            if m > n and places[DAMPED] >= 0:
+                v[places[DAMPED]] += _work_beside_mean(v, x, inverse_mass)
             for i in range(n):
                 q[i], q_low[i] = add(q[i], q_low[i], span * x[i])
                 v[i], v_low[i] = add(v[i], v_low[i], x[i] - v[i] + (x[n + i] if m > n else x[i] - v[i]))

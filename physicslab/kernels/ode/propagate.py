@@ -3,22 +3,9 @@
 import math
 
 from physicslab.kernels import Vectors, inlined, kernel
+from physicslab.kernels.ode.fall_shares import fall_shares
 
 __all__ = ["propagate", "response"]
-
-
-@inlined
-def _fall_shares(z: float) -> tuple[float, float, float]:
-    """Return e^-z, (1 - e^-z) / z and (z - 1 + e^-z) / z^2 without loss for small z."""
-    if z < 0.1:
-        first, second, term = 0.0, 0.0, 1.0
-        for k in range(1, 14):
-            first += term / k
-            second += term / (k * (k + 1.0))
-            term *= -z / k
-        return math.exp(-z), first, second
-    first = -math.expm1(-z) / z
-    return math.exp(-z), first, (1.0 - first) / z
 
 
 @inlined
@@ -48,7 +35,7 @@ def _along(
 ) -> tuple[float, float]:
     """Return place and velocity on one axis after a time t."""
     if rate2 == 0.0:
-        decay, first, second = _fall_shares(drag * t)
+        decay, first, second = fall_shares(drag * t)
         return x + t * (v * first + acceleration * t * second), v * decay + acceleration * t * first
     cosine, sine = response(rate2, drag, t)
     y = x - centre

@@ -12,13 +12,20 @@ from physicslab.kernels.arguments import Motion, MotionTuple
 from physicslab.kernels.wide.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
 from physicslab.kernels.wide.layout import WIDE
 
-__all__ = ["MAX_TURN", "TURNS_FAST", "Links", "LinksTuple", "Places", "PlacesTuple", "spring_flow"]
+__all__ = [
+    "BY_GRAVITY", "BY_HAND", "BY_SPRINGS", "GIVEN", "MAX_TURN", "TURNS_FAST", "Links", "LinksTuple", "Places",
+    "PlacesTuple", "spring_flow",
+]  # fmt: skip
 
 TURNS_FAST = -1
 """What is returned where a spring is too short, or turns too far, for steps of this length."""
 MAX_TURN = 0.25
 """Angle [rad] by which a spring with a rest length may turn, or share of its length by which it may change,
 in a step of the method."""
+
+BY_SPRINGS, BY_GRAVITY, BY_HAND, GIVEN = 0, 3, 4, 5
+"""Where in what is given are the momentum (x, y) and the angular momentum that springs bring in [N s, N m s];
+the angular momentum of gravity [N m s]; the work of ends that are driven [J]."""
 
 
 class Places(NamedTuple):
@@ -141,7 +148,34 @@ def _evaluate(places: Places, links: Links) -> bool:
 
 
 @inlined
-def _advance(places: Places, links: Links, drifts: Numbers, kicks: Numbers, h: float, steps: int) -> int:
+def _book(places: Places, ends: Rows, kick: float, given: Numbers) -> None:
+    """Book what springs give in a kick by ends that they do not move: what acts on these, reversed."""
+    for k in range(len(ends)):
+        i = ends[k]
+        x, y = kick * places.pull[i, 0], kick * places.pull[i, 1]
+        given[BY_SPRINGS] -= x
+        given[BY_SPRINGS + 1] -= y
+        given[BY_SPRINGS + 2] -= places.place[i, 0] * y - places.place[i, 1] * x
+        given[BY_HAND] -= x * places.speed[i, 0] + y * places.speed[i, 1]
+
+
+@inlined
+def _torque_of_gravity(places: Places) -> tuple[float, float]:
+    """Return the torque of gravity about the origin [N m], and how fast it grows."""
+    torque, rate = 0.0, 0.0
+    for i in range(len(places.moving)):
+        gain, gx, gy = places.gain[2 * i], places.gravity[2 * i], places.gravity[2 * i + 1]
+        if gain > 0.0:
+            torque += (places.place[i, 0] * gy - places.place[i, 1] * gx) / gain
+            rate += (places.speed[i, 0] * gy - places.speed[i, 1] * gx) / gain
+    return torque, rate
+
+
+@inlined
+def _advance(
+    places: Places, links: Links, drifts: Numbers, kicks: Numbers, h: float, steps: int, ends: Rows,
+    given: Numbers,
+) -> int:  # fmt: skip
     """Advance what was gathered, as :func:`spring_flow` does."""
     fast, evaluations = 0, 0
     for at in range(0, len(links.a), WIDE):
@@ -153,33 +187,43 @@ def _advance(places: Places, links: Links, drifts: Numbers, kicks: Numbers, h: f
         evaluations = 1
         if not _evaluate(places, links):
             return TURNS_FAST
+    torque, rate = _torque_of_gravity(places)
     for _ in range(steps):
         for stage in range(len(drifts)):
+            _book(places, ends, kicks[stage] * h, given)
             _kick_and_drift(places, kicks[stage] * h, drifts[stage] * h)
             evaluations += 1
             if not _evaluate(places, links):
                 return TURNS_FAST
         speed, pull = places.speed.reshape(places.speed.size), places.pull.reshape(places.pull.size)
         kick = kicks[len(drifts)] * h
+        _book(places, ends, kick, given)
         for i in range(len(places.gain)):
             speed[i] += kick * (pull[i] * places.gain[i] + places.gravity[i])
+        before, rate_before = torque, rate
+        torque, rate = _torque_of_gravity(places)
+        given[BY_GRAVITY] += 0.5 * h * (before + torque) + h * h / 12.0 * (rate_before - rate)
     return evaluations
 
 
 @kernel
 def spring_flow(
     motion_tuple: MotionTuple, places_tuple: PlacesTuple, links_tuple: LinksTuple,
-    drifts: Numbers, kicks: Numbers, h: float, steps: int,
+    drifts: Numbers, kicks: Numbers, h: float, steps: int, ends: Rows, given: Numbers,
 ) -> int:  # fmt: skip
     """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
 
+    ``ends`` are the places that springs do not move, and ``given`` (GIVEN,) takes what comes in there, and by
+    gravity: its torque as the corrected trapezoidal rule has it, which is of the order of the method.
+
     A step is kick, drift, kick, ..., drift, kick, with the shares ``kicks`` (n + 1,) and ``drifts`` (n,) of
     h. Where a spring becomes so short, or turns so fast, that steps of one length do not follow it, nothing
-    is changed, and :data:`TURNS_FAST` returned.
+    is changed but ``given``, and :data:`TURNS_FAST` returned.
     """
     motion, places, links = Motion(*motion_tuple), Places(*places_tuple), Links(*links_tuple)
     _gather(places, motion)
-    evaluations = _advance(places, links, drifts, kicks, h, steps)
+    given[:] = 0.0
+    evaluations = _advance(places, links, drifts, kicks, h, steps, ends, given)
     places.known[0] = evaluations >= 0
     if evaluations >= 0:
         _scatter(places, motion, h * steps)

@@ -11,7 +11,7 @@ points at once, and their restitutions are lowered until no energy is made.
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
-from physicslab.kernels.accounts import CONTACT, IMPACTS
+from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION, IMPACTS
 from physicslab.kernels.energetic import energetic_blow
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
@@ -44,6 +44,7 @@ from physicslab.kernels.solver.impact_log import (
     Struck,
     book_impact,
     in_order,
+    shares_of,
     write_impact,
 )
 from physicslab.kernels.solver.impact_pose import Meeting
@@ -277,6 +278,7 @@ def _note_round(
     what does not approach there is the load of a resting contact. Returns how many pairs met.
     """
     written, i = 0, 0
+    bounced, rubbed = account[IMPACTS, ENERGY], account[FRICTION, ENERGY]
     late = 1.0 / rate if rate > 0.0 else 0.0
     while i < n:
         pair, end, approach, restitution = blow.points[i, PAIR], i, 0.0, 0.0
@@ -305,6 +307,11 @@ def _note_round(
                 )  # fmt: skip
             written += 1
         i = end
+    # Where several pairs meet at once, one can give what another takes: all together take, or give nothing.
+    along, across = account[IMPACTS, ENERGY] - bounced, account[FRICTION, ENERGY] - rubbed
+    if along > 0.0 or across > 0.0:
+        along, across = shares_of(along, across)
+        account[IMPACTS, ENERGY], account[FRICTION, ENERGY] = bounced + along, rubbed + across
     return written
 
 

@@ -2,6 +2,7 @@
 
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
+from physicslab.kernels.rigid.bookings import book_contacts
 from physicslab.kernels.rigid.complementarity import solve_equations
 from physicslab.kernels.rigid.equations import FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
@@ -128,7 +129,10 @@ def find_free_rates(scene: Scene, equations: Equations, count: int, acceleration
 def constrained_acceleration(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, acceleration: Numbers
 ) -> None:
-    """Compute v' of a state in which each point goes on with what it does, and the forces of the points."""
+    """Compute v' of a state in which each point goes on with what it does, and the forces of the points.
+
+    Behind the clock, ``acceleration`` takes what causes give in a second.
+    """
     accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
     if count > 0:
         measure_all(scene, equations, count, q, v)
@@ -136,6 +140,7 @@ def constrained_acceleration(
         find_free_rates(scene, equations, count, acceleration)
         solve_equations(equations, count, 1.0)
         apply(scene, equations, count, acceleration)
+        book_contacts(scene, equations, count, q, v, acceleration)
 
 
 @fused

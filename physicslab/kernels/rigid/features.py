@@ -1,9 +1,10 @@
 """Points where two bodies can touch: a corner or a centre of one against a face, corner or centre of another.
 
 Coordinates are packed as :meth:`physicslab.state.packed.StateLayout.of_rows` has them: x and y of every row,
-then all angles, then the clock. A point is a row of whole numbers: its pair, the body ``ONE`` with its
-feature, the body ``OTHER`` with its vertex, and what the point does. The normal leads from ONE to OTHER, the
-tangent is the normal turned counter-clockwise.
+then all angles, then the clock; behind it v has accounts, which go on as speeds do, and q has nothing. A
+point is a row of whole numbers: its pair, the body ``ONE`` with its feature, the body ``OTHER`` with its
+vertex, and what the point does. The normal leads from ONE to OTHER, the tangent is the normal turned counter-
+clockwise.
 """
 
 import math
@@ -13,15 +14,15 @@ import numpy as np
 from numba import int64
 from numpy.typing import NDArray
 
-from physicslab.kernels import Numbers, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
 from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Pairs
 
 __all__ = [
-    "BIAS_N", "BIAS_T", "BOX", "CENTRE", "CORNER", "FEATURE", "GAP", "GIVEN", "HEIGHT", "KIND", "MARGIN",
-    "MEASURES", "MU", "NA", "NB", "NX", "NY", "ONE", "OTHER", "OUTLINE_FIELDS", "PAIR", "POINT_FIELDS",
-    "PX", "PY", "RADIUS", "REACH", "RESTITUTION", "STATUS", "TA", "TB", "VERTEX", "VN", "VT", "WALL",
-    "WIDTH", "Points", "Scene", "SceneTuple", "face_of", "measure", "named_scene", "vertex_of",
+    "BIAS_N", "BIAS_T", "BOX", "CENTRE", "CONTACTS", "CORNER", "DRIVEN", "FEATURE", "GAP", "GIVEN", "HEIGHT",
+    "KIND", "MARGIN", "MEASURES", "MU", "NA", "NB", "NX", "NY", "ONE", "OTHER", "OUTLINE_FIELDS", "PAIR",
+    "POINT_FIELDS", "PX", "PY", "RADIUS", "REACH", "RESTITUTION", "RUBBING", "STATUS", "TA", "TB", "VERTEX",
+    "VN", "VT", "WALL", "WIDTH", "Points", "Scene", "SceneTuple", "face_of", "measure", "named_scene", "vertex_of",
 ]  # fmt: skip
 
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
@@ -38,6 +39,9 @@ KIND, RADIUS, WIDTH, HEIGHT, REACH, OUTLINE_FIELDS = range(6)
 """The columns of outlines (rows, 5): kind of shape, lengths [m], largest distance from the centre [m]."""
 BOX = 2.0
 """The kind of a box."""
+RUBBING, CONTACTS, DRIVEN = range(3)
+"""What ``accounts`` of a scene hold: where those of friction, of contacts and of what is driven begin behind
+the clock (:mod:`physicslab.kernels.forces.bookings`); -1 where nothing is driven."""
 
 Points = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, POINT_FIELDS)."""
@@ -47,7 +51,7 @@ class Scene(NamedTuple):
     """What moves, and what may touch.
 
     The number of rows; inverse masses (3 rows,), damping, forces; outlines, walls of the bounds (4,) [m];
-    pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3).
+    pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3); where accounts are (3,).
     """
 
     rows: int
@@ -58,15 +62,18 @@ class Scene(NamedTuple):
     walls: Numbers
     pairs: Pairs
     coefficients: Vectors
+    accounts: Rows
 
 
-SceneTuple = tuple[int, Numbers, Numbers, Calls, Vectors, Numbers, Pairs, Vectors]
+SceneTuple = tuple[int, Numbers, Numbers, Calls, Vectors, Numbers, Pairs, Vectors, Rows]
 
 
 @fused
 def named_scene(plain: SceneTuple) -> Scene:
     """Give names to a tuple."""
-    return Scene(plain[0], plain[1], plain[2], plain[3], plain[4], plain[5], plain[6], plain[7])
+    return Scene(
+        plain[0], plain[1], plain[2], plain[3], plain[4], plain[5], plain[6], plain[7], plain[8]
+    )  # fmt: skip
 
 
 @inlined

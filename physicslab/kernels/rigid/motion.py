@@ -14,6 +14,7 @@ from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.blows import approaches, resolve_blows
+from physicslab.kernels.rigid.bookings import book_stop
 from physicslab.kernels.rigid.constraints import measure_all, project
 from physicslab.kernels.rigid.equations import (
     OPEN,
@@ -269,6 +270,7 @@ def begin_motion(
     begin_piece(of, points, closed, q, v, at)
     still = steady and _at_rest(of, at.acceleration, v, rest, least)
     if still:
+        book_stop(of, q, v)
         for i in range(3 * of.rows):
             v[i] = 0.0
     return DONE, closed, rest, still

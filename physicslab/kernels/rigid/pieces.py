@@ -39,7 +39,7 @@ _LEADS = 1e-4
 
 
 class Stages(NamedTuple):
-    """Rates of places and of speeds at each stage (16, 3 rows + 1), room for a state and its acceleration.
+    """Rates of places and of speeds at each stage (16, n), room for a state and its acceleration.
 
     A stage is a row, so that sums over stages are made for many coordinates at a time.
     """

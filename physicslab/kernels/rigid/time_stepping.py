@@ -98,15 +98,16 @@ def _find_islands(scene: Scene, equations: Equations, count: int, island: Number
 def take_work(
     scene: SceneTuple, equations: EquationsTuple, count: int, stages: StagesTuple, before: Numbers,
     q: Numbers, v: Numbers, pay: bool,
-) -> float:  # fmt: skip
+) -> tuple[float, float]:  # fmt: skip
     """Return the energy that a short move from ``before`` to ``q`` adds, by its work against forces [J].
 
     Where it is to ``pay`` for it, what was added is taken from the kinetic energy of the bodies that hang
     together by the ``count`` points: all their speeds are lowered by one factor, so that what slides and what
-    rests does so still. What their energy does not suffice for is returned.
+    rests does so still. What their energy does not suffice for is returned; then by how much the energy has
+    changed, be it that it was less.
     """
     of, points, room = named_scene(scene), named_equations(equations), named_stages(stages)
-    rows, island, push, added = of.rows, room.v, room.acceleration, 0.0
+    rows, island, push, added, change = of.rows, room.v, room.acceleration, 0.0, 0.0
     accelerate(before, v, room.q, of.inverse_mass, of.damping, of.calls)
     accelerate(q, v, push, of.inverse_mass, of.damping, of.calls)
     _find_islands(of, points, count, island)
@@ -125,6 +126,7 @@ def take_work(
                 if island[row] == first:
                     v[2 * row], v[2 * row + 1] = share * v[2 * row], share * v[2 * row + 1]
                     v[2 * rows + row] *= share
+        change += work
         if not pay or work > 0.0:
             added += work
-    return added
+    return added, change

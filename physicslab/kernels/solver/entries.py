@@ -66,11 +66,11 @@ def solve_stage(
 
 @kernel
 def relax_stage(
-    near: NearTuple, motion: MotionTuple, inverse: InverseTuple, softness: SoftnessTuple,
-    h: float, iterations: int,
+    near: NearTuple, motion: MotionTuple, inverse: InverseTuple, acting: ActingTuple,
+    softness: SoftnessTuple, h: float, iterations: int,
 ) -> None:  # fmt: skip
     """Take back what the correction left (:func:`~physicslab.kernels.solver.stages.relax`)."""
     relax(
-        named_near(near), Motion(*motion), Inverse(*inverse), Softness(*softness), h,
+        named_near(near), Motion(*motion), Inverse(*inverse), Acting(*acting), Softness(*softness), h,
         iterations,
     )  # fmt: skip

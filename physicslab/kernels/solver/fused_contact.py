@@ -28,12 +28,14 @@ from physicslab.kernels.arguments import (
     named_near,
 )
 from physicslab.kernels.broad.fat_boxes import still_holds
+from physicslab.kernels.energy import moments_of_mass
 from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.motion import clear, drift, find_not_finite, kick
 from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.islands import count_rest, find_touched
 from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
+from physicslab.kernels.solver.work import book_damping, book_gravity
 from physicslab.kernels.ticks import charge, ticks
 from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to_blocks
 
@@ -91,6 +93,19 @@ def _kick(
 
 
 @inlined
+def _book_damping(
+    near: Near, motion: Motion, inverse: Inverse, acting: Acting, sub_integrated: Flags,
+    damping: tuple[float, float], h: float, later: float,
+) -> None:  # fmt: skip
+    """Book what damping takes in a kick, if there is any."""
+    if damping[0] != 0.0 or damping[1] != 0.0:
+        book_damping(
+            motion.position, motion.linear, motion.angular, acting.force, acting.torque, inverse.mass,
+            inverse.inertia, sub_integrated, damping[0], damping[1], h, later, near.account,
+        )  # fmt: skip
+
+
+@inlined
 def _made_wide(
     near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sleepers: Sleepers,
     opened: Rows, h: float,
@@ -131,6 +146,7 @@ def _advance(
             drift(position, angle, linear, angular, sub_integrated, 0.5 * h)
             now = _pull(acting, gravity, cost, charge(cost, INTEGRATE, now))
             if kicked:
+                _book_damping(near, motion, inverse, acting, sub_integrated, damping, 0.5 * h, 0.25 * h)
                 _kick(motion, inverse, acting, sub_integrated, damping, 0.5 * h)
             now = charge(cost, ACCELERATE, now)
             holds = still_holds(
@@ -160,18 +176,28 @@ def _advance(
                     return WAKE_PENDING, done, substep, finished_impacts, impact_count, impulse_dt
         stage = BEGIN
         moment = plan.time + done * plan.dt + (substep + 0.5) * h
-        impact_count += resolve_all_impacts(
+        total, mx, my = 0.0, 0.0, 0.0
+        if acting.any:
+            total, mx, my = moments_of_mass(position, gravity.mass, inverse.mass)
+        came = resolve_all_impacts(
             near, motion, sizes, inverse, acting, Log(impacts, moment, near.account), h, -0.5 * h, 0.5 * h
         )
+        impact_count += came
         now = charge(cost, RESOLVE, now)
+        if acting.any:
+            book_gravity(near.account, total, mx, my, gravity.gx, gravity.gy, 0.5 * h)
+            if came > 0:
+                total, mx, my = moments_of_mass(position, gravity.mass, inverse.mass)
+            book_gravity(near.account, total, mx, my, gravity.gx, gravity.gy, 0.5 * h)
         if kicked:
+            _book_damping(near, motion, inverse, acting, sub_integrated, damping, 0.5 * h, -0.25 * h)
             _kick(motion, inverse, acting, sub_integrated, damping, 0.5 * h)
             now = charge(cost, ACCELERATE, now)
         impulse_dt = press(near, motion, inverse, acting, softness, h, impulse_dt, plan.iterations)
         now = charge(cost, RESOLVE, now)
         drift(position, angle, linear, angular, sub_integrated, 0.5 * h)
         now = charge(cost, INTEGRATE, now)
-        relax(near, motion, inverse, softness, 0.5 * h, plan.iterations)
+        relax(near, motion, inverse, acting, softness, 0.5 * h, plan.iterations)
         now = charge(cost, RESOLVE, now)
         substep += 1
         if substep == plan.substeps:
@@ -206,8 +232,8 @@ def advance(
     """Advance by ``steps`` steps, beginning at a stage of a substep.
 
     The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and each does what the systems
-    do there. ``kept`` receives the state in which the last step began, ``impacts`` is the log,
-    and ``cost`` (COSTS,) gets ticks added for each system, and the number of steps.
+    do there. ``kept`` has the state now, and receives that in which the last step began. ``impacts`` is the
+    log, and ``cost`` (COSTS,) gets ticks added for each system, and the number of steps.
 
     Returns why it ended, how many steps are done, the substep that it was in, the impacts in the steps that
     are done and all impacts, and the time [s] over which the points' impulses act.

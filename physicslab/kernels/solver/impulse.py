@@ -3,6 +3,7 @@
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, fused, inlined, kernel
+from physicslab.kernels.accounts import ENERGY, FRICTION
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
 from physicslab.kernels.records import Manifolds, Point, Points
@@ -121,8 +122,12 @@ def solve(
 
 
 @always_inlined
-def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
-    """Bring separations up to date for a drift of h at the present velocities."""
+def follow_drift(contacts: Contacts, motion: Motion, h: float) -> float:
+    """Bring separations up to date for a drift of h at the present velocities.
+
+    Returns the tangential impulses times the present speeds of sliding [J].
+    """
+    rubbed = 0.0
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
@@ -130,20 +135,25 @@ def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
             point = contacts.points[j]
             vx, vy = relative_velocity(point, manifold.a, manifold.b, motion)
             point.separation += h * (vx * manifold.normal_x + vy * manifold.normal_y)
+            rubbed += point.tangent_impulse * (vy * manifold.normal_x - vx * manifold.normal_y)
+    return rubbed
 
 
 @fused
 def relax(contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: float, sweeps: int) -> None:
     """Go through all contacts without correction, so that pushing bodies apart leaves no velocity behind.
 
-    ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call.
+    ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call. What
+    friction takes in a crowd, which has wide contacts, is booked by the impulses of :func:`solve` and the
+    speeds now and a substep ago (at scalar ones, by those now): there are too many points to look at twice.
     """
-    follow_drift(contacts, motion, h)
+    rubbed = follow_drift(contacts, motion, h)
     rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0), h
     for n in range(sweeps):
         unsettled = sweep(contacts, motion, inverse, rigid, n % 2 == 1)
         if near.counts[WIDE_COUNT] > 0:
-            sweep_wide(near, motion, drift, rigid)
+            rubbed += sweep_wide(near, motion, drift, rigid)
+            near.account[FRICTION, ENERGY] += rubbed if n == 0 else 0.0
             drift = 0.0
         elif not unsettled:
             break

@@ -3,7 +3,8 @@
 import math
 
 from physicslab.kernels import Numbers, Vectors, allocating, fused, inlined
-from physicslab.kernels.arguments import Contacts, Near
+from physicslab.kernels.accounts import ENERGY, OVERLAP, SPIN
+from physicslab.kernels.arguments import Acting, Contacts, Motion, Near
 from physicslab.kernels.near_counts import DISC_BLOCKS, OUTSIDE
 from physicslab.kernels.records import Manifold, Points
 from physicslab.kernels.wide.float64x8 import lesser, mask_bits, take
@@ -151,9 +152,21 @@ def _move_wide(near: Near, position: Vectors, before: Vectors, inverse_mass: Num
                 )  # fmt: skip
 
 
+@inlined
+def _book(near: Near, motion: Motion, before: Vectors, inverse_mass: Numbers, acting: Acting) -> None:
+    """Book what moving bodies has changed: the energy by the work against forces, and angular momentum."""
+    for i in range(len(inverse_mass)):
+        x, y = motion.position[i, 0] - before[i, 0], motion.position[i, 1] - before[i, 1]
+        if inverse_mass[i] > 0.0 and (x != 0.0 or y != 0.0):
+            if acting.any:
+                near.account[OVERLAP, ENERGY] -= acting.force[i, 0] * x + acting.force[i, 1] * y
+            moved = x * motion.linear[i, 1] - y * motion.linear[i, 0]
+            near.account[OVERLAP, SPIN] += moved / inverse_mass[i]
+
+
 @allocating
 def separate(
-    contacts: Contacts, near: Near, position: Vectors, inverse_mass: Numbers, farthest: float
+    contacts: Contacts, near: Near, motion: Motion, inverse_mass: Numbers, acting: Acting, farthest: float
 ) -> None:
     """Move bodies that overlap deeply apart, six tenths of the way and by at most ``farthest`` [m].
 
@@ -164,6 +177,7 @@ def separate(
     """
     if not _any_deep(contacts, near):
         return
+    position = motion.position
     before = position.copy()
     _move_scalar(contacts, position, before, inverse_mass, False)
     _move_wide(near, position, before, inverse_mass, False)
@@ -175,3 +189,4 @@ def separate(
             position[i, 1] = before[i, 1] + y * farthest / way
     _move_scalar(contacts, position, before, inverse_mass, True)
     _move_wide(near, position, before, inverse_mass, True)
+    _book(near, motion, before, inverse_mass, acting)

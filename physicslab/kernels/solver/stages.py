@@ -20,6 +20,7 @@ from physicslab.kernels.broad.near_pairs import activate, sort_scalar
 from physicslab.kernels.narrow.contact import find_contacts
 from physicslab.kernels.near_counts import (
     ACTIVE,
+    DRIVEN,
     ENERGETIC,
     LEFT,
     LOGGED,
@@ -34,6 +35,7 @@ from physicslab.kernels.solver import impulse
 from physicslab.kernels.solver.impact import resolve_impacts
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.kernels.solver.separate import separate
+from physicslab.kernels.solver.work import book_drivers, book_sliding, note_sliding
 from physicslab.kernels.wide.refresh import refresh
 from physicslab.kernels.wide.slots import wake
 
@@ -129,17 +131,32 @@ def press(
         return impulse_dt
     scale = _warm_start_scale(h, impulse_dt)
     sweeps = impulse.sweeps_of(near, iterations)
-    impulse.solve(_contacts(near), near, motion, inverse, acting, softness, h, scale, sweeps)
+    contacts = _contacts(near)
+    if near.counts[WIDE_COUNT] == 0:
+        note_sliding(contacts, near, motion, inverse, acting, h)
+    impulse.solve(contacts, near, motion, inverse, acting, softness, h, scale, sweeps)
+    if near.counts[WIDE_COUNT] == 0:
+        book_sliding(contacts, near, motion)
     return h
 
 
 @fused
 def relax(
-    near: Near, motion: Motion, inverse: Inverse, softness: Softness, h: float, iterations: int
+    near: Near,
+    motion: Motion,
+    inverse: Inverse,
+    acting: Acting,
+    softness: Softness,
+    h: float,
+    iterations: int,
 ) -> None:
     """Remove the velocity that came from correcting overlap, ``h`` seconds after :func:`press`."""
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return
     contacts = _contacts(near)
     impulse.relax(contacts, near, motion, inverse, h, impulse.sweeps_of(near, iterations))
-    separate(contacts, near, motion.position, inverse.mass, softness.max_push * h)
+    if near.counts[WIDE_COUNT] == 0:
+        book_sliding(contacts, near, motion)
+    if near.counts[DRIVEN] > 0:
+        book_drivers(contacts, near, motion, inverse)
+    separate(contacts, near, motion, inverse.mass, acting, softness.max_push * h)

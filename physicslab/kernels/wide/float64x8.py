@@ -23,6 +23,7 @@ __all__ = [
     "Mask",
     "Wide",
     "choose",
+    "everywhere",
     "greater",
     "lesser",
     "mask_bits",
@@ -31,6 +32,7 @@ __all__ = [
     "put_vectors",
     "root",
     "size_of",
+    "sum_of",
     "take",
     "take_numbers",
     "take_vectors",
@@ -192,6 +194,23 @@ def _intrinsic(name: str) -> Callable[..., Any]:
     return generate
 
 
+def _everywhere_type(context: Any, x: Any) -> Any:
+    """Return one number in all slots."""
+    return _wide(x), lambda c, build, s, arguments: _spread(build, arguments[0])
+
+
+def _sum_type(context: Any, x: Any) -> Any:
+    """Return the sum of all slots, one after the other."""
+
+    def generate(context: Any, build: Any, signature: Any, arguments: Any) -> Any:
+        total = build.extract_element(arguments[0], _PLACE(0))
+        for slot in range(1, WIDE):
+            total = build.fadd(total, build.extract_element(arguments[0], _PLACE(slot)))
+        return total
+
+    return float64(x), generate
+
+
 def _mask_bits_type(context: Any, mask: Any) -> Any:
     """Return a mask as the bits of an integer: 0 where all are false."""
 
@@ -314,6 +333,8 @@ lesser: Any = _inline(_lesser_type)
 greater: Any = _inline(_greater_type)
 choose: Any = _inline(_choose_type)
 root: Callable[[Wide], Wide] = _inline(_root_type)
+everywhere: Callable[[float], Wide] = _inline(_everywhere_type)
+sum_of: Callable[[Wide], float] = _inline(_sum_type)
 size_of: Callable[[Wide], Wide] = _inline(_size_type)
 mask_bits: Callable[[Mask], int] = _inline(_mask_bits_type)
 take: Callable[[Numbers, int], Wide] = _inline(_take_type)

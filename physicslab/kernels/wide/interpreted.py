@@ -44,6 +44,19 @@ def _size_of(x: _Lanes) -> _Lanes:
     return np.abs(x)
 
 
+@stands_in_for(float64x8.everywhere)
+def _everywhere(x: float) -> _Lanes:
+    return np.full(WIDE, x)
+
+
+@stands_in_for(float64x8.sum_of)
+def _sum_of(x: _Lanes) -> Any:
+    total = x[0]
+    for one in x[1:]:
+        total = total + one
+    return total
+
+
 @stands_in_for(float64x8.mask_bits)
 def _true_lanes(mask: NDArray[np.bool_]) -> int:
     return int(np.packbits(mask, bitorder="little")[0])

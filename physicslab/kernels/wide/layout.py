@@ -15,10 +15,10 @@ from physicslab.kernels import Numbers, Rows, fused
 
 __all__ = [
     "ANGLE_A", "ANGLE_B", "ARM_AX", "ARM_AY", "ARM_BX", "ARM_BY", "BASE_X", "BASE_Y", "BOX", "BOX_ROWS",
-    "DISC", "DISC_ROWS", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS", "MASS_A",
-    "MASS_B", "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "RESTITUTION", "SEPARATION", "SIZE",
-    "TANGENT_IMPULSE", "TANGENT_MASS", "TURNS_A", "TURNS_B", "TWO", "WIDE", "Masks", "Slots",
-    "SlotsTuple", "rows_of",
+    "DISC", "DISC_ROWS", "DISC_SLIDING", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS",
+    "MASS_A", "MASS_B", "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "RESTITUTION", "SEPARATION",
+    "SIZE", "SLIDING", "TANGENT_IMPULSE", "TANGENT_MASS", "TURNS_A", "TURNS_B", "TWO", "WIDE", "Masks",
+    "Slots", "SlotsTuple", "rows_of",
 ]  # fmt: skip
 
 WIDE = 8
@@ -30,23 +30,24 @@ DISC, BOX = 0, 1
 # size of the smaller body.
 NORMAL_X, NORMAL_Y, FRICTION, MASS_A, MASS_B, INERTIA_A, INERTIA_B, SIZE = (WIDE * i for i in range(8))
 
-# Of a point: impulses along the normal and across, effective masses, the separation; and its arms.
+# Of a point: impulses along the normal and across, effective masses, the separation; its arms; how fast it
+# slid in the last substep, for the account of friction.
 IMPULSE, TANGENT_IMPULSE, MASS, TANGENT_MASS, SEPARATION = (WIDE * i for i in range(5))
-ARM_AX, ARM_AY, ARM_BX, ARM_BY, FOUND = (WIDE * i for i in range(5, 10))
+ARM_AX, ARM_AY, ARM_BX, ARM_BY, FOUND, SLIDING = (WIDE * i for i in range(5, 11))
 ONE = 8 * WIDE
 """Offset of the first point."""
 
 # The arms of discs are along the normal.
-RADIUS_A, RADIUS_B, RESTITUTION = ONE + 5 * WIDE, ONE + 6 * WIDE, ONE + 7 * WIDE
-DISC_ROWS = ONE + 8 * WIDE
+RADIUS_A, RADIUS_B, RESTITUTION, DISC_SLIDING = (ONE + WIDE * i for i in range(5, 9))
+DISC_ROWS = ONE + 9 * WIDE
 """Numbers in a block of discs."""
 
-TWO = ONE + 10 * WIDE
+TWO = ONE + 11 * WIDE
 """Offset of the second point of pairs with a box."""
-BASE_X, BASE_Y, ANGLE_A, ANGLE_B = (TWO + WIDE * i for i in range(10, 14))
+BASE_X, BASE_Y, ANGLE_A, ANGLE_B = (TWO + WIDE * i for i in range(11, 15))
 # 1 where a body's points turn with it, 0 for a disc.
-TURNS_A, TURNS_B = TWO + 14 * WIDE, TWO + 15 * WIDE
-BOX_ROWS = TWO + 16 * WIDE
+TURNS_A, TURNS_B = TWO + 15 * WIDE, TWO + 16 * WIDE
+BOX_ROWS = TWO + 17 * WIDE
 """Numbers in a block of pairs with a box."""
 
 Masks = Annotated[NDArray[np.uint64], uint64[::1]]

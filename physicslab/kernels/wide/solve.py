@@ -1,5 +1,6 @@
 """Impulses at wide contacts, eight at a time, by the formulas of ``kernels/solver/impulse.py``."""
 
+import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, fused, inlined
@@ -8,11 +9,13 @@ from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
 from physicslab.kernels.wide.float64x8 import (
     Wide,
     choose,
+    everywhere,
     greater,
     lesser,
     put,
     put_numbers,
     put_vectors,
+    sum_of,
     take,
     take_numbers,
     take_vectors,
@@ -24,6 +27,7 @@ from physicslab.kernels.wide.layout import (
     ARM_BY,
     BOX_ROWS,
     DISC_ROWS,
+    DISC_SLIDING,
     FRICTION,
     IMPULSE,
     INERTIA_A,
@@ -38,6 +42,7 @@ from physicslab.kernels.wide.layout import (
     RADIUS_B,
     SEPARATION,
     SIZE,
+    SLIDING,
     TANGENT_IMPULSE,
     TANGENT_MASS,
     TWO,
@@ -168,6 +173,18 @@ def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide
 
 
 @fused
+def _rubbed(data: Numbers, sliding: int, impulse: Wide, v: Wide) -> Wide:
+    """Return the work of tangential impulses [J] at the mean of the speeds of sliding, now and a substep ago.
+
+    The latter are in the row ``sliding``, and are set to the present ones.
+    """
+    before = take(data, sliding)
+    put(data, sliding, v)
+    mean: Wide = choose(before < math.inf, 0.5 * (before + v), v)
+    return impulse * mean
+
+
+@fused
 def _velocities(slots: Slots, k: int, motion: Motion) -> tuple[Wide, Wide, Wide, Wide, Wide, Wide]:
     """Return the velocities and angular velocities of A and of B in a block."""
     vax, vay = take_vectors(motion.linear, slots.a, k * WIDE)
@@ -177,8 +194,11 @@ def _velocities(slots: Slots, k: int, motion: Motion) -> tuple[Wide, Wide, Wide,
 
 
 @fused
-def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> None:
-    """Solve a block of discs; normal impulses turn no disc, so friction does not depend on them."""
+def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> Wide:
+    """Solve a block of discs; normal impulses turn no disc, so friction does not depend on them.
+
+    Returns the work of friction [J] where there is a ``drift``, as in the first sweep after the impulses.
+    """
     data, at = slots.data, k * DISC_ROWS
     vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
@@ -189,6 +209,9 @@ def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     push = one_normal(impulse, change)
     put(data, at + ONE + IMPULSE, impulse + push)
     across = nx * vy - ny * vx - rb * wb - ra * wa
+    rubbed = everywhere(0.0)
+    if drift != 0.0:
+        rubbed = _rubbed(data, at + DISC_SLIDING, take(data, at + ONE + TANGENT_IMPULSE), across)
     friction_impulse = _update_friction(data, at + ONE, take(data, at + FRICTION), across)
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
@@ -196,6 +219,7 @@ def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
     put_numbers(motion.angular, slots.a, k * WIDE, wa - take(data, at + INERTIA_A) * ra * friction_impulse)
     put_numbers(motion.angular, slots.b, k * WIDE, wb - take(data, at + INERTIA_B) * rb * friction_impulse)
+    return rubbed
 
 
 @fused
@@ -207,11 +231,12 @@ def _levers(data: Numbers, point: int, nx: Wide, ny: Wide) -> tuple[Wide, Wide, 
 
 
 @fused
-def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> None:
+def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> Wide:
     """Solve a block of boxes: both normal impulses, then both points' friction.
 
     Velocities at the points are computed once; the effect of one point's impulse on the other's velocity is
     added (by the effective mass between them), which is a shorter dependency than the bodies' velocities.
+    Returns what :func:`_sweep_discs` does.
     """
     data, at = slots.data, k * BOX_ROWS
     vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
@@ -232,8 +257,13 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     put(data, at + TWO + IMPULSE, impulse2 + push2)
     wa, wb = wa - ia * (n1a * push1 + n2a * push2), wb + ib * (n1b * push1 + n2b * push2)
     tangent1, tangent2 = take(data, at + ONE + TANGENT_IMPULSE), take(data, at + TWO + TANGENT_IMPULSE)
+    sliding1, sliding2 = across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a
+    rubbed = everywhere(0.0)
+    if drift != 0.0:
+        rubbed = _rubbed(data, at + ONE + SLIDING, tangent1, sliding1)
+        rubbed = rubbed + _rubbed(data, at + TWO + SLIDING, tangent2, sliding2)
     friction1, friction2 = two_frictions(
-        tangent1, tangent2, across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a,
+        tangent1, tangent2, sliding1, sliding2,
         take(data, at + ONE + TANGENT_MASS), take(data, at + TWO + TANGENT_MASS),
         friction * (impulse1 + push1), friction * (impulse2 + push2),
         ma + mb + ia * t1a * t2a + ib * t1b * t2b,
@@ -246,15 +276,21 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
     put_numbers(motion.angular, slots.a, k * WIDE, wa - ia * (t1a * friction1 + t2a * friction2))
     put_numbers(motion.angular, slots.b, k * WIDE, wb + ib * (t1b * friction1 + t2b * friction2))
+    return rubbed
 
 
 @inlined
-def sweep_wide(near: Near, motion: Motion, drift: float, soft: SoftConstraint) -> None:
-    """Solve all blocks once. Separations are first advanced by ``drift`` s at the present velocities."""
+def sweep_wide(near: Near, motion: Motion, drift: float, soft: SoftConstraint) -> float:
+    """Solve all blocks once. Separations are first advanced by ``drift`` s at the present velocities.
+
+    Returns the work of the tangential impulses so far [J], where there is a drift.
+    """
+    rubbed = everywhere(0.0)
     for number in range(near.counts[DISC_BLOCKS]):
-        _sweep_discs(near.discs, near.discs.order[number], motion, drift, soft)
+        rubbed = rubbed + _sweep_discs(near.discs, near.discs.order[number], motion, drift, soft)
     for number in range(near.counts[BOX_BLOCKS]):
-        _sweep_boxes(near.boxes, near.boxes.order[number], motion, drift, soft)
+        rubbed = rubbed + _sweep_boxes(near.boxes, near.boxes.order[number], motion, drift, soft)
+    return sum_of(rubbed)
 
 
 @fused

@@ -1,0 +1,78 @@
+"""What contact forces give in a second, and impulses at once, by account."""
+
+from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
+from physicslab.kernels.rigid.equations import UNKNOWN, Equations
+from physicslab.kernels.rigid.features import (
+    CONTACTS,
+    DRIVEN,
+    NA,
+    NX,
+    NY,
+    ONE,
+    RUBBING,
+    TA,
+    VT,
+    Scene,
+)
+
+__all__ = ["book_contacts", "book_stop"]
+
+
+@fused
+def book_contacts(
+    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, given: Numbers
+) -> None:
+    """Add what the forces of ``count`` points give in a second, that are measured in the state (q, v).
+
+    What friction takes, force times sliding speed, and the momentum that comes in from what no force moves,
+    with the work of what moves all the same. Normal forces do no work: what they hold together does not part.
+    """
+    rows, points, measures, contacts = (
+        scene.rows,
+        equations.points,
+        equations.measures,
+        scene.accounts[CONTACTS],
+    )
+    rubbed, work = 0.0, 0.0
+    for i in range(count):
+        along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
+        nx, ny = measures[i, NX], measures[i, NY]
+        fx, fy = along * nx - across * ny, along * ny + across * nx
+        rubbed += across * measures[i, VT]
+        for side in range(2):
+            body = points[i, ONE + side]
+            sign = 1.0 if side == 1 else -1.0
+            x, y, turning = 2 * body, 2 * body + 1, 2 * rows + body
+            torque = sign * (across * measures[i, NA + side] - along * measures[i, TA + side])
+            if scene.inverse_mass[x] > 0.0:
+                given[contacts + PX] += sign * fx
+                given[contacts + PY] += sign * fy
+                given[contacts + SPIN] += sign * (q[x] * fy - q[y] * fx)
+            else:
+                work -= sign * (fx * v[x] + fy * v[y])
+            if scene.inverse_mass[turning] > 0.0:
+                given[contacts + SPIN] += torque
+            else:
+                work -= torque * v[turning]
+    given[scene.accounts[RUBBING] + ENERGY] += rubbed
+    if scene.accounts[DRIVEN] >= 0:
+        given[scene.accounts[DRIVEN] + ENERGY] += work
+
+
+@inlined
+def book_stop(scene: Scene, q: Numbers, v: Numbers) -> None:
+    """Book that all bodies are about to stop: what holds them takes what is left of their motion."""
+    contacts = scene.accounts[CONTACTS]
+    for row in range(scene.rows):
+        x, y, turning = 2 * row, 2 * row + 1, 2 * scene.rows + row
+        if scene.inverse_mass[x] > 0.0:
+            px, py = v[x] / scene.inverse_mass[x], v[y] / scene.inverse_mass[y]
+            v[contacts + ENERGY] -= 0.5 * (px * v[x] + py * v[y])
+            v[contacts + PX] -= px
+            v[contacts + PY] -= py
+            v[contacts + SPIN] -= q[x] * py - q[y] * px
+        if scene.inverse_mass[turning] > 0.0:
+            momentum = v[turning] / scene.inverse_mass[turning]
+            v[contacts + ENERGY] -= 0.5 * momentum * v[turning]
+            v[contacts + SPIN] -= momentum

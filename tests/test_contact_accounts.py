@@ -1,0 +1,184 @@
+"""What contact steps book: friction, driven bodies, damping; the same stage by stage as in compiled steps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from physicslab import World
+from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.diagnostics.account import Accounts, measure_account
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.state.state import State
+from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import Stage, System, at
+
+GRAVITY = 9.81
+
+
+class LooksAtImpacts(System):
+    """Does nothing, at a stage within substeps: steps are then made stage by stage."""
+
+    @at(Stage.IMPACT)
+    def look(self, state: State, h: float) -> None:
+        """Look."""
+
+
+def world(staged: bool = False, gravity: float = -GRAVITY, **physics: float) -> World:
+    others = (LooksAtImpacts(),) if staged else ()
+    laws = PhysicsConfig(gravity=Vector2(0.0, gravity), **physics)  # type: ignore[arg-type]
+    return World(
+        *standard_systems(),
+        *others,
+        physics=laws,
+        simulation=SimulationConfig(contacts="soft", collisions="step"),
+    )
+
+
+def floor(of: World, friction: float = 0.5, restitution: float = 0.0, speed: float | None = None) -> None:
+    moving = () if speed is None else (Velocity((0.0, speed)),)
+    of.spawn(Transform((0.0, -0.5)), Shape.box(60.0, 1.0), Material(restitution, friction), *moving)
+
+
+def box(of: World, x: float, y: float, *, mass: float = 2.0, v: tuple[float, float] = (0.0, 0.0)) -> None:
+    of.spawn(Transform((x, y)), Velocity(v), Mass(mass), Shape.box(0.5, 0.5), Material(0.0, 0.5))
+
+
+def closes(found: Accounts, *, overlapping: bool = False) -> None:
+    """Assert that nothing is left of energy and momentum but rounding of the largest term."""
+    terms = [abs(value) for value in found.energy.values()]
+    assert abs(found.energy["numerical"]) <= 1e-11 * max(*terms, 1.0)
+    for axis in ("x", "y"):
+        terms = [abs(getattr(impulse, axis)) for impulse in found.momentum.values()]
+        assert abs(getattr(found.momentum["numerical"], axis)) <= 1e-11 * max(*terms, 1.0)
+    turned = found.angular_momentum
+    rest = abs(turned["numerical"]) / max(*(abs(value) for value in turned.values()), 1.0)
+    # Impacts of bodies that overlap act at two points, one on each: that is an error, and shown as one.
+    assert rest <= (1e-2 if overlapping else 1e-11)
+
+
+STAGED = pytest.mark.parametrize("staged", [False, True])
+
+
+@STAGED
+def test_a_box_that_slides_to_rest_loses_its_motion_to_friction(staged: bool) -> None:
+    of = world(staged)
+    floor(of)
+    box(of, 0.0, 0.25, v=(3.0, 0.0))
+    of.run(seconds=1.5)
+    found = measure_account(of)
+    assert of.stepper is not None and of.stepper.name == ("contact" if staged else "fused_contact")
+    # It sinks into the floor by 6e-6 m meanwhile, and the step in which it stops is as long as any other.
+    assert found.energy["friction"] == pytest.approx(-9.0, rel=1e-8)
+    assert abs(found.energy["contact"]) < 1e-4 and found.energy["impacts"] == 0.0
+    closes(found)
+
+
+@STAGED
+def test_a_disc_that_begins_to_roll_loses_a_third(staged: bool) -> None:
+    of = world(staged)
+    floor(of)
+    of.spawn(Transform((0.0, 0.25)), Velocity((3.0, 0.0)), Mass(2.0), Shape.circle(0.25), Material(0.0, 0.5))
+    of.run(seconds=1.5)
+    found = measure_account(of)
+    assert found.energy["friction"] == pytest.approx(-3.0, rel=1e-12)
+    closes(found)
+
+
+@STAGED
+def test_friction_at_rest_on_a_slope_does_no_work(staged: bool) -> None:
+    of = world(staged)
+    of.spawn(Transform((0.0, 0.0), 0.3), Shape.box(40.0, 1.0), Material(0.0, 0.5))
+    up = np.array((-np.sin(0.3), np.cos(0.3))) * 0.75
+    of.spawn(Transform(tuple(up), 0.3), Velocity(), Mass(2.0), Shape.box(0.5, 0.5), Material(0.0, 0.5))
+    of.run(seconds=1.0)
+    before = measure_account(of).energy
+    of.run(seconds=1.0)
+    after = measure_account(of)
+    # Until it has sunk in, it slides by some 1e-6 m; then nothing moves.
+    assert abs(after.energy["friction"] - before["friction"]) < 1e-11
+    assert abs(after.energy["contact"] - before["contact"]) < 1e-11
+    closes(after)
+
+
+@STAGED
+def test_a_floor_that_rises_lifts_a_box_by_its_work(staged: bool) -> None:
+    of = world(staged)
+    floor(of, speed=0.5)
+    box(of, 0.0, 0.25, v=(0.0, 0.5))
+    of.run(seconds=1.0)
+    found = measure_account(of)
+    assert found.energy["hand"] == pytest.approx(2.0 * GRAVITY * 0.5, rel=1e-11)
+    assert found.momentum["hand"].y == pytest.approx(2.0 * GRAVITY, rel=1e-11)
+    assert abs(found.momentum["contact"].y) < 1e-11
+    closes(found)
+
+
+@STAGED
+def test_damping_takes_what_a_body_in_free_fall_does_not_keep(staged: bool) -> None:
+    c, t, m, missed = 0.3, 0.5, 2.0, []
+    # v' = g - c v, so v = (g / c) (1 - e^(-c t)) downwards; what is lost is the integral of m c v^2.
+    limit, decay = GRAVITY / c, np.exp(-c * t)
+    across = 0.5 * m * 9.0 * (1.0 - decay**2)
+    down = m * c * limit**2 * (t - 2.0 * (1.0 - decay) / c + (1.0 - decay**2) / (2.0 * c))
+    for dt in (1.0 / 60.0, 1.0 / 120.0):
+        of = world(staged, linear_damping=c, angular_damping=0.2)
+        of.simulation = replace(of.simulation, dt=dt)
+        floor(of)
+        box(of, 0.0, 9.0, mass=m, v=(3.0, 0.0))
+        of.run(seconds=t)
+        found = measure_account(of)
+        missed.append(found.energy["damping"] + across + down)
+        assert found.momentum["damping"].x == pytest.approx(-m * 3.0 * (1.0 - decay), rel=1e-12)
+        closes(found)
+    assert abs(missed[0]) < 1e-4 and missed[0] / missed[1] == pytest.approx(4.0, rel=0.01)  # of order 2
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from((0.0, 0.3, 0.9)), st.sampled_from((0.0, 0.4)), st.booleans())
+def test_both_ways_to_make_a_step_book_the_same(seed: int, e: float, damping: float, driven: bool) -> None:
+    random = np.random.default_rng(seed)
+    both: list[Accounts] = []
+    places, speeds = random.uniform(-2.0, 2.0, (6, 2)), random.uniform(-4.0, 4.0, (6, 2))
+    for staged in (False, True):
+        of = world(staged, linear_damping=damping, angular_damping=damping)
+        floor(of, restitution=e, speed=0.2 if driven else None)
+        for n, (place, speed) in enumerate(zip(places, speeds, strict=True)):
+            where, shape = (place[0], place[1] + 2.5), Shape.box(0.5, 0.4) if n % 2 else Shape.circle(0.3)
+            of.spawn(Transform(where), Velocity(tuple(speed), 1.0), Mass(1.0 + n), shape, Material(e, 0.3))
+        of.run(seconds=1.0)
+        both.append(measure_account(of))
+        closes(both[-1], overlapping=True)
+    for one, other in zip(both[0].energy.items(), both[1].energy.items(), strict=True):
+        scale = max(1.0, *(abs(value) for value in both[0].energy.values()))
+        assert one[0] == other[0] and abs(one[1] - other[1]) <= 1e-10 * scale
+    assert both[0].energy["friction"] <= 1e-9 and both[0].energy["impacts"] <= 1e-12
+
+
+def test_a_step_that_fails_leaves_nothing_in_the_account() -> None:
+    of = world()
+    floor(of)
+    box(of, 0.0, 2.0)
+    of.run(steps=3)
+    before = of.account.sums.copy()
+    of.physics = PhysicsConfig(gravity=Vector2(0.0, -1e308))
+    with pytest.raises(ArithmeticError):
+        of.run(steps=9)
+    assert np.array_equal(of.account.sums, before)
+
+
+def test_a_crowd_books_friction_too() -> None:
+    """Wide contacts book by the speeds of two substeps: sliding boxes lose all to friction within that."""
+    of = world()
+    floor(of)
+    for n in range(80):
+        box(of, n * 0.6 - 24.0, 0.25, mass=1.0, v=(1.0, 0.0))
+    of.run(seconds=0.1)
+    assert of.contacts.wide.filled > 0
+    of.run(seconds=0.4)
+    found = measure_account(of)
+    assert found.energy["friction"] == pytest.approx(-40.0, rel=6e-3)
+    closes(found)
