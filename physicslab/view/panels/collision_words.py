@@ -110,10 +110,11 @@ def _rotation(collision: Collision) -> Iterator[str]:
 def _friction(collision: Collision, result: Result, before: float, after: float) -> str:
     if collision.friction == 0.0:
         return "There is no friction: what slides goes on as it did."
+    none = AGREES * collision.speed_scale
+    if abs(before) < none and abs(after) < none:
+        return "Nothing slides, so there is no friction impulse to speak of."
     if result.sticks:
         return "It sticks: friction is strong enough to stop the sliding at the contact."
-    if collision.tangent_impulse == 0.0 and abs(before) < AGREES * (1.0 + abs(after)):
-        return "Nothing slides, so there is no friction impulse."
     return (
         f"It slides: friction is at its limit, mu = {collision.friction:.3g} times the normal impulse, and "
         f"the sliding goes from {quantity(before, 'm/s')} to {quantity(after, 'm/s')}."

@@ -24,7 +24,8 @@ _REACH = 0.36
 _BIGGEST = 1.6
 """How much of a large body is in sight, in sizes of the smaller one."""
 _ROOM = 1.08
-_CORNERS = 48
+_ALIKE = 0.05
+"""How far arrows may point away from one line, and be drawn beside each other."""
 _SHORT = 2.0
 """Arrows shorter than that are not drawn [px]."""
 
@@ -175,11 +176,14 @@ def draw_momenta(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
         ]
     with sketch(ui, *size) as paper:
         at = _fitted([part for chain in chains for part in _tips(chain[0])], size, 1.6 * ui.size)
+        aside, drawn = _aside([part for chain in chains for part in chain[0]], 0.7 * ui.size), 0
         for parts, names, colours, thin in chains:
             places = [at(tip) for tip in _tips(parts)]
             for start, end, name, colour in zip(places, places[1:], names, colours, strict=False):
                 if math.dist(start, end) < _SHORT:
                     continue
+                start, end = ((x + drawn * aside[0], y + drawn * aside[1]) for x, y in (start, end))
+                drawn += 1
                 paper.arrow(start, end, colour, before=thin)
                 paper.words(_beside(start, end, (0.9 if thin else -0.9) * ui.size), name, theme.text)
         if len(chains[1][0]) == 2:
@@ -188,6 +192,15 @@ def draw_momenta(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
             paper.disc(end, 5.0, theme.background, theme.heading, 1.5)
             paper.words((start[0], start[1] + 0.9 * ui.size), "start", theme.faint)
             paper.words((end[0], end[1] + 0.9 * ui.size), "sum", theme.faint)
+
+
+def _aside(parts: Sequence[Vector2], by: float) -> Place:
+    """Return by how much each arrow is drawn beside the one before [px]: where all lie in one line."""
+    longest = max(parts, key=lambda part: part.magnitude)
+    if not longest or any(abs(part.cross(longest)) > _ALIKE * longest.magnitude_squared for part in parts):
+        return 0.0, 0.0
+    way = longest.normalized.perpendicular
+    return by * way.x, -by * way.y
 
 
 def _tips(parts: Sequence[Vector2]) -> list[Vector2]:

@@ -81,8 +81,8 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
     buttons: tuple[tuple[str, str, Callable[[World, Window], None], bool], ...] = (
         ("Earlier", "The impact before this one; time goes back to it", impact_actions.go_beside(-1), False),
         ("Later", "The impact after this one", impact_actions.go_beside(1), False),
-        ("Slowly through it", "Go to shortly before it, and let time run slowly (Shift+Tab)", impact_actions.run_slowly,
-         microscope.slow is not None),
+        ("Slowly through it", "Go to shortly before it, and let time run slowly (Shift+Tab)",
+         impact_actions.run_slowly, microscope.slow is not None),
         ("Pause at the next impact", "Let time run until what is selected (or anything) strikes something "
          "(Shift+Z)", impact_actions.pause_at_next, microscope.waits_for is not None),
         ("All impacts", "The table of impacts (Z)", impact_actions.toggle_impacts, window.impacts.shown),
