@@ -185,7 +185,8 @@ def draw_momenta(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
                 start, end = ((x + drawn * aside[0], y + drawn * aside[1]) for x, y in (start, end))
                 drawn += 1
                 paper.arrow(start, end, colour, before=thin)
-                paper.words(_beside(start, end, (0.9 if thin else -0.9) * ui.size), name, theme.text)
+                side = 0.9 if thin != any(aside) else -0.9
+                paper.words(_beside(start, end, side * ui.size), name, theme.text)
         if len(chains[1][0]) == 2:
             start, end = at(Vector2()), at(sum(before, Vector2()))
             paper.disc(start, 3.0, theme.heading, theme.heading)
