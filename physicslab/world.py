@@ -14,7 +14,7 @@ from physicslab.kernels.accounts import CONTACT
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
 from physicslab.state.state import State
-from physicslab.stepping.accounting import close_account, open_account
+from physicslab.stepping.accounting import book_account, close_account, open_account
 from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.forces import add_up_forces
 from physicslab.stepping.plan import StepPlan, default_plan, plan_for_jumps
@@ -235,6 +235,17 @@ class World(State):
         self.revision += 1
         self.motion_edits += 1
         self.fastest_rates.clear()
+
+    @quiet
+    def book_edits(self) -> None:
+        """Book what was changed since the last step, or since this was called last, in the accounts.
+
+        Each step does so first. Called before and after an edit it keeps that apart from what a hand has
+        done between the same two steps.
+        """
+        with self.active():
+            self._synchronise()
+            book_account(self, self.schedule.forces)
 
     def install(self, *systems: System) -> None:
         """Add systems to this world, after those of the same stage.

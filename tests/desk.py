@@ -14,6 +14,7 @@ from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
+from physicslab.view.workbench.trust_badge import BADGE
 from physicslab.world import World
 
 FRAME = 1.0 / 60.0
@@ -167,7 +168,7 @@ def click_at(desk: Desk, place: Place, button: str = "left") -> None:
 def bring_into_sight(desk: Desk, label: str) -> None:
     """Turn the wheel over the panel at the right until a widget of it is in sight."""
     left, top, width, height = desk.sandbox.interface.layout.side
-    if label in MENUS or desk.sandbox.interface.toolkit.has_popup():
+    if label in (*MENUS, BADGE) or desk.sandbox.interface.toolkit.has_popup():
         return
     for _ in range(200):
         x, y, _, down = desk.ui.places[label]

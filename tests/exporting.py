@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from physicslab import World, cli, load_scene
-from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.account import measure_account
 from physicslab.export.recording import RunRecorder
 
 __all__ = ["exported", "recorded"]
@@ -21,7 +21,7 @@ def recorded(scene: str, seconds: float) -> tuple[World, RunRecorder]:
     """Run a scene step by step; return the world at the end and what was recorded."""
     world = load_scene(scene)
     recorder = RunRecorder(world)
-    recorder.write(world, measure_energy(world))
+    recorder.write(world, measure_account(world))
     for _ in world.stepping(seconds=seconds):
-        recorder.write(world, measure_energy(world))
+        recorder.write(world, measure_account(world))
     return world, recorder

@@ -374,8 +374,9 @@ def test_the_document_holds_finite_numbers_alone(capsys: pytest.CaptureFixture[s
     assert [curve["name"] for curve in problem["integrators"]] == list(INTEGRATORS)
     wanted = {
         "integrator", "reason", "collisions", "dt", "tolerance", "steps", "force_evaluations", "cpu_ms",
-        "ms_per_simulated_s", "time", "error", "energy_drift", "momentum_error", "angular_momentum_error",
-        "omega_max_dt", "max_penetration", "collision_count_error", "verdict", "failure",
+        "ms_per_simulated_s", "time", "error", "energy_drift", "energy_numerical", "momentum_error",
+        "angular_momentum_error", "omega_max_dt", "max_penetration", "collision_count_error", "verdict",
+        "failure",
     }  # fmt: skip
     for curve in problem["integrators"]:
         assert all(set(row) == wanted for row in curve["rows"])

@@ -9,7 +9,7 @@ from typing import Any
 
 import pygame
 import pytest
-from desk import SETTLED, Desk, click, click_at, empty_world, sized
+from desk import SETTLED, Desk, click, click_at, empty_world, point, sized, tap
 from imgui_bundle import implot
 from recording import RecordingCanvas
 
@@ -196,6 +196,40 @@ def test_a_chaotic_scene_is_called_so(tmp_path: Path, grown: float, chaotic: boo
     measured(desk)
     desk.frames(SETTLED)
     assert any("This scene is chaotic" in words for words in desk.ui.words) is chaotic
+
+
+@pytest.mark.parametrize("horizon", [None, 3.25, 27.7])
+def test_the_horizon_of_a_chaotic_scene_is_shown_in_plain_words(
+    tmp_path: Path, horizon: float | None
+) -> None:
+    report = json.dumps({"scenes": [FOUND | {"horizon_s": horizon}]})
+    desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text(json.dumps(json.loads({report!r})))")
+    measured(desk)
+    desk.frames(SETTLED)
+    seen = [words for words in desk.ui.words if "It has no error but a horizon" in words]
+    assert len(seen) == (horizon is not None)
+    assert all(f"{horizon:.3g} s from the start" in words and "energy" in words for words in seen)
+
+
+def test_a_click_on_a_mark_of_the_plot_takes_its_method_and_step(tmp_path: Path) -> None:
+    """The middle run of the plot, by its time, is found where ImPlot draws it."""
+    rows = [run("rk4", "rk4", 1.0, 1e-3), run("leapfrog", "leapfrog", 100.0, 1e-7)]
+    rows[1] |= {"substeps": 5, "tolerance": 1e-6}
+    report = json.dumps({"scenes": [FOUND | {"rows": rows}]})
+    desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text({report!r})")
+    measured(desk)
+    desk.frames(2 * SETTLED)
+    tap(desk, "space")
+    before = desk.world.simulation
+    left, top, width, height = desk.ui.places["leapfrog 2"]
+    point(desk, (left + width // 2, top + height // 2))
+    desk.frames(SETTLED)
+    assert "A click runs this scene by leapfrog 0.01 s" in desk.ui.words
+    click_at(desk, (left + width // 2, top + height // 2))
+    after = desk.world.simulation
+    assert (after.integrator, after.substeps, after.tolerance) == ("leapfrog", 5, 1e-6)
+    tap(desk, "z", pygame.KMOD_LCTRL)
+    assert desk.world.simulation == before
 
 
 def test_the_table_is_saved_as_csv(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,7 +16,7 @@ from deadline import deadline
 from hostile_scenes import scenes
 from hypothesis import HealthCheck, given, settings
 
-from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.run_report import RunRecord, find_not_finite, run_report
 from physicslab.ecs.component import COMPONENTS, InvalidValue
 from physicslab.files.json_text import json_text
@@ -48,7 +48,7 @@ def run_or_refuse(document: dict[str, Any]) -> str:
         one_line(str(error))
         return "refused"
     try:
-        record = RunRecord("fuzz", Drift(world))
+        record = RunRecord("fuzz", Audit(world))
         world.run(steps=STEPS)
     except (Diverged, InvalidValue) as error:
         one_line(str(error))

@@ -3,7 +3,7 @@
 import pytest
 
 from physicslab.components import Drag, Mass, Shape, Spring, Transform, Velocity
-from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.run_report import RunRecord, run_report, run_summary
 from physicslab.ecs import config
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -142,7 +142,7 @@ def test_a_force_written_in_python_works_with_every_method_and_is_named(name: st
     world.run(seconds=2.0)
     assert tuple(world.component(body, Transform).position) == pytest.approx((3.0, 4.0), abs=1e-9)
     assert world.interpreted == ("Wind",)
-    report = run_report(world, RunRecord("wind", Drift(world)))
+    report = run_report(world, RunRecord("wind", Audit(world)))
     assert report["interpreted"] == ["Wind"]
     assert "Wind: computed by Python" in run_summary(report, "")
 
@@ -155,7 +155,7 @@ def test_a_force_written_in_python_is_named_beside_contacts_too(contacts: str, s
     world.step()
     assert world.stepper is not None and world.stepper.name == stepper
     assert world.interpreted == ("Wind",)
-    assert run_report(world, RunRecord("wind", Drift(world)))["interpreted"] == ["Wind"]
+    assert run_report(world, RunRecord("wind", Audit(world)))["interpreted"] == ["Wind"]
     assert "Wind is computed by Python: slower" in [line.label for line in method_lines(world)]
 
 

@@ -2,19 +2,30 @@
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 from desk import empty_world
 
 from physicslab.cli import main
-from physicslab.components import Mass, Transform, Velocity
+from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.diagnostics.energy import measure_energy
+from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene, write_scene
 from physicslab.lab.accuracy.catalogue import PROBLEMS
+from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
+from physicslab.lab.accuracy.contacts.engines import OWN, Engine
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error
-from physicslab.lab.accuracy.trust import Trust, TrustRow, _nudged, assess, assess_problem
+from physicslab.lab.accuracy.horizon import find_horizon
+from physicslab.lab.accuracy.nudges import nudged
+from physicslab.lab.accuracy.trust import Trust, assess, moments_of
+from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem, summarise
+from physicslab.lab.accuracy.twins import with_ids
+from physicslab.lab.case import Job
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
@@ -26,10 +37,14 @@ def trust(load: Callable[[], World], seconds: float) -> Trust:
     return found
 
 
-def row(name: str) -> TrustRow:
-    *_, found = assess_problem(PROBLEMS[name])
+def result(job: Job[TrustRow]) -> TrustRow:
+    *_, found = job
     assert isinstance(found, TrustRow)
     return found
+
+
+def row(name: str) -> TrustRow:
+    return result(assess_problem(PROBLEMS[name]))
 
 
 def test_free_flight_is_right_to_rounding() -> None:
@@ -92,13 +107,13 @@ def test_a_scene_with_a_body_that_keeps_its_angle_has_an_estimate() -> None:
         return world
 
     *_, found = estimate_error(load, 0.5)
-    assert isinstance(found, Estimate) and "nudged" in found.distances
+    assert isinstance(found, Estimate) and "nudged" in found.paths
 
 
 def test_zeros_are_not_nudged_and_all_else_is_by_one_rounding() -> None:
     world = empty_world()
     ball = circle(world, (0.0, 3.0), velocity=(2.0, 0.0))
-    twin = _nudged(write_scene(world), 1)
+    twin = nudged(write_scene(world), 1)
     (entity,) = twin["entities"]
     (x, y), (vx, vy) = entity["Transform"]["position"], entity["Velocity"]["linear"]
     assert x == vy == 0.0
@@ -113,22 +128,127 @@ def test_the_true_error_is_within_a_factor_of_ten_of_the_estimate(name: str) -> 
     assert ratio is not None and 0.1 <= ratio <= 10.0
 
 
+@pytest.mark.parametrize("contacts", OWN, ids=lambda engine: engine.name)
+@pytest.mark.parametrize("name", ["slide_spring", "roll_hill", "seam_box", "corner_roll"])
+def test_the_true_error_of_contacts_is_within_a_factor_of_ten_of_the_estimate(
+    name: str, contacts: Engine
+) -> None:
+    """The error of ``slide_spring`` does not fall with the tolerance, as that of a method of order 8 does."""
+    ratio = result(assess_contacts(CONTACTS[name], contacts)).ratio
+    assert ratio is not None and 0.1 <= ratio <= 10.0
+
+
 @pytest.mark.slow
-def test_estimates_of_all_problems_are_as_good_as_they_are_said_to_be() -> None:
-    ratios = [row(name).ratio for name, problem in PROBLEMS.items() if problem.search is None]
-    known = [ratio for ratio in ratios if ratio is not None]
-    assert len(known) == len(ratios)
-    assert sum(0.1 <= ratio <= 10.0 for ratio in known) >= 0.95 * len(known)
-    assert max(known) <= 100.0
+def test_estimates_of_all_that_is_known_are_as_good_as_they_are_said_to_be() -> None:
+    rows = [row(name) for name, problem in PROBLEMS.items() if problem.search is None]
+    rows += [result(assess_contacts(case, engine)) for case in CONTACTS.values() for engine in OWN]
+    found = summarise(rows)
+    assert found.known == len(rows) > 100 and found.holds
+    assert found.near >= 0.95 * found.known and found.largest <= 100.0
+
+
+def test_a_summary_does_not_hold_where_an_estimate_is_far_too_good_or_many_are_not_near() -> None:
+    def of(*ratios: float) -> bool:
+        return summarise([TrustRow(PROBLEMS["free_fall"], "", 1e-6, 1e-6 * ratio) for ratio in ratios]).holds
+
+    assert of(*[1.0] * 19, 99.0) and not of(*[1.0] * 19, 101.0)
+    assert not of(*[1.0] * 18, 99.0) and not of(*[1.0] * 18, 0.01) and of(*[1.0] * 19, 1e-9)
+
+
+@pytest.mark.parametrize("integrator, substeps", [("leapfrog", 1), ("leapfrog", 16), ("rk4", 2)])
+def test_digits_of_the_energy_are_those_by_which_it_is_kept(integrator: str, substeps: int) -> None:
+    """Nothing takes energy from a pendulum: all that its energy changes is an error."""
+
+    def load() -> World:
+        world = load_scene("pendulum")
+        world.simulation = replace(world.simulation, integrator=integrator, substeps=substeps)
+        return world
+
+    found, world = trust(load, 2.0), load()
+    start = measure_energy(world)
+    world.run(seconds=2.0)
+    end = measure_energy(world)
+    scale = max(abs(end.total), end.kinetic, *map(abs, end.potential.values()))
+    assert found.energy == pytest.approx(-math.log10(abs(end.total - start.total) / scale), abs=1.0)
+
+
+def test_energy_that_friction_has_taken_is_a_share_of_what_there_was() -> None:
+    """A disc that has come to rest has no energy left; what error is left is that of what it had."""
+
+    def load() -> World:
+        (world,) = CONTACTS["roll_groove"].build(SimulationConfig(contacts="soft"))
+        return world
+
+    assert trust(load, 2.0).energy > 4.0
+
+
+def test_momentum_has_all_digits_where_it_is_kept_and_positions_have_none() -> None:
+    """Two bodies on a spring whose steps are far too long for it: where they are is lost, momentum is not."""
+
+    def load() -> World:
+        world = empty_world(gravity_mode="none")
+        one, other = circle(world, (-1.0, 0.0), velocity=(0.1, 0.3)), circle(world, (1.0, 0.0))
+        world.spawn(Spring(one, other, rest_length=1.0, stiffness=200.0))
+        world.simulation = SimulationConfig(integrator="leapfrog", substeps=1)
+        return world
+
+    found = trust(load, 20.0)
+    assert found.digits < 2.0 and found.momentum > 12.0
+
+
+def test_digits_until_earlier_moments_are_more_and_the_last_are_those_of_the_end() -> None:
+    load = partial(load_scene, "pendulum")
+    moments = moments_of(4.0, load().simulation.dt, 8)
+    assert moments == pytest.approx([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5], abs=0.01)
+    *_, found = assess(load, 4.0, moments)
+    assert isinstance(found, Trust)
+    assert [look.seconds for look in found.looks] == [*moments, 4.0]
+    digits = [look.digits for look in found.looks]
+    assert digits == sorted(digits, reverse=True) and digits[-1] <= found.digits
+    plain = trust(load, 4.0)
+    assert plain.digits == pytest.approx(found.digits, abs=0.5) and plain.looks == []
+
+
+def double_pendulum() -> World:
+    """Return two bobs on stiff springs, let go from the horizontal: they turn over, chaotically."""
+    world = empty_world(gravity=(0.0, -9.81))
+    upper, lower = circle(world, (1.0, 0.0), radius=0.1), circle(world, (2.0, 0.0), radius=0.1)
+    world.spawn(Spring(upper, anchor_b=(0.0, 0.0), rest_length=1.0, stiffness=2000.0))
+    world.spawn(Spring(upper, lower, rest_length=1.0, stiffness=2000.0))
+    return world
+
+
+def test_the_horizon_is_when_one_rounding_has_grown_to_another_future() -> None:
+    document = with_ids(write_scene(double_pendulum()))
+    bodies = [entity["id"] for entity in document["entities"] if "Velocity" in entity]
+    found: list[float | None] = []
+
+    def kept() -> Iterator[float]:
+        found.append((yield from find_horizon(document, bodies, 60.0)))
+
+    assert all(0.0 <= share <= 1.0 for share in kept())
+    world, twin = double_pendulum(), double_pendulum()
+    for one in (world, twin):
+        one.synchronise()
+    places = world.table(Transform)["position"], twin.table(Transform)["position"]
+    places[1][2, 0] = math.nextafter(2.0, 3.0)
+    beside = twin.stepping(seconds=60.0, stride=1)
+    for _ in world.stepping(seconds=60.0, stride=1):
+        next(beside, None)
+        if np.abs(places[0] - places[1]).max() > 0.1 * 0.1:
+            break
+    assert found == [pytest.approx(world.time, rel=0.3)]
 
 
 def test_run_writes_what_can_be_relied_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "run.json"
     assert main(["run", "drop", "--seconds", "1", "--trust", "--json", str(path)]) == 0
     report = json.loads(path.read_text("utf-8"))
-    assert set(report["trust"]) >= {"digits", "horizon_s", "entities"}
+    assert set(report["trust"]) >= {"digits", "energy", "horizon_s", "entities"}
     assert report["trust"]["entities"].keys() == {"ball"} and report["trust"]["digits"] > 10.0
-    assert "trust       " in capsys.readouterr().out
+    assert report["trust"]["energy"] > 10.0
+    (line,) = [line for line in capsys.readouterr().out.splitlines() if line.startswith("  trust ")]
+    assert f"{report['trust']['energy']:.1f} of the energy" in line
     assert main(["run", "drop", "--seconds", "1", "--json", str(path)]) == 0
     assert "trust" not in json.loads(path.read_text("utf-8"))
 
@@ -146,8 +266,24 @@ def test_accuracy_writes_estimates_beside_true_errors(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "trust.json"
-    assert main(["accuracy", "free_fall", "kepler_e0.5", "--trust", "--json", str(path)]) == 0
+    assert main(["accuracy", "free_fall", "kepler_e0.5", "slide_stop", "--trust", "--json", str(path)]) == 0
     report = json.loads(path.read_text("utf-8"))
-    assert [problem["name"] for problem in report["problems"]] == ["free_fall", "kepler_e0.5"]
+    rows = [(problem["name"], problem["method"]) for problem in report["problems"]]
+    assert rows[:2] == [("free_fall", "exact"), ("kepler_e0.5", "dop853")]
+    assert rows[2:] == [("slide_stop", "rigid contacts"), ("slide_stop", "soft contacts")]
     assert all(0.1 <= problem["ratio"] <= 10.0 for problem in report["problems"])
-    assert "within a factor of 10: 2 of 2 (100%)" in capsys.readouterr().out
+    assert report["summary"] | {"largest": 0.0} == {"known": 4, "near": 4, "largest": 0.0, "holds": True}
+    assert "within a factor of 10: 4 of 4 (100%)" in capsys.readouterr().out
+
+
+def test_accuracy_writes_how_the_digits_of_a_scene_become_fewer(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "trust.json"
+    arguments = ["accuracy", "two_planets", "--trust", "--seconds", "3", "--json", str(path)]
+    assert main(arguments) == 0
+    (scene,) = json.loads(path.read_text("utf-8"))["scenes"]
+    assert scene["name"] == "two_planets" and scene["horizon_s"] is None
+    assert [look["seconds"] for look in scene["looks"]][-1] == 3.0 and len(scene["looks"]) == 24
+    assert all(len(look["bodies"]) == 2 for look in scene["looks"])
+    assert "no rounding was seen to grow to another future" in capsys.readouterr().out

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
 from physicslab.commands.command_error import FAILED, CommandError
@@ -15,14 +15,23 @@ from physicslab.files.scene import load_scene
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
+from physicslab.lab.accuracy.contacts.engines import OWN
 from physicslab.lab.accuracy.contacts.study import ContactStudy, study_case
 from physicslab.lab.accuracy.contacts.tables import contact_summary, contact_text
 from physicslab.lab.accuracy.document import document, trust_document
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import DEFAULT_S, SceneStudy, study_scene
 from physicslab.lab.accuracy.study import Study, study
-from physicslab.lab.accuracy.tables import left_out_text, scene_text, study_text, summary_text, trust_text
-from physicslab.lab.accuracy.trust import TrustRow, assess_problem
+from physicslab.lab.accuracy.tables import (
+    left_out_text,
+    scene_text,
+    study_text,
+    summary_text,
+    trust_rows_text,
+    trust_text,
+)
+from physicslab.lab.accuracy.trust import Trust, assess, moments_of
+from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem
 from physicslab.lab.case import Job
 from physicslab.scenes import SCENES
 
@@ -31,6 +40,8 @@ __all__ = ["add_arguments", "execute"]
 
 _CONTACTS = "contacts"
 """The name of the whole second page."""
+_LOOKS = 24
+"""How often digits are counted in a run of a scene."""
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -42,7 +53,10 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_lab_arguments(parser, "problem", what, "draw a work-precision plot of each problem, as PNG")
     seconds = f"how long scenes are run, in their time ({DEFAULT_S:g})"
     parser.add_argument("--seconds", metavar="T", type=positive_duration, default=DEFAULT_S, help=seconds)
-    words = "print the estimate of the error of each problem, as run --trust makes it, beside its true error"
+    words = (
+        "print the estimate of the error of each problem, as run --trust makes it, beside its true error; of "
+        "a scene, how many digits can be relied on from its start to some moments"
+    )
     parser.add_argument("--trust", action="store_true", help=words)
     parser.epilog = (
         f"families: {', '.join(PROBLEMS.families)}; of contact cases, by other engines as well where "
@@ -63,7 +77,7 @@ def execute(arguments: Namespace) -> int:
         problems, contacts = list(PROBLEMS.values()), CONTACTS
     run = LabRun("accuracy", arguments, "accuracy")
     if arguments.trust:
-        _trust(run, problems)
+        _trust(run, problems, contacts.values(), scenes, arguments.seconds)
         return 0
     jobs: list[tuple[float, Job[Study | ContactStudy | SceneStudy]]] = [
         *((1.0, study(problem, sparse=sparse)) for problem in problems),
@@ -104,16 +118,23 @@ def execute(arguments: Namespace) -> int:
     return 0
 
 
-def _trust(run: LabRun, problems: Sequence[Problem]) -> None:
-    """Write how good the estimates of errors are, for the problems that are one world each."""
-    rows: list[TrustRow] = []
-    results: Iterator[TrustRow] = run.results(
-        [(1.0, assess_problem(problem)) for problem in problems if problem.search is None]
-    )
-    for row in results:
-        rows.append(row)
-    run.show(trust_text(rows))
-    run.write(trust_document(rows))
+def _trust(
+    run: LabRun, problems: Sequence[Problem], contacts: Iterable[ContactCase], scenes: Iterable[str],
+    seconds: float,
+) -> None:  # fmt: skip
+    """Write how good estimates of errors are where answers are known, and what to rely on in scenes."""
+    jobs: list[Job[TrustRow]] = [assess_problem(problem) for problem in problems if problem.search is None]
+    jobs += [assess_contacts(case, engine) for case in contacts for engine in OWN]
+    rows: list[TrustRow] = list(run.results([(1.0, job) for job in jobs]))
+    found: dict[str, Trust] = {}
+    for name in scenes:
+        load, shown = partial(load_scene, name), printable(name)
+        moments = moments_of(seconds, load().simulation.dt, _LOOKS)
+        (found[shown],) = run.results([(1.0, assess(load, seconds, moments))])
+        run.show(trust_text(shown, found[shown]))
+    if rows:
+        run.show(trust_rows_text(rows))
+    run.write(trust_document(rows, found))
 
 
 def _other(scenes: dict[str, None], contacts: dict[str, ContactCase], name: str) -> Problem | None:

@@ -126,11 +126,9 @@ def _check_size(world: World, recorder: RunRecorder, arguments: Namespace) -> No
 
 def _notes(world: World, run: MeasuredRun) -> list[str]:
     """Return how the run was computed, and what of it is not to be trusted, a line each."""
-    simulation, drift = world.simulation, run.record.drift
-    causes = " and ".join(drift.causes)
-    energy = (
-        f"energy changed by {causes}" if causes else f"largest relative energy drift {drift.relative:.2g}"
-    )
+    simulation, audit = world.simulation, run.record.audit
+    causes = f"energy changed by {' and '.join(audit.causes)}, " if audit.causes else ""
+    energy = f"{causes}error of the energy {audit.error:.2g} of what is exchanged"
     method = f"{world.plan.integrator.name}, {run.record.steps} steps of {simulation.dt:.6g} s"
     advice = [f"Not to be trusted: {found}." for found in run.record.warnings.all]
     return [f"Computed by {method}, {simulation.substeps} substeps each; {energy}.", *advice]

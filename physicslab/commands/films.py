@@ -13,7 +13,7 @@ from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.numbers import STEP_LIMIT
 from physicslab.commands.output import Output
-from physicslab.diagnostics.energy import Energy
+from physicslab.diagnostics.account import Accounts
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.film import Film
 from physicslab.export.framing import Box, extent_of_run
@@ -53,7 +53,7 @@ class _Filming:
     def __init__(self, film: Film, picture: MovingPicture) -> None:
         self._film, self._picture = film, picture
 
-    def write(self, world: World, energy: Energy) -> None:
+    def write(self, world: World, account: Accounts) -> None:
         """Add the world as it is now."""
         self._film.write(self._picture.pixels(world))
 

@@ -10,7 +10,8 @@ from typing import Protocol
 
 from physicslab.commands.progress import Progress
 from physicslab.commands.step_watch import StepWatch
-from physicslab.diagnostics.energy import Drift, Energy
+from physicslab.diagnostics.account import Accounts
+from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.ledger import LedgerWriter
 from physicslab.diagnostics.overflow import find_overflow
 from physicslab.diagnostics.run_report import RunRecord
@@ -39,7 +40,7 @@ _ON_TIME = 1e-6
 class Recorder(Protocol):
     """What keeps the state of a world at one instant after the other."""
 
-    def write(self, world: World, energy: Energy) -> None:
+    def write(self, world: World, account: Accounts) -> None:
         """Keep the state as it is now."""
 
 
@@ -82,7 +83,7 @@ class MeasuredRun:
         every: float = 0.0,
         ledger: LedgerWriter | None = None,
     ) -> None:
-        self.record, self.stopped = RunRecord(name, Drift(world)), ""
+        self.record, self.stopped = RunRecord(name, Audit(world)), ""
         self._world, self._tiers, self._at_most = world, tiers, at_most
         self._recorder, self._every, self._kept_at = recorder, every, -math.inf
         self._ledger = ledger
@@ -179,7 +180,7 @@ class MeasuredRun:
         """Measure, and hand the state as it is now to the recorder, if there is one."""
         if self._recorder is not None:
             self._measure()
-            self._recorder.write(self._world, self.record.drift.latest)
+            self._recorder.write(self._world, self.record.audit.account)
             self._kept_at = self._world.time
 
     def _where_stopped(self, at_most: float, end: float, whole: int) -> str:
@@ -200,13 +201,13 @@ class MeasuredRun:
 
     def _measure(self) -> None:
         world, record = self._world, self.record
-        record.drift.sample(world)
+        record.audit.sample(world)
         record.max_penetration = max(record.max_penetration, world.contacts.max_penetration)
         record.divided = max(record.divided, world.step_divisions)
         self._check_sums()
 
     def _check_sums(self) -> None:
         """Stop a run whose energy or momentum is no longer finite, naming what and when."""
-        overflow = find_overflow(self._world, self.record.drift.latest)
+        overflow = find_overflow(self._world, self.record.audit.latest)
         if overflow is not None:
             raise Diverged(f"{overflow} at t = {self._world.time:.9g} s")

@@ -60,7 +60,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--csv", metavar="FILE", help=table)
     spacing = "with --csv: rows at most so often, in the scene's time; those of the start and the end always"
     add("--every", metavar="S", type=positive_duration, help=spacing)
-    words = "compute the run in other ways too: how many digits of each position agree, and until when"
+    words = "compute the run in other ways too: how many digits of positions and energy agree, and until when"
     add("--trust", action="store_true", help=words)
     impacts = "write every impact of the run: when, where, how fast before and after, what it took (-)"
     add("--ledger", metavar="FILE", help=impacts)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-__all__ = ["BODY_QUANTITIES", "QUANTITIES", "WORLD_QUANTITIES", "Quantity"]
+__all__ = [
+    "BODY_QUANTITIES", "ENERGY_CAUSES", "MOMENTUM_CAUSES", "QUANTITIES", "WORLD_QUANTITIES", "Quantity",
+]  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +24,8 @@ class Quantity:
         What it is called in the table of ``run --csv``.
     of_body, of_world : bool
         Whether a body has it, and whether the world has.
+    group : str
+        The part of a menu in which it stands; empty for the menu itself.
     """
 
     name: str
@@ -28,11 +33,38 @@ class Quantity:
     column: str
     of_body: bool = True
     of_world: bool = False
+    group: str = ""
 
     @property
     def heading(self) -> str:
         """What stands over its column in a table."""
         return f"{self.column} [{self.unit}]"
+
+
+ENERGY_CAUSES = (
+    "edits", "hand", "thrust", "motors", "fields", "impacts", "friction", "contact", "overlap", "damping",
+    "joints",
+)  # fmt: skip
+"""What can change the energy of a world; what each gave is an account."""
+MOMENTUM_CAUSES = (*ENERGY_CAUSES, "gravity", "springs")
+"""What can change its momentum, from outside."""
+
+
+def _accounts() -> Iterator[Quantity]:
+    """Yield the accounts of the world since they began, and the errors: what no account explains."""
+    kinds = (
+        ("J", "account", "error of energy", "Energy, by cause", ENERGY_CAUSES),
+        ("N s", "impulse x", "error of momentum x", "Impulse along x, by cause", MOMENTUM_CAUSES),
+        ("N s", "impulse y", "error of momentum y", "Impulse along y, by cause", MOMENTUM_CAUSES),
+        (
+            "N m s", "angular impulse", "error of angular momentum", "Angular impulse, by cause",
+            MOMENTUM_CAUSES,
+        ),
+    )  # fmt: skip
+    for unit, kind, error, group, causes in kinds:
+        for cause in causes:
+            yield Quantity(f"{kind}: {cause}", unit, f"{kind} {cause}", False, True, group)
+        yield Quantity(error, unit, error, False, True, group)
 
 
 QUANTITIES: dict[str, Quantity] = {
@@ -62,6 +94,7 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity("energy of gravity", "J", "potential gravity", of_body=False, of_world=True),
         Quantity("energy of springs", "J", "potential spring", of_body=False, of_world=True),
         Quantity("total energy", "J", "energy", of_world=True),
+        *_accounts(),
     )
 }
 """All of them by name. Scene files hold the names."""
@@ -80,5 +113,6 @@ def why_not_of(name: str, body: int | None) -> str | None:
     allowed = WORLD_QUANTITIES if body is None else BODY_QUANTITIES
     if name in allowed:
         return None
-    words = ", ".join(f'"{other}"' for other in allowed)
-    return f"one of {words} where there is {'no' if body is None else 'a'} body"
+    words = ", ".join(f'"{other}"' for other in allowed if not QUANTITIES[other].group)
+    more = ', or an account such as "account: friction",' if body is None else ""
+    return f"one of {words}{more} where there is {'no' if body is None else 'a'} body"

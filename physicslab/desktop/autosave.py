@@ -9,10 +9,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from physicslab.files.checks import SceneError
-from physicslab.files.json_text import json_pieces
 from physicslab.files.replace import replace_file
 from physicslab.files.snapshot import WorldSnapshot
-from physicslab.files.writer import scene_pieces
+from physicslab.files.writer import text_pieces
 from physicslab.world import World
 
 __all__ = ["Autosave"]
@@ -82,7 +81,7 @@ class Autosave:
                 self._saved, self._content = state, []
                 self._collected = gc.isenabled()
                 gc.disable()
-                self._writing = _text(WorldSnapshot(world))
+                self._writing = text_pieces(WorldSnapshot(world))
 
     def _write(self) -> None:
         """Write as much as there is time for in a frame; at the end, hand it to the disk."""
@@ -142,7 +141,7 @@ class Autosave:
             return
         try:
             replace_file(
-                self.path, b"".join(piece for piece in _text(WorldSnapshot(world)) if piece is not None)
+                self.path, b"".join(piece for piece in text_pieces(WorldSnapshot(world)) if piece is not None)
             )
         except (OSError, SceneError, ValueError) as error:
             self.failure = str(error)
@@ -158,10 +157,3 @@ class Autosave:
 def _state(world: World) -> tuple[object, ...]:
     """Return what differs whenever something was done to a world or time went on in it."""
     return id(world), world.time, world.steps, world.revision
-
-
-def _text(snapshot: WorldSnapshot) -> Iterator[bytes | None]:
-    """Yield a scene file piece by piece, and ``None`` where a pause is possible."""
-    document = yield from scene_pieces(snapshot)
-    for piece in json_pieces(document):
-        yield piece.encode("utf-8")

@@ -116,6 +116,7 @@ class Sandbox:
         window.error, window.next_world = "", None
         window.go_home(world)
         window.unchanged = world.motion_edits
+        window.trust.follow(world, window.now)  # before it is stepped: digits count from here
 
     def frame(self, elapsed: float) -> bool:
         """Do what the user asked for, advance the world and draw it, ``elapsed`` seconds after the last.

@@ -70,6 +70,7 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
                 autosave.save(sandbox.world)
     finally:
         window.error_study.stop()
+        window.trust.stop()
         window.filming.end()
         window.recovery.leave()
         with suppress(OSError):  # a window without preferences is the usual one

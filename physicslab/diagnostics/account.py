@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES
+from physicslab.diagnostics.energy import Energy, measure_kinetic
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels import accounts
 from physicslab.state.account import Balance
@@ -14,16 +16,9 @@ from physicslab.world import World
 
 __all__ = ["ENERGY_ACCOUNTS", "MOMENTUM_ACCOUNTS", "Accounts", "measure_account"]
 
-ENERGY_ACCOUNTS: dict[str, int] = {
-    "edits": accounts.EDITS, "hand": accounts.HAND, "thrust": accounts.THRUST, "motors": accounts.MOTORS,
-    "fields": accounts.FIELDS, "impacts": accounts.IMPACTS, "friction": accounts.FRICTION,
-    "contact": accounts.CONTACT, "overlap": accounts.OVERLAP, "damping": accounts.DAMPING,
-    "joints": accounts.JOINTS,
-}  # fmt: skip
+ENERGY_ACCOUNTS: dict[str, int] = {name: getattr(accounts, name.upper()) for name in ENERGY_CAUSES}
 """The accounts of energy by name, each with its row; ``numerical`` is what they leave."""
-MOMENTUM_ACCOUNTS: dict[str, int] = ENERGY_ACCOUNTS | {
-    "gravity": accounts.GRAVITY, "springs": accounts.SPRINGS,
-}  # fmt: skip
+MOMENTUM_ACCOUNTS: dict[str, int] = {name: getattr(accounts, name.upper()) for name in MOMENTUM_CAUSES}
 """Those of momentum: gravity and springs store energy, but pull from outside."""
 
 
@@ -43,6 +38,8 @@ class Accounts:
         The impulse of each cause from outside [N s], ``numerical`` likewise.
     angular_momentum : dict of str to float
         The angular impulse of each about the origin [N m s].
+    parts : Energy
+        Of what the energy now consists.
     """
 
     since: float
@@ -51,6 +48,29 @@ class Accounts:
     energy: dict[str, float]
     momentum: dict[str, Vector2]
     angular_momentum: dict[str, float]
+    parts: Energy
+
+    @property
+    def change(self) -> float:
+        """How much more energy there is than at the start [J]: the sum of the accounts of energy."""
+        return self.now.energy - self.start.energy
+
+    @np.errstate(all="ignore")
+    def after(self, begin: Accounts) -> Accounts:
+        """Return the accounts of what happened after an earlier moment, at which they were ``begin``."""
+        energy = {name: value - begin.energy[name] for name, value in self.energy.items()}
+        momentum = {name: value - begin.momentum[name] for name, value in self.momentum.items()}
+        angular = {
+            name: value - begin.angular_momentum[name] for name, value in self.angular_momentum.items()
+        }
+        for found in (energy, momentum, angular):
+            del found["numerical"]
+        now, start = self.now, begin.now
+        energy["numerical"] = now.energy - start.energy - sum(energy.values())
+        change = Vector2(now.px - start.px, now.py - start.py)
+        momentum["numerical"] = change - sum(momentum.values(), Vector2())
+        angular["numerical"] = now.spin - start.spin - sum(angular.values())
+        return replace(self, start=start, energy=energy, momentum=momentum, angular_momentum=angular)
 
 
 @np.errstate(all="ignore")  # an energy may be infinite: what is left is then not a number
@@ -58,8 +78,9 @@ def measure_account(world: World) -> Accounts:
     """Return the accounts as they are now; an edit since the last step is booked as one."""
     world.synchronise()
     account, sums = world.account, world.account.sums.copy()
+    stored: dict[str, float] = {}
     with world.active():
-        now = balance_of(world, world.schedule.forces)
+        now = balance_of(world, world.schedule.forces, stored)
         held = held_in(world)
     start = account.start
     if start is None:
@@ -76,4 +97,4 @@ def measure_account(world: World) -> Accounts:
     angular = {name: rows[row][3] for name, row in MOMENTUM_ACCOUNTS.items()}
     angular["numerical"] = float(left[3])
     since = account.since if account.start is not None else world.time
-    return Accounts(since, start, now, energy, momentum, angular)
+    return Accounts(since, start, now, energy, momentum, angular, Energy(*measure_kinetic(world), stored))

@@ -13,7 +13,9 @@ from functools import cached_property
 import numpy as np
 
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.diagnostics.energy import Energy, Momentum, measure_energy, measure_momentum
+from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES
+from physicslab.diagnostics.account import Accounts, measure_account
+from physicslab.diagnostics.energy import Energy, Momentum
 from physicslab.diagnostics.free_body import forces_on, net_force
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.forces import springs
@@ -72,14 +74,20 @@ class Reading:
     # ---- of the world --------------------------------------------------------------------------------------
 
     @cached_property
+    def account(self) -> Accounts:
+        """What changed energy and momentum of the world, and what they are now."""
+        return measure_account(self._world)
+
+    @property
     def energy(self) -> Energy:
         """The energy of the world."""
-        return measure_energy(self._world)
+        return self.account.parts
 
-    @cached_property
+    @property
     def momentum(self) -> Momentum:
         """The momentum of the world."""
-        return measure_momentum(self._world)
+        now = self.account.now
+        return Momentum(Vector2(now.px, now.py), now.spin)
 
     # ---- of a body -----------------------------------------------------------------------------------------
 
@@ -181,6 +189,17 @@ def _why_no_potential(world: World, body: int) -> str:
     return "shares the energy of a spring with others" if np.any(is_shared) else ""
 
 
+def _readers(
+    kind: str, error: str, causes: tuple[str, ...], read: Callable[[Reading, str], float]
+) -> dict[str, Callable[[Reading], float]]:
+    """Return what reads each account of a kind, and its error, by the names of the quantities."""
+
+    def reader(cause: str) -> Callable[[Reading], float]:
+        return lambda now: read(now, cause)
+
+    return {f"{kind}: {cause}": reader(cause) for cause in causes} | {error: reader("numerical")}
+
+
 _OF_WORLD: dict[str, Callable[[Reading], float]] = {
     "momentum x": lambda now: now.momentum.linear.x,
     "momentum y": lambda now: now.momentum.linear.y,
@@ -193,7 +212,18 @@ _OF_WORLD: dict[str, Callable[[Reading], float]] = {
     "energy of gravity": lambda now: now.energy.potential.get("gravity", 0.0),
     "energy of springs": lambda now: now.energy.potential.get("spring", 0.0),
     "total energy": lambda now: now.energy.total,
-}
+    **_readers("account", "error of energy", ENERGY_CAUSES, lambda now, name: now.account.energy[name]),
+    **_readers(
+        "impulse x", "error of momentum x", MOMENTUM_CAUSES, lambda now, name: now.account.momentum[name].x
+    ),
+    **_readers(
+        "impulse y", "error of momentum y", MOMENTUM_CAUSES, lambda now, name: now.account.momentum[name].y
+    ),
+    **_readers(
+        "angular impulse", "error of angular momentum", MOMENTUM_CAUSES,
+        lambda now, name: now.account.angular_momentum[name],
+    ),
+}  # fmt: skip
 _OF_BODY: dict[str, Callable[[Reading, int], float]] = {
     "x": lambda now, body: now._transform(body).position.x,
     "y": lambda now, body: now._transform(body).position.y,

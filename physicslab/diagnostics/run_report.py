@@ -10,9 +10,12 @@ from typing import Any
 
 from physicslab.components import Transform, Velocity
 from physicslab.contacts.report import list_contacts
-from physicslab.diagnostics.energy import Drift, Energy, measure_momentum, summation
+from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
+from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.energy import measure_momentum, summation
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
 from physicslab.ecs.text import unique_name
+from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
 __all__ = ["RunRecord", "body_names", "find_not_finite", "run_report", "run_summary"]
@@ -26,8 +29,8 @@ class RunRecord:
     ----------
     scene : str
         What the scene is called.
-    drift : Drift
-        The largest departure of the energy from that at the start.
+    audit : Audit
+        What changed the energy since the start, and the largest error of it.
     steps : int
         Steps done.
     wall_s : float
@@ -45,7 +48,7 @@ class RunRecord:
     """
 
     scene: str
-    drift: Drift
+    audit: Audit
     steps: int = 0
     wall_s: float = 0.0
     interpreted_steps: int = 0
@@ -105,7 +108,10 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
             for left in world.schedule.left_out
             if left.name not in timings
         ],
-        "energy": _energy(record.drift.latest, record.drift),
+        "energy": _energy(record.audit),
+        "account": _account(record.audit.account.energy),
+        "momentum_account": _account(record.audit.account.momentum),
+        "angular_momentum_account": _account(record.audit.account.angular_momentum),
         "momentum": list(momentum.linear),
         "angular_momentum": momentum.angular,
         "candidate_pairs": int(world.contacts.candidate_pairs),
@@ -120,17 +126,31 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
     }
 
 
-def _energy(now: Energy, drift: Drift) -> dict[str, Any]:
+def _account(booked: Mapping[str, float | Vector2]) -> dict[str, Any]:
+    """Return what each cause gave; ``None`` where that is no number, after an energy that was none."""
+
+    def shown(value: float) -> float | None:
+        return value if math.isfinite(value) else None
+
+    return {
+        name: [shown(part) for part in value] if isinstance(value, Vector2) else shown(value)
+        for name, value in booked.items()
+    }
+
+
+def _energy(audit: Audit) -> dict[str, Any]:
+    now = audit.latest
     potential = {"gravity": 0.0, "spring": 0.0} | now.potential
     return {
-        "initial": drift.initial.total,
-        "final": now.total,
+        "initial": audit.initial,
+        "final": audit.account.now.energy,
         "kinetic_linear": now.kinetic_linear,
         "kinetic_angular": now.kinetic_angular,
         **{f"potential_{name}": stored for name, stored in potential.items()},
-        "max_relative_drift": drift.error,
-        "max_relative_change": drift.relative,
-        "changed_by": list(drift.causes),
+        "exchanged": audit.exchanged,
+        "max_relative_drift": audit.error,
+        "max_relative_change": audit.change,
+        "changed_by": list(audit.causes),
     }
 
 
@@ -153,12 +173,21 @@ def _contact_forces(world: World) -> list[dict[str, Any]]:
     return forces
 
 
-def _drift_words(energy: Mapping[str, Any]) -> str:
-    """Return how much of the energy was changed by laws, and how much by error."""
-    drift, causes = energy["max_relative_drift"], " and ".join(energy["changed_by"])
-    change = f"changed by {causes}, {energy['max_relative_change']:.3g} at most" if causes else ""
-    error = "" if drift is None else f"largest relative drift {drift:.3g}"
-    return ", ".join(words for words in (change, error) if words)
+def _energy_words(report: Mapping[str, Any]) -> list[str]:
+    """Return where the energy went, and how large the error of it is: a line each."""
+    energy, account = report["energy"], report["account"]
+    moved = [(name, account[name]) for name in energy["changed_by"]]
+    words = [
+        f"{ACCOUNT_WORDS[name]} {'gave' if value > 0.0 else 'took'} {abs(value):.6g} J"
+        for name, value in flows({name: value for name, value in moved if value is not None})
+    ]
+    error = "not a number" if account["numerical"] is None else f"{account['numerical']:.3g} J"
+    share = f"at most {energy['max_relative_drift']:.3g} of the energy exchanged"
+    return [
+        f"  energy      {energy['initial']:.9g} J before, {energy['final']:.9g} J after; "
+        f"{', '.join(words) or 'nothing gave or took any'}",
+        f"  error       {error} of energy by the method; {share}",
+    ]
 
 
 def _bodies(world: World) -> dict[str, dict[str, Any]]:
@@ -193,7 +222,7 @@ def find_not_finite(report: object, place: str = "") -> str | None:
 
 def run_summary(report: Mapping[str, Any], title: str) -> str:
     """Return a summary of a run, on a few lines."""
-    energy, momentum = report["energy"], report["momentum"]
+    momentum = report["momentum"]
     wall = report["wall_s"]
     systems = ", ".join(f"{system['name']} {system['ms']:.1f} ms" for system in report["systems"])
     lines = [
@@ -204,8 +233,7 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         f"{report['force_evaluations']} force evaluations",
         f"  collisions  {report['collision_method']}: {report['collision_reason']}",
         f"  took        {wall:.3g} s, and {report['compile_s']:.3g} s to compile or load kernels",
-        f"  energy      {energy['initial']:.9g} J before, {energy['final']:.9g} J after; "
-        f"{_drift_words(energy)}",
+        *_energy_words(report),
         f"  momentum    [{momentum[0]:.6g}, {momentum[1]:.6g}] kg m/s, "
         f"angular {report['angular_momentum']:.6g} kg m^2/s",
         f"  contacts    {report['contacts']} of {report['candidate_pairs']} near pairs, "
@@ -236,7 +264,10 @@ def _trust_words(report: Mapping[str, Any]) -> str:
     """Return what can be relied on, on a line."""
     if report["digits"] is None:
         return f"cannot be measured: {report['failure']}"
-    words = f"{report['digits']:.1f} digits of every position at the end, fewest of {report['worst']}"
+    words = (
+        f"{report['digits']:.1f} digits of every position at the end, fewest of {report['worst']}; "
+        f"{report['energy']:.1f} of the energy"
+    )
     if report["horizon_s"] is None:
         return f"{words}; no rounding grows to another future"
     return f"{words}; one of many possible futures {report['horizon_s']:.3g} s after the start"

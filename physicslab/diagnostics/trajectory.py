@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import csv
+import math
 from typing import TextIO
 
 from physicslab.components import Transform, Velocity
-from physicslab.components.quantities import QUANTITIES
-from physicslab.diagnostics.energy import Energy, measure_momentum
+from physicslab.components.quantities import ENERGY_CAUSES, QUANTITIES
+from physicslab.diagnostics.account import Accounts
 from physicslab.diagnostics.run_report import body_names
 from physicslab.world import World
 
@@ -15,6 +16,7 @@ __all__ = ["BODY_HEADER", "TrajectoryWriter"]
 
 _MOTION = ("x", "y", "angle", "velocity x", "velocity y", "angular velocity")
 _KINETIC = ("kinetic energy of translation", "kinetic energy of rotation")
+_ACCOUNTS = (*(f"account: {cause}" for cause in ENERGY_CAUSES), "error of energy")
 _MOMENTUM = ("momentum x", "momentum y", "angular momentum")
 
 
@@ -31,7 +33,8 @@ class TrajectoryWriter:
 
     The columns after a body's own are sums over the world, alike in all rows of an instant: kinetic energy
     of translation and of rotation, what each force stores, and the total [J]; momentum [kg m/s]; angular
-    momentum about the origin [kg m^2/s]. Numbers keep every bit; names are those of ``run --json``.
+    momentum about the origin [kg m^2/s]; what each account of energy has since the start, and the error [J].
+    A number that is not finite is an empty cell. Numbers keep every bit; names are those of ``run --json``.
 
     Parameters
     ----------
@@ -47,18 +50,18 @@ class TrajectoryWriter:
         self._potentials = tuple(dict.fromkeys(("gravity", "spring", *filter(None, stored))))
         self._rows = csv.writer(stream, lineterminator="\n")
         potentials = (f"potential {name} [J]" for name in self._potentials)
-        sums = (*_headings(_KINETIC), *potentials, *_headings(("total energy", *_MOMENTUM)))
+        sums = (*_headings(_KINETIC), *potentials, *_headings(("total energy", *_MOMENTUM, *_ACCOUNTS)))
         self._rows.writerow((*BODY_HEADER, *sums))
         self._names: list[str] = []
         self._batch: object = None
 
-    def write(self, world: World, energy: Energy) -> None:
-        """Write a row for every entity that has a Transform, as it is now, with the energy that there is."""
+    def write(self, world: World, account: Accounts) -> None:
+        """Write a row for every entity that has a Transform, as it is now, with the accounts as they are."""
         batch = world.batch(Transform)
         if batch is not self._batch:
             self._batch, self._names = batch, list(body_names(world).values())
         transform, velocity = world.table(Transform), world.table(Velocity)
-        sums = self._sums(world, energy)
+        sums = self._sums(account)
         bodies = zip(
             self._names, transform["position"][batch.rows].tolist(), transform["angle"][batch.rows].tolist(),
             velocity["linear"][batch.rows].tolist(), velocity["angular"][batch.rows].tolist(), strict=True,
@@ -67,12 +70,12 @@ class TrajectoryWriter:
             (world.time, name, x, y, angle, vx, vy, w, *sums) for name, (x, y), angle, (vx, vy), w in bodies
         )
 
-    def _sums(self, world: World, energy: Energy) -> list[str]:
+    def _sums(self, account: Accounts) -> list[str]:
         """Return the columns of the whole world as text: they are the same for every body."""
-        momentum = measure_momentum(world)
+        energy, now = account.parts, account.now
         stored = (energy.potential.get(name, 0.0) for name in self._potentials)
         kinetic = (energy.kinetic_linear, energy.kinetic_angular)
         return [
-            repr(float(value))
-            for value in (*kinetic, *stored, energy.total, *momentum.linear, momentum.angular)
+            repr(float(value)) if math.isfinite(value) else ""
+            for value in (*kinetic, *stored, *now, *account.energy.values())
         ]

@@ -22,6 +22,8 @@ Kind = Literal["number", "whole", "vector", "flag", "entity", "choice", "text"]
 
 _SHOWN_LIMIT = 100
 """Characters of a value that a message shows."""
+_LISTED = 30
+"""Choices that a message lists."""
 COORDINATE_LIMIT = 1e300
 """The largest coordinate [m]: the difference of two is finite, and the product of one with a usual number."""
 LENGTH_LIMIT = 1e150
@@ -111,7 +113,9 @@ class Field:
         unit = f" {self.unit}" if self.unit not in ("", "1") else ""
         match self.kind:
             case "choice":
-                return "one of " + ", ".join(f'"{choice}"' for choice in self.choices)
+                more = len(self.choices) - _LISTED
+                words = ", ".join(f'"{choice}"' for choice in self.choices[:_LISTED])
+                return f"one of {words}" + (f", or of {more} more" if more > 0 else "")
             case "flag":
                 return "".join(f'"{choice}", ' for choice in self.choices) + "true or false"
             case "entity":

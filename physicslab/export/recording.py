@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Shape, Spring, Trail, Transform, Velocity
-from physicslab.diagnostics.energy import Energy
+from physicslab.diagnostics.account import Accounts
 from physicslab.diagnostics.run_report import body_names
 from physicslab.world import World
 
@@ -53,7 +53,7 @@ class RunRecorder:
         self.start = world.time
         self._instants: list[Columns] = []
 
-    def write(self, world: World, energy: Energy) -> None:
+    def write(self, world: World, account: Accounts) -> None:
         """Keep the state as it is now.
 
         Raises
@@ -62,6 +62,7 @@ class RunRecorder:
             If a number is too large for float32.
         """
         transform, velocity, rows = world.table(Transform), world.table(Velocity), self._rows
+        energy = account.parts
         stored = [energy.potential.get(name, 0.0) for name in self._potentials]
         sums = [world.time - self.start, energy.kinetic, *stored, energy.total]
         bodies = np.column_stack(

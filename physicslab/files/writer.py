@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Mapping
+from collections.abc import Generator, Iterable, Iterator, Mapping
 from typing import Any
 
 from physicslab.components.naming import plain_name
@@ -14,11 +14,12 @@ from physicslab.ecs.text import unique_name
 from physicslab.ecs.vector import Vector2
 from physicslab.files.checks import SceneError
 from physicslab.files.entities import UNSAVED
+from physicslab.files.json_text import json_pieces
 from physicslab.files.reader import FORMAT
 from physicslab.files.snapshot import WorldSnapshot
 from physicslab.world import World
 
-__all__ = ["scene_pieces", "write_scene"]
+__all__ = ["scene_pieces", "text_pieces", "write_scene"]
 
 _FIRST = ("Transform", "Velocity", "Mass", "Shape", "Material", "Spring", "Trail")
 
@@ -42,6 +43,21 @@ def write_scene(world: World) -> dict[str, Any]:
         except StopIteration as done:
             document: dict[str, Any] = done.value
             return document
+
+
+def text_pieces(snapshot: WorldSnapshot) -> Iterator[bytes | None]:
+    """Yield a scene file piece by piece, and ``None`` where a pause is possible.
+
+    Raises
+    ------
+    SceneError
+        As :func:`write_scene`.
+    ValueError
+        If a number is not finite.
+    """
+    document = yield from scene_pieces(snapshot)
+    for piece in json_pieces(document):
+        yield piece.encode("utf-8")
 
 
 def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any]]:

@@ -14,7 +14,7 @@ from physicslab.history.keyframe import Keyframe
 from physicslab.history.line import Edit, Run, Steps
 from physicslab.history.places import Places
 from physicslab.history.recording import load, save
-from physicslab.history.replay import follow_edit
+from physicslab.history.replay import edit
 from physicslab.history.seen import Difference, HistoryEntry
 from physicslab.world import World
 
@@ -89,8 +89,7 @@ class History:
         began = time.perf_counter()
         with places.all_or_nothing():
             words = command.words(self.world)
-            done = command.carry_out(self.world)
-            follow_edit(self.world)
+            done = edit(self.world, command)
         self._cut()
         places.line.add(Edit(words, done))
         self._advance(began)

@@ -10,7 +10,7 @@ from physicslab.history.digest import Digester, differing
 from physicslab.history.keyframe import Keyframe
 from physicslab.history.keyframes import Keyframes
 from physicslab.history.line import Edit, Line, Steps
-from physicslab.history.replay import follow_edit
+from physicslab.history.replay import edit
 from physicslab.history.seen import Difference
 from physicslab.world import World
 
@@ -156,10 +156,10 @@ class Places:
                 continue
             began = time.perf_counter()
             command = piece.command if isinstance(piece, Edit) else piece
-            command.carry_out(self.world)
             if isinstance(piece, Edit):
-                follow_edit(self.world)
+                edit(self.world, command)
             else:
+                command.carry_out(self.world)
                 self.world.synchronise()
             self._pass(began, place)
 

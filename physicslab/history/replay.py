@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from physicslab.ecs.component import InvalidValue
 from physicslab.files.checks import SceneError
+from physicslab.history.commands import Command
 from physicslab.history.digest import Digester, differing
 from physicslab.history.line import Edit, Line, Steps
 from physicslab.world import World
 
-__all__ = ["Played", "follow_edit", "play"]
+__all__ = ["Played", "edit", "play"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +34,16 @@ class Played:
     columns: tuple[str, ...]
 
 
-def follow_edit(world: World) -> None:
-    """Let a world follow an edit; what is measured of it begins again."""
+def edit(world: World, command: Command) -> Command:
+    """Carry out an edit and book what it changed; what is measured of the world begins again.
+
+    What a hand did since the last step is booked before.
+    """
+    world.book_edits()
+    done = command.carry_out(world)
     world.edited()
-    world.synchronise()
+    world.book_edits()
+    return done
 
 
 def play(world: World, line: Line, source: str) -> Iterator[Played]:
@@ -59,10 +66,10 @@ def play(world: World, line: Line, source: str) -> Iterator[Played]:
             continue
         command = piece.command if isinstance(piece, Edit) else piece
         try:
-            command.carry_out(world)
             if isinstance(piece, Edit):
-                follow_edit(world)
+                edit(world, command)
             else:
+                command.carry_out(world)
                 world.synchronise()
         except (InvalidValue, KeyError, TypeError, ValueError, AttributeError) as error:
             message = error.args[0] if isinstance(error, KeyError) else error

@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable
 
 from physicslab.components import Mass, Transform, Velocity
-from physicslab.diagnostics.energy import Drift, measure_energy
+from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
@@ -132,8 +133,8 @@ def energy_growth(world: World, steps: int, scale: float | None = None, every: i
 
 
 def energy_change(world: World, steps: int, every: int = 1) -> float:
-    """Return the largest departure of the energy from that at the start, as a share of it."""
-    drift = Drift(world)
+    """Return the largest change of the energy since the start, whatever caused it, as a share of it."""
+    audit = Audit(world)
     for _ in world.stepping(steps=steps, stride=every):
-        drift.sample(world)
-    return drift.relative
+        audit.sample(world)
+    return audit.change

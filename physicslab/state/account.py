@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -84,13 +85,20 @@ class Account:
 
     def open(self, now: Balance, held: tuple[int, ...], time: float) -> None:
         """Begin a step at a balance; what has changed since the last one is booked."""
-        if self.start is None:
-            self.start, self.since = now, time
-        elif now != self.last:
+        if self.start is None or not math.isfinite(self.last.energy):
+            self.sums[:] = 0.0  # of what has passed through infinity no sum is left
+            self.start, self.since, self.held, self.last = now, time, held, now
+        else:
+            self.book(now, held)
+        np.copyto(self._before, self.sums)
+
+    def book(self, now: Balance, held: tuple[int, ...]) -> None:
+        """Book what has changed since the last step, or the last booking, once a step was made."""
+        if self.start is not None and now != self.last:
             cause, change = self.pending(now, held)
             self.sums[cause] += change
-        self.held, self.last = held, now
-        np.copyto(self._before, self.sums)
+            self.last = now
+        self.held = held
 
     def close(self, now: Balance, rest: int | None) -> None:
         """End a step at a balance; all that is not booked goes to the cause ``rest``, if one is given."""

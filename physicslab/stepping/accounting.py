@@ -13,7 +13,7 @@ from physicslab.state.account import Balance
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
 
-__all__ = ["balance_of", "close_account", "held_in", "open_account"]
+__all__ = ["balance_of", "book_account", "close_account", "held_in", "motion_totals_of", "open_account"]
 
 
 def held_in(state: State) -> tuple[int, ...]:
@@ -37,16 +37,32 @@ def _columns(state: State) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     return (*motion, *own), words
 
 
-def balance_of(state: State, forces: Sequence[ForceSystem]) -> Balance:
-    """Return energy and momentum as they are now; all rows and masses must be up to date."""
+def motion_totals_of(state: State) -> tuple[float, float, float, float, float, float, float]:
+    """Return the sums of :func:`physicslab.kernels.energy.motion_totals`; all rows must be up to date."""
     columns, _ = _columns(state)
-    translation, rotation, px, py, spin, mx, my = direct_entry(energy.motion_totals)(*columns)
+    totals: tuple[float, float, float, float, float, float, float] = direct_entry(energy.motion_totals)(
+        *columns
+    )
+    return totals
+
+
+def balance_of(
+    state: State, forces: Sequence[ForceSystem], potential: dict[str, float] | None = None
+) -> Balance:
+    """Return energy and momentum as they are now; all rows and masses must be up to date.
+
+    What each force stores [J] is added to ``potential`` by the force's name, where that is given.
+    """
+    translation, rotation, px, py, spin, mx, my = motion_totals_of(state)
     total = translation + rotation
     for force in forces:
         if force.potential is None:
             continue
         g = force.uniform_acceleration(state) if force.is_engine else None
-        total += force.potential_energy(state) if g is None else -(g.x * mx + g.y * my)
+        stored = force.potential_energy(state) if g is None else -(g.x * mx + g.y * my)
+        total += stored
+        if potential is not None:
+            potential[force.potential] = potential.get(force.potential, 0.0) + stored
     return Balance(total, px, py, spin)
 
 
@@ -65,6 +81,12 @@ def open_account(state: State, forces: Sequence[ForceSystem]) -> None:
     unchanged = seen is not None and seen == account.seen and account.start is not None
     now = account.last if unchanged else balance_of(state, forces)
     account.open(now, held_in(state), state.time)
+
+
+def book_account(state: State, forces: Sequence[ForceSystem]) -> None:
+    """Book what was changed since the last step, or since this was called last."""
+    state.account.book(balance_of(state, forces), held_in(state))
+    state.account.seen = None  # what was seen belongs to the balance before
 
 
 def close_account(state: State, forces: Sequence[ForceSystem], rest: int | None) -> None:

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass, Transform, Velocity
+from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.contacts.arguments import inverse_in
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels.accounts import ENERGY, FRICTION, GRAVITY, HAND, SPRINGS
+from physicslab.kernels.accounts import DAMPING, ENERGY, FRICTION, GRAVITY, HAND, OVERLAP, SPRINGS
 from physicslab.kernels.solver import work
+from physicslab.state.packed import spring_ends, turned_anchors
 from physicslab.state.state import State
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem, Stage, System
@@ -45,15 +46,17 @@ class StageAccounts:
         springs = any(isinstance(force, SpringSystem) for force in others)
         self._other = free[0].account if free else (SPRINGS if springs else GRAVITY)
         self._pulls = {force: np.zeros_like(state.bodies.pull) for force in free}
-        self._follows_way = bool(others)
+        self._storing = [force for force in others if force.potential is not None]
+        self._follows_way, self._damps = bool(others), springs and _has_dampers(state)
+        self._dampers = np.zeros_like(state.bodies.pull)
         self._before: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
         self._start: tuple[NDArray[np.float64], NDArray[np.float64]]
         self._booked = self._kicked = 0.0
 
     @property
     def notes_forces(self) -> bool:
-        """Whether a force stores no energy, so that each must be noted by itself."""
-        return bool(self._pulls)
+        """Whether a force stores no energy, or not all its work, so that each must be noted by itself."""
+        return bool(self._pulls) or self._damps
 
     def begin_substep(self, state: State) -> None:
         """Note where bodies are, if a force does work along their way."""
@@ -66,6 +69,8 @@ class StageAccounts:
         """Note the pull of a force that stores no energy; ``before`` is that of those before it."""
         if system in self._pulls:
             np.subtract(state.bodies.pull, before, out=self._pulls[system])
+        elif self._damps and isinstance(system, SpringSystem):
+            self._dampers = _pull_of_dampers(state)
 
     def begin(self, stage: Stage, state: State, share: float, h: float) -> None:
         """Note what a stage is about to change, of a ``share`` of the substep of ``h`` seconds."""
@@ -107,6 +112,26 @@ class StageAccounts:
             h if stage is Stage.SOLVE and state.has_forces else 0.0,
             _booked_within(state) - self._booked, state.account.sums,
         )  # fmt: skip
+        if stage is Stage.RELAX and self._storing:
+            self._book_overlap(state)
+
+    def _book_overlap(self, state: State) -> None:
+        """Book what moving bodies apart has changed in what forces store that are not the same everywhere.
+
+        The kernel has booked their work as if they stayed as they are along that way.
+        """
+        position, bodies = state.table(Transform)["position"], state.bodies
+        way = position - self._before[0]
+        if not way.any():
+            return
+        now = position.copy()
+        stored = sum(force.potential_energy(state) for force in self._storing)
+        position[:] = self._before[0]
+        stored -= sum(force.potential_energy(state) for force in self._storing)
+        position[:] = now
+        weight = state.table(Mass)["mass"][:, None] * np.array((self._gravity.x, self._gravity.y))
+        free = (bodies.awake_inverse_mass > 0.0)[:, None]
+        state.account.sums[OVERLAP, ENERGY] += stored + float(((bodies.force - weight) * way * free).sum())
 
     def _book_way(self, state: State) -> None:
         """Book the work of forces along the way of the substep, and that of what drives against them."""
@@ -118,10 +143,41 @@ class StageAccounts:
         rows = np.concatenate((np.repeat(kicked, 2), kicked & (bodies.awake_inverse_inertia > 0.0)))
         for force, pull in self._pulls.items():
             sums[force.account, ENERGY] += float(pull[rows] @ way[rows])
+        if self._damps:
+            sums[DAMPING, ENERGY] += float(self._dampers[rows] @ way[rows])
         driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0) & ~bodies.sub_integrated
         if driven.any():
             rows = np.concatenate((np.repeat(driven, 2), driven))
             sums[HAND, ENERGY] -= float(bodies.pull[rows] @ way[rows])
+
+
+def _has_dampers(state: State) -> bool:
+    """Whether any spring has a damper."""
+    rows, _, _ = spring_ends(state)
+    return bool((state.table(Spring)["damping"][rows] > 0.0).any())
+
+
+def _pull_of_dampers(state: State) -> NDArray[np.float64]:
+    """Return the forces and torques of the dampers of all springs, row by row as in ``bodies.pull``."""
+    (rows, a, b), spring, n = spring_ends(state), state.table(Spring), len(state.entity_index)
+    transform, velocity = state.table(Transform), state.table(Velocity)
+    ends = [
+        (turned_anchors(state, end, rows, anchor), end, sign)
+        for anchor, end, sign in (("anchor_a", a, -1.0), ("anchor_b", b, 1.0))
+    ]
+    apart, rate = np.zeros((len(rows), 2)), np.zeros((len(rows), 2))
+    for arm, end, sign in ends:
+        across = np.stack((-arm[:, 1], arm[:, 0]), axis=1)
+        apart += sign * (transform["position"][end] + arm)
+        rate += sign * (velocity["linear"][end] + velocity["angular"][end, None] * across)
+    length = np.hypot(*apart.T)
+    along = apart / np.where(length > 0.0, length, np.inf)[:, None]
+    force = (spring["damping"][rows] * (rate * along).sum(axis=1))[:, None] * along
+    pull = np.zeros(3 * n)
+    for arm, end, sign in ends:
+        np.add.at(pull[: 2 * n].reshape(n, 2), end, -sign * force)
+        np.add.at(pull[2 * n :], end, -sign * (arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]))
+    return pull
 
 
 def _booked_within(state: State) -> float:

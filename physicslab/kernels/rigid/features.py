@@ -22,7 +22,8 @@ __all__ = [
     "BIAS_N", "BIAS_T", "BOX", "CENTRE", "CONTACTS", "CORNER", "DRIVEN", "FEATURE", "GAP", "GIVEN", "HEIGHT",
     "KIND", "MARGIN", "MEASURES", "MU", "NA", "NB", "NX", "NY", "ONE", "OTHER", "OUTLINE_FIELDS", "PAIR",
     "POINT_FIELDS", "PX", "PY", "RADIUS", "REACH", "RESTITUTION", "RUBBING", "STATUS", "TA", "TB", "VERTEX",
-    "VN", "VT", "WALL", "WIDTH", "Points", "Scene", "SceneTuple", "face_of", "measure", "named_scene", "vertex_of",
+    "VN", "VT", "WALL", "WIDTH", "Points", "Scene", "SceneTuple", "face_of", "measure", "named_scene",
+    "vertex_of",
 ]  # fmt: skip
 
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)

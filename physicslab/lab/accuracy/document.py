@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -13,7 +13,8 @@ from physicslab.lab.accuracy.figures import record
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
-from physicslab.lab.accuracy.trust import TrustRow
+from physicslab.lab.accuracy.trust import Trust, trust_report
+from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
 from physicslab.lab.document import finite, lab_document
 
 __all__ = ["document", "trust_document"]
@@ -33,21 +34,24 @@ def document(
     )
 
 
-def trust_document(rows: Sequence[TrustRow]) -> dict[str, Any]:
-    """Return estimates of errors beside true errors."""
+def trust_document(rows: Sequence[TrustRow], scenes: Mapping[str, Trust]) -> dict[str, Any]:
+    """Return estimates of errors beside true errors, and what can be relied on in scenes by their names."""
+    found = summarise(rows)
     return lab_document(
         "trust",
         problems=[
             {
-                "name": row.problem.name,
-                "measure": row.problem.measure,
-                "integrator": row.integrator,
+                "name": row.case.name,
+                "measure": row.case.measure,
+                "method": row.method,
                 "estimate": finite(row.estimate),
                 "error": finite(row.error),
                 "ratio": finite(row.ratio),
             }
             for row in rows
         ],
+        summary={"known": found.known, "near": found.near, "largest": found.largest, "holds": found.holds},
+        scenes=[{"name": name, **trust_report(trust)} for name, trust in scenes.items()],
     )
 
 
@@ -108,6 +112,7 @@ def _row(problem: Problem, row: Row) -> dict[str, Any]:
         "time": problem.seconds,
         "error": finite(found.error),
         "energy_drift": finite(seen.energy),
+        "energy_numerical": finite(seen.numerical),
         "momentum_error": finite(seen.momentum),
         "angular_momentum_error": finite(seen.angular_momentum),
         "omega_max_dt": finite(seen.rate_dt),
@@ -120,11 +125,12 @@ def _row(problem: Problem, row: Row) -> dict[str, Any]:
 
 def _scene(study: SceneStudy) -> dict[str, Any]:
     estimate = asdict(study.estimate)
-    for name in ("reference", "bodies", "end", "distances"):
+    for name in ("reference", "bodies", "path", "paths"):
         del estimate[name]
     return {
         "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.tightest,
         "estimate": estimate, "rows": [_scene_row(row) for row in study.rows],
+        "horizon_s": study.horizon_s,
     }  # fmt: skip
 
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform, Velocity
 from physicslab.files.writer import write_scene
+from physicslab.lab.accuracy.paths import Path, run_path
 from physicslab.lab.accuracy.twins import TWINS, Twin, finer, with_ids
 from physicslab.lab.case import attempt
 from physicslab.lab.worlds import steps_not_rigid
@@ -20,16 +19,10 @@ from physicslab.world import World
 
 __all__ = ["Estimate", "Spread", "TwinResult", "estimate_error"]
 
-type _End = NDArray[np.float64]
-"""Columns x, y, angle, vx, vy, spin of every body that can move (n, 6)."""
-
 _LIMITED_BY_STEP = 0.25
 """Share of the estimate that halving the step must explain for the step to be what limits the results."""
-_MIRROR = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
 _ORDER_MARGIN = 2.0
 """An observed order that is further from none than the method's own and this is chance."""
-_WHOLE = 10**9
-"""A stride that no run is longer than: the steps of a run are made at once."""
 _ROUNDINGS = 1e3
 """A spread of fewer roundings than this has no order."""
 
@@ -92,10 +85,10 @@ class Estimate:
         Where bodies end [m] with rigid contacts (n, 2), if contacts are soft and no step was left to these.
     bodies : list of str
         The bodies that can move.
-    end : array of floats, optional
-        Where they end [m] in the scene itself (n, 2).
-    distances : dict of str to array of floats
-        How far each ends from there [m] in a twin (n,), by the name of the twin.
+    path : Path, optional
+        That of the scene itself.
+    paths : dict of str to Path
+        That of each twin that could be run, by its name; of a mirrored one mirrored back.
     """
 
     error: Spread | None = None
@@ -106,15 +99,13 @@ class Estimate:
     failure: str = ""
     reference: NDArray[np.float64] | None = None
     bodies: list[str] = field(default_factory=list)
-    end: NDArray[np.float64] | None = None
-    distances: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    path: Path | None = None
+    paths: dict[str, Path] = field(default_factory=dict)
 
 
-class OutOfTime(ArithmeticError):
-    """A twin took longer than it may."""
-
-
-def estimate_error(load: Callable[[], World], seconds: float) -> Iterator[float | Estimate]:
+def estimate_error(
+    load: Callable[[], World], seconds: float, moments: Sequence[float] = ()
+) -> Iterator[float | Estimate]:
     """Run a scene and its twins; yield the share of the work that is done, then the estimate.
 
     Parameters
@@ -123,32 +114,33 @@ def estimate_error(load: Callable[[], World], seconds: float) -> Iterator[float 
         Returns the scene's world, a new one each time.
     seconds : float
         How long it is run [s].
+    moments : sequence of floats
+        When paths are looked at before the end, after the start [s], in order.
     """
     scene, found = load(), Estimate()
     document = with_ids(write_scene(scene))
     scene.synchronise()
     found.bodies = [entity["id"] for entity in document["entities"] if "Velocity" in entity]
-    run = _Runs(found.bodies, seconds)
-    own, found.failure = attempt(partial(run.end, load()))
-    if own is None:
+    looked = (*moments, seconds)
+
+    def run(world: World, budget_s: float = math.inf) -> Path:
+        return run_path(world, found.bodies, looked, budget_s)
+
+    found.path, found.failure = attempt(partial(run, load()))
+    if found.path is None:
         yield found
         return
-    found.end = own[:, :2]
     soft = not scene.event_driven or _something_rests(load(), seconds)
-    ends: dict[str, _End] = {}
     for i, twin in enumerate(TWINS):
         world = twin.make(document, scene) if soft or twin.name != "rigid" else None
         if world is not None:
-            found.twins.append(_compared(twin, world, run, own, ends))
-            if twin.name == "rigid" and twin.name in ends and not any(steps_not_rigid(world)):
-                found.reference = ends[twin.name][:, :2]
+            found.twins.append(_compared(twin, world, run, found))
+            if twin.name == "rigid" and twin.name in found.paths and not any(steps_not_rigid(world)):
+                found.reference = found.paths[twin.name].places[-1]
         yield (i + 1) / (len(TWINS) + 1)
-    found.distances = {name: np.hypot(*(end - own)[:, :2].T) for name, end in ends.items()}
     _summarise(found)
     if found.error is not None:
-        found.order, found.order_reason = _order(
-            found, scene, partial(run.end, finer(document, 4)), own, ends
-        )
+        found.order, found.order_reason = _order(found, scene, partial(run, finer(document, 4)))
     yield found
 
 
@@ -157,51 +149,21 @@ def _something_rests(world: World, seconds: float) -> bool:
     return any(world.contacts.active for _ in world.stepping(seconds=seconds))
 
 
-class _Runs:
-    """Runs worlds for one time, and reads the state of the same bodies at the end."""
-
-    def __init__(self, bodies: list[str], seconds: float) -> None:
-        self._bodies, self._seconds = bodies, seconds
-
-    def end(self, world: World, budget_s: float = math.inf) -> _End:
-        """Return the state at the end.
-
-        Raises
-        ------
-        OutOfTime
-            If that takes longer than the budget [s].
-        """
-        rows = {world.label(int(entity)): row for entity, row in self._rows(world)}
-        start = time.perf_counter() - world.compile_s  # kernels may have to be compiled first
-        for _ in world.stepping(seconds=self._seconds, stride=1 if math.isfinite(budget_s) else _WHOLE):
-            if time.perf_counter() - start - world.compile_s > budget_s:
-                raise OutOfTime(f"given up after {budget_s:g} s, at t = {world.time:.3g} s")
-        kept = [rows[name] for name in self._bodies if name in rows]
-        transform, velocity = world.table(Transform), world.table(Velocity)
-        columns = (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
-        return np.column_stack([column[kept] for column in columns])
-
-    @staticmethod
-    def _rows(world: World) -> Iterator[tuple[int, int]]:
-        world.synchronise()
-        batch = world.batch(Transform, Velocity)
-        return zip(batch.entities.tolist(), batch.rows.tolist(), strict=True)
-
-
-def _compared(twin: Twin, world: World, run: _Runs, own: _End, ends: dict[str, _End]) -> TwinResult:
-    """Run a twin, and keep where it ends."""
-    end, failure = attempt(partial(run.end, world, twin.budget_s))
-    if end is None:
+def _compared(twin: Twin, world: World, run: Callable[[World, float], Path], found: Estimate) -> TwinResult:
+    """Run a twin, and keep its path."""
+    assert found.path is not None
+    path, failure = attempt(partial(run, world, twin.budget_s))
+    if path is None:
         return TwinResult(twin.name, twin.what, None, failure)
-    ends[twin.name] = end * _MIRROR if twin.mirrored else end
+    found.paths[twin.name] = path = path.mirrored() if twin.mirrored else path
     soft, by_impulses = steps_not_rigid(world)
     what = twin.what
     what += f"; {soft} steps were left to soft ones" if soft else ""
     what += f"; {by_impulses} steps were made by impulses, with an error of order one" if by_impulses else ""
-    return TwinResult(twin.name, what, _spread(own, ends[twin.name]))
+    return TwinResult(twin.name, what, _spread(found.path.end, path.end))
 
 
-def _spread(own: _End, other: _End) -> Spread:
+def _spread(own: NDArray[np.float64], other: NDArray[np.float64]) -> Spread:
     apart = np.abs(own - other)
     places, speeds = np.hypot(apart[:, 0], apart[:, 1]), np.hypot(apart[:, 3], apart[:, 4])
     return Spread(*(float(column.max(initial=0.0)) for column in (places, apart[:, 2], speeds, apart[:, 5])))
@@ -216,28 +178,27 @@ def _summarise(found: Estimate) -> None:
     found.error = Spread(*(max(getattr(spread, name) for spread in spreads.values()) for name in names))
 
 
-def _order(
-    found: Estimate, scene: World, quarter: Callable[[], _End], own: _End, ends: dict[str, _End]
-) -> tuple[float | None, str]:
+def _order(found: Estimate, scene: World, quarter: Callable[[], Path]) -> tuple[float | None, str]:
     """Return the power of the step with which places approach the truth, and how it was found."""
-    assert found.error is not None
-    error = found.error.position
+    assert found.error is not None and found.path is not None
+    error, own = found.error.position, found.path.end
     if error <= _ROUNDINGS * math.ulp(float(np.abs(own[:, :2]).max(initial=1.0))):
         return None, "the error is that of rounding"
     if found.worst == "nudged":
         return None, "a rounding at the start has grown to this: no step is short enough"
     if scene.plan.integrator.chooses_steps and not scene.event_driven:
         return None, f"{scene.plan.integrator.name} chooses its steps"
-    half = ends.get("half step")
-    if half is None:
+    half_path = found.paths.get("half step")
+    if half_path is None:
         return None, "half the step fails"
+    half = half_path.end
     coarse = _spread(own, half).position
     if coarse < _LIMITED_BY_STEP * error:
         return math.log2(error / (error - coarse)), f'the step matters less than the twin "{found.worst}"'
-    end, failure = attempt(quarter)
-    if end is None:
+    path, failure = attempt(quarter)
+    if path is None:
         return None, f"a quarter of the step fails: {failure}"
-    fine = _spread(half, end).position
+    fine = _spread(half, path.end).position
     if fine == 0.0:
         return None, "no difference is left between half and a quarter of the step"
     order = math.log2(coarse / fine)

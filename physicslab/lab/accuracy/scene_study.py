@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Trail, Transform, Velocity
-from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.audit import Audit
 from physicslab.ecs.config import SimulationConfig
+from physicslab.files.writer import write_scene
 from physicslab.integrators import INTEGRATORS
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error
-from physicslab.lab.accuracy.twins import finer_settings
+from physicslab.lab.accuracy.horizon import find_horizon, scaled
+from physicslab.lab.accuracy.twins import finer_settings, with_ids
 from physicslab.lab.case import Job, attempt, cpu_time
 from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
@@ -25,8 +27,10 @@ __all__ = ["DEFAULT_S", "ESTIMATE", "SceneRow", "SceneStudy", "study_scene"]
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"
 DEFAULT_S = 5.0
 """How long a scene is run, where nothing else is asked for."""
-_ESTIMATE_SHARE = 0.3
-"""Of the work of a study, roughly, that goes into the estimate."""
+_ESTIMATE_SHARE, _HORIZON_SHARE = 0.3, 0.4
+"""Of the work of a study, roughly, that is done after the estimate, and after the horizon was looked for."""
+_HORIZON_TIMES = 6.0
+"""How many times as long the horizon is looked for: it is often later than errors are compared."""
 _TIGHTEST = 1e-17
 _SUBSTEP_FACTORS = (0.5, 1.0, 2.0, 4.0)
 """The rungs of a ladder of steps: so many times the scene's own substeps."""
@@ -65,7 +69,7 @@ class SceneRow:
     tightest : float, optional
         The same from where the tightest method has it; ``None`` where there is no such method.
     energy : float, optional
-        The relative drift of the energy at the end; ``None`` where what is driven changes it.
+        The error of the energy at the end, as a share of the energy exchanged: what no account explains.
     failure : str
         Why there are no figures.
     """
@@ -100,6 +104,9 @@ class SceneStudy:
         The error of the scene as it is configured.
     rows : list of SceneRow
         Its methods.
+    horizon_s : float, optional
+        The time from the start [s] at which an error of one rounding has grown to another future; ``None``
+        where none does within six times that long.
     """
 
     name: str
@@ -107,6 +114,7 @@ class SceneStudy:
     tightest: str
     estimate: Estimate = field(default_factory=Estimate)
     rows: list[SceneRow] = field(default_factory=list)
+    horizon_s: float | None = None
 
 
 def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S) -> Job[SceneStudy]:
@@ -130,12 +138,15 @@ def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S
             study.estimate = found
         else:
             yield _ESTIMATE_SHARE * found
+    document = with_ids(write_scene(load()))
+    horizon = find_horizon(document, study.estimate.bodies, _HORIZON_TIMES * seconds)
+    study.horizon_s = yield from scaled(horizon, _ESTIMATE_SHARE, _HORIZON_SHARE)
     best, study.tightest = study.estimate.reference, "rigid contacts"
     if best is None:
         best, study.tightest = _tightest(load, plain, seconds)
     for i, simulation in enumerate(wanted):
         study.rows.append(_row(load, simulation, best, seconds))
-        yield _ESTIMATE_SHARE + (1.0 - _ESTIMATE_SHARE) * (i + 1) / len(wanted)
+        yield _HORIZON_SHARE + (1.0 - _HORIZON_SHARE) * (i + 1) / len(wanted)
     yield study
 
 
@@ -226,14 +237,14 @@ def _fill(
     """Run a scene by a configuration, and write its cost and its errors into a row."""
     for _ in range(_REPEATS):  # the shortest: the first also compiles, and other programs run as well
         world = _prepared(load, simulation)
-        drift = Drift(world)
+        audit = Audit(world)
         taken, places = cpu_time(partial(_end, world, seconds))
         row.cpu_s = min(row.cpu_s or taken, taken)
         if taken > _REPEATED_BELOW_S:
             break
     row.evaluations = world.force_evaluations
-    drift.sample(world)
-    row.energy = drift.error
+    audit.sample(world)
+    row.energy = audit.error
     row.half_step = _apart(places, _end(_prepared(load, finer_settings(simulation, 2)), seconds))
     if best is not None:
         row.tightest = _apart(places, best)

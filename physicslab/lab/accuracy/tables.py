@@ -9,11 +9,12 @@ from physicslab.lab.accuracy.estimate import Spread
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
-from physicslab.lab.accuracy.trust import TrustRow
+from physicslab.lab.accuracy.trust import Trust
+from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
 from physicslab.lab.accuracy.verdict import Verdict
 from physicslab.lab.table import cell, table
 
-__all__ = ["left_out_text", "scene_text", "study_text", "summary_text", "trust_text"]
+__all__ = ["left_out_text", "scene_text", "study_text", "summary_text", "trust_rows_text", "trust_text"]
 
 _HEAD = ("method", "order", "measured", "dt or tol", "steps", "forces", "CPU ms", "ms / s", "error", "energy",
          "momentum", "ang. mom.", "omega dt", "overlap", "hits", "verdict")  # fmt: skip
@@ -119,8 +120,16 @@ def _estimate_lines(study: SceneStudy) -> list[str]:
         f"  as it is configured, and how far its twins end from it after {study.seconds:g} s, of any body",
         table([head, *rows], words=(0, 5), indent="  "),
         f"  order of the error in the step: {order} ({found.order_reason})",
+        f"  horizon: {_horizon_words(study.horizon_s)}",
         "",
     ]
+
+
+def _horizon_words(horizon_s: float | None) -> str:
+    """Return until when a scene can be predicted."""
+    if horizon_s is None:
+        return "no rounding was seen to grow to another future"
+    return f"one of many possible futures {horizon_s:.3g} s after the start, by whatever method"
 
 
 def _spread_cells(spread: Spread | None) -> tuple[str, str, str, str]:
@@ -170,22 +179,38 @@ def left_out_text() -> str:
     return "\n".join(["not computed:", *(f"  {left.name}: {left.reason}" for left in LEFT_OUT)])
 
 
-def trust_text(rows: Sequence[TrustRow]) -> str:
+def trust_rows_text(rows: Sequence[TrustRow]) -> str:
     """Return a line for each problem: estimate, true error, and the second over the first."""
     head = ("problem", "method", "estimate", "true error", "true / estimate", "measured as")
     lines = [
         (
-            row.problem.name, row.integrator, cell(row.estimate, ".1e"), cell(row.error, ".1e"),
-            cell(row.ratio, ".2g"), row.problem.measure,
+            row.case.name, row.method, cell(row.estimate, ".1e"), cell(row.error, ".1e"),
+            cell(row.ratio, ".2g"), row.case.measure,
         )
         for row in rows
     ]  # fmt: skip
-    ratios = [row.ratio for row in rows if row.ratio is not None]
-    if not ratios:
+    found = summarise(rows)
+    if not found.known:
         return table([head, *lines], words=(0, 1, 5))
-    near = sum(0.1 <= ratio <= 10.0 for ratio in ratios)
     closing = (
-        f"within a factor of 10: {near} of {len(ratios)} ({near / len(ratios):.0%}); "
-        f"the true error is at most {max(ratios):.2g} times the estimate"
+        f"within a factor of 10: {found.near} of {found.known} ({found.near / found.known:.0%}); "
+        f"the true error is at most {found.largest:.2g} times the estimate: "
+        f"{'as it is to be' if found.holds else 'NOT AS IT IS TO BE'} (95 %, and at most 100)"
     )
     return "\n".join([table([head, *lines], words=(0, 1, 5)), "", closing])
+
+
+def trust_text(name: str, trust: Trust) -> str:
+    """Return how many digits of a scene can be relied on, and until when."""
+    if trust.failure:
+        return f"{name}: cannot be measured: {trust.failure}\n"
+    head = ("until", "position", "energy", "momentum", "worst body")
+    rows = [
+        (
+            f"{look.seconds:.4g} s", f"{look.digits:.1f}", f"{look.energy:.1f}", f"{look.momentum:.1f}",
+            [*trust.entities][look.bodies.index(look.digits)],
+        )
+        for look in trust.looks
+    ]  # fmt: skip
+    lines = [f"{name}: digits that agree in all ways to compute it", table([head, *rows], words=(4,))]
+    return "\n".join([*lines, f"  horizon: {_horizon_words(trust.horizon_s)}", ""])

@@ -8,10 +8,8 @@ is moved by far more: the rate at which both runs part is that at which any erro
 
 from __future__ import annotations
 
-import copy
 import math
-import random
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import Any
@@ -19,34 +17,46 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Transform, Velocity
 from physicslab.files.reader import read_scene
 from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error
-from physicslab.lab.accuracy.measure import finish
-from physicslab.lab.accuracy.problem import Problem
-from physicslab.lab.accuracy.settings import Setting
-from physicslab.lab.accuracy.twins import Document, finer_settings, with_ids
+from physicslab.lab.accuracy.horizon import find_horizon, scaled, sizes_of
+from physicslab.lab.accuracy.nudges import NUDGE_SHARE, NUDGES, ROUNDING, error_of_tolerance, nudged
+from physicslab.lab.accuracy.paths import Path, run_path
+from physicslab.lab.accuracy.twins import Document, finer, with_ids
 from physicslab.lab.case import Job, attempt
 from physicslab.lab.document import finite
 from physicslab.world import World
 
-__all__ = ["Trust", "TrustRow", "assess", "assess_problem", "trust_report"]
+__all__ = ["Look", "Trust", "assess", "moments_of", "trust_report"]
 
-_NUDGES = 6
-"""How many starts are moved by one rounding."""
-_NUDGE_SHARE = 0.5
-"""A number is off by half a rounding where it is rounded, and these are moved by a whole one."""
-_LOOSER = 2.0**-8
-"""The share of the error of a tolerance 2^8 times as large that is left with the scene's own."""
-_ROUNDING = 2.0**-50
-"""The smallest error of a result, as a share of its size: that of a few operations."""
-_DISPLACED = 1e-10
-"""By what share of its size each body is displaced in the twin that shows how errors grow."""
-_PARTED = 0.1
-"""Two runs in which a body is so many of its sizes apart have parted: they are different futures."""
-_LOOKS = 400
-"""How often two runs are compared."""
+_TWINS, _NUDGED = 0.6, 0.85
+"""Shares of the work after which the twins are run, and after which the starts are that are moved."""
+
+type _Errors = NDArray[np.float64]
+type _Compare = Callable[[Path], _Errors]
+"""Returns how far a path is from that of the scene, at each moment."""
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What can be relied on from the start to one moment of a run.
+
+    Attributes
+    ----------
+    seconds : float
+        When, after the start [s].
+    digits, energy, momentum : float
+        The fewest digits until then of any position, of the energy and of the momentum.
+    bodies : list of floats
+        Those of each body's position, in the order of the scene.
+    """
+
+    seconds: float
+    digits: float
+    energy: float
+    momentum: float
+    bodies: list[float]
 
 
 @dataclass(slots=True)
@@ -59,6 +69,9 @@ class Trust:
         Of the position of the worst body; ``nan`` where nothing moves or the run failed.
     worst : str
         That body.
+    energy, momentum : float
+        Digits of the total energy, as a share of the largest of it and its parts since the start, and of the
+        momentum, as a share of the largest sum of those of all bodies.
     entities : dict of str to float
         How many digits of the position of each body agree in all ways to compute it.
     horizon_s : float, optional
@@ -68,44 +81,33 @@ class Trust:
         Which twins were compared.
     failure : str
         Why there are no figures.
+    looks : list of Look
+        How digits became fewer, if moments were chosen; the last is that of the end.
     """
 
     digits: float = math.nan
     worst: str = ""
+    energy: float = math.nan
+    momentum: float = math.nan
     entities: dict[str, float] = field(default_factory=dict)
     horizon_s: float | None = None
     ways: list[str] = field(default_factory=list)
     failure: str = ""
+    looks: list[Look] = field(default_factory=list)
 
 
-@dataclass(frozen=True, slots=True)
-class TrustRow:
-    """A problem with a known answer: how large its error was estimated to be, and how large it is.
+def moments_of(seconds: float, dt: float, count: int) -> list[float]:
+    """Return at most so many moments of a run before its end [s], at the ends of steps.
 
-    Attributes
-    ----------
-    problem : Problem
-        Which.
-    integrator : str
-        The method that ran.
-    estimate, error : float, optional
-        Both as the problem measures errors; ``None`` where the run failed.
+    >>> moments_of(1.0, 0.25, 2), moments_of(0.5, 0.25, 100)
+    ([0.5], [0.25])
     """
-
-    problem: Problem
-    integrator: str
-    estimate: float | None
-    error: float | None
-
-    @property
-    def ratio(self) -> float | None:
-        """The true error over the estimate; both are taken to be a rounding at least."""
-        if self.estimate is None or self.error is None:
-            return None
-        return max(self.error, _ROUNDING) / max(self.estimate, _ROUNDING)
+    steps = math.ceil(seconds / dt) - 1
+    ends = {round(k * seconds / (count * dt)) for k in range(1, count)}
+    return [n * dt for n in sorted(ends) if 1 <= n <= steps]
 
 
-def assess(load: Callable[[], World], seconds: float) -> Job[Trust]:
+def assess(load: Callable[[], World], seconds: float, moments: Sequence[float] = ()) -> Job[Trust]:
     """Compute a scene in all ways there are; yield the share of the work that is done, then the result.
 
     Parameters
@@ -114,144 +116,86 @@ def assess(load: Callable[[], World], seconds: float) -> Job[Trust]:
         Returns the scene's world, a new one each time.
     seconds : float
         How long it is run [s].
+    moments : sequence of floats
+        Before which other moments digits are counted as well, after the start [s], in order.
     """
     estimate = Estimate()
-    for found in estimate_error(load, seconds):
+    for found in estimate_error(load, seconds, moments):
         if isinstance(found, Estimate):
             estimate = found
         else:
-            yield 0.7 * found
-    if estimate.end is None or not len(estimate.bodies):
+            yield _TWINS * found
+    if estimate.path is None or not estimate.bodies:
         yield Trust(failure=estimate.failure or "nothing moves")
         return
     document, world = with_ids(write_scene(load())), load()
     world.synchronise()
-    chooses = world.plan.integrator.chooses_steps
-    shares = {"half step": _LOOSER if chooses else 1.0, "nudged": 0.0}  # nudged here in other ways
-    scale = np.maximum(np.hypot(*estimate.end.T), _sizes(world, estimate.bodies))
-    errors = _ROUNDING * scale
-    for name, distances in estimate.distances.items():
-        errors = np.maximum(errors, shares.get(name, 1.0) * distances)
-    squares = []
-    for n in range(_NUDGES):
-        twin, _ = attempt(partial(_places, read_scene(_nudged(document, n)), estimate.bodies, seconds))
-        if twin is not None:
-            squares.append(np.sum((twin - estimate.end) ** 2, axis=1))
-        yield 0.7 + 0.2 * n / _NUDGES
-    if squares:
-        errors = np.maximum(errors, _NUDGE_SHARE * np.sqrt(np.mean(squares, axis=0)))
-    digits = np.maximum(-np.log10(errors / scale), 0.0)
-    worst = int(digits.argmin())
+    run = partial(run_path, bodies=estimate.bodies, moments=(*moments, seconds))
+    looser = None
+    if world.plan.integrator.chooses_steps:
+        looser, _ = attempt(partial(run, finer(document, 4)))
+    own = estimate.path
+    nudges = yield from scaled(_nudges(document, run), _TWINS, _NUDGED)
+
+    def digits(compare: _Compare, scale: _Errors) -> _Errors:
+        """Return the digits of a quantity at each moment."""
+        errors = _errors(compare, estimate.paths, looser, nudges)
+        shares = np.maximum(errors / np.where(scale > 0.0, scale, 1.0), ROUNDING)
+        found: _Errors = np.maximum(-np.log10(shares), 0.0)
+        return found
+
+    reach = np.maximum(np.hypot(*np.moveaxis(own.places, 2, 0)), sizes_of(world, estimate.bodies))
+    places = digits(lambda path: np.hypot(*np.moveaxis(path.places - own.places, 2, 0)), reach)
+    energy = digits(lambda path: np.abs(path.energy - own.energy), own.energy_scale)
+    momentum = digits(lambda path: np.hypot(*(path.momentum - own.momentum).T), own.momentum_scale)
+    horizon = yield from scaled(find_horizon(document, estimate.bodies, seconds), _NUDGED, 1.0)
+    worst = int(places[-1].argmin())
     yield Trust(
-        float(digits[worst]), estimate.bodies[worst],
-        dict(zip(estimate.bodies, digits.tolist(), strict=True)),
-        _horizon(document, estimate.bodies, seconds), [*estimate.distances],
+        float(places[-1, worst]), estimate.bodies[worst], float(energy[-1]), float(momentum[-1]),
+        dict(zip(estimate.bodies, places[-1].tolist(), strict=True)), horizon, [*estimate.paths],
+        looks=_looks((*moments, seconds), places, energy, momentum) if moments else [],
     )  # fmt: skip
 
 
-def assess_problem(problem: Problem) -> Job[TrustRow]:
-    """Estimate the error of a problem, run as ``auto`` runs it, and measure its true error.
+def _nudges(document: Document, run: Callable[[World], Path]) -> Generator[float, None, list[Path]]:
+    """Run starts that are moved by one rounding, and return the paths of those that do not fail."""
+    paths = []
+    for n in range(NUDGES):
+        path, _ = attempt(partial(run, read_scene(nudged(document, n))))
+        if path is not None:
+            paths.append(path)
+        yield (n + 1) / NUDGES
+    return paths
 
-    The estimate is how much the problem's figure changes where it is computed in other ways.
+
+def _errors(
+    compare: _Compare, twins: dict[str, Path], looser: Path | None, nudges: Iterable[Path]
+) -> _Errors:
+    """Return the estimate of an error at each moment: the largest difference in any way to compute it.
+
+    Where the method chooses its steps, ``looser`` is the path with steps four times as long.
     """
-    simulation = Setting("auto").simulation(problem)
-    world = problem.build(simulation)
-    document = write_scene(world)
-    world.synchronise()
-    method = world.plan.integrator
-    error, _ = attempt(partial(finish, problem, world))
-    if error is None:
-        yield TrustRow(problem, method.name, None, None)
-        return
-    finer, _ = attempt(partial(finish, problem, problem.build(finer_settings(simulation, 2))))
-    step = 0.0 if finer is None else (_LOOSER if method.chooses_steps else 1.0) * abs(error - finer)
-    squares = []
-    for n in range(_NUDGES):
-        twin, _ = attempt(partial(finish, problem, read_scene(_nudged(document, n))))
-        if twin is not None:
-            squares.append((error - twin) ** 2)
-        yield n / _NUDGES
-    rounding = _NUDGE_SHARE * math.sqrt(sum(squares) / len(squares)) if squares else 0.0
-    yield TrustRow(problem, method.name, max(step, rounding), error)
+    apart = {name: compare(path) for name, path in twins.items() if name != "nudged"}  # done in other ways
+    if looser is not None and "half step" in apart:
+        apart["half step"] = error_of_tolerance(apart["half step"], compare(looser))
+    squares = [compare(path) ** 2 for path in nudges]
+    rounding = [NUDGE_SHARE * np.sqrt(np.mean(squares, axis=0))] if squares else []
+    found: _Errors = np.max([*apart.values(), *rounding], axis=0)
+    return found
+
+
+def _looks(moments: Sequence[float], places: _Errors, energy: _Errors, momentum: _Errors) -> list[Look]:
+    """Return the fewest digits until each moment."""
+    places, energy, momentum = (np.minimum.accumulate(found) for found in (places, energy, momentum))
+    rows = zip(moments, places.tolist(), energy.tolist(), momentum.tolist(), strict=True)
+    return [Look(seconds, min(bodies), e, p, bodies) for seconds, bodies, e, p in rows]
 
 
 def trust_report(trust: Trust) -> dict[str, Any]:
     """Return it as ``run --json`` has it: no number that is not finite."""
     found = asdict(trust)
-    found["digits"] = finite(trust.digits)
+    for name in ("digits", "energy", "momentum"):
+        found[name] = finite(found[name])
+    if not trust.looks:
+        del found["looks"]
     return found
-
-
-def _nudged(document: Document, seed: int) -> Document:
-    """Return a scene with places, velocities, masses and gravity moved by one rounding each, up or down.
-
-    What is zero stays: it is not rounded, and with it a symmetry that no rounding breaks.
-    """
-    twin, order = copy.deepcopy(document), random.Random(seed)
-
-    def move(part: dict[str, Any], *names: str) -> None:
-        for name in names:
-            value = part.get(name)
-            if isinstance(value, list):
-                part[name] = [_next(number, order) for number in value]
-            elif value is not None:
-                part[name] = _next(value, order)
-
-    for entity in twin["entities"]:
-        if "Velocity" in entity:
-            move(entity.get("Transform", {}), "position", "angle")
-            move(entity["Velocity"], "linear", "angular")
-            move(entity.get("Mass", {}), "mass")
-    move(twin.get("physics", {}), "gravity", "G")
-    return twin
-
-
-def _next(number: float, order: random.Random) -> float:
-    """Return the next number up or down; of zero itself."""
-    return math.nextafter(number, order.choice((-math.inf, math.inf))) if number else number
-
-
-def _moving(world: World, bodies: list[str]) -> list[int]:
-    """Return the rows of bodies by their names."""
-    world.synchronise()
-    batch = world.batch(Transform, Velocity)
-    entities, rows = batch.entities.tolist(), batch.rows.tolist()
-    found = {world.label(entity): row for entity, row in zip(entities, rows, strict=True)}
-    return [found[name] for name in bodies]
-
-
-def _sizes(world: World, bodies: list[str]) -> NDArray[np.float64]:
-    """Return half the extent of each body (n,) [m]; of one without a shape that of the whole scene."""
-    rows = _moving(world, bodies)
-    shape, places = world.table(Shape), world.table(Transform)["position"][rows]
-    sizes = np.maximum(shape["radius"][rows], 0.5 * np.hypot(shape["width"][rows], shape["height"][rows]))
-    whole = float(np.abs(places - places.mean(axis=0)).max()) or 1.0
-    return np.where(sizes > 0.0, sizes, whole)
-
-
-def _places(world: World, bodies: list[str], seconds: float) -> NDArray[np.float64]:
-    """Run a world, and return where bodies are then (n, 2) [m]."""
-    rows = _moving(world, bodies)
-    world.run(seconds=seconds)
-    places: NDArray[np.float64] = world.table(Transform)["position"][rows].copy()
-    return places
-
-
-def _horizon(document: Document, bodies: list[str], seconds: float) -> float | None:
-    """Return the time [s] at which one rounding has grown to a different future, if that is found."""
-    world, twin = read_scene(document), read_scene(document)
-    rows, other = _moving(world, bodies), _moving(twin, bodies)
-    sizes = _sizes(world, bodies)
-    ways = np.random.default_rng(0).choice((-1.0, 1.0), (len(bodies), 2))
-    twin.table(Transform)["position"][other] += _DISPLACED * sizes[:, None] * ways
-    steps = max(1, round(seconds / world.simulation.dt))
-    stride = max(1, steps // _LOOKS)
-    start = world.time
-    beside = twin.stepping(seconds=seconds, stride=stride)
-    for _ in world.stepping(seconds=seconds, stride=stride):
-        next(beside, None)
-        apart = world.table(Transform)["position"][rows] - twin.table(Transform)["position"][other]
-        if (np.hypot(*apart.T) > _PARTED * sizes).any():
-            rate = math.log(_PARTED / _DISPLACED) / (world.time - start)
-            return math.log(_PARTED / _ROUNDING) / rate
-    return None

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from physicslab.components import Mass, Transform, Velocity
+from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.diagnostics.forces import fastest_force
 from physicslab.lab.accuracy.problem import Problem
@@ -29,6 +30,8 @@ class Watched:
     energy : float, optional
         |E - E_true| as a share of |E| at the start (of the largest kinetic energy, where that is 0). E_true
         is the energy at the start, or where friction, drag or a damper acts the exact energy at that time.
+    numerical : float, optional
+        What no account explains of the energy, as a share of the energy exchanged.
     momentum, angular_momentum : float, optional
         As shares of the sum of the bodies' own.
     rate_dt : float, optional
@@ -40,6 +43,7 @@ class Watched:
     """
 
     energy: float | None = None
+    numerical: float | None = None
     momentum: float | None = None
     angular_momentum: float | None = None
     rate_dt: float | None = None
@@ -51,7 +55,7 @@ def watch(problem: Problem, setting: Setting) -> Watched:
     """Run a problem once more, and measure it at random times."""
     world = problem.build(setting.simulation(problem))
     world.synchronise()
-    seen, watched = _Conserved(world), Watched()
+    seen, watched, audit = _Conserved(world), Watched(), Audit(world)
     energy, momentum, spin = 0.0, 0.0, 0.0
     rate, _ = fastest_force(world)
     deepest = 0.0
@@ -61,12 +65,14 @@ def watch(problem: Problem, setting: Setting) -> Watched:
                 deepest = max(deepest, world.contacts.max_penetration)
             if sampled:
                 off = seen.measure(world, problem)
+                audit.sample(world)
                 energy, momentum, spin = (
                     float(np.maximum(*pair)) for pair in zip((energy, momentum, spin), off, strict=True)
                 )
                 rate = max(rate, fastest_force(world)[0])
     if problem.exact_energy is not None or "energy" in problem.keeps:
         watched.energy = seen.share(energy)
+    watched.numerical = audit.error
     watched.momentum = momentum if "momentum" in problem.keeps else None
     watched.angular_momentum = spin if "angular_momentum" in problem.keeps else None
     method = world.plan

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from physicslab.components import Transform, Velocity
-from physicslab.diagnostics.energy import Drift
+from physicslab.diagnostics.audit import Audit
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.lab.stability.case import StabilityCase
 from physicslab.lab.worlds import open_space, spawn_point
@@ -39,11 +39,11 @@ def _unreported(softening: float, apart: float) -> float:
 
 def _energy_change(world: World, seconds: float) -> float:
     """Return the largest change of energy, seen 97 times on the way; the world chooses its steps."""
-    drift = Drift(world)
+    audit = Audit(world)
     for _ in range(97):
         world.run(seconds=seconds / 97.0)
-        drift.sample(world)
-    return drift.relative
+        audit.sample(world)
+    return audit.change
 
 
 def _close_encounter() -> float:

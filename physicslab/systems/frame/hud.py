@@ -14,7 +14,13 @@ from physicslab.view.panels.figures import EnergyWatch, FrameMeter, WorldFigures
 from physicslab.view.panels.laws import has_gravity
 from physicslab.view.panels.legend import legend_of
 from physicslab.view.panels.panels import Line
-from physicslab.view.panels.readings import cost_lines, left_out_lines, measure_lines, method_lines
+from physicslab.view.panels.readings import (
+    cost_lines,
+    impulse_lines,
+    left_out_lines,
+    measure_lines,
+    method_lines,
+)
 from physicslab.view.panels.refresh_timer import RefreshTimer
 from physicslab.view.panels.scale_bar import draw_scale_bar
 from physicslab.view.panels.warnings import draw_advice
@@ -70,6 +76,7 @@ class HudSystem(System):
             window.impacts.follow(world, window.edits.history)
         if window.error_study.poll():
             self._announce(window.error_study.failure)
+        window.trust.follow(world, window.now)
         taken = self._draw_over_world(world)
         interface.build(world, self._figures, self._details, self._measures, elapsed)
         interface.draw(window.canvas)
@@ -101,7 +108,8 @@ class HudSystem(System):
             self._figures = measure_world(world, self._watch, self._meter.frame_rate)
             self._measures = measure_lines(world, self._figures) if window.level != "Explore" else []
         elif window.level == "Engineer":
-            self._details = [*method_lines(world), *cost_lines(world, self._meter), *left_out_lines(world)]
+            costs = [*cost_lines(world, self._meter), *left_out_lines(world)]
+            self._details = [*impulse_lines(self._figures), *method_lines(world), *costs]
 
     def _announce(self, failure: str) -> None:
         """Show how measuring the error ended."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from physicslab.components import Held
-from physicslab.diagnostics.energy import Drift, Energy, Momentum, measure_momentum
+from physicslab.components import Held, Mass, Transform, Velocity
+from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.energy import Energy, Momentum
 from physicslab.diagnostics.reference_solution import ReferenceSolution, reference_solution
+from physicslab.ecs.vector import Vector2
 from physicslab.view.picture.bodies import body_rows
 from physicslab.world import World
 
@@ -27,8 +29,10 @@ class WorldFigures:
         How many bodies there are and sleep, pairs that are near each other, and pairs that touch.
     energy : Energy
         Kinetic and potential [J].
-    drift : Drift
-        How far the energy [J] departed from what it was at the last edit.
+    audit : Audit
+        What gave energy and took it since the accounts of the world began, and the error.
+    held, driven : bool
+        Whether a hand holds a body, which then has that body's energy, and whether bodies are driven.
     since : float
         Time of the world [s] at the last edit.
     momentum : Momentum
@@ -46,7 +50,9 @@ class WorldFigures:
     candidate_pairs: int
     contacts: int
     energy: Energy
-    drift: Drift
+    audit: Audit
+    held: bool
+    driven: bool
     since: float
     momentum: Momentum
     known: ReferenceSolution | None
@@ -56,21 +62,26 @@ class WorldFigures:
 
 def measure_world(world: World, watch: EnergyWatch, frame_rate: float = 0.0) -> WorldFigures:
     """Measure a world as it is now."""
-    drift = watch.sample(world)
-    contacts, known = world.contacts, watch.known
+    audit = watch.sample(world)
+    contacts, known, now = world.contacts, watch.known, audit.account.now
     return WorldFigures(
         len(body_rows(world)), world.sleep.count, contacts.candidate_pairs, contacts.count,
-        drift.latest, drift, watch.since, measure_momentum(world),
+        audit.latest, audit, len(world.batch(Held)) > 0,
+        _are_driven(world), watch.since, Momentum(Vector2(now.px, now.py), now.spin),
         known, known.error(world) if known is not None else 0.0, frame_rate,
     )  # fmt: skip
 
 
-class EnergyWatch:
-    """Watches the energy of a world from one edit to the next, and its motion where that is known exactly.
+def _are_driven(world: World) -> bool:
+    moving = world.batch(Transform, Velocity).rows
+    return not world.table(Mass).present[moving].all()
 
-    What changes the laws of the world, or its structure where the motion may depend on that, is an edit, and
-    so is taking a body and letting it go: the energy that these bring in or take out is no error of the
-    simulation.
+
+class EnergyWatch:
+    """Watches the accounts of a world, and its motion from one edit to the next where that is known exactly.
+
+    What a user changes is booked as an edit and is no error of the simulation; the exact solution begins
+    again with it.
 
     Attributes
     ----------
@@ -83,31 +94,30 @@ class EnergyWatch:
     def __init__(self) -> None:
         self.since = 0.0
         self.known: ReferenceSolution | None = None
-        self._drift: Drift | None = None
+        self._audit: Audit | None = None
+        self._begin: object = None
+        self._time = math.inf
         self._seen: tuple[World, int] | None = None
 
     def follow(self, world: World) -> None:
         """Begin again if the world was edited; to be called in every frame, so that nothing is missed."""
-        if self._drift is None or self._seen != (world, world.motion_edits):
-            self.restart(world)
+        if self._seen != (world, world.motion_edits):
+            self.known = reference_solution(world)
+            self._seen, self.since = (world, world.motion_edits), world.time
 
-    def restart(self, world: World) -> Drift:
-        """Begin again from the energy as it is now."""
-        self._drift = Drift(world)
-        self.known = reference_solution(world)
-        self._seen, self.since = (world, world.motion_edits), world.time
-        return self._drift
-
-    def sample(self, world: World) -> Drift:
-        """Measure the energy as it is now.
-
-        While a body is held the hand does work all the time, and there is nothing to compare with.
-        """
+    def sample(self, world: World) -> Audit:
+        """Read the accounts as they are now; the audit begins again with them, or where time went back."""
         self.follow(world)
-        if self._drift is None or len(world.batch(Held)):
-            return self.restart(world)
-        self._drift.sample(world)
-        return self._drift
+        if len(world.batch(Held)):
+            self._seen = None  # a hand moves bodies all the time: no solution is known
+        account = world.account
+        begin = world, account.start, account.since
+        if self._audit is None or account.start is None or begin != self._begin or world.time < self._time:
+            self._audit, self._begin = Audit(world, whole=True), begin
+        else:
+            self._audit.sample(world)
+        self._time = world.time
+        return self._audit
 
 
 class FrameMeter:

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from physicslab.diagnostics.energy import energy_changers, summation
+from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
+from physicslab.diagnostics.energy import summation
 from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity
 from physicslab.view.panels.figures import FrameMeter, WorldFigures
 from physicslab.view.panels.panels import Line
 from physicslab.world import World
 
-__all__ = ["cost_lines", "left_out_lines", "measure_lines", "method_lines"]
+__all__ = ["cost_lines", "impulse_lines", "left_out_lines", "measure_lines", "method_lines"]
 
 
 def measure_lines(world: World, figures: WorldFigures) -> list[Line]:
     """Return how it moves, and what should not change."""
     return [
-        *_energy_lines(world, figures),
+        *_energy_lines(figures),
         *_error_lines(figures),
         Line("Total momentum", quantity(figures.momentum.linear.magnitude, "kg m/s")),
         Line("as a vector", vector_quantity(figures.momentum.linear, "kg m/s"), "detail"),
@@ -23,8 +24,8 @@ def measure_lines(world: World, figures: WorldFigures) -> list[Line]:
     ]
 
 
-def _energy_lines(world: World, figures: WorldFigures) -> list[Line]:
-    energy, drift = figures.energy, figures.drift
+def _energy_lines(figures: WorldFigures) -> list[Line]:
+    energy, audit = figures.energy, figures.audit
     lines = [
         Line("Kinetic energy", quantity(energy.kinetic, "J")),
         Line("linear", quantity(energy.kinetic_linear, "J"), "detail"),
@@ -33,16 +34,17 @@ def _energy_lines(world: World, figures: WorldFigures) -> list[Line]:
     if energy.potential:
         lines.append(Line("Potential energy", quantity(sum(energy.potential.values()), "J")))
         lines += [Line(name, quantity(stored, "J"), "detail") for name, stored in energy.potential.items()]
-    change = drift.latest.total - drift.initial.total
-    causes = energy_changers(world)
     return [
         *lines,
         Line("Total energy", quantity(energy.total, "J")),
-        Line("Energy change" if causes else "Energy drift", quantity(change, "J")),
-        *([Line(f"by {', '.join(causes)}", kind="detail")] if causes else []),
-        Line("largest so far", f"{quantity(drift.largest, 'J')}, {percentage(drift.relative)}", "detail"),
-        Line("since the last edit", f"at {figures.since:.2f} s", "detail"),
-    ]
+        Line("Energy change", quantity(audit.account.change, "J")),
+        *(Line(f"by {ACCOUNT_WORDS[name]}", quantity(value, "J"), "detail")
+          for name, value in flows(audit.notable)),
+        Line("Error of the method", quantity(audit.account.energy["numerical"], "J")),
+        Line("largest so far", quantity(audit.largest_error, "J"), "detail"),
+        Line("largest, as a share", percentage(audit.error), "detail"),
+        Line("counted since", f"{audit.account.since:.2f} s", "detail"),
+    ]  # fmt: skip
 
 
 def _error_lines(figures: WorldFigures) -> list[Line]:
@@ -51,6 +53,21 @@ def _error_lines(figures: WorldFigures) -> list[Line]:
     return [
         Line("Position error", quantity(figures.error, "m")),
         Line(f"against {figures.known.what}", kind="detail"),
+        Line("since the last edit", f"at {figures.since:.2f} s", "detail"),
+    ]
+
+
+def impulse_lines(figures: WorldFigures) -> list[Line]:
+    """Return what gave momentum and angular momentum to the world."""
+    account = figures.audit.account
+    linear = [(name, value) for name, value in account.momentum.items() if value.magnitude != 0.0]
+    turning = [(name, value) for name, value in account.angular_momentum.items() if value != 0.0]
+    return [
+        Line(kind="gap"),
+        Line("Impulses from outside", "by cause", "heading"),
+        *(Line(ACCOUNT_WORDS[name], vector_quantity(value, "N s")) for name, value in linear),
+        Line("Angular impulses", "about the origin", "heading"),
+        *(Line(ACCOUNT_WORDS[name], quantity(value, "N m s")) for name, value in turning),
     ]
 
 

@@ -15,6 +15,7 @@ from physicslab.view.canvas.canvas import Canvas, Rect
 from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.overlay.overlays import Overlays
 from physicslab.view.panels.error_study import ErrorStudy
+from physicslab.view.panels.trust_watch import TrustWatch
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
@@ -182,6 +183,8 @@ class Window:
         The spring that is being drawn with the mouse.
     error_study : ErrorStudy
         Error against run time of the scene, measured when its key is pressed.
+    trust : TrustWatch
+        How many digits of what is shown can be relied on.
     scene_file : path, optional
         The scene file that was last saved or opened.
     unchanged : int
@@ -246,6 +249,7 @@ class Window:
         self.source: str | Path | None = None
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
         self.error_study = ErrorStudy()
+        self.trust = TrustWatch()
         self.spring_tool = SpringTool()
         self.scene_file: Path | None = None
         self.unchanged = 0

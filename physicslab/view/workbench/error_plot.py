@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -32,6 +33,8 @@ _WORDS = 12.0
 """Height of all that is above and below them, in heights of the text."""
 _LEGEND = 16.0
 """The height in heights of the text from which on a plot has room for a legend."""
+_NEAR = 0.7
+"""How near to a mark the cursor must be to point at it, in heights of the text."""
 _ROOM = 2.0
 """By what factor axes go beyond the marks."""
 
@@ -64,18 +67,14 @@ def _build_result(ui: Ui, window: Window) -> None:
         imgui.push_text_wrap_pos(wide)
         ui.faint(
             f"How far bodies are off after {study.seconds:g} s: each mark is one run, left is fast, low is "
-            f"right. Compared with {study.reference}; there is no known answer.",
+            f"right. Compared with {study.reference}; there is no known answer. A click on a mark, or on a "
+            "name in the table, runs the scene by it.",
             wrapped=False,
         )
         if study.chaotic:
-            shown = round_quantity(study.rounding, "m")
-            ui.text(
-                f"This scene is chaotic: one rounding at the start moves a body by {shown} until then. No "
-                "method can be right about places below that line, whichever is lower here.",
-                ui.theme.paused,
-            )
+            ui.text(_chaos(study), ui.theme.paused)
         imgui.pop_text_wrap_pos()
-        _build_plot(ui, study, (wide - _TABLE * size, high) if beside else (wide, 0.55 * high))
+        _build_plot(ui, study, window, (wide - _TABLE * size, high) if beside else (wide, 0.55 * high))
         if beside:
             imgui.same_line()
         _build_table(ui, study, window, (_TABLE * size, high) if beside else (wide, 0.45 * high))
@@ -88,7 +87,25 @@ def _build_result(ui: Ui, window: Window) -> None:
         study.shown = False
 
 
-def _build_plot(ui: Ui, study: ErrorStudy, size: tuple[float, float]) -> None:
+def _chaos(study: ErrorStudy) -> str:
+    """Return why a chaotic scene has no error, and until when it has one."""
+    moved = round_quantity(study.rounding, "m")
+    words = ["This scene is chaotic."]
+    if study.horizon is not None:
+        words.append(
+            f"It has no error but a horizon, {study.horizon:.3g} s from the start. Until then every error "
+            "grows, that of one rounding too, which no method avoids; after it any run is one of many "
+            "possible futures: energy, momentum and averages hold, places do not."
+        )
+    if study.rounding_shows:
+        words.append(
+            f"One rounding at the start moves a body by {moved} in {study.seconds:g} s. No method can be "
+            "right about places below that line, whichever is lower here."
+        )
+    return " ".join(words)
+
+
+def _build_plot(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, float]) -> None:
     flags = implot.Flags_.no_title | implot.Flags_.no_menus
     if size[1] < _LEGEND * ui.size:
         flags |= implot.Flags_.no_legend
@@ -114,7 +131,29 @@ def _build_plot(ui: Ui, study: ErrorStudy, size: tuple[float, float]) -> None:
         spec = implot.Spec()
         spec.flags, spec.line_color = implot.InfLinesFlags_.horizontal, _opaque(ui.theme.faint)
         implot.plot_inf_lines("one rounding at the start", np.array([study.rounding]), spec)
+    _build_marks(ui, study, window)
     implot.end_plot()
+
+
+def _build_marks(ui: Ui, study: ErrorStudy, window: Window) -> None:
+    """Let the mark at the cursor show what it stands for, and a click choose its method and step."""
+    reach, cursor = _NEAR * ui.size, imgui.get_mouse_pos()
+    nearest, least = None, reach
+    for n, run in enumerate(sorted(study.samples, key=lambda run: run.cpu_ms)):
+        mark = implot.plot_to_pixels(run.cpu_ms, max(run.error, _FLOOR))
+        ui.places[f"{run.name} {n + 1}"] = (
+            round(mark.x - reach), round(mark.y - reach), round(2 * reach), round(2 * reach)
+        )  # fmt: skip
+        distance = math.hypot(mark.x - cursor.x, mark.y - cursor.y)
+        if distance < least:
+            nearest, least = run, distance
+    if nearest is None or not implot.is_plot_hovered():
+        return
+    words = f"A click runs this scene by {nearest.name} {nearest.step}"
+    ui.words.append(words)
+    imgui.set_tooltip(words)
+    if imgui.is_mouse_clicked(imgui.MouseButton_.left):
+        window.deeds.append(_using(nearest))
 
 
 def _build_table(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, float]) -> None:

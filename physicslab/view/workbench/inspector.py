@@ -21,6 +21,7 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench.component_rows import ORDER, ComponentRows
 from physicslab.view.workbench.derived_rows import build_derived, build_forces
 from physicslab.view.workbench.number_field import NumberFields
+from physicslab.view.workbench.trust_badge import build_body_digits
 from physicslab.world import World
 
 __all__ = ["Inspector"]
@@ -74,6 +75,7 @@ class Inspector:
             for label, value in readings_of(world, first):
                 ui.row(label, value)
             build_derived(ui, world, first, is_brief=window.level == "Explore")
+            build_body_digits(ui, world, window, first)
             if window.level != "Explore" or window.overlays.arrows:
                 build_forces(ui, window.measured, is_brief=window.level != "Engineer")
         self._build_components(ui, world, window)

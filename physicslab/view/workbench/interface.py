@@ -182,6 +182,7 @@ class Interface:
             window.help,
             window.error_study.shown,
             window.error_study.share if window.error_study.running else None,
+            window.trust.state,
             window.lists_history,
             window.shows_gallery,
             window.naming is None,

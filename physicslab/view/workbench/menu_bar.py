@@ -15,6 +15,7 @@ from physicslab.view.controls.scene_files import scene_files
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.open_panel import recent_label
+from physicslab.view.workbench.trust_badge import badge_width, build_badge
 from physicslab.world import World
 
 __all__ = ["build_menu_bar"]
@@ -40,12 +41,20 @@ def build_menu_bar(ui: Ui, world: World, window: Window) -> None:
             with ui.menu("Scenes") as shown:
                 if shown:
                     _build_scenes(ui, world, window)
-    title = shortened(printable(world.title or world.name or "A scene"), _MAX_TITLE)
-    room = imgui.get_content_region_avail().x - imgui.calc_text_size(title).x
-    if room > 0:
-        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + room)
-        ui.faint(title, wrapped=False)
+    _build_right(ui, world, window)
     imgui.end_main_menu_bar()
+
+
+def _build_right(ui: Ui, world: World, window: Window) -> None:
+    """Build the badge at the right, and the title of the scene where there is room for both."""
+    title = shortened(printable(world.title or world.name or "A scene"), _MAX_TITLE)
+    room, width = imgui.get_content_region_avail().x, imgui.calc_text_size(title).x
+    beside = room - width - ui.size
+    is_titled = badge_width(ui, world, window) <= beside
+    build_badge(ui, world, window, beside if is_titled else room)
+    if is_titled:
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
+        ui.faint(title, wrapped=False)
 
 
 def _begin_walk(menu: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import BODY_QUANTITIES, QUANTITIES, WORLD_QUANTITIES
@@ -18,6 +19,17 @@ __all__ = ["build_quantities", "named_key", "shown_name", "unit_of"]
 
 _OFFERED = 24
 """Bodies that a menu lists beside those that are selected or shown already."""
+
+
+def _grouped(names: Iterable[str]) -> dict[str, list[str]]:
+    """Return names by the group in which a menu has them."""
+    groups: dict[str, list[str]] = {}
+    for name in names:
+        groups.setdefault(QUANTITIES[name].group, []).append(name)
+    return groups
+
+
+_OF_WORLD, _OF_BODY = _grouped(WORLD_QUANTITIES), _grouped(BODY_QUANTITIES)
 
 
 def unit_of(key: Key) -> str:
@@ -57,10 +69,12 @@ def build_quantities(
         with ui.menu(name) as is_open:
             if not is_open:
                 continue
-            for quantity in WORLD_QUANTITIES if body is None else BODY_QUANTITIES:
-                key = (body, quantity)
-                if ui.item(f"{quantity} [{unit_of(key)}]", on=key in marked):
-                    choose(key)
+            for group, quantities in (_OF_WORLD if body is None else _OF_BODY).items():
+                with ui.menu(group) if group else nullcontext(True) as is_unfolded:
+                    for quantity in quantities if is_unfolded else ():
+                        key = (body, quantity)
+                        if ui.item(f"{quantity} [{unit_of(key)}]", on=key in marked):
+                            choose(key)
 
 
 def _offered(world: World, window: Window, marked: set[Key]) -> list[int]:

@@ -14,6 +14,7 @@ from physicslab.view.panels.laws import gravity_in_words, has_gravity
 from physicslab.view.panels.panels import Line
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import LEVELS, Window
+from physicslab.view.workbench.energy_flows import build_flows
 from physicslab.world import World
 
 __all__ = ["build_figures", "build_levels", "build_world"]
@@ -48,6 +49,7 @@ def build_world(ui: Ui, world: World, figures: WorldFigures, window: Window) -> 
         ui.bar(
             "Total energy", quantity(energy.total, "J"), abs(energy.total) / scale, ui.theme.normal_impulse
         )
+    build_flows(ui, figures, error=window.level == "Explore")
     ui.row("Total momentum", quantity(figures.momentum.linear.magnitude, "kg m/s"))
     ui.gap(0.2)
     _build_gravity(ui, world, window)

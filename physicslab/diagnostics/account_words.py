@@ -1,0 +1,42 @@
+"""Where the energy went, in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+__all__ = ["ACCOUNT_WORDS", "flows"]
+
+ACCOUNT_WORDS: dict[str, str] = {
+    "edits": "edits",
+    "hand": "hand and driven bodies",
+    "thrust": "thrust",
+    "motors": "motors",
+    "fields": "other forces",
+    "impacts": "impacts",
+    "friction": "friction",
+    "contact": "resting contacts",
+    "overlap": "overlap",
+    "damping": "damping",
+    "joints": "joints",
+    "gravity": "gravity",
+    "springs": "springs",
+    "numerical": "error",
+}
+"""What each account is called where there is room for words."""
+
+
+def flows(booked: Mapping[str, float]) -> list[tuple[str, float]]:
+    """Return what gave energy, the largest first, then what took some, the largest first [J].
+
+    Parameters
+    ----------
+    booked : mapping of str to float
+        Accounts, without the error.
+
+    Examples
+    --------
+    >>> flows({"hand": 5.0, "impacts": -1.0, "friction": -2.0, "edits": 0.0})
+    [('hand', 5.0), ('friction', -2.0), ('impacts', -1.0)]
+    """
+    moved = [(name, value) for name, value in booked.items() if value]
+    return sorted(moved, key=lambda flow: (not flow[1] > 0.0, -abs(flow[1])))

@@ -1,0 +1,123 @@
+"""Where the bodies of a world come, and its energy and momentum, at some moments of a run."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Mass, Transform, Velocity
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.world import World
+
+__all__ = ["OutOfTime", "Path", "rows_of", "run_path"]
+
+_MIRROR = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
+_WHOLE = 10**9
+"""A stride that no run is longer than: the steps between two moments are made at once."""
+
+
+class OutOfTime(ArithmeticError):
+    """A run took longer than it may."""
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """A run, at k moments.
+
+    Attributes
+    ----------
+    states : array of floats
+        Columns x, y [m], angle [rad], vx, vy [m/s], spin [rad/s] of n bodies (k, n, 6).
+    energy, energy_scale : array of floats
+        The total energy [J], and the largest of it and its parts since the start (k,).
+    momentum : array of floats
+        That of the whole world [kg m/s] (k, 2).
+    momentum_scale : array of floats
+        The largest sum of the sizes of the momenta of bodies since the start [kg m/s] (k,).
+    """
+
+    states: NDArray[np.float64]
+    energy: NDArray[np.float64]
+    energy_scale: NDArray[np.float64]
+    momentum: NDArray[np.float64]
+    momentum_scale: NDArray[np.float64]
+
+    @property
+    def end(self) -> NDArray[np.float64]:
+        """The states at the last moment (n, 6)."""
+        found: NDArray[np.float64] = self.states[-1]
+        return found
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Where bodies are [m] (k, n, 2)."""
+        return self.states[:, :, :2]
+
+    def mirrored(self) -> Path:
+        """Return it with left and right exchanged."""
+        return replace(self, states=self.states * _MIRROR, momentum=self.momentum * _MIRROR[:2])
+
+
+def rows_of(world: World, bodies: Sequence[str]) -> list[int]:
+    """Return the rows of bodies by their names; those that are not there are left out."""
+    world.synchronise()
+    batch = world.batch(Transform, Velocity)
+    entities, rows = batch.entities.tolist(), batch.rows.tolist()
+    found = {world.label(entity): row for entity, row in zip(entities, rows, strict=True)}
+    return [found[name] for name in bodies if name in found]
+
+
+def run_path(
+    world: World, bodies: Sequence[str], moments: Sequence[float], budget_s: float = math.inf
+) -> Path:
+    """Run a world, and return its path.
+
+    Parameters
+    ----------
+    bodies : sequence of str
+        Which bodies, by their names.
+    moments : sequence of floats
+        When it is looked at, after its start [s], in order; it is run to the last.
+    budget_s : float
+        How long that may take [s], compiling left out.
+
+    Raises
+    ------
+    OutOfTime
+        If it takes longer.
+    """
+    rows = rows_of(world, bodies)
+    began = time.perf_counter() - world.compile_s  # kernels may have to be compiled first
+    looks, reached = [_look(world, rows)], 0.0
+    for moment in moments:
+        for _ in world.stepping(seconds=moment - reached, stride=1 if math.isfinite(budget_s) else _WHOLE):
+            if time.perf_counter() - began - world.compile_s > budget_s:
+                raise OutOfTime(f"given up after {budget_s:g} s, at t = {world.time:.3g} s")
+        reached = moment
+        looks.append(_look(world, rows))
+    states, energy, energy_scale, momentum, momentum_scale = (
+        np.array([look[n] for look in looks]) for n in range(5)
+    )
+    largest = (np.maximum.accumulate(scale)[1:] for scale in (energy_scale, momentum_scale))
+    return Path(states[1:], energy[1:], next(largest), momentum[1:], next(largest))
+
+
+def _look(world: World, rows: list[int]) -> tuple[NDArray[np.float64], float, float, list[float], float]:
+    """Return what a path has of a world as it is now, in its order."""
+    transform, velocity = world.table(Transform), world.table(Velocity)
+    columns = (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
+    energy, momentum = measure_energy(world), measure_momentum(world).linear
+    batch = world.batch(Transform, Velocity, Mass)
+    speeds = np.hypot(*velocity["linear"][batch.rows].T)
+    return (
+        np.column_stack([column[rows] for column in columns]),
+        energy.total,
+        max(map(abs, (energy.total, energy.kinetic, *energy.potential.values()))),
+        [momentum.x, momentum.y],
+        float(np.sum(world.table(Mass)["mass"][batch.rows] * speeds)),
+    )

@@ -1,0 +1,165 @@
+"""How good estimates of errors are: beside the true errors, where answers are known."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from physicslab.ecs.config import SimulationConfig
+from physicslab.files.reader import read_scene
+from physicslab.files.writer import write_scene
+from physicslab.lab.accuracy.contacts.case import ContactCase
+from physicslab.lab.accuracy.contacts.engines import OWN, Engine
+from physicslab.lab.accuracy.measure import finish
+from physicslab.lab.accuracy.nudges import NUDGE_SHARE, NUDGES, ROUNDING, error_of_tolerance, nudged
+from physicslab.lab.accuracy.problem import Problem
+from physicslab.lab.accuracy.settings import Setting
+from physicslab.lab.accuracy.twins import Document, finer_settings
+from physicslab.lab.case import Job, attempt
+from physicslab.world import World
+
+__all__ = ["CONTACT_STEP", "TrustRow", "TrustSummary", "assess_contacts", "assess_problem", "summarise"]
+
+CONTACT_STEP = 1.0 / 60.0
+"""With which contact cases are computed [s]."""
+_NEAR, _FAR, _SHARE = 10.0, 100.0, 0.95
+"""Within what factor of the estimate true errors are to be, how much larger they may ever be, and how often
+they are to be as near."""
+
+type _Worlds = tuple[World, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TrustRow:
+    """A problem with a known answer: how large its error was estimated to be, and how large it is.
+
+    Attributes
+    ----------
+    case : Problem or ContactCase
+        Which.
+    method : str
+        The method that ran, or the model of contacts.
+    estimate, error : float, optional
+        Both as the case measures errors; ``None`` where the run failed.
+    """
+
+    case: Problem | ContactCase
+    method: str
+    estimate: float | None
+    error: float | None
+
+    @property
+    def ratio(self) -> float | None:
+        """The true error over the estimate; both are taken to be a rounding at least."""
+        if self.estimate is None or self.error is None:
+            return None
+        return max(self.error, ROUNDING) / max(self.estimate, ROUNDING)
+
+
+@dataclass(frozen=True, slots=True)
+class TrustSummary:
+    """What rows come to.
+
+    Attributes
+    ----------
+    known, near : int
+        How many have both figures, and in how many the error is within a factor of 10 of the estimate.
+    largest : float
+        The largest true error over its estimate.
+    """
+
+    known: int
+    near: int
+    largest: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether 95 % are near, and no error is more than 100 times its estimate."""
+        return self.near >= _SHARE * self.known and self.largest <= _FAR
+
+
+def summarise(rows: Sequence[TrustRow]) -> TrustSummary:
+    """Count the rows whose estimate is good."""
+    ratios = [row.ratio for row in rows if row.ratio is not None]
+    near = sum(1.0 / _NEAR <= ratio <= _NEAR for ratio in ratios)
+    return TrustSummary(len(ratios), near, max(ratios, default=0.0))
+
+
+def assess_problem(problem: Problem) -> Job[TrustRow]:
+    """Estimate the error of a problem, run as ``auto`` runs it, and measure its true error."""
+
+    def make(simulation: SimulationConfig) -> _Worlds:
+        return (problem.build(simulation),)
+
+    def measure(worlds: _Worlds) -> float:
+        return finish(problem, worlds[0])
+
+    simulation = Setting("auto").simulation(problem)
+    world = problem.build(simulation)
+    world.synchronise()
+    yield from _assess(problem, world.plan.integrator.name, make, measure, simulation)
+
+
+def assess_contacts(case: ContactCase, engine: Engine) -> Job[TrustRow]:
+    """Estimate the error of a contact case with one of our models of contacts, and measure its true error.
+
+    With soft contacts, rigid ones are another way to compute it.
+    """
+    rigid = next(own for own in OWN if own.name == "rigid")
+    others = () if engine is rigid else (rigid.simulation(CONTACT_STEP),)
+    simulation = engine.simulation(CONTACT_STEP)
+    yield from _assess(case, engine.title, case.build, partial(_finish, case), simulation, others)
+
+
+def _assess(
+    case: Problem | ContactCase, method: str, make: Callable[[SimulationConfig], _Worlds],
+    measure: Callable[[_Worlds], float], simulation: SimulationConfig,
+    others: Sequence[SimulationConfig] = (),
+) -> Iterator[float | TrustRow]:  # fmt: skip
+    """Estimate an error by how much the case's figure changes where it is computed in other ways."""
+    worlds = make(simulation)
+    documents = [write_scene(world) for world in worlds]
+    for world in worlds:
+        world.synchronise()
+    chooses = worlds[0].plan.integrator.chooses_steps
+    error, _ = attempt(partial(measure, worlds))
+    if error is None:
+        yield TrustRow(case, method, None, None)
+        return
+
+    def change(build: Callable[[], _Worlds]) -> float | None:
+        found, _ = attempt(lambda: measure(build()))
+        return None if found is None else abs(error - found)
+
+    half = change(lambda: make(finer_settings(simulation, 2)))
+    if chooses and half is not None:
+        looser = change(lambda: make(finer_settings(simulation, 4)))
+        law = half if looser is None else error_of_tolerance(np.array(half), np.array(looser))
+        half = float(law)
+    known = [half, *(change(partial(make, other)) for other in others)]
+    rounding = []
+    for n in range(NUDGES):
+        rounding.append(change(partial(_nudged, documents, n)))
+        yield (n + 1) / (NUDGES + 1)
+    squares = [found**2 for found in rounding if found is not None]
+    known.append(NUDGE_SHARE * math.sqrt(sum(squares) / len(squares)) if squares else 0.0)
+    yield TrustRow(case, method, max(found for found in known if found is not None), error)
+
+
+def _nudged(documents: Sequence[Document], seed: int) -> _Worlds:
+    return tuple(read_scene(nudged(document, seed)) for document in documents)
+
+
+def _finish(case: ContactCase, worlds: _Worlds) -> float:
+    """Run worlds through the times that are compared, and return the largest error."""
+    largest, reached = 0.0, 0.0
+    for i, t in enumerate(case.times):
+        for world in worlds:
+            world.run(seconds=t - reached)
+        reached = t
+        largest = float(np.maximum(largest, case.error(worlds, i)))  # numpy's maximum keeps NaN
+    return largest

@@ -1,0 +1,145 @@
+"""Where the energy came from and where it went: a line of words, and a bar of parts with their names."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+from imgui_bundle.imgui import ImVec2
+
+from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
+from physicslab.view.canvas.quantities import quantity, round_quantity
+from physicslab.view.canvas.theme import Colour, Theme
+from physicslab.view.panels.figures import WorldFigures
+from physicslab.view.toolkit.style import packed
+from physicslab.view.toolkit.ui import Ui
+
+__all__ = ["Part", "build_flows", "flow_words", "parts_of"]
+
+_VISIBLE = 1e-3
+"""Share of the energy exchanged below which a flow is left out of the words; other levels have its figure."""
+_VERBS = {True: "Given", False: "Taken"}
+_POTENTIAL_TIP = "potential energy is counted from the lowest so far"
+_ERROR_TIP = (
+    "What no cause explains. It comes from computing in steps, not from physics: "
+    "shorter steps make it smaller"
+)
+_COLOURS = {"impacts": 4, "friction": 5, "damping": 6, "contact": 2, "overlap": 3, "fields": 1}
+"""Which of the colours of bodies an account has; they can be told apart by the colour-blind, too."""
+_LABEL = 0.85
+"""Height of the names on the bar, in heights of the text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part of the bar: its name, its energy [J] and its colour."""
+
+    name: str
+    energy: float
+    colour: Colour
+
+
+def _visible(figures: WorldFigures) -> list[tuple[str, float]]:
+    audit = figures.audit
+    return [flow for flow in flows(audit.notable) if abs(audit.share(flow[1])) >= _VISIBLE]
+
+
+def _named(name: str, figures: WorldFigures) -> str:
+    if name != "hand":
+        return ACCOUNT_WORDS[name]
+    if figures.held:
+        return "in the hand"
+    return "hand, driven bodies" if figures.driven else "hand"
+
+
+def flow_words(figures: WorldFigures) -> str:
+    """Return in one line what gave energy and what took some since the accounts began."""
+    words: dict[bool, list[str]] = {True: [], False: []}
+    for name, value in _visible(figures):
+        words[value > 0.0].append(f"{_named(name, figures)} {_short(abs(value))}")
+    sides = (f"{verb}: {', '.join(words[gives])}" for gives, verb in _VERBS.items() if words[gives])
+    return ". ".join(sides) or "Nothing gives or takes energy"
+
+
+def _short(energy: float) -> str:
+    """Return an energy to three figures."""
+    if 1e-3 <= energy < 1e5:
+        return f"{float(f'{energy:.3g}'):g} J"
+    return quantity(energy, "J")
+
+
+def parts_of(figures: WorldFigures, theme: Theme) -> tuple[list[Part], list[Part]]:
+    """Return of what the energy came, and where it is: two lists whose sums differ by the error alone.
+
+    Potential energy is counted from the lowest seen, as where it is zero has no meaning. What a body in a
+    hand takes below that is left out of both.
+    """
+    audit = figures.audit
+    start = audit.account.start.energy - audit.lowest
+    stored = sum(audit.latest.potential.values()) - audit.lowest
+    below = max(-stored, 0.0)
+    came = [Part("at the start", start, theme.faint)]
+    went = [
+        Part("kinetic", audit.latest.kinetic, theme.velocity),
+        Part("potential", stored + below, theme.force),
+    ]
+    for name, value in flows(audit.notable):
+        colour = theme.bodies[_COLOURS[name]] if name in _COLOURS else theme.kinematic
+        energy = max(-value - below, 0.0) if name == "hand" and value < 0.0 else abs(value)
+        (came if value > 0.0 else went).append(Part(_named(name, figures), energy, colour))
+    return came, went
+
+
+def build_flows(ui: Ui, figures: WorldFigures, *, error: bool) -> None:
+    """Build the bars and the words, with the ``error`` of the energy if that is wanted."""
+    came, went = parts_of(figures, ui.theme)
+    if len(came) > 1:
+        _build_bar(ui, "Where the energy came from", came)
+    _build_bar(ui, "Where the energy is now", went)
+    ui.faint(flow_words(figures))
+    if error:
+        ui.row("Error of the method", _rounded(figures.audit.account.energy["numerical"]), _ERROR_TIP)
+
+
+def _rounded(energy: float) -> str:
+    """Return an error: of one figure there is enough."""
+    written = round_quantity if energy and math.isfinite(energy) else quantity
+    return written(energy, "J")
+
+
+def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
+    """Build a bar as wide as the panel, in parts as long as their energies; what has room is named on it."""
+    ui.faint(title, wrapped=False)
+    width, height = imgui.get_content_region_avail().x, round(1.25 * ui.size)
+    corner, paper = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
+    end = ImVec2(corner.x + width, corner.y + height)
+    paper.add_rect_filled(corner, end, packed(ui.theme.key))
+    whole = sum(part.energy for part in parts)
+    if not 0.0 < whole < math.inf:
+        parts = []
+    left = 0.0
+    for part in parts:
+        long = part.energy / whole * width
+        if long >= 1.0:
+            low, high = corner.x + left, corner.x + left + max(long - 1.0, 1.0)
+            paper.add_rect_filled(ImVec2(low, corner.y), ImVec2(high, corner.y + height), packed(part.colour))
+            _write_name(ui, part.name, (low, corner.y, high - low, height))
+        left += long
+    imgui.dummy(ImVec2(width, height))
+    figures = [f"{part.name} {quantity(part.energy, 'J')}" for part in parts]
+    ui.tip("; ".join((*figures, _POTENTIAL_TIP)))
+
+
+def _write_name(ui: Ui, name: str, rect: tuple[float, float, float, float]) -> None:
+    """Write a name into the middle of a part of the bar, or its first letters where there is less room."""
+    left, top, width, height = rect
+    imgui.push_font(None, _LABEL * ui.size)
+    for words in (name, name[:3], name[0]):
+        needed = imgui.calc_text_size(words)
+        if needed.x + 2.0 <= width:
+            place = ImVec2(left + 0.5 * (width - needed.x), top + 0.5 * (height - needed.y))
+            imgui.get_window_draw_list().add_text(place, packed(ui.theme.background), words)
+            ui.words.append(words)
+            break
+    imgui.pop_font()
