@@ -28,6 +28,8 @@ __all__ = ["Sandbox"]
 
 _REST_AFTER, _REST_PERIOD = 1.0, 0.1
 """How long [s] nothing is done and nothing moves before pictures are fewer, and the time between two then."""
+_PARTLY = 1e-6
+"""Share of a step that is not made up for by another one: sums of steps are rounded."""
 _PARTS = 10.0
 """A motion is seen from a tenth of a pixel on."""
 
@@ -73,6 +75,7 @@ class Sandbox:
         self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
         self._rested = self._undrawn = 0.0  # how long nothing has moved, or was drawn [s]
+        self._owed = 0.0  # time that is to be shown of steps that were made once [s]
         self._places = np.empty((0, 3))
         self._titles, self._source = ("", ""), window.source
         self.world = world
@@ -108,6 +111,7 @@ class Sandbox:
         window.sparks.clear()
         window.selection.clear()
         window.naming, window.measuring = None, Measuring()
+        window.microscope.forget()
         window.shows_stopwatch = bool(len(world.batch(Gate)))
         window.error, window.next_world = "", None
         window.go_home(world)
@@ -196,27 +200,46 @@ class Sandbox:
         None is begun once they have taken as long as a frame may make up for: a world too heavy for the
         machine runs slowly, and the window stays awake.
         """
-        pace, dt = self.window.pace, self.world.simulation.dt
+        pace, dt, microscope = self.window.pace, self.world.simulation.dt, self.window.microscope
         deadline = self._clock() + pace.max_dt
         made, due = 0, pace.due(dt)
         try:
             while made < due and (made == 0 or self._clock() < deadline):
+                logged, before = self.world.contacts.logged, self.world.time
                 self._step(dt * pace.shortening)
                 made += 1
+                if microscope.struck(self.world, logged, before):
+                    pace.halt()
+                    self.history.divide()
+                    break
         except Diverged as error:
             pace.halt()
             self.window.error = f"Stopped: {error}. {self._rescue()} R clears all."
         else:
             pace.done(made, dt)
+        microscope.follow(pace, self.world.time)
 
     def _step(self, dt: float) -> None:
         """Make a step; in the past the one that was made there once."""
         history = self.history
         if history.step_count < history.steps_range[1]:
-            history.seek(history.step_count + 1)
+            self._step_again(dt)
         else:
+            self._owed = 0.0
             self._let_go_of_what_none_holds()
             history.step(dt)
+
+    def _step_again(self, dt: float) -> None:
+        """Go on along the line by the steps that were made there, as far as ``dt`` [s] reaches.
+
+        They are as long as they were: where time runs slowly now, a step is shown for several frames.
+        """
+        history, last = self.history, self.history.steps_range[1]
+        self._owed = dt if self.window.pace.paused else self._owed + dt
+        while self._owed > _PARTLY * dt and history.step_count < last:
+            before = self.world.time
+            history.seek(history.step_count + 1)
+            self._owed -= self.world.time - before
 
     def _let_go_of_what_none_holds(self) -> None:
         """Let a body go that was in the hand at the place in the past from which time goes on now."""

@@ -9,18 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Transform, Velocity
+from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.report import ContactPoint, contacts_of
 from physicslab.ecs.vector import Vector2
 from physicslab.state.masses import quiet
 from physicslab.stepping.forces import forces_by_system
 from physicslab.world import World
 
-__all__ = ["NamedForce", "applied_forces", "contact_forces", "forces_on", "net_force"]
+__all__ = [
+    "LastStep", "NamedForce", "applied_forces", "contact_forces", "forces_on", "last_step", "net_force",
+]  # fmt: skip
 
 type Kind = Literal["field", "normal", "friction"]
 
+_DAMPING = "damping"
 _NAMES = {"GravitySystem": "weight", "SpringSystem": "springs", "DragSystem": "air"}
 """What forces are called, by the system that they come from."""
+_LONGEST = 1.5
+"""How long the last step may have been, in steps of the scene: what is longer was not one step."""
 _ROUNDING = 1e-12
 """Forces below this share of the largest are rounding, and left out."""
 
@@ -61,6 +67,10 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
         NamedForce(_field_name(world, name), Vector2(*force[row].tolist()), centre, "field")
         for name, force in _fields(world).items()
     ]
+    damping = world.physics.linear_damping
+    if damping > 0.0:
+        velocity, mass = world.component(entity, Velocity).linear, world.component(entity, Mass).mass
+        found.append(NamedForce(_DAMPING, -damping * mass * velocity, centre, "field"))
     for contact in contacts_of(world, entity):
         on_b = contact.b == entity
         other = world.label(contact.a if on_b else contact.b) if contact.a and contact.b else "the wall"
@@ -73,6 +83,104 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
         found.append(NamedForce(f"friction, from {other}", sign * total_t * tangent, place, "friction"))
     largest = max((one.force.magnitude for one in found), default=0.0)
     return tuple(one for one in found if one.force.magnitude > _ROUNDING * largest)
+
+
+@dataclass(frozen=True, slots=True)
+class LastStep:
+    """What changed the momentum of a body in the last step.
+
+    Attributes
+    ----------
+    dt : float
+        How long it was [s].
+    impulses : dict of str to Vector2
+        The impulse of each force, contact and impact by name [N s].
+    change : Vector2
+        The change of momentum [kg m/s].
+    struck : Vector2
+        The part of the impulses that is of impacts [N s].
+    """
+
+    dt: float
+    impulses: dict[str, Vector2]
+    change: Vector2
+    struck: Vector2
+
+    @property
+    def difference(self) -> Vector2:
+        """The change of momentum that the impulses do not account for [N s].
+
+        Impulses of springs, drag and damping are the mean of those before and after the step times its
+        length, those of contacts the last substep's: where forces change within it, the sum is no exact one.
+        """
+        return self.change - sum(self.impulses.values(), Vector2())
+
+    @property
+    def inertia(self) -> Vector2:
+        """Mass times the mean acceleration in that step, without impacts [N]."""
+        return (self.change - self.struck) / self.dt
+
+
+def last_step(world: World, entity: int) -> LastStep | None:
+    """Return what changed the momentum of a body in the last step; ``None`` where that is not known.
+
+    It is not of what cannot move, after a longer run than one step, and after going to another place of the
+    history. Impacts are those of the world's log (``contacts.read``).
+    """
+    checkpoint, dt = world.checkpoint, world.time - world.checkpoint.time
+    if not 0.0 < dt <= _LONGEST * world.simulation.dt or len(checkpoint.columns[0]) != len(
+        world.bodies.force
+    ):
+        return None
+    present = forces_on(world, entity)
+    row = world.entity_index.row_of[entity]
+    inverse = float(world.bodies.inverse_mass[row])
+    if inverse == 0.0:
+        return None
+    now, before = Vector2(*motion_of(world)[2][row].tolist()), Vector2(*checkpoint.columns[2][row].tolist())
+    impulses: dict[str, Vector2] = {}
+    for name, force in _fields_before(world).items():
+        if force[row].any():
+            impulses[_field_name(world, name)] = 0.5 * dt * Vector2(*force[row].tolist())
+    for one in present:
+        share = 0.5 * dt if one.kind == "field" and one.name != _DAMPING else dt
+        impulses[one.name] = impulses.get(one.name, Vector2()) + share * one.force
+    if _DAMPING in impulses:
+        impulses[_DAMPING] = -dt * world.physics.linear_damping / inverse * 0.5 * (now + before)
+    struck = _impacts(world, entity)
+    for name, impulse in struck.items():
+        impulses[name] = impulses.get(name, Vector2()) + impulse
+    return LastStep(dt, impulses, (now - before) / inverse, sum(struck.values(), Vector2()))
+
+
+def _fields_before(world: World) -> dict[str, NDArray[np.float64]]:
+    """Return the force of each system on each row (n, 2) [N] as it was before the last step."""
+    columns = motion_of(world)
+    now = [column.copy() for column in columns]
+    try:
+        world.checkpoint.restore(columns)
+        return _fields(world)
+    finally:
+        for column, kept in zip(columns, now, strict=True):
+            column[...] = kept
+
+
+def _impacts(world: World, entity: int) -> dict[str, Vector2]:
+    """Return the impulses of the impacts of the last step on a body [N s], by what it struck."""
+    contacts, found = world.contacts, dict[str, Vector2]()
+    first = max(world.checkpoint.counts[2], contacts.logged - len(contacts.log))
+    for record in contacts.log[np.arange(first, contacts.logged) % len(contacts.log)]:
+        a, b = int(record["entity_a"]), int(record["entity_b"])
+        if entity not in (a, b):
+            continue
+        normal = Vector2(float(record["normal_x"]), float(record["normal_y"]))
+        on_b = (
+            float(record["normal_impulse"]) * normal + float(record["tangent_impulse"]) * normal.perpendicular
+        )
+        other = a if entity == b else b
+        name = f"impact, with {world.label(other) if other else 'the wall'}"
+        found[name] = found.get(name, Vector2()) + (on_b if entity == b else -on_b)
+    return found
 
 
 def net_force(forces: tuple[NamedForce, ...]) -> Vector2:

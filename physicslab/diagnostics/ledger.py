@@ -13,6 +13,7 @@ in the impulses. The sum over the points of a pair, negative, is what the impact
 from __future__ import annotations
 
 import csv
+import io
 from dataclasses import dataclass
 from typing import Any, TextIO
 
@@ -22,7 +23,9 @@ from numpy.typing import NDArray
 from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON
 from physicslab.state.state import State
 
-__all__ = ["LAWS", "WALLS", "ImpactColumns", "LedgerWriter", "names_of", "read_impacts", "speeds_at"]
+__all__ = [
+    "LAWS", "WALLS", "ImpactColumns", "LedgerWriter", "ledger_csv", "names_of", "read_impacts", "speeds_at",
+]  # fmt: skip
 
 WALLS = ("bounds left", "bounds bottom", "bounds right", "bounds top")
 """What the world's bounds are called, by the number of the wall."""
@@ -210,13 +213,13 @@ class LedgerWriter:
         self.lost += max(new - ring, 0)
         for first in range(max(self._next, logged - ring), logged, _BLOCK):
             number = np.arange(first, min(first + _BLOCK, logged))
-            self._write(contacts.log[number % ring])
+            self.write_rows(contacts.log[number % ring])
         self._next = logged
         if new > _GROWS_FROM * ring and ring < _MAX_RING:
             contacts.lengthen_log(2 * ring)
 
-    def _write(self, records: NDArray[Any]) -> None:
-        """Write some impacts."""
+    def write_rows(self, records: NDArray[Any]) -> None:
+        """Write some impacts, an array of IMPACT (n,)."""
         found, (a, b) = read_impacts(records, self._last), names_of(self._state, records)
         columns = (
             records["time"].tolist(), a, b,
@@ -231,6 +234,19 @@ class LedgerWriter:
         )  # fmt: skip
         self._rows.writerows(zip(*columns, strict=True))
         self.rows += len(records)
+
+
+def ledger_csv(state: State, records: NDArray[Any]) -> str:
+    """Return impacts as CSV, the same columns as :class:`LedgerWriter` writes, a row each in their order.
+
+    Parameters
+    ----------
+    records : array of IMPACT (n,)
+        The impacts, of the world of ``state``.
+    """
+    text = io.StringIO()
+    LedgerWriter(text, state).write_rows(records)
+    return text.getvalue()
 
 
 def _or_empty(values: Floats) -> list[float | str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from collections.abc import Iterator
@@ -10,7 +11,7 @@ from typing import Self
 from physicslab.history.branches import Branch, Branches
 from physicslab.history.commands import Command, Group, Spawn
 from physicslab.history.keyframe import Keyframe
-from physicslab.history.line import Edit, Run
+from physicslab.history.line import Edit, Run, Steps
 from physicslab.history.places import Places
 from physicslab.history.recording import load, save
 from physicslab.history.replay import edit
@@ -18,6 +19,9 @@ from physicslab.history.seen import Difference, HistoryEntry
 from physicslab.world import World
 
 __all__ = ["History"]
+
+_LATE = 1e-6
+"""Share of a step that a time may be after its end and count as within it: sums of steps are rounded."""
 
 
 class History:
@@ -229,6 +233,18 @@ class History:
     def steps_range(self) -> tuple[int, int]:
         """The first and the last step that :meth:`seek` goes to: what was taken back is not among them."""
         return 0, self._places.line.steps_before(self._end)
+
+    def step_at(self, moment: float) -> int:
+        """Return the first step of the line that ends at a time [s] or later; the last if none does."""
+        seconds, steps, last = self.start, 0, self.steps_range[1]
+        for piece in self._places.line.between(0, self._end):
+            if not isinstance(piece, Steps):
+                continue
+            if seconds + piece.count * piece.dt >= moment - _LATE * piece.dt:
+                inside = math.ceil((moment - seconds) / piece.dt - _LATE)
+                return min(steps + max(inside, 0), last)
+            seconds, steps = seconds + piece.count * piece.dt, steps + piece.count
+        return last
 
     @property
     def time(self) -> float:

@@ -28,6 +28,8 @@ class Checkpoint:
         Positions, angles, velocities and angular velocities of then; compiled loops keep them themselves.
     counts : tuple of int
         Force evaluations, impacts, and impacts logged until then.
+    time : float
+        The clock of then [s].
     account : KeptAccount
         What was booked until then.
     remainders : Remainders
@@ -37,6 +39,7 @@ class Checkpoint:
     def __init__(self) -> None:
         self.columns: _Columns = ()
         self.counts = 0, 0, 0
+        self.time = 0.0
         self.remainders: Remainders = NO_REMAINDERS
         self.account: KeptAccount = Account().keep()
 

@@ -34,7 +34,7 @@ class Undoing:
         if state.in_step:
             raise RuntimeError("a system cannot step the world that is calling it")
         state.checkpoint.take(self._motion, state.counts)
-        state.checkpoint.account = state.account.keep()
+        state.checkpoint.account, state.checkpoint.time = state.account.keep(), state.time
         state.in_step, state.checkpoint.remainders = True, state.remainders
 
     def __exit__(

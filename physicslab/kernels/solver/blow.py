@@ -20,6 +20,8 @@ _MAX_SWEEPS = 200
 """Largest number of sweeps over the two points of a pair."""
 _HALVINGS = 48
 """Bisections for the restitution of two points that makes no energy."""
+_SINGULAR = 1e-12
+"""Share of the responses of both points below which their determinant is none."""
 _SEPARATE = 1.0 + 1e-9
 """One, and so much more that two points of a pair are never quite one."""
 _ROUNDING = 1e-13
@@ -62,10 +64,17 @@ def _normal_element(weights: Weights, one: Lever, two: Lever) -> float:
 
 
 @inlined
-def _across_element(weights: Weights, lever: Lever) -> float:
-    """Return how a tangential impulse changes the sliding of its point [1/kg]."""
-    turned = weights.turn_a * lever.across_a * lever.across_a
-    return weights.both + turned + weights.turn_b * lever.across_b * lever.across_b
+def _across_element(weights: Weights, one: Lever, two: Lever) -> float:
+    """Return how a tangential impulse at a point changes the sliding of another [1/kg]."""
+    turned = weights.turn_a * one.across_a * two.across_a
+    return weights.both + turned + weights.turn_b * one.across_b * two.across_b
+
+
+@inlined
+def _coupling(weights: Weights, one: Lever, two: Lever) -> float:
+    """Return how a normal impulse at a point changes the sliding of another [1/kg]."""
+    turned = weights.turn_a * one.normal_a * two.across_a
+    return turned + weights.turn_b * one.normal_b * two.across_b
 
 
 @inlined
@@ -99,10 +108,10 @@ def _newton(
 @inlined
 def one_blow(lever: Lever, weights: Weights, restitution: float, friction: float) -> tuple[float, float, int]:
     """Return the normal and tangential impulse of a point that approaches [N s], and which law they obey."""
-    kn, kt = _normal_element(weights, lever, lever), _across_element(weights, lever)
-    between = (
-        weights.turn_a * lever.normal_a * lever.across_a + weights.turn_b * lever.normal_b * lever.across_b
-    )
+    kn, kt, between = (
+        _normal_element(weights, lever, lever), _across_element(weights, lever, lever),
+        _coupling(weights, lever, lever),
+    )  # fmt: skip
     normal, tangent = _newton(kn, kt, between, lever, -(1.0 + restitution) * lever.v, friction)
     v = lever.v + 0.5 * (kn * normal + between * tangent)
     sliding = lever.sliding + 0.5 * (between * normal + kt * tangent)
@@ -153,12 +162,129 @@ def _two_normals(
     return 0.0, max(x2 + change2 + to2 * x1, 0.0)
 
 
+class _Rubbing(NamedTuple):
+    """Friction of two points under normal impulses: t1 = o1 + a1 n1 + b1 n2, t2 = o2 + a2 n1 + b2 n2.
+
+    Where points that stick slide alike, the first has what both hold.
+    """
+
+    o1: float
+    a1: float
+    b1: float
+    o2: float
+    a2: float
+    b2: float
+    alike: bool
+
+
+@inlined
+def _rubbing(
+    one: Lever, two: Lever, weights: Weights, friction: float, state1: float, state2: float
+) -> _Rubbing:
+    """Return the friction of two points, of which each sticks (0), or slides under friction of a sign."""
+    k1, k2 = _across_element(weights, one, one), _across_element(weights, two, two)
+    between = _across_element(weights, one, two)
+    c11, c12 = _coupling(weights, one, one), _coupling(weights, one, two)
+    c21, c22 = _coupling(weights, two, one), _coupling(weights, two, two)
+    m1, m2 = state1 * friction, state2 * friction
+    if state1 != 0.0 and state2 != 0.0:
+        return _Rubbing(0.0, m1, 0.0, 0.0, 0.0, m2, False)
+    if state1 == 0.0 and state2 != 0.0:
+        return _Rubbing(-one.sliding / k1, -c11 / k1, -(c21 + between * m2) / k1, 0.0, 0.0, m2, False)
+    if state2 == 0.0 and state1 != 0.0:
+        return _Rubbing(0.0, m1, 0.0, -two.sliding / k2, -(c12 + between * m1) / k2, -c22 / k2, False)
+    determinant = k1 * k2 - between * between
+    if determinant <= _SINGULAR * k1 * k2:
+        share = -1.0 / (k1 + k2)
+        sliding = share * (one.sliding + two.sliding)
+        return _Rubbing(sliding, share * (c11 + c12), share * (c21 + c22), 0.0, 0.0, 0.0, True)
+    p1, p2, q = -k2 / determinant, -k1 / determinant, between / determinant
+    return _Rubbing(
+        p1 * one.sliding + q * two.sliding, p1 * c11 + q * c12, p1 * c21 + q * c22,
+        p2 * two.sliding + q * one.sliding, p2 * c12 + q * c11, p2 * c22 + q * c21, False,
+    )  # fmt: skip
+
+
+@inlined
+def _pressing(
+    one: Lever, two: Lever, weights: Weights, restitution: float, pressed: int, rubbing: _Rubbing
+) -> tuple[float, float, bool]:
+    """Return the normal impulses of two points under their friction, and whether they break no law.
+
+    Both are ``pressed`` (0), or the first (1) or the second alone (2). None pulls, and one that is not
+    pressed leaves no slower than it may.
+    """
+    o1, a1, b1, o2, a2, b2, _alike = rubbing
+    k1, k2 = _normal_element(weights, one, one), _normal_element(weights, two, two)
+    between = _normal_element(weights, one, two)
+    c11, c12 = _coupling(weights, one, one), _coupling(weights, one, two)
+    c21, c22 = _coupling(weights, two, one), _coupling(weights, two, two)
+    a11, a12 = k1 + c11 * a1 + c12 * a2, between + c11 * b1 + c12 * b2
+    a21, a22 = between + c21 * a1 + c22 * a2, k2 + c21 * b1 + c22 * b2
+    gained1 = -(1.0 + restitution) * one.v - c11 * o1 - c12 * o2
+    gained2 = -(1.0 + restitution) * two.v - c21 * o1 - c22 * o2
+    if pressed == 1:
+        n1 = gained1 / a11 if abs(a11) > _SINGULAR * k1 else -1.0
+        return n1, 0.0, n1 > 0.0 and a21 * n1 >= gained2
+    if pressed == 2:
+        n2 = gained2 / a22 if abs(a22) > _SINGULAR * k2 else -1.0
+        return 0.0, n2, n2 > 0.0 and a12 * n2 >= gained1
+    determinant = a11 * a22 - a12 * a21
+    if abs(determinant) <= _SINGULAR * k1 * k2:
+        return 0.0, 0.0, False
+    n1 = (a22 * gained1 - a12 * gained2) / determinant
+    n2 = (a11 * gained2 - a21 * gained1) / determinant
+    return n1, n2, n1 >= 0.0 and n2 >= 0.0 and n1 + n2 > 0.0
+
+
+@inlined
+def _may_rub(state: float, normal: float, tangent: float, left: float, friction: float) -> bool:
+    """Whether friction holds a point that sticks (0), or acts against how one slides that does not."""
+    if state == 0.0:
+        return abs(tangent) <= friction * normal
+    return normal == 0.0 or state * left <= 0.0
+
+
+@inlined
+def _by_cases(
+    one: Lever, two: Lever, weights: Weights, restitution: float, friction: float
+) -> tuple[Blow, bool]:
+    """Return the impulses of two points in closed form, and whether there are any.
+
+    Of all cases - which points are pressed, and whether each sticks or slides which way - it is the first
+    that breaks no law.
+    """
+    for case in range(27):
+        pressed, first, second = case // 9, case // 3 % 3, case % 3
+        if (pressed == 1 and second != 1) or (pressed == 2 and first != 1):
+            continue  # one that is not pressed has no friction
+        state1 = 0.0 if first == 0 else 3.0 - 2.0 * first
+        state2 = 0.0 if second == 0 else 3.0 - 2.0 * second
+        rubbing = _rubbing(one, two, weights, friction, state1, state2)
+        n1, n2, keeps = _pressing(one, two, weights, restitution, pressed, rubbing)
+        if not keeps:
+            continue
+        t1 = rubbing.o1 + rubbing.a1 * n1 + rubbing.b1 * n2
+        t2 = rubbing.o2 + rubbing.a2 * n1 + rubbing.b2 * n2
+        if rubbing.alike:
+            share = t1 / (n1 + n2)
+            t1, t2 = share * n1, share * n2
+        blow = Blow(n1, t1, n2, t2)
+        _v1, left1, _v2, left2 = _after(one, two, weights, blow)
+        if _may_rub(state1, n1, t1, left1, friction) and _may_rub(state2, n2, t2, left2, friction):
+            return blow, True
+    return Blow(0.0, 0.0, 0.0, 0.0), False
+
+
 @inlined
 def _both(one: Lever, two: Lever, weights: Weights, restitution: float, friction: float) -> Blow:
-    """Return the impulses of two points: normals together, then friction, shared alike, until they stay."""
+    """Return the impulses of two points: normals together, then friction, shared alike, until they stay.
+
+    Where they do not within so many sweeps, as under friction that turns a body much, it goes by cases.
+    """
     m1, m2 = 1.0 / _normal_element(weights, one, one), 1.0 / _normal_element(weights, two, two)
     between = _normal_element(weights, one, two)
-    kt1, kt2 = _across_element(weights, one), _across_element(weights, two)
+    kt1, kt2 = _across_element(weights, one, one), _across_element(weights, two, two)
     blow = Blow(0.0, 0.0, 0.0, 0.0)
     for _ in range(_MAX_SWEEPS):
         v1, _s1, v2, _s2 = _after(one, two, weights, blow)
@@ -175,8 +301,9 @@ def _both(one: Lever, two: Lever, weights: Weights, restitution: float, friction
             changed += abs(t1 - blow.tangent1) + abs(t2 - blow.tangent2)
         blow = Blow(n1, t1, n2, t2)
         if changed <= 1e-15 * (n1 + n2):
-            break
-    return blow
+            return blow
+    exact, found = _by_cases(one, two, weights, restitution, friction)
+    return exact if found else blow
 
 
 @inlined

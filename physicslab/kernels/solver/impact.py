@@ -94,15 +94,14 @@ def _meeting_time(separation: float, v: float, pull: float, window: Window, load
 
 
 @inlined
-def _lever(meeting: Meeting, a: int, b: int, motion: Motion, gained: float) -> Lever:
-    """Return lever arms and velocities at a point; the forces add ``gained`` to the approach [m/s]."""
+def _lever(meeting: Meeting, speeds: Speeds) -> Lever:
+    """Return lever arms at a point, and its approach and sliding, for the speeds of both bodies there."""
     nx, ny, ax, ay, bx, by = meeting
-    linear, angular = motion.linear, motion.angular
-    vx = linear[b, 0] - angular[b] * by - linear[a, 0] + angular[a] * ay
-    vy = linear[b, 1] + angular[b] * bx - linear[a, 1] - angular[a] * ax
+    vx = speeds.bx - speeds.wb * by - speeds.ax + speeds.wa * ay
+    vy = speeds.by + speeds.wb * bx - speeds.ay - speeds.wa * ax
     return Lever(
         ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny,
-        vx * nx + vy * ny + gained, vy * nx - vx * ny,
+        vx * nx + vy * ny, vy * nx - vx * ny,
     )  # fmt: skip
 
 
@@ -129,9 +128,9 @@ def _strike(
 @inlined
 def _exchange(
     manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, motion: Motion, sizes: Sizes,
-    inverse: Inverse, pull: float, t: float,
+    inverse: Inverse, before: Speeds, t: float,
 ) -> tuple[Struck, float, int]:  # fmt: skip
-    """Bounce a pair at the time t, with the normal, the arms and the speeds of that time.
+    """Bounce a pair at the time t, with the normal, the arms and the speeds ``before`` of that time.
 
     Returns the points with their impulses, all 0 where it turns away until then, the approach speed at the
     first of them [m/s], and which law they obey.
@@ -144,7 +143,7 @@ def _exchange(
             meeting_at(manifold, one, motion, sizes, t),
             meeting_at(manifold, two, motion, sizes, t),
         )
-        lever1, lever2 = _lever(where1, a, b, motion, pull * t), _lever(where2, a, b, motion, pull * t)
+        lever1, lever2 = _lever(where1, before), _lever(where2, before)
         blow, law = two_blows(lever1, lever2, weights, e, mu)
         _strike(manifold, one, where1, lever1, blow.normal1, blow.tangent1, motion, inverse)
         _strike(manifold, two, where2, lever2, blow.normal2, blow.tangent2, motion, inverse)
@@ -157,7 +156,7 @@ def _exchange(
         )
     else:
         where = meeting_at(manifold, point, motion, sizes, t)
-    lever = _lever(where, a, b, motion, pull * t)
+    lever = _lever(where, before)
     if lever.v >= 0.0:  # it turns away until then
         return Struck(where, where, Blow(0.0, 0.0, 0.0, 0.0)), 0.0, NEWTON
     normal, tangent, law = one_blow(lever, weights, e, mu)
@@ -214,17 +213,14 @@ def _gained(speeds: Speeds, a: int, b: int, inverse: Inverse, acting: Acting, t:
 
 @inlined
 def _note(
-    manifold: Manifold, struck: Struck, approach: float, old: Speeds, motion: Motion, inverse: Inverse,
-    acting: Acting, t: float, forced: bool, law: int, log: Log, number: int,
+    manifold: Manifold, struck: Struck, approach: float, old: Speeds, before: Speeds, after: Speeds,
+    motion: Motion, inverse: Inverse, t: float, law: int, log: Log, number: int,
 ) -> None:  # fmt: skip
     """Book an impact that has taken place at the time t from now, and write it to the log.
 
-    Half-way through leapfrog's substep velocities are those of now, and are ``forced`` until t.
+    Until then bodies move with their ``old`` speeds; ``before`` and ``after`` are those of the moment.
     """
     a, b, position, angle = manifold.a, manifold.b, motion.position, motion.angle
-    since = t if forced else 0.0
-    before = _gained(old, a, b, inverse, acting, since)
-    after = _gained(_speeds(a, b, motion), a, b, inverse, acting, since)
     pose = Pose(
         position[a, 0] + t * old.ax, position[a, 1] + t * old.ay, angle[a] + t * old.wa,
         position[b, 0] + t * old.bx, position[b, 1] + t * old.by, angle[b] + t * old.wb,
@@ -243,20 +239,24 @@ def _note(
 @inlined
 def _resolve_pair(
     manifold: Manifold, one: Point, two: Point, motion: Motion, sizes: Sizes, inverse: Inverse,
-    acting: Acting, pull: float, t1: float, t2: float, forced: bool, log: Log, number: int,
+    acting: Acting, t1: float, t2: float, forced: bool, log: Log, number: int,
 ) -> tuple[bool, int]:  # fmt: skip
     """Bounce a pair of which one point meets, or both do, at ``t1`` and ``t2`` from now.
 
-    Returns whether it did, and by which law.
+    Half-way through leapfrog's substep velocities are those of now, and are ``forced`` until then: normal
+    and friction impulses are those for the speeds of the moment. Returns whether it did, and by which law.
     """
     meets_1, meets_2 = abs(t1) < math.inf, abs(t2) < math.inf
     t = min(t1, t2) if meets_1 and meets_2 else (t1 if meets_1 else t2)
-    before = _speeds(manifold.a, manifold.b, motion)
-    struck, approach, law = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, inverse, pull, t)
+    a, b, since = manifold.a, manifold.b, t if forced else 0.0
+    old = _speeds(a, b, motion)
+    before = _gained(old, a, b, inverse, acting, since)
+    struck, approach, law = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, inverse, before, t)
     met = struck.blow.normal1 > 0.0
     if met:
-        _note(manifold, struck, approach, before, motion, inverse, acting, t, forced, law, log, number)
-    _shift(manifold.a, manifold.b, before, motion, t)
+        after = _gained(_speeds(a, b, motion), a, b, inverse, acting, since)
+        _note(manifold, struck, approach, old, before, after, motion, inverse, t, law, log, number)
+    _shift(a, b, old, motion, t)
     if manifold.swept == 1 and manifold.restitution > 0.0:
         # Its normal is not that of now: the solver must not push along it.
         one.ahead = two.ahead = 1
@@ -334,7 +334,7 @@ def _resolve_once(
         t1, t2 = _meeting_times(manifold, one, two, motion, Approach(v1, v2, pull, resting_speed), window)
         if abs(t1) < math.inf or abs(t2) < math.inf:
             met, law = _resolve_pair(
-                manifold, one, two, motion, sizes, inverse, acting, pull, t1, t2, window.start < 0.0, log,
+                manifold, one, two, motion, sizes, inverse, acting, t1, t2, window.start < 0.0, log,
                 logged + bounced,
             )  # fmt: skip
             bounced += 1 if met else 0

@@ -173,7 +173,10 @@ def write_impact(
         record.x_2, record.y_2 = pose.bx + two.arm_bx, pose.by + two.arm_by
         record.normal_impulse_2, record.tangent_impulse_2 = blow.normal2, blow.tangent2
     record.normal_impulse, record.tangent_impulse = blow.normal1 + blow.normal2, blow.tangent1 + blow.tangent2
-    record.center_ax, record.center_ay, record.angle_a = pose.ax, pose.ay, pose.angle_a
+    # Of a pair that meets late, as when a third body has struck one of them, the surfaces overlap: A is put
+    # where both arms lead to one point, so that the record is the impact that was resolved.
+    record.center_ax, record.center_ay = record.x - one.arm_ax, record.y - one.arm_ay
+    record.angle_a = pose.angle_a
     record.center_bx, record.center_by, record.angle_b = pose.bx, pose.by, pose.angle_b
     record.before_ax, record.before_ay, record.before_wa = before.ax, before.ay, before.wa
     record.before_bx, record.before_by, record.before_wb = before.bx, before.by, before.wb

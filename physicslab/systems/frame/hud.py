@@ -72,6 +72,8 @@ class HudSystem(System):
         self._watch.follow(world)
         self._refresh(world)
         window.dashboard.follow(world, window.edits.history)
+        if window.impacts.shown or window.microscope.is_open:
+            window.impacts.follow(world, window.edits.history)
         if window.error_study.poll():
             self._announce(window.error_study.failure)
         window.trust.follow(world, window.now)

@@ -12,6 +12,7 @@ from physicslab.systems.system import Stage, System, at
 from physicslab.view.controls import actions
 from physicslab.view.controls.controls import KEYS, RELEASES
 from physicslab.view.controls.file_actions import open_scene
+from physicslab.view.controls.impact_actions import clicked_impact, close_up
 from physicslab.view.controls.keyboard import open_menu
 from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
 from physicslab.view.controls.picking import body_at
@@ -145,6 +146,9 @@ class InputSystem(System):
                 picking(world, self._window, body_at(world, self._window.camera, event.pos))
                 return
             if self._takes_handle(world, event.pos):
+                return
+            if (impact := clicked_impact(world, self._window, event.pos)) is not None:
+                close_up(impact)(world, self._window)
                 return
             self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)

@@ -55,6 +55,7 @@ class RenderSystem(System):
         camera, theme, canvas, overlays = window.camera, window.theme, window.canvas, window.overlays
         impacts = self._impacts.new(world)
         window.sparks.advance(impacts, world.time, camera.scale)
+        window.microscope.note(impacts, world.time)
         if overlays.impulses:
             overlays.impacts.note(world, impacts, overlays.reach)
         draw_world(world, camera, theme, canvas, grid=window.grid)

@@ -6,8 +6,13 @@ import math
 
 from physicslab.ecs.vector import Vector2
 
-__all__ = ["length_of", "percentage", "power_of_ten", "quantity", "round_quantity", "vector_quantity"]
+__all__ = [
+    "length_of", "percentage", "power_of_ten", "quantity", "round_quantity", "vector_quantity",
+    "without_rounding",
+]  # fmt: skip
 
+_NONE = 1e-12
+"""Share of what a number is a part of below which it is rounding."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -39,6 +44,15 @@ def quantity(value: float, unit: str) -> str:
         return f"{value:.{min(max(3 - power, 0), 4)}f} {unit}"
     digits, _, exponent = f"{value:.3e}".partition("e")
     return f"{digits}·10{str(int(exponent)).translate(_RAISED)} {unit}"
+
+
+def without_rounding(value: float, scale: float) -> float:
+    """Return a number, and none where it is rounding beside others as large as ``scale``.
+
+    >>> without_rounding(3e-16, 2.0), without_rounding(3e-9, 2.0)
+    (0.0, 3e-09)
+    """
+    return value if abs(value) > _NONE * scale else 0.0
 
 
 def round_quantity(value: float, unit: str) -> str:

@@ -278,6 +278,10 @@ def leave(world: World, window: Window) -> None:
         window.naming = None
     elif window.lists_history:
         window.lists_history = False
+    elif window.microscope.is_open:
+        window.microscope.close()
+    elif window.impacts.shown:
+        window.impacts.shown = False
     elif window.error_study.shown:
         window.error_study.shown = False
     elif window.picking is not None:

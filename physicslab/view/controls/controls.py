@@ -12,6 +12,7 @@ from physicslab.view.controls import (
     file_actions,
     film_actions,
     history_actions,
+    impact_actions,
     keyboard,
 )
 from physicslab.view.controls.measuring import (
@@ -186,6 +187,15 @@ CONTROLS: tuple[Control, ...] = (
     Control("X", "strobe of all that moves", "x", toggle_strobes, minor=True, group="measure",
             state=lambda world, _: bool(world.table(Strobe).handles),
             tip="Pictures of all that moves, ten a second"),
+    Control("Z", "impacts", "z", impact_actions.toggle_impacts, minor=True, group="measure",
+            state=lambda _, window: window.impacts.shown,
+            tip="A table of all impacts; a click on a row, or on a spark, opens the collision microscope"),
+    Control("Shift+Z", "pause at the next impact", "shift+z", impact_actions.pause_at_next, minor=True,
+            group="measure", state=lambda _, window: window.microscope.waits_for is not None,
+            tip="Time stands still when what is selected strikes something, and the microscope opens"),
+    Control("Shift+Tab", "slowly through the impact", "shift+tab", impact_actions.run_slowly,
+            minor=True, group="measure", state=lambda _, window: window.microscope.slow is not None,
+            tip="Goes to shortly before the impact in the microscope, and lets time run slowly"),
     Control("A", "keep scales", "a", actions.toggle_scales, minor=True, group="show",
             state=lambda _, window: window.overlays.keeps_scales,
             tip="Arrows keep their scale, so that two pictures can be compared"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from physicslab.components import Transform
-from physicslab.diagnostics.free_body import NamedForce, forces_on, net_force
+from physicslab.diagnostics.free_body import LastStep, NamedForce, forces_on, last_step, net_force
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
@@ -20,13 +20,17 @@ class Measured:
     ----------
     forces : tuple of NamedForce
         Those on it; none where no body is measured.
+    step : LastStep, optional
+        What changed its momentum in the last step, where that is known.
     number : int
         How often was measured: what shows the figures is built again where it has grown.
     """
 
     def __init__(self) -> None:
         self.forces: tuple[NamedForce, ...] = ()
+        self.step: LastStep | None = None
         self.number = 0
+        self._stepped = -1, -1  # how many steps and edits there were when a step was seen first
         self._of: tuple[object, ...] = ()
         self._steps, self._until, self._place = -1, 0.0, Vector2()
 
@@ -46,14 +50,18 @@ class Measured:
             Time [s] that the window has been open.
         """
         if entity is None or not world.has(entity, Transform):
-            self.forces, self._of = (), ()
+            self.forces, self.step, self._of = (), None, ()
             return
+        if world.steps != self._stepped[0]:
+            self._stepped = world.steps, world.motion_edits
         of = world, entity, world.motion_edits
         changed = of != self._of or (paused and world.steps != self._steps)
         if not changed and (now < self._until or world.steps == self._steps):
             return
         self._of, self._steps, self._until = of, world.steps, now + _PERIOD
         self.forces = forces_on(world, entity)
+        is_edited = self._stepped != (world.steps, world.motion_edits)
+        self.step = None if is_edited else last_step(world, entity)
         self._place = world.component(entity, Transform).position
         self.number += 1
 

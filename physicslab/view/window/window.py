@@ -24,8 +24,10 @@ from physicslab.view.window.edits import Edits
 from physicslab.view.window.filming import Filming
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
+from physicslab.view.window.impact_list import ImpactList
 from physicslab.view.window.measured import Measured
 from physicslab.view.window.measuring import Measuring
+from physicslab.view.window.microscope import Microscope
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.pins import Pins
 from physicslab.view.window.recent import RecentFiles
@@ -147,6 +149,10 @@ class Window:
         What is done with the body that is clicked next, or with none where there is none.
     measuring : Measuring
         What is being placed, dragged or written of instruments.
+    impacts : ImpactList
+        The table of impacts.
+    microscope : Microscope
+        The impact that is looked at closely, and what waits for the next one.
     shows_stopwatch : bool
         Whether the times between crossings of gates are shown.
     naming : str, optional
@@ -229,6 +235,7 @@ class Window:
         self.snapping = Snapping()
         self.picking: Callable[[World, Window, int | None], None] | None = None
         self.measuring, self.shows_stopwatch = Measuring(), False
+        self.impacts, self.microscope = ImpactList(), Microscope()
         self.naming: str | None = None
         self.naming_refused = ""
         self.opening: str | None = None

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from physicslab.components import Mass, Spring, Velocity
+from physicslab.diagnostics.free_body import LastStep
 from physicslab.diagnostics.period import SpringState, period_of, spring_state
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, vector_quantity
@@ -73,15 +74,62 @@ def _build_spring(ui: Ui, state: SpringState | None) -> None:
     ui.row("Energy stored", quantity(state.energy, "J"))
 
 
-def build_forces(ui: Ui, measured: Measured) -> None:
-    """Write the forces on a body, and their sum: those that the free-body diagram (V) draws."""
-    if not measured.forces:
+def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
+    """Write the forces on a body and their sum, beside its mass times its acceleration; then the impulses.
+
+    The forces are those that the free-body diagram (V) draws. Where it is brief, impulses are left out.
+    """
+    step = measured.step
+    if not measured.forces and step is None:
         return
     ui.gap(0.2)
     ui.rule()
     ui.faint("Forces on it")
     for one in measured.forces:
         ui.row(one.name.capitalize(), quantity(one.force.magnitude, "N"), vector_quantity(one.force, "N"))
-    total, largest = measured.net, max(one.force.magnitude for one in measured.forces)
-    net = total.magnitude if total.magnitude > _ROUNDING * largest else 0.0
-    ui.row("Sum", quantity(net, "N"), vector_quantity(total, "N"))
+    total = measured.net
+    largest = max((one.force.magnitude for one in measured.forces), default=0.0)
+    _vector_row(ui, "Sum", total, largest, "N", "Of all forces")
+    if step is None:
+        return
+    largest = max(largest, step.inertia.magnitude)
+    _vector_row(
+        ui,
+        "m a",
+        step.inertia,
+        largest,
+        "N",
+        "Mass times mean acceleration in the last step, without impacts",
+    )
+    _vector_row(
+        ui,
+        "Difference",
+        total - step.inertia,
+        largest,
+        "N",
+        "The sum is of now, the acceleration of the last step",
+    )
+    if not is_brief:
+        _build_impulses(ui, step)
+
+
+def _build_impulses(ui: Ui, step: LastStep) -> None:
+    """Write the impulses of the last step, their sum, and the change of momentum."""
+    ui.gap(0.2)
+    ui.faint(f"Impulses in the last step, of {quantity(step.dt, 's')}")
+    parts = step.impulses
+    largest = max((impulse.magnitude for impulse in parts.values()), default=0.0)
+    largest = max(largest, step.change.magnitude)
+    for name, impulse in parts.items():
+        _vector_row(ui, name.capitalize(), impulse, largest, "N s", "")
+    _vector_row(ui, "Sum of impulses", sum(parts.values(), Vector2()), largest, "N s", "Of all of them")
+    _vector_row(ui, "Change of momentum", step.change, largest, "kg m/s", "From before the step to after it")
+    tip = "What the impulses leave: forces of contacts and springs are not the same all through a step"
+    _vector_row(ui, "Not accounted for", step.difference, largest, "N s", tip)
+
+
+def _vector_row(ui: Ui, label: str, value: Vector2, largest: float, unit: str, tip: str) -> None:
+    """Write how large a vector is; beside the ``largest`` it is none where it is rounding."""
+    shown = value.magnitude if value.magnitude > _ROUNDING * largest else 0.0
+    words = f"{tip}: {vector_quantity(value, unit)}" if tip else vector_quantity(value, unit)
+    ui.row(label, quantity(shown, unit), words)

@@ -77,7 +77,7 @@ class Inspector:
             build_derived(ui, world, first, is_brief=window.level == "Explore")
             build_body_digits(ui, world, window, first)
             if window.level != "Explore" or window.overlays.arrows:
-                build_forces(ui, window.measured)
+                build_forces(ui, window.measured, is_brief=window.level != "Engineer")
         self._build_components(ui, world, window)
         self._build_buttons(ui, world, window)
 

@@ -17,9 +17,11 @@ from physicslab.view.workbench.film_panel import build_film
 from physicslab.view.workbench.gallery import Gallery
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.history_panel import build_history
+from physicslab.view.workbench.impact_panel import build_impacts
 from physicslab.view.workbench.inspector import Inspector
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
+from physicslab.view.workbench.microscope_panel import build_microscope
 from physicslab.view.workbench.note_panel import NotePanel
 from physicslab.view.workbench.open_panel import build_open
 from physicslab.view.workbench.palette import build_palette
@@ -195,6 +197,8 @@ class Interface:
             window.level,
             window.dashboard.state,
             window.shows_stopwatch,
+            window.impacts.shown,
+            window.microscope.state,
             window.measuring.writing is None,
         )
         time = pace.paused, pace.speed, world.time if pace.paused else None
@@ -241,6 +245,10 @@ class Interface:
         self._scene_panels.build(ui, world, window, self.visible)
         if window.shows_stopwatch:
             build_stopwatch(ui, world, window, self.visible)
+        if window.impacts.shown:
+            build_impacts(ui, world, window)
+        if window.microscope.is_open:
+            build_microscope(ui, world, window)
         if window.measuring.writing is not None:
             self._note.build(ui, window)
         if window.recovery.offered:

@@ -1,0 +1,115 @@
+"""What the user can do with impacts: list them, look at one closely, stand still at the next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from physicslab.components import Velocity
+from physicslab.diagnostics.ledger import ledger_csv
+from physicslab.view.controls import actions
+from physicslab.view.controls.file_actions import save_new
+from physicslab.view.controls.picking import body_at
+from physicslab.view.window.window import Window
+from physicslab.world import World
+
+__all__ = [
+    "clicked_impact",
+    "close_up",
+    "go_beside",
+    "pause_at_next",
+    "run_slowly",
+    "save_table",
+    "toggle_impacts",
+]
+
+type Deed = Callable[[World, Window], None]
+
+_REACH = 14.0
+"""How near to the mark of an impact a click need be [px]."""
+_SLOWLY = 0.0625
+"""How fast time runs around an impact that is shown slowly."""
+_AROUND = 0.12
+"""How long before and after the impact that is [s]."""
+
+
+def toggle_impacts(world: World, window: Window) -> None:
+    """Show the table of impacts, or no longer; impacts are listed from when it is shown first."""
+    window.impacts.shown = not window.impacts.shown
+
+
+def close_up(record: Any) -> Deed:
+    """Return what opens the microscope at an impact, and goes to the moment after it where that is kept."""
+
+    def deed(world: World, window: Window) -> None:
+        window.microscope.show(record)
+        history = window.edits.history
+        step = history.step_at(float(record["time"]))
+        if step != history.step_count:
+            actions.seek(window, step)
+        window.pace.paused = True
+
+    return deed
+
+
+def go_beside(by: int) -> Deed:
+    """Return what goes from the impact that is shown to the next one, or with -1 to the one before."""
+
+    def deed(world: World, window: Window) -> None:
+        microscope = window.microscope
+        time = microscope.collision.time if microscope.is_open else world.time
+        record = window.impacts.beside(time, by, window.selection.entities)
+        if record is None:
+            window.notify("No later impact is listed" if by > 0 else "No earlier impact is listed")
+        else:
+            close_up(record)(world, window)
+
+    return deed
+
+
+def pause_at_next(world: World, window: Window) -> None:
+    """Let time run until what is selected strikes something, and stand still there; or no longer wait."""
+    microscope = window.microscope
+    if microscope.waits_for is not None:
+        microscope.waits_for = None
+        window.notify("Time no longer stands still at the next impact")
+        return
+    chosen = tuple(entity for entity in window.selection.entities if world.has(entity, Velocity))
+    microscope.waits_for = chosen
+    window.error, window.pace.paused = "", False
+    names = (
+        " or ".join(world.label(entity) for entity in chosen[:2]) if len(chosen) < 3 else "what is selected"
+    )
+    window.notify(f"Time stands still at the next impact{' of ' + names if chosen else ''}")
+
+
+def run_slowly(world: World, window: Window) -> None:
+    """Go to shortly before the impact that is shown, and let time run slowly through it."""
+    microscope, history = window.microscope, window.edits.history
+    if not microscope.is_open:
+        window.notify("Choose an impact first: click a row of the table, or a spark")
+        return
+    time = microscope.collision.time
+    start, end = time - _AROUND, max(time + _AROUND, world.simulation.dt)
+    was_paused = window.pace.paused
+    actions.seek(window, history.step_at(start))
+    window.pace.paused = was_paused
+    microscope.run_slowly(window.pace, _SLOWLY, end)
+
+
+def save_table(world: World, window: Window) -> None:
+    """Write all impacts that are listed to a new file, as ``run --ledger`` does."""
+    save_new(window, world, "impacts", ".csv", ledger_csv(world, window.impacts.records).encode("utf-8"))
+
+
+def clicked_impact(world: World, window: Window, pixel: tuple[float, float]) -> Any | None:
+    """Return the impact whose mark or sparks are at a place on the screen [px], if a click there means it.
+
+    Where bodies move and impulses (E) are not shown, a click on a body is for the body.
+    """
+    camera = window.camera
+    record = window.microscope.near(camera.to_world(pixel), _REACH / camera.scale, world.time)
+    marked = window.pace.paused or window.overlays.impulses
+    if record is None or not (marked or body_at(world, camera, pixel) is None):
+        return None
+    return record

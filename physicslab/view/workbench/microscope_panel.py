@@ -1,0 +1,248 @@
+"""The microscope: one impact large, in words, and by the law of impact with the numbers put in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from imgui_bundle import ImVec2, imgui
+
+from physicslab.diagnostics.collision import Collision
+from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.quantities import quantity, without_rounding
+from physicslab.view.controls import impact_actions
+from physicslab.view.panels.collision_words import AGREES, Step, body_name, law_steps, story
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.microscope import FRAMES
+from physicslab.view.window.window import Window
+from physicslab.view.workbench.collision_drawing import draw_bodies, draw_contact, draw_energies, draw_momenta
+from physicslab.world import World
+
+__all__ = ["build_microscope"]
+
+_PICTURE, _WORDS = 24.0, 29.0
+"""Widths of the drawings and of the words beside them, in heights of the text."""
+_TALL, _LOW = 38.0, 13.0
+"""Height of both where there is room, and height of the bodies' drawing."""
+_SMALL = 8.6
+"""Height of the drawings below that."""
+_SHARE = 0.94
+"""How much of the window it may take."""
+_RESTING = 1e-4
+"""Speed of approach [m/s] up to which rigid contacts may take a point for resting."""
+_FLAT = 0.6
+"""Height of a drawing as a share of its width, at most."""
+
+
+def build_microscope(ui: Ui, world: World, window: Window) -> None:
+    """Build it in a window of its own."""
+    microscope = window.microscope
+    wide, high, beside = _room(ui, window)
+    left, top, across, _ = window.room()
+    place = left + 0.5 * across, top + 0.5 * (high + 9.0 * ui.size)
+    with ui.floating("Collision microscope", place, docks=True) as stays:
+        _build_head(ui, world, window, wide)
+        if imgui.is_window_docked():
+            free = imgui.get_content_region_avail()
+            wide, high = free.x, max(free.y, 6.0 * ui.size)
+            beside = wide >= (_PICTURE + _WORDS) * ui.size
+        drawn = _PICTURE * ui.size if beside else wide - 1.2 * ui.size
+        if imgui.begin_child("drawings", ImVec2(_PICTURE * ui.size if beside else wide, high)):
+            _build_drawings(ui, world, window, drawn - 0.8 * ui.size)
+            if not beside:
+                _build_words(ui, world, window)
+        imgui.end_child()
+        if beside:
+            imgui.same_line()
+            if imgui.begin_child("words", ImVec2(wide - _PICTURE * ui.size - ui.size, high)):
+                _build_words(ui, world, window)
+            imgui.end_child()
+    if not stays[0]:
+        microscope.close()
+
+
+def _room(ui: Ui, window: Window) -> tuple[float, float, bool]:
+    """Return the width and height of what is below the head [px], and whether words are beside drawings."""
+    width = window.canvas.size[0]
+    across = window.room()[2] - 2.5 * ui.size
+    beside = across >= (_PICTURE + _WORDS) * ui.size
+    wide = (_PICTURE + _WORDS) * ui.size if beside else min(max(across, 0.6 * width), _WORDS * ui.size)
+    high = min(_TALL * ui.size, _SHARE * window.room()[3] - 9.5 * ui.size)
+    return min(wide, _SHARE * width - 2.0 * ui.size), max(high, 8.0 * ui.size), beside
+
+
+def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
+    """Build when and what it was, what can be done from there, and the observers."""
+    microscope, collision = window.microscope, window.microscope.collision
+    a, b = (body_name(world, body.entity, collision.wall) for body in (collision.a, collision.b))
+    imgui.push_text_wrap_pos(wide)
+    ui.text(f"At {collision.time:.6f} s   ·   A: {a}   ·   B: {b}")
+    imgui.pop_text_wrap_pos()
+    end = imgui.get_cursor_pos_x() + wide
+    buttons: tuple[tuple[str, str, Callable[[World, Window], None], bool], ...] = (
+        ("Earlier", "The impact before this one; time goes back to it", impact_actions.go_beside(-1), False),
+        ("Later", "The impact after this one", impact_actions.go_beside(1), False),
+        ("Slowly through it", "Go to shortly before it, and let time run slowly (Shift+Tab)",
+         impact_actions.run_slowly, microscope.slow is not None),
+        ("Pause at the next impact", "Let time run until what is selected (or anything) strikes something "
+         "(Shift+Z)", impact_actions.pause_at_next, microscope.waits_for is not None),
+        ("All impacts", "The table of impacts (Z)", impact_actions.toggle_impacts, window.impacts.shown),
+    )  # fmt: skip
+    for n, (label, tip, deed, on) in enumerate(buttons):
+        _go_on(label, end, is_first=n == 0)
+        if ui.button(label, tip, on=on):
+            window.deeds.append(deed)
+    for n, (frame, tip) in enumerate(FRAMES.items()):
+        label = f"Seen by: {frame}"
+        _go_on(frame, end, is_first=n == 0)
+        if ui.button(label, f"Velocities, momenta and energies as an observer finds them. {tip}",
+                     shown=frame, on=microscope.frame == frame):  # fmt: skip
+            microscope.frame = frame
+    imgui.same_line()
+    ui.faint("observer", wrapped=False)
+
+
+def _go_on(words: str, end: float, *, is_first: bool) -> None:
+    """Go on in the same line where a button with such words still ends within the window."""
+    if is_first:
+        return
+    imgui.same_line()
+    if (
+        imgui.get_cursor_pos_x() + imgui.calc_text_size(words).x + 2.0 * imgui.get_style().frame_padding.x
+        > end
+    ):
+        imgui.new_line()
+
+
+def _build_drawings(ui: Ui, world: World, window: Window, wide: float) -> None:
+    seen = window.microscope.seen
+    draw_bodies(ui, world, seen, (wide, min(_LOW * ui.size, _FLAT * wide)))
+    ui.faint("Thin and dashed: before. Thick: after (with ').")
+    half, gap = 0.5 * (wide - ui.size), ui.size
+    high = min(_SMALL * ui.size, half)
+    ui.faint("B against A at the contact", wrapped=False)
+    imgui.same_line(half + gap)
+    ui.faint(_of_momenta(seen), wrapped=False)
+    draw_contact(ui, seen, (half, high))
+    imgui.same_line(0.0, gap)
+    draw_momenta(ui, seen, (half, high))
+    ui.faint("Kinetic energy", wrapped=False)
+    draw_energies(ui, seen, wide)
+
+
+def _of_momenta(seen: Collision) -> str:
+    return "Momenta, tip to tail" if seen.a.is_free and seen.b.is_free else "Momentum and impulse"
+
+
+def _build_words(ui: Ui, world: World, window: Window) -> None:
+    """Build what happened in words, the velocities, and the law with its numbers."""
+    microscope = window.microscope
+    collision, result = microscope.collision, microscope.result
+    names = (
+        body_name(world, collision.a.entity, collision.wall),
+        body_name(world, collision.b.entity, collision.wall),
+    )
+    for sentence in story(collision, result, names):
+        ui.text(sentence, wrapped=True)
+    ui.gap(0.3)
+    _build_velocities(ui, microscope.seen)
+    _build_momentum(ui, microscope.seen)
+    ui.gap(0.3)
+    shown = window.level == "Engineer" if microscope.shows_formula is None else microscope.shows_formula
+    if ui.button(
+        "The law with its numbers", "The formula line by line, beside what the solver did", on=shown
+    ):
+        microscope.shows_formula = shown = not shown
+    if not shown:
+        return
+    steps = law_steps(collision, result)
+    slowest = min(-collision.approach(spot)[0] for spot in collision.spots)
+    _build_verdict(ui, steps, is_alone=collision.alone, is_slow=slowest < _RESTING)
+    for step in steps:
+        _build_step(ui, step)
+
+
+def _build_velocities(ui: Ui, seen: Collision) -> None:
+    """Build a table of the velocities of both, split along n and t."""
+    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_fixed_fit
+    if not imgui.begin_table("velocities", 4, flags):
+        return
+    for words, width in (("", 5.0), ("along n", 6.6), ("along t", 6.6), ("turning", 7.4)):
+        imgui.table_setup_column(words, imgui.TableColumnFlags_.width_fixed, width * ui.size)
+    imgui.table_next_row()
+    for words in ("", "along n", "along t", "turning"):
+        imgui.table_next_column()
+        ui.faint(words, wrapped=False)
+    speed, turning = seen.speed_scale, seen.turning_scale
+    for name, body in (("A", seen.a), ("B", seen.b)):
+        for when, motion in (("before", body.before), ("after", body.after)):
+            imgui.table_next_row()
+            along, across = motion.linear.dot(seen.normal), motion.linear.dot(seen.tangent)
+            cells = (
+                f"{name} {when}", quantity(without_rounding(along, speed), "m/s"),
+                quantity(without_rounding(across, speed), "m/s"),
+                quantity(without_rounding(motion.angular, turning), "rad/s"),
+            )  # fmt: skip
+            for words in cells:
+                imgui.table_next_column()
+                ui.text(words)
+    imgui.end_table()
+
+
+def _build_momentum(ui: Ui, seen: Collision) -> None:
+    """Write the momenta of both together before and after, or the impulse on the one that is free."""
+    before, after = (
+        seen.a.momentum(a) + seen.b.momentum(b)
+        for a, b in ((seen.a.before, seen.b.before), (seen.a.after, seen.b.after))
+    )
+    scale = max(body.momentum(m).magnitude for body in (seen.a, seen.b) for m in (body.before, body.after))
+    ui.row("Momentum before", _vector(before, scale), "Of all that impulses move of the two")
+    ui.row("Momentum after", _vector(after, scale))
+    if not (seen.a.is_free and seen.b.is_free):
+        ui.row(
+            "Impulse on it",
+            quantity(seen.impulse.magnitude, "N s"),
+            "What the other one, that nothing moves, gave",
+        )
+
+
+def _vector(value: Vector2, scale: float) -> str:
+    x, y = (quantity(without_rounding(part, scale), "").strip() for part in value)
+    return f"({x}, {y}) kg m/s"
+
+
+def _build_verdict(ui: Ui, steps: list[Step], *, is_alone: bool, is_slow: bool) -> None:
+    """Write whether the solver did what the law says."""
+    worst = max(step.difference for step in steps)
+    slow = "What approaches as slowly as this may count as resting, and is not let bounce."
+    if worst <= AGREES:
+        ui.text(
+            f"The solver did what the law gives: they differ by {worst:.1e} at most.",
+            ui.theme.heading,
+            wrapped=True,
+        )
+    elif not is_alone:
+        ui.text(
+            "The solver resolved several impacts together here; this pair by itself would differ.",
+            ui.theme.paused,
+            wrapped=True,
+        )
+    else:
+        ui.text(
+            f"The solver differs from the law by {worst:.1e} of the largest figure.",
+            ui.theme.error,
+            wrapped=True,
+        )
+        if is_slow:
+            ui.faint(slow)
+
+
+def _build_step(ui: Ui, step: Step) -> None:
+    ui.gap(0.2)
+    ui.faint(step.words)
+    ui.text(step.formula, wrapped=True)
+    shown = f"= {step.numbers}" if step.numbers else ""
+    if shown:
+        ui.text(shown, wrapped=True)
+    ui.text(step.value, ui.theme.accent, wrapped=True)
+    if step.solver:
+        ui.faint(f"solver: {step.solver}, differs by {step.difference:.1e}")
