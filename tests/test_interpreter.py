@@ -195,6 +195,7 @@ def forces_by_hand() -> None:
     vectors = [random.normal(size=(n, 2)) for _ in range(5)]
     numbers = [random.uniform(0.5, 2.0, n) for _ in range(4)]
     gravity.uniform_gravity(vectors[0], numbers[0], numbers[1], 0.5, -9.81)
+    gravity.uniform_potential(vectors[0], numbers[0], numbers[1], 0.5, -9.81)
     numbers_of_colours = random.integers(0, 16, 300).astype(np.uint8)
     room = np.zeros((lzw.CODES, 256), np.int16), np.zeros(2 * 300 + 16, np.uint8)
     assert lzw.pack_lzw(numbers_of_colours, 4, *room) > 100
