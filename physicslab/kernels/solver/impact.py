@@ -125,7 +125,7 @@ def _strike(
     point.impact_tangent += tangent
 
 
-@inlined
+@always_inlined
 def _exchange(
     manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, motion: Motion, sizes: Sizes,
     inverse: Inverse, before: Speeds, t: float,
@@ -211,7 +211,7 @@ def _gained(speeds: Speeds, a: int, b: int, inverse: Inverse, acting: Acting, t:
     )  # fmt: skip
 
 
-@inlined
+@always_inlined
 def _note(
     manifold: Manifold, struck: Struck, approach: float, old: Speeds, before: Speeds, after: Speeds,
     motion: Motion, inverse: Inverse, t: float, law: int, log: Log, number: int,

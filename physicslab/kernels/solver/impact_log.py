@@ -7,7 +7,7 @@ over all points is the change of the kinetic energy, exactly.
 
 from typing import NamedTuple
 
-from physicslab.kernels import Vectors, inlined
+from physicslab.kernels import Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import ENERGY, FRICTION, HAND, PX, PY, SPIN
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.solver.blow import Blow
@@ -105,7 +105,7 @@ def shares_of(along: float, across: float) -> tuple[float, float]:
     return both - rubbed, rubbed
 
 
-@inlined
+@always_inlined
 def book_impact(
     account: Vectors, struck: Struck, pose: Pose, before: Speeds, after: Speeds, masses: Masses, row: int
 ) -> None:
