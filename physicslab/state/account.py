@@ -68,7 +68,6 @@ class Account:
         self.seen: object | None = None
         self.start: Balance | None = None
         self.last = _NOTHING
-        self._before = self.sums.copy()
 
     def restart(self) -> None:
         """Begin again with the next step."""
@@ -90,7 +89,6 @@ class Account:
             self.start, self.since, self.held, self.last = now, time, held, now
         else:
             self.book(now, held)
-        np.copyto(self._before, self.sums)
 
     def book(self, now: Balance, held: tuple[int, ...]) -> None:
         """Book what has changed since the last step, or the last booking, once a step was made."""
@@ -100,11 +98,15 @@ class Account:
             self.last = now
         self.held = held
 
-    def close(self, now: Balance, rest: int | None) -> None:
-        """End a step at a balance; all that is not booked goes to the cause ``rest``, if one is given."""
-        if rest is not None:
-            change = [new - old for new, old in zip(now, self.last, strict=True)]
-            direct_entry(book_rest)(self.sums, self._before, rest, *change)
+    def close(self, now: Balance, rest: int | None, before: KeptAccount) -> None:
+        """End a step at a balance; all that is not booked goes to the cause ``rest``, if one is given.
+
+        ``before`` is what there was when the step began; an edit since then is booked, and no rest.
+        """
+        if rest is not None and math.isfinite(before.last.energy):
+            old = self.last if before.start is None else before.last
+            energy, px, py, spin = now[0] - old[0], now[1] - old[1], now[2] - old[2], now[3] - old[3]
+            direct_entry(book_rest)(self.sums, before.sums, rest, energy, px, py, spin)
         self.last = now
 
     def keep(self) -> KeptAccount:

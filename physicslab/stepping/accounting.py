@@ -16,6 +16,10 @@ from physicslab.systems.system import ForceSystem
 __all__ = ["balance_of", "book_account", "close_account", "held_in", "motion_totals_of", "open_account"]
 
 
+_MANY = 256
+"""Rows from which on it is seen by a digest that nothing was changed since the last step."""
+
+
 def held_in(state: State) -> tuple[int, ...]:
     """Return the entities that a hand holds."""
     return tuple(state.table(Held).handles)
@@ -67,8 +71,11 @@ def balance_of(
 
 
 def _seen(state: State, forces: Sequence[ForceSystem]) -> object | None:
-    """Return what a balance depends on, in short; ``None`` where a force may depend on more."""
-    if not all(force.is_engine for force in forces):
+    """Return what a balance depends on, in short.
+
+    ``None`` where a force may depend on more, and of so few bodies that a balance takes no longer.
+    """
+    if len(state.entity_index) < _MANY or not all(force.is_engine for force in forces):
         return None
     _, words = _columns(state)
     settings = [force.settings(state) for force in forces]
@@ -91,5 +98,5 @@ def book_account(state: State, forces: Sequence[ForceSystem]) -> None:
 
 def close_account(state: State, forces: Sequence[ForceSystem], rest: int | None) -> None:
     """End a step; all that is not booked goes to the cause ``rest``, if one is given."""
-    state.account.close(balance_of(state, forces), rest)
+    state.account.close(balance_of(state, forces), rest, state.checkpoint.account)
     state.account.seen = _seen(state, forces)
