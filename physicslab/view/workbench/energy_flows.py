@@ -19,6 +19,8 @@ __all__ = ["Part", "build_flows", "flow_words", "parts_of"]
 
 _VISIBLE = 1e-3
 """Share of the energy exchanged below which a flow is left out of the words; other levels have its figure."""
+_SMALL = 1e-9
+"""Share that is not worth a word, even where there is nothing else."""
 _VERBS = {True: "Given", False: "Taken"}
 _POTENTIAL_TIP = "potential energy is counted from the lowest so far"
 _ERROR_TIP = (
@@ -41,8 +43,11 @@ class Part:
 
 
 def _visible(figures: WorldFigures) -> list[tuple[str, float]]:
+    """Return the flows that are a visible share of the energy, or else the largest that is no rounding."""
     audit = figures.audit
-    return [flow for flow in flows(audit.notable) if abs(audit.share(flow[1])) >= _VISIBLE]
+    found = [flow for flow in flows(audit.notable) if abs(audit.share(flow[1])) >= _SMALL]
+    visible = [flow for flow in found if abs(audit.share(flow[1])) >= _VISIBLE]
+    return visible or sorted(found, key=lambda flow: -abs(flow[1]))[:1]
 
 
 def _named(name: str, figures: WorldFigures) -> str:
@@ -110,12 +115,14 @@ def _rounded(energy: float) -> str:
 
 def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
     """Build a bar as wide as the panel, in parts as long as their energies; what has room is named on it."""
+    whole = sum(part.energy for part in parts)
+    if whole == 0.0:
+        return
     ui.faint(title, wrapped=False)
     width, height = imgui.get_content_region_avail().x, round(1.25 * ui.size)
     corner, paper = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
     end = ImVec2(corner.x + width, corner.y + height)
     paper.add_rect_filled(corner, end, packed(ui.theme.key))
-    whole = sum(part.energy for part in parts)
     if not 0.0 < whole < math.inf:
         parts = []
     left = 0.0
