@@ -87,7 +87,7 @@ def _closing_speed(equations: Equations, i: int, rate: float) -> float:
     return speed
 
 
-@fused
+@inlined
 def _gather(
     equations: Equations, count: int, blow: Equations, rest: float, rate: float, last: bool
 ) -> tuple[int, bool]:
@@ -121,7 +121,7 @@ def _solve(blow: Equations, n: int, share: float, rest: float, rate: float) -> b
     return solve_complementarity(blow, n, _SPEEDS * rest, rate == 0.0) != NOT_FOUND
 
 
-@fused
+@inlined
 def _energy_gained(blow: Equations, n: int) -> tuple[float, float]:
     """Return the work of the impulses at most, and the sum of the magnitudes of its parts [J].
 
@@ -144,7 +144,7 @@ def _energy_gained(blow: Equations, n: int) -> tuple[float, float]:
     return work + _ROUNDING * cancelled, scale
 
 
-@fused
+@inlined
 def _solve_by_energy(blow: Equations) -> None:
     """Find the impulses of a single point by Stronge's law."""
     a, measures = blow.a, blow.measures
@@ -275,7 +275,7 @@ def _book(
         book_impact(account, struck, pose, before, after, masses, cause)
 
 
-@fused
+@inlined
 def _note_round(
     scene: Scene, blow: Equations, n: int, q: Numbers, old: Numbers, v: Numbers, rest: float, rate: float,
     acceleration: Numbers, law: int, entities: Rows, log: Impacts, logged: int, time: float, account: Vectors,

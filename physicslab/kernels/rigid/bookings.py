@@ -1,6 +1,6 @@
 """What contact forces give in a second, and impulses at once, by account."""
 
-from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
 from physicslab.kernels.rigid.equations import UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
@@ -19,7 +19,7 @@ from physicslab.kernels.rigid.features import (
 __all__ = ["book_contacts", "book_speeds"]
 
 
-@fused
+@inlined
 def book_contacts(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, given: Numbers
 ) -> None:

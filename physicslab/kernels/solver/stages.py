@@ -133,10 +133,10 @@ def press(
     sweeps = impulse.sweeps_of(near, iterations)
     contacts = _contacts(near)
     if near.counts[WIDE_COUNT] == 0:
-        note_sliding(contacts, near, motion, inverse, acting, h)
+        note_sliding(contacts, near.slips, motion, inverse, acting, h)
     impulse.solve(contacts, near, motion, inverse, acting, softness, h, scale, sweeps)
     if near.counts[WIDE_COUNT] == 0:
-        book_sliding(contacts, near, motion)
+        book_sliding(contacts, near.slips, motion, near.account)
     return h
 
 
@@ -156,7 +156,7 @@ def relax(
     contacts = _contacts(near)
     impulse.relax(contacts, near, motion, inverse, h, impulse.sweeps_of(near, iterations))
     if near.counts[WIDE_COUNT] == 0:
-        book_sliding(contacts, near, motion)
+        book_sliding(contacts, near.slips, motion, near.account)
     if near.counts[DRIVEN] > 0:
         book_drivers(contacts, near, motion, inverse)
     separate(contacts, near, motion, inverse.mass, acting, softness.max_push * h)

@@ -7,7 +7,7 @@ within the substep is (v + v' - a h) / 2. A body at rest then does no work: its 
 after.
 """
 
-from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, fused, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Vectors, inlined, kernel
 from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
 from physicslab.kernels.motion import damped
@@ -40,7 +40,7 @@ _SLIDING, _RUBBING = 0, 1
 """What is noted of a point: how fast it slides [m/s], and its tangential impulse [N s]."""
 
 
-@fused
+@inlined
 def _sliding(point: Point, nx: float, ny: float, a: int, b: int, motion: Motion) -> float:
     """Return how fast B's point slides against A's, along the normal turned counter-clockwise [m/s]."""
     linear, angular = motion.linear, motion.angular
@@ -50,7 +50,7 @@ def _sliding(point: Point, nx: float, ny: float, a: int, b: int, motion: Motion)
     return speed
 
 
-@fused
+@inlined
 def _forced(row: int, arm_x: float, arm_y: float, inverse: Inverse, acting: Acting) -> tuple[float, float]:
     """Return the acceleration that forces give to a point of a body [m/s^2]."""
     turn = acting.torque[row] * inverse.inertia[row]
@@ -58,9 +58,9 @@ def _forced(row: int, arm_x: float, arm_y: float, inverse: Inverse, acting: Acti
     return acting.force[row, 0] * mass - turn * arm_y, acting.force[row, 1] * mass + turn * arm_x
 
 
-@always_inlined
+@inlined
 def note_sliding(
-    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float
+    contacts: Contacts, slips: Vectors, motion: Motion, inverse: Inverse, acting: Acting, h: float
 ) -> None:
     """Note how fast the points of scalar contacts slide before the impulses of a substep of ``h`` seconds.
 
@@ -79,11 +79,11 @@ def note_sliding(
                 ax, ay = _forced(a, point.arm_ax, point.arm_ay, inverse, acting)
                 bx, by = _forced(b, point.arm_bx, point.arm_by, inverse, acting)
                 sliding -= h * (nx * (by - ay) - ny * (bx - ax))
-            near.slips[j, _SLIDING], near.slips[j, _RUBBING] = sliding, 0.0
+            slips[j, _SLIDING], slips[j, _RUBBING] = sliding, 0.0
 
 
-@always_inlined
-def book_sliding(contacts: Contacts, near: Near, motion: Motion) -> None:
+@inlined
+def book_sliding(contacts: Contacts, slips: Vectors, motion: Motion, account: Vectors) -> None:
     """Book what friction of scalar contacts takes by the impulses since the last call, or since the note.
 
     That is the change of each tangential impulse times the mean speed of sliding. What is now is noted.
@@ -98,14 +98,12 @@ def book_sliding(contacts: Contacts, near: Near, motion: Motion) -> None:
         for j in range(2 * p, 2 * p + manifold.count):
             point = contacts.points[j]
             sliding = _sliding(point, nx, ny, a, b, motion)
-            taken += (
-                0.5 * (point.tangent_impulse - near.slips[j, _RUBBING]) * (near.slips[j, _SLIDING] + sliding)
-            )
-            near.slips[j, _SLIDING], near.slips[j, _RUBBING] = sliding, point.tangent_impulse
-    near.account[FRICTION, ENERGY] += taken
+            taken += 0.5 * (point.tangent_impulse - slips[j, _RUBBING]) * (slips[j, _SLIDING] + sliding)
+            slips[j, _SLIDING], slips[j, _RUBBING] = sliding, point.tangent_impulse
+    account[FRICTION, ENERGY] += taken
 
 
-@fused
+@inlined
 def _book_driver(
     near: Near, motion: Motion, row: int, px: float, py: float, arm_x: float, arm_y: float
 ) -> None:
@@ -126,7 +124,7 @@ def _book_driver(
     near.account[CONTACT, SPIN] -= spin
 
 
-@fused
+@inlined
 def _book_drivers_wide(near: Near, motion: Motion, inverse: Inverse) -> None:
     """Book the work of driven bodies at wide contacts."""
     for slots in (near.discs, near.boxes):
@@ -158,7 +156,7 @@ def _book_drivers_wide(near: Near, motion: Motion, inverse: Inverse) -> None:
                         _book_driver(near, motion, b, -px, -py, bx, by)
 
 
-@fused
+@inlined
 def book_drivers(contacts: Contacts, near: Near, motion: Motion, inverse: Inverse) -> None:
     """Book the work of bodies that move and are not moved, by the impulses of a substep."""
     for k in range(contacts.number):
@@ -179,7 +177,7 @@ def book_drivers(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
         _book_drivers_wide(near, motion, inverse)
 
 
-@fused
+@inlined
 def book_gravity(
     account: Vectors, total: float, mx: float, my: float, gx: float, gy: float, h: float
 ) -> None:
