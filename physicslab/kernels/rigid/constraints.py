@@ -1,10 +1,17 @@
 """The equations of bodies that touch: how contact forces act on what the points measure."""
 
+import math
+
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
-from physicslab.kernels.rigid.complementarity import solve_equations
-from physicslab.kernels.rigid.equations import FREE, UNKNOWN, Equations
+from physicslab.kernels.rigid.complementarity import (
+    REFINEMENTS,
+    begin_equations,
+    refine,
+    solve_equations,
+)
+from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     BIAS_N,
     BIAS_T,
@@ -85,11 +92,14 @@ def assemble(scene: Scene, equations: Equations, count: int) -> None:
 
 
 @inlined
-def apply(scene: Scene, equations: Equations, count: int, target: Numbers) -> None:
-    """Add to velocities what the impulses found cause, or to accelerations what forces do."""
+def apply(scene: Scene, equations: Equations, count: int, target: Numbers, which: int = UNKNOWN) -> None:
+    """Add to velocities what the impulses found cause, or to accelerations what forces do.
+
+    ``which`` is their row of the vectors.
+    """
     rows, measures, points = scene.rows, equations.measures, equations.points
     for i in range(count):
-        along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
+        along, across = equations.vectors[which, 2 * i], equations.vectors[which, 2 * i + 1]
         nx, ny = measures[i, NX], measures[i, NY]
         fx, fy = along * nx - across * ny, along * ny + across * nx
         for side in range(2):
@@ -132,14 +142,23 @@ def constrained_acceleration(
     """Compute v' of a state in which each point goes on with what it does, and the forces of the points.
 
     Behind the clock, ``acceleration`` takes what causes give in a second.
+
+    What is light between heavy bodies is accelerated by the difference of large forces. So these are refined
+    by what the accelerations still leave of the laws, and their changes are added to the accelerations.
     """
     accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
     if count > 0:
         measure_all(scene, equations, count, q, v)
         assemble(scene, equations, count)
-        find_free_rates(scene, equations, count, acceleration)
-        solve_equations(equations, count, 1.0)
-        apply(scene, equations, count, acceleration)
+        n, largest, residual, rank = begin_equations(equations, count, 1.0), 0.0, math.inf, 0
+        for _ in range(REFINEMENTS):
+            find_free_rates(scene, equations, count, acceleration)
+            for i in range(2 * count if residual == math.inf else 0):
+                largest = max(largest, abs(equations.vectors[FREE, i]))
+            residual, rank = refine(equations, count, n, 1.0, FREE, largest, residual, rank)
+            if residual < 0.0:
+                break
+            apply(scene, equations, count, acceleration, CHANGE)
         book_contacts(scene, equations, count, q, v, acceleration)
 
 
