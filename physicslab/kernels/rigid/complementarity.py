@@ -43,6 +43,8 @@ _DAMPED = 1e-13
 """Share of the diagonal that is added to a matrix that may be singular; refinement removes its effect."""
 NOT_FOUND, FITTING, SETTLED = 0, 1, 2
 """Whether forces were found."""
+_OF_SUMS = 4e-16
+"""Share of the sum of magnitudes by which a sum may be rounded."""
 _FEW_CHANGES = 4
 """Number of changes that are tried before the pivots where they are good enough."""
 _SLACKS = (1e-10, 1e-12, 1e-8, 1e-9, 1e-7)
@@ -275,11 +277,14 @@ def solve_equations(equations: Equations, count: int, friction: float) -> None:
 
 @inlined
 def _find_caused(equations: Equations, count: int) -> None:
+    """Find what the unknowns cause, and in the row CHANGE how much of that may be rounding."""
     for i in range(2 * count):
-        caused = equations.vectors[FREE, i]
+        caused, parts = equations.vectors[FREE, i], abs(equations.vectors[FREE, i])
         for j in range(2 * count):
-            caused += equations.a[i, j] * equations.vectors[UNKNOWN, j]
-        equations.vectors[CAUSED, i] = caused
+            part = equations.a[i, j] * equations.vectors[UNKNOWN, j]
+            caused += part
+            parts += abs(part)
+        equations.vectors[CAUSED, i], equations.vectors[CHANGE, i] = caused, _OF_SUMS * parts
 
 
 @inlined
@@ -305,7 +310,7 @@ def _change_most_violated(equations: Equations, count: int, w_scale: float, z_sc
         pressed, rubbed = vectors[UNKNOWN, 2 * i] / z_scale, vectors[UNKNOWN, 2 * i + 1] / z_scale
         opening, along = vectors[CAUSED, 2 * i] / w_scale, vectors[CAUSED, 2 * i + 1] / w_scale
         if status == OPEN:
-            if -opening > amount:
+            if -opening - vectors[CHANGE, 2 * i] / w_scale > amount:
                 worst, change, amount = i, _closed_status(equations, i, opening, along), -opening
         elif -pressed > amount:
             worst, change, amount = i, OPEN, -pressed
@@ -316,7 +321,7 @@ def _change_most_violated(equations: Equations, count: int, w_scale: float, z_sc
                     change = SLIDES_ON if rubbed < 0.0 else SLIDES_BACK
             else:  # friction must not drive the sliding
                 driven = -along if status == SLIDES_ON else along
-                if driven > amount:
+                if driven - vectors[CHANGE, 2 * i + 1] / w_scale > amount:
                     worst, change, amount = i, STICKS, driven
     if worst >= 0:
         equations.points[worst, STATUS] = change
@@ -397,6 +402,11 @@ def solve_complementarity(equations: Equations, count: int, scale: float, exactl
         return SETTLED
     if _settle_by_changes(equations, count, 4 + 2 * count if exactly else _FEW_CHANGES, w_scale, z_scale):
         return SETTLED
+    if exactly:  # what holds each other may rest where each of them alone would slide
+        for i in range(count):
+            points[i, STATUS] = points[i, GIVEN]
+        if _settle_by_changes(equations, count, 2 + count, w_scale, z_scale):
+            return SETTLED
     # Of what the pivots leave open or sliding, some may rest with the others: forces are of least norm then.
     for attempt in range(len(_SLACKS)):
         if not find_by_pivots(equations, count, _SLACKS[attempt]):
