@@ -22,6 +22,7 @@ from physicslab.kernels.rigid.features import (
     NY,
     ONE,
     OTHER,
+    REACH,
     TA,
     TB,
     VN,
@@ -31,7 +32,7 @@ from physicslab.kernels.rigid.features import (
 )
 
 __all__ = [
-    "apply", "assemble", "constrained_acceleration", "find_free_rates", "measure_all", "project",
+    "apply", "assemble", "constrained_acceleration", "find_free_rates", "find_loads", "measure_all", "project",
     "rates_without_forces",
 ]  # fmt: skip
 
@@ -109,6 +110,20 @@ def apply(scene: Scene, equations: Equations, count: int, target: Numbers, which
             target[2 * body] += sign * scene.inverse_mass[2 * body] * fx
             target[2 * body + 1] += sign * scene.inverse_mass[2 * body + 1] * fy
             target[2 * rows + body] += sign * scene.inverse_mass[2 * rows + body] * turn
+
+
+@inlined
+def find_loads(scene: Scene, equations: Equations, count: int, loads: Numbers) -> None:
+    """Add by how much the forces found would accelerate what they press, if each of them acted alone."""
+    for i in range(count):
+        along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
+        force = math.sqrt(along * along + across * across)
+        for side in range(2):
+            body = equations.points[i, ONE + side]
+            turning, reach = 2 * scene.rows + body, scene.outlines[body, REACH]
+            loads[2 * body] += scene.inverse_mass[2 * body] * force
+            loads[2 * body + 1] += scene.inverse_mass[2 * body + 1] * force
+            loads[turning] += scene.inverse_mass[turning] * force * reach
 
 
 @inlined

@@ -35,9 +35,12 @@ __all__ = [
     "find_open",
     "find_touching",
     "hold_closed",
+    "hold_evenly",
+    "keep_pressing",
     "length_of",
     "moved_closer",
     "rest_limits",
+    "take_closed",
 ]
 
 _TOUCH = 1e-10
@@ -204,14 +207,14 @@ def _changed_status(equations: Equations, i: int, changed: Points) -> int:
 
 
 @fused
-def hold_closed(
+def take_closed(
     scene: Scene, equations: Equations, count: int, changed: Points,
-    q: Numbers, v: Numbers, acceleration: Numbers, rest: float, least: float,
-) -> tuple[int, bool]:  # fmt: skip
-    """Keep the points that stay closed and find what they do; return how many, and whether all laws are kept.
+    q: Numbers, v: Numbers, acceleration: Numbers, rest: float,
+) -> int:  # fmt: skip
+    """Keep the points that do not part, take their slow speeds away and note what they may do.
 
     ``changed`` has the points that ended the piece before and what they do from now on, where the laws alone
-    would leave that to rounding.
+    would leave that to rounding. Returns how many there are.
     """
     n = 0
     measure_all(scene, equations, count, q, v)
@@ -220,7 +223,7 @@ def hold_closed(
             n = _keep(equations, i, n)
     count, n = n, 0
     if count == 0:
-        return 0, True
+        return 0
     assemble(scene, equations, count)
     # Speeds below the limit are none: they would make equations of points that rest contradict each other.
     for i in range(count):
@@ -232,7 +235,6 @@ def hold_closed(
     book_speeds(scene, q, v, 1.0)
     measure_all(scene, equations, count, q, v)
     accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
-    find_free_rates(scene, equations, count, acceleration)
     for i in range(count):
         sliding, given = equations.measures[i, VT], STICKS
         changed_to = _changed_status(equations, i, changed)
@@ -243,9 +245,55 @@ def hold_closed(
         elif changed_to > STICKS:
             given = changed_to
         equations.points[i, GIVEN] = given
-    solved = solve_complementarity(equations, count, least, True) == SETTLED
+    return count
+
+
+@inlined
+def hold_closed(scene: Scene, equations: Equations, count: int, acceleration: Numbers, least: float) -> int:
+    """Find the forces of ``count`` points and what they do, as :func:`solve_complementarity` returns it."""
+    if count == 0:
+        return SETTLED
+    assemble(scene, equations, count)
+    find_free_rates(scene, equations, count, acceleration)
+    found: int = solve_complementarity(equations, count, least, True)
+    return found
+
+
+@inlined
+def hold_evenly(
+    scene: Scene, equations: Equations, count: int, acceleration: Numbers, least: float, inverse_mass: Numbers,
+    pulled: Numbers,
+) -> int:  # fmt: skip
+    """Find the forces that would hold ``count`` points of equal bodies that are pulled as these are.
+
+    What holds bodies at rest depends on what pulls at them and not on their masses. So all are given the
+    largest mass there is, and what is light between heavy bodies costs no digits. ``inverse_mass`` and
+    ``pulled`` are room.
+    """
+    lightest = math.inf
+    for row in range(scene.rows):
+        if scene.inverse_mass[2 * row] > 0.0:
+            lightest = min(lightest, scene.inverse_mass[2 * row])
+    for i in range(3 * scene.rows):
+        own = scene.inverse_mass[i if i < 2 * scene.rows else 2 * (i - 2 * scene.rows)]
+        share = lightest / own if own > 0.0 else 1.0
+        inverse_mass[i], pulled[i] = share * scene.inverse_mass[i], share * acceleration[i]
+    even = Scene(
+        scene.rows, inverse_mass, scene.damping, scene.calls, scene.outlines, scene.walls, scene.pairs,
+        scene.coefficients, scene.accounts,
+    )  # fmt: skip
+    found: int = hold_closed(even, equations, count, pulled, least)
+    return found
+
+
+@inlined
+def keep_pressing(equations: Equations, count: int, least: float) -> int:
+    """Keep the points that press, with their forces; return how many."""
+    n, forces = 0, equations.vectors
     for i in range(count):
-        pressing = equations.vectors[UNKNOWN, 2 * i] * equations.a[2 * i, 2 * i]
+        pressing = forces[UNKNOWN, 2 * i] * equations.a[2 * i, 2 * i]
         if equations.points[i, STATUS] != OPEN and pressing > least:
+            forces[UNKNOWN, 2 * n] = forces[UNKNOWN, 2 * i]
+            forces[UNKNOWN, 2 * n + 1] = forces[UNKNOWN, 2 * i + 1]
             n = _keep(equations, i, n)
-    return n, solved
+    return n
