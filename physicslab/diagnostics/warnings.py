@@ -15,9 +15,9 @@ import numpy as np
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
+from physicslab.diagnostics.contact_warnings import RIGID_LIMIT, contact_warnings, rigid_setting
 from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, step_warnings
 from physicslab.diagnostics.warning_records import ModelWarning, WorstWarnings
-from physicslab.stepping.contact_model import why_not_rigid
 from physicslab.stepping.rigid import Rigid
 from physicslab.world import World
 
@@ -42,8 +42,6 @@ times as heavy sinks by 2 cm in 10 s, three thousand times by 4 cm, ten thousand
 which are made shorter for such loads, are then as short as they may be."""
 _PEAK_MARGIN = 1.5
 """Between two looks at a run speeds are higher than those seen: so many more substeps are advised."""
-RIGID_LIMIT = 64
-"""Number of contacts up to which rigid ones are advised for what is pressed deep or carries too much."""
 _RIGID_MASS_RATIO = 3e4
 """Mass ratio up to which rigid contacts were seen to hold to 1e-15 m without shorter steps."""
 DISTANCE_LIMIT = 1e9
@@ -66,7 +64,7 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
     if rigid is not None and rigid.energy_added:
         what = "was added by moving bodies apart that overlapped"
         found.append(ModelWarning(None, what, rigid.energy_added, "J", 0.0, ""))
-    found += _laws(world, rigid)
+    found += [*_laws(world, rigid), *contact_warnings(world, rigid)]
     if world.plan.collisions == "step" and (rigid is None or rigid.left_to_soft):
         graph = contact_graph(world)
         found += [
@@ -141,7 +139,9 @@ def _overlap(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
         size = float(graph.size[graph.touching[worst]])
         what = "is pressed into another body deeper than contacts can hold"
         depth, limit = float(graph.depth[worst]), OVERLAP_LIMIT * size
-        yield ModelWarning.about(world, lighter, what, depth, "m", limit, _rigid(world, graph))
+        yield ModelWarning.about(
+            world, lighter, what, depth, "m", limit, rigid_setting(world, len(graph.touching))
+        )
 
 
 def _mass_ratios(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
@@ -150,7 +150,7 @@ def _mass_ratios(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     if len(ratio) and ratio.max() > MASS_RATIO_LIMIT:
         lighter = graph.lighter(world, int(graph.touching[np.argmax(ratio)]))
         what = "carries a body so much heavier that contacts cannot hold it (mass ratio)"
-        setting = _rigid(world, graph) if ratio.max() <= _RIGID_MASS_RATIO else ""
+        setting = rigid_setting(world, len(graph.touching)) if ratio.max() <= _RIGID_MASS_RATIO else ""
         yield ModelWarning.about(world, lighter, what, float(ratio.max()), "", MASS_RATIO_LIMIT, setting)
 
 
@@ -182,12 +182,6 @@ def _spins(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
         what = "turns so far in a substep that chance decides where its corners strike"
         spinning = int(world.entity_index.entities[rows[np.argmax(angles)]])
         yield ModelWarning.about(world, spinning, what, float(angles.max()), "rad", SPIN_LIMIT, setting)
-
-
-def _rigid(world: World, graph: ContactGraph) -> str:
-    """Return the setting that holds any load, where few bodies touch and contacts may be rigid."""
-    few = len(graph.touching) <= RIGID_LIMIT
-    return 'simulation.contacts = "rigid"' if few and why_not_rigid(world, world.schedule) is None else ""
 
 
 def _more_substeps(world: World, factor: float) -> str:

@@ -28,6 +28,7 @@ from physicslab.stepping.resting_bodies import (
     list_touching,
     set_motion,
 )
+from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.integrate import IntegrateSystem
@@ -66,6 +67,8 @@ class EventDriven:
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._resting = schedule, RestingBodies(state, schedule, plan)
+        self._plan: StepPlan = plan
+        self._together: Rigid | None = None
         self.reason = plan.collision_reason
         self._leaves_rest = plan.contacts == "rigid"
         self._left = -1
@@ -187,7 +190,7 @@ class EventDriven:
 
     def _advance(self, state: State, span: float, dt: float, offset: float) -> None:
         """Advance by a step, or by what is left of it."""
-        left, parts = span, 0
+        left, parts, ordered = span, 0, False
         while left > 0.0:
             parts += 1
             if parts > _MAX_PARTS:
@@ -195,7 +198,10 @@ class EventDriven:
             if (self._mode == events.IN_CONTACT).any():
                 elapsed = self._advance_both(state, left, dt, offset + (span - left))
             else:
-                elapsed, why = self._run_events(state, left, dt, offset + (span - left))
+                elapsed, why = self._run_events(state, left, dt, offset + (span - left), ordered)
+                ordered = False
+                if why == events.TOGETHER:
+                    ordered = not self._collide(state, offset + (span - left) + elapsed)
                 if why == events.TOO_MANY_IMPACTS:
                     self._mode[self._mode == events.BALLISTIC] = events.IN_CONTACT
             left = left - elapsed if elapsed < left else 0.0
@@ -214,7 +220,7 @@ class EventDriven:
             self._lead_resting(in_contact, start.motion, end, span, dt)
             set_motion(state, start.motion)
             resting = state.account.sums.copy()
-            elapsed, _ = self._run_events(state, span, dt, offset)
+            elapsed, _ = self._run_events(state, span, dt, offset, ordered=True)
             motion = copy_motion(state)
             if elapsed < span:
                 flown = state.account.sums - resting
@@ -262,7 +268,19 @@ class EventDriven:
         left: NDArray[np.bool_] = in_contact & (one != events.BALLISTIC) & (other != events.BALLISTIC)
         return left
 
-    def _run_events(self, state: State, span: float, dt: float, offset: float) -> tuple[float, int]:
+    def _collide(self, state: State, offset: float) -> bool:
+        """Resolve impacts that a body has with several others by the laws of rigid contacts, all at once.
+
+        Returns whether there were any: what is not resolved so is resolved in order.
+        """
+        self._together = self._together or Rigid(state, self._schedule, self._plan)
+        impacts = self._together.collide(state, state.time + offset)
+        state.collisions += impacts
+        return impacts > 0
+
+    def _run_events(
+        self, state: State, span: float, dt: float, offset: float, ordered: bool = False
+    ) -> tuple[float, int]:
         """Move bodies from impact to impact for ``span`` s, or until an event; return the time and why."""
         began = time.perf_counter_ns()
         contacts, bodies = state.contacts, state.bodies
@@ -279,6 +297,7 @@ class EventDriven:
             motion_of(state), sizes_of(state), materials_of(state),
             (bodies.inverse_mass, bodies.inverse_inertia), self._bounds,
             state.account.sums, contacts.log, contacts.logged, state.time + offset, span, dt, self._urgent,
+            ordered,
         )  # fmt: skip
         # The impact of a woken body is resolved first, or the body would come to rest again at once.
         self._urgent = pair if why == events.WOKEN else -1

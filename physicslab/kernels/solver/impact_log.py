@@ -8,7 +8,7 @@ over all points is the change of the kinetic energy, exactly.
 from typing import NamedTuple
 
 from physicslab.kernels import Vectors, always_inlined, inlined
-from physicslab.kernels.accounts import ENERGY, FRICTION, HAND, PX, PY, SPIN
+from physicslab.kernels.accounts import ENERGY, FRICTION, HAND, IMPACTS, PX, PY, SPIN
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.solver.blow import Blow
 from physicslab.kernels.solver.impact_pose import Meeting
@@ -111,7 +111,7 @@ def book_impact(
 ) -> None:
     """Add the work of the impulses of an impact to the accounts, and the momentum that comes from outside.
 
-    That of normal impulses goes to the cause ``row``, IMPACTS as a rule. A body without an inverse mass is
+    All of it goes to the cause ``row`` where that is IMPACTS; of what rests, friction has its own. A body without an inverse mass is
     outside: fixed, or moved by a hand or of itself. What moves so works as well, by the impulse times its
     velocity.
     """
@@ -122,11 +122,12 @@ def book_impact(
     )  # fmt: skip
     v1, s1 = _relative(one, mean)
     v2, s2 = _relative(two, mean)
-    bounced, rubbed = shares_of(
-        blow.normal1 * v1 + blow.normal2 * v2, blow.tangent1 * s1 + blow.tangent2 * s2
-    )
-    account[row, ENERGY] += bounced
-    account[FRICTION, ENERGY] += rubbed
+    bounced, rubbed = blow.normal1 * v1 + blow.normal2 * v2, blow.tangent1 * s1 + blow.tangent2 * s2
+    if row != IMPACTS:
+        bounced, rubbed = shares_of(bounced, rubbed)
+        account[FRICTION, ENERGY] += rubbed
+        rubbed = 0.0
+    account[row, ENERGY] += bounced + rubbed
     if masses.a > 0.0 and masses.b > 0.0 and masses.turn_a > 0.0 and masses.turn_b > 0.0:
         return
     x1, y1 = blow.normal1 * one.nx - blow.tangent1 * one.ny, blow.normal1 * one.ny + blow.tangent1 * one.nx
