@@ -116,7 +116,7 @@ class Rigid:
         return Advance(made, parts)
 
     def collide(self, state: State, at: float) -> int:
-        """Let all that approaches in a state bounce, at time ``at`` [s]; return how many impacts there were."""
+        """Let all that approaches in a state bounce, at time ``at`` [s]; return how many impacts that is."""
         self._ode.gather(state)
         impacts = self._motion.collide(self._scene(state), state, at)
         if impacts:

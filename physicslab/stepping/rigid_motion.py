@@ -146,7 +146,7 @@ class RigidMotion:
         return made
 
     def collide(self, scene: tuple[Any, ...], state: State, at: float) -> int:
-        """Resolve the impacts of a state at time ``at``; return how many there were, 0 if some have no solution."""
+        """Resolve the impacts of a state at time ``at``; return how many, 0 if some have no solution."""
         if len(self._stages[2]) != len(self._ode.q):
             self._stages = _stages_of(len(self._ode.q))
         made = MadeStep(self._equations[0], self._equations[1], self._equations[3][UNKNOWN])

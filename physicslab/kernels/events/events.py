@@ -264,7 +264,8 @@ def run_events(
 ) -> tuple[float, int, int, int]:  # fmt: skip
     """Move bodies from impact to impact for ``span`` seconds, or until one comes to rest or is woken.
 
-    So does one that meets two others at once, unless impacts are ``ordered``: then one is resolved after the other.
+    So does one that meets two others at once, unless impacts are ``ordered``: then it meets one after the
+    other.
 
     ``paths`` (rows, 13) holds the accelerations [m/s^2] in columns 8 and 9 and in column 12 the mass [kg] of
     what gravity pulls, ``mode`` that of each row;

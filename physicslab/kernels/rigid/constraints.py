@@ -32,8 +32,8 @@ from physicslab.kernels.rigid.features import (
 )
 
 __all__ = [
-    "apply", "assemble", "constrained_acceleration", "find_free_rates", "find_loads", "measure_all", "project",
-    "rates_without_forces",
+    "apply", "assemble", "constrained_acceleration", "find_free_rates", "find_loads", "measure_all",
+    "project", "rates_without_forces",
 ]  # fmt: skip
 
 

@@ -80,7 +80,7 @@ points touch than there is room for."""
 _SAME_MOMENT = 1e-9
 """Share of its load within which a point that sticks reaches the limit of friction with another one."""
 _BALANCED, _FITTED = 1e-11, 1e-8
-"""Share of the loads of a body that forces which hold it may leave: those that solve equations, and pivots."""
+"""Share of the loads of a body that forces which hold it may leave: of equations, and of pivots."""
 _SHORTENINGS = 60
 """How often a piece is shortened for its error."""
 _SHORTEST = 1e-9
@@ -161,8 +161,8 @@ def _is_balanced(
 ) -> bool:  # fmt: skip
     """Whether the forces found leave no acceleration, but for a ``share`` of what each alone would cause.
 
-    Forces that cancel leave their rounding, which is much for what is light between heavy bodies. ``loads`` is
-    room.
+    Forces that cancel leave their rounding, which is much for what is light between heavy bodies. ``loads``
+    is room.
     """
     for i in range(3 * scene.rows):
         loads[i] = abs(acceleration[i])

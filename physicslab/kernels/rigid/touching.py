@@ -261,8 +261,8 @@ def hold_closed(scene: Scene, equations: Equations, count: int, acceleration: Nu
 
 @inlined
 def hold_evenly(
-    scene: Scene, equations: Equations, count: int, acceleration: Numbers, least: float, inverse_mass: Numbers,
-    pulled: Numbers,
+    scene: Scene, equations: Equations, count: int, acceleration: Numbers, least: float,
+    inverse_mass: Numbers, pulled: Numbers,
 ) -> int:  # fmt: skip
     """Find the forces that would hold ``count`` points of equal bodies that are pulled as these are.
 
