@@ -112,8 +112,8 @@ def book_impact(
     """Add the work of the impulses of an impact to the accounts, and the momentum that comes from outside.
 
     All of it goes to the cause ``row`` where that is IMPACTS; friction of what rests has its own. A body
-    without an inverse mass is outside: fixed, or moved by a hand or of itself. What moves so works as well, by the impulse times its
-    velocity.
+    without an inverse mass is outside: fixed, or moved by a hand or of itself. What moves so works as well,
+    by the impulse times its velocity.
     """
     one, two, blow = struck
     mean = Speeds(
