@@ -42,7 +42,7 @@ times as heavy sinks by 2 cm in 10 s, three thousand times by 4 cm, ten thousand
 which are made shorter for such loads, are then as short as they may be."""
 _PEAK_MARGIN = 1.5
 """Between two looks at a run speeds are higher than those seen: so many more substeps are advised."""
-_RIGID_MASS_RATIO = 3e4
+_RIGID_MASS_RATIO = 1e6
 """Mass ratio up to which rigid contacts were seen to hold to 1e-15 m without shorter steps."""
 DISTANCE_LIMIT = 1e9
 """Coordinate in sizes of a body: float64 keeps places there to 1e-7 of the body, and a tower to 1e-3."""
