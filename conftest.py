@@ -34,8 +34,8 @@ _BEGUN = pytest.StashKey[float]()
 _COSTS: dict[str, float] = {}
 # No deadline: the first example of a test may load kernels.
 settings.register_profile("physicslab", deadline=None, max_examples=40)
-# All that is fuzzed, 10,000 examples: pytest -m "" tests/test_fuzz_*.py --hypothesis-profile=thorough
-settings.register_profile("thorough", deadline=None, max_examples=2500)
+# All that is fuzzed, as .ci/run does it: pytest -m "" tests/test_fuzz_*.py --hypothesis-profile=thorough
+settings.register_profile("thorough", deadline=None, max_examples=600)
 settings.load_profile("physicslab")
 
 
