@@ -464,7 +464,7 @@ def test_the_document_of_a_run_adds_up(capsys: pytest.CaptureFixture[str]) -> No
 def test_the_words_of_a_run_tell_where_the_energy_went(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "drop", "--seconds", "3"]) == 0
     words = capsys.readouterr().out
-    assert "impacts took 21.7" in words and "friction took 0.166667 J" in words and "drift" not in words
+    assert "impacts took 21.886 J" in words and "friction took" not in words and "drift" not in words
     assert "J of energy by the method" in words
 
 
