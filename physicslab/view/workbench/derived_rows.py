@@ -9,16 +9,15 @@ import numpy as np
 from physicslab.components import Mass, Spring, Velocity
 from physicslab.diagnostics.free_body import LastStep
 from physicslab.diagnostics.period import SpringState, period_of, spring_state
+from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.quantities import quantity, vector_quantity
+from physicslab.view.canvas.quantities import quantity, vector_quantity, without_rounding
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.measured import Measured
 from physicslab.world import World
 
 __all__ = ["build_derived", "build_forces"]
 
-_AT_REST = 1e-10
-"""A speed [m/s], [rad/s] below this is rounding, and shown as none."""
 _ROUNDING = 1e-9
 """A sum of forces below this share of the largest is none."""
 
@@ -39,8 +38,9 @@ def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
 
 def _build_motion(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
     velocity = world.component(entity, Velocity)
-    linear = velocity.linear if velocity.linear.magnitude > _AT_REST else Vector2()
-    angular = velocity.angular if abs(velocity.angular) > _AT_REST else 0.0
+    scales = scales_of(world)
+    linear = velocity.linear if without_rounding(velocity.linear.magnitude, scales["m/s"]) else Vector2()
+    angular = without_rounding(velocity.angular, scales["rad/s"])
     ui.gap(0.2)
     ui.rule()
     speed = linear.magnitude
@@ -68,7 +68,7 @@ def _build_spring(ui: Ui, state: SpringState | None) -> None:
     ui.gap(0.2)
     ui.rule()
     ui.row("Length", quantity(state.length, "m"))
-    ui.row("Longer by", quantity(state.extension, "m"), "than at rest; negative where it is shorter")
+    ui.row("Longer by", quantity(without_rounding(state.extension, state.length), "m"), "than at rest; negative where it is shorter")
     pulls = "pulls its ends together" if state.force >= 0.0 else "pushes its ends apart"
     ui.row("Spring force", quantity(abs(state.force), "N"), pulls)
     ui.row("Energy stored", quantity(state.energy, "J"))

@@ -7,7 +7,8 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.components.quantities import QUANTITIES
 from physicslab.diagnostics.quantities import why_undefined
-from physicslab.view.canvas.quantities import quantity
+from physicslab.diagnostics.scales import scales_of
+from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.canvas.units import product, quotient, written_unit
 from physicslab.view.controls import dashboard_actions
@@ -17,7 +18,7 @@ from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.plot_data import area_between, slope_between
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
-from physicslab.view.workbench.quantity_menu import shown_name, unit_of
+from physicslab.view.workbench.quantity_menu import scale_of, shown_name, unit_of
 from physicslab.world import World
 
 __all__ = ["ButtonRow", "build_cursors", "build_moment", "build_readings", "colour_of", "line_name"]
@@ -138,6 +139,7 @@ def _value(world: World, window: Window, key: Key, row: int | None) -> str:
     why = why_undefined(world, key[1], key[0])
     if np.isnan(value):
         return f"({why})" if why else "not recorded"
+    value = without_rounding(value, scale_of(key, scales_of(world)))
     words, record = quantity(value, unit_of(key)), window.dashboard.record
     return f"{words} (gone)" if why == "gone" and world.time >= record.times[-1] else words
 
