@@ -8,30 +8,34 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
-from physicslab.contacts.report import contacts_of
+from physicslab.contacts.outlines import overlap
+from physicslab.contacts.report import contact_between
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, RemoveComponent, SetField
-from physicslab.view.window.placing import free_way
+from physicslab.view.window.placing import free_way, outlines_of
 from physicslab.world import World
 
 __all__ = ["Hand"]
 
-_PRESSED = 0.04
-"""How deep what is held may be pressed into others, as a share of half its size."""
-_TOUCHING, _PRESSING = 0.02, 0.2
-"""Of what is nearer than this share of half its size, the hand goes only so much faster [m/s]: what is free
-is pushed along ever faster, what is pressed against something is not pressed through it."""
 _ALONG, _MAX_BEHIND = 0.3, 24
-"""A body is behind another where the contact points at least so much along, and so many are looked at."""
+"""A body is behind another where the contact points at least so much along; so many in a row are looked at."""
 _WEIGHTS, _EARTH = 20.0, 9.81
 """The hand is as strong as so many times the weight of what it holds, on the Earth [m/s^2]."""
 _COMING_OUT = 0.3
-"""Share of what is deeper than that by which it comes out again in a frame."""
+"""Share of its overlap by which it comes out in a frame of what it cannot push."""
+_PASSES = 4
+"""How often the limits of several neighbours are gone through."""
 _MIN_THROW_TIME = 0.03
 """Time [s] over which a speed can be measured at all; a shorter pull is no throw."""
+
+type Contacts = NDArray[Any]
+"""Records of pairs (n,), as :mod:`physicslab.kernels.records` has them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,50 +69,67 @@ def _reach(world: World, entity: int) -> Vector2:
 
 
 def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vector2:
-    """Return the velocity [m/s] of the hand where what it holds is pressed against something.
+    """Return the velocity [m/s] at which the hand takes along what it holds.
 
-    A body in the hand is infinitely heavy, and would press others through a floor. Where contacts push back
-    harder than the hand is strong, or it overlaps by more than contacts allow, it goes no further, and comes
-    out again.
+    A body in the hand is infinitely heavy, and would press others through a floor. Towards each it goes no
+    faster than it comes there in the time that is coming, and gives it in that time the velocity that the
+    hand's strength gives to it and to what lies behind it: none to a box on a floor that is pressed down.
+    Where contacts push back harder than the hand is strong all the same, it comes out again.
     """
-    velocity, size = wanted, max(*_reach(world, entity), 1e-9)
-    strength = _strength(world, entity)
-    for contact in contacts_of(world, entity):
-        other = contact.b if contact.a == entity else contact.a
-        into = contact.normal if contact.a == entity else -contact.normal
-        force = sum(point.normal_force for point in contact.points)
-        too_deep = max(contact.depth, _depth_behind(world, entity, other, into)) - _PRESSED * size
-        if too_deep > 0.0 or force > strength:
-            fastest = -_COMING_OUT * max(too_deep, _PRESSED * size if force > strength else 0.0) / coming
-        elif contact.depth > -_TOUCHING * size:
-            fastest = _speed_along(world, other, into) + _PRESSING
-        else:
-            continue
-        velocity = velocity - into * max(velocity.dot(into) - fastest, 0.0)
+    if not world.has(entity, Shape):
+        return wanted
+    world.synchronise()
+    world.contacts.sync()
+    near = world.contacts.manifolds[: world.contacts.recorded]
+    near, own, strength = near[near["count"] > 0], world.entity_index.row_of[entity], _strength(world, entity)
+    table = world.table(Velocity)
+    rows = world.batch(Transform, Velocity, Shape).rows
+    others, held = outlines_of(world, rows), outlines_of(world, np.array([own], np.int64))
+    around = np.abs(others.place - held.place[0]) < others.reach + held.reach[0] + wanted.magnitude * coming
+    limits: list[tuple[Vector2, float]] = []
+    for n in np.flatnonzero(around.all(axis=1) & (rows != own)).tolist():
+        deep, direction = overlap(held, 0, others, n)
+        into, row = Vector2(*direction.tolist()), int(rows[n])
+        push = strength / _load(world, near, row, own, into) * coming
+        force = _force(world, entity, int(world.entity_index.entities[row]))
+        too_deep = max(deep, 0.0) * (1.0 if push == 0.0 else max(1.0 - strength / force, 0.0) if force else 0.0)
+        apart = max(-deep, 0.0) - _COMING_OUT * too_deep
+        speed = Vector2(*table["linear"][row].tolist()).dot(into)
+        limits.append((into, apart / coming + speed + push))
+    velocity = wanted
+    for _ in range(_PASSES if len(limits) > 1 else 1):
+        for into, fastest in limits:
+            velocity = velocity - into * max(velocity.dot(into) - fastest, 0.0)
     return velocity
 
 
-def _depth_behind(world: World, entity: int, other: int, into: Vector2) -> float:
-    """Return the deepest overlap [m] of what is pressed along: of bodies behind the one that is touched."""
-    deepest, seen, waiting = 0.0, {entity}, [other]
-    while waiting and len(seen) < _MAX_BEHIND:
-        body = waiting.pop()
-        if body in seen or not (body and world.has(body, Velocity)):
+def _load(world: World, near: Contacts, first: int, own: int, into: Vector2) -> float:
+    """Return the mass [kg] that is moved where the body of a row is pushed along: its own, and of what is behind.
+
+    It is infinite where something behind cannot move.
+    """
+    total, seen, waiting = 0.0, {own}, [first]
+    along = near["normal_x"] * into.x + near["normal_y"] * into.y
+    while waiting:
+        row = waiting.pop()
+        if row in seen:
             continue
-        seen.add(body)
-        for contact in contacts_of(world, body):
-            beyond = contact.b if contact.a == body else contact.a
-            way = contact.normal if contact.a == body else -contact.normal
-            if beyond not in seen and way.dot(into) > _ALONG:
-                deepest = max(deepest, contact.depth)
-                waiting.append(beyond)
-    return deepest
+        seen.add(row)
+        inverse = float(world.bodies.inverse_mass[row])
+        if inverse == 0.0 or len(seen) > _MAX_BEHIND:
+            return math.inf
+        total += 1.0 / inverse
+        if ((near["entity_a"] == 0) & (near["b"] == row) & (along < -_ALONG)).any():
+            return math.inf  # a wall of the world
+        waiting += near["b"][(near["a"] == row) & (near["entity_a"] > 0) & (along > _ALONG)].tolist()
+        waiting += near["a"][(near["b"] == row) & (near["entity_a"] > 0) & (along < -_ALONG)].tolist()
+    return total
 
 
-def _speed_along(world: World, entity: int, direction: Vector2) -> float:
-    """Return how fast a body moves along a direction [m/s]; what is fixed does not."""
-    moves = bool(entity) and world.has(entity, Velocity)
-    return world.component(entity, Velocity).linear.dot(direction) if moves else 0.0
+def _force(world: World, entity: int, other: int) -> float:
+    """Return how hard two bodies press against each other [N]."""
+    contact = contact_between(world, entity, other)
+    return sum(point.normal_force for point in contact.points) if contact is not None else 0.0
 
 
 def _weight(world: World, entity: int) -> float:
