@@ -43,7 +43,12 @@ def test_every_scene_runs_and_stays_finite(name: str) -> None:
 
 
 def test_planets_keep_the_third_law_that_their_scene_tells_of() -> None:
-    world, turned, nearest, farthest = load_scene("solar_system"), np.zeros(5), np.full(5, np.inf), np.zeros(5)
+    world, turned, nearest, farthest = (
+        load_scene("solar_system"),
+        np.zeros(5),
+        np.full(5, np.inf),
+        np.zeros(5),
+    )
     before, since = None, 0.0
     for _ in world.stepping(seconds=100.0, stride=6):
         star, *planets = world.table(Transform)["position"][world.batch(Mass).rows]

@@ -24,11 +24,12 @@ from physicslab.world import World
 __all__ = ["Hand"]
 
 _ALONG, _MAX_BEHIND = 0.3, 24
-"""A body is behind another where the contact points at least so much along; so many in a row are looked at."""
+"""A body is behind another where the contact points at least so much along; so many are looked at."""
 _WEIGHTS, _EARTH = 20.0, 9.81
 """The hand is as strong as so many times the weight of what it holds, on the Earth [m/s^2]."""
-_COMING_OUT = 0.3
-"""Share of its overlap by which it comes out in a frame of what it cannot push."""
+_PRESSED, _COMING_OUT = 0.04, 0.3
+"""Share of its size by which a body that is pushed may be overlapped; deeper, and where it cannot be pushed,
+so much of the overlap is given back in a frame."""
 _PASSES = 4
 """How often the limits of several neighbours are gone through."""
 _MIN_THROW_TIME = 0.03
@@ -91,9 +92,11 @@ def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vect
         deep, direction = overlap(held, 0, others, n)
         into, row = Vector2(*direction.tolist()), int(rows[n])
         push = strength / _load(world, near, row, own, into) * coming
-        force = _force(world, entity, int(world.entity_index.entities[row]))
-        too_deep = max(deep, 0.0) * (1.0 if push == 0.0 else max(1.0 - strength / force, 0.0) if force else 0.0)
-        apart = max(-deep, 0.0) - _COMING_OUT * too_deep
+        gives_way = _force(world, entity, int(world.entity_index.entities[row])) <= strength
+        if deep > _PRESSED * float(min(held.size[0], others.size[n])) or not gives_way:
+            push = 0.0
+        apart = -deep if push == 0.0 and deep > 0.0 else max(-deep, 0.0)
+        apart *= _COMING_OUT if apart < 0.0 else 1.0
         speed = Vector2(*table["linear"][row].tolist()).dot(into)
         limits.append((into, apart / coming + speed + push))
     velocity = wanted
@@ -104,7 +107,7 @@ def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vect
 
 
 def _load(world: World, near: Contacts, first: int, own: int, into: Vector2) -> float:
-    """Return the mass [kg] that is moved where the body of a row is pushed along: its own, and of what is behind.
+    """Return the mass [kg] of the body of a row and of all that lies behind it, where it is pushed along.
 
     It is infinite where something behind cannot move.
     """

@@ -25,7 +25,10 @@ _SAME = ["time", "entity_a", "entity_b", "wall", "normal_impulse"]
 """What two records of one impact have in common: one that was made again, in a step that was made again."""
 _DERIVED = ("sticks", "e_found", "energy_lost")
 """Columns that follow from a record, and that rows are sorted by."""
-COLUMNS = ("time", "entity_a", "entity_b", "approach_speed", "normal_impulse", "tangent_impulse", *_DERIVED)
+COLUMNS = (
+    "time", "entity_a", "entity_b", "approach_speed", "normal_impulse", "tangent_impulse",
+    "sticks", "friction", "restitution", "e_found", "energy_lost",
+)  # fmt: skip
 """What rows can be sorted by."""
 
 

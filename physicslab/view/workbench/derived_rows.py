@@ -8,7 +8,7 @@ import numpy as np
 
 from physicslab.components import Mass, Spring, Velocity
 from physicslab.diagnostics.free_body import LastStep
-from physicslab.diagnostics.period import SpringState, period_of, spring_state
+from physicslab.diagnostics.period import SpringState, gives_way, period_of, spring_state
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, vector_quantity, without_rounding
@@ -16,7 +16,7 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.measured import Measured
 from physicslab.world import World
 
-__all__ = ["build_derived", "build_forces"]
+__all__ = ["build_derived", "build_forces", "build_pairs"]
 
 _ROUNDING = 1e-9
 """A sum of forces below this share of the largest is none."""
@@ -29,6 +29,12 @@ def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
     """
     if world.has(entity, Spring):
         _build_spring(ui, spring_state(world, entity))
+        give = gives_way(world, entity)
+        if give is not None:
+            tip = (
+                "It serves as a rod and is a stiff spring: weight makes it so much longer, a wide swing more"
+            )
+            ui.row("Gives way", quantity(1e3 * give, "mm"), tip)
     if world.has(entity, Velocity):
         _build_motion(ui, world, entity, is_brief=is_brief)
     period = period_of(world, entity)
@@ -68,7 +74,11 @@ def _build_spring(ui: Ui, state: SpringState | None) -> None:
     ui.gap(0.2)
     ui.rule()
     ui.row("Length", quantity(state.length, "m"))
-    ui.row("Longer by", quantity(without_rounding(state.extension, state.length), "m"), "than at rest; negative where it is shorter")
+    ui.row(
+        "Longer by",
+        quantity(without_rounding(state.extension, state.length), "m"),
+        "than at rest; negative where it is shorter",
+    )
     pulls = "pulls its ends together" if state.force >= 0.0 else "pushes its ends apart"
     ui.row("Spring force", quantity(abs(state.force), "N"), pulls)
     ui.row("Energy stored", quantity(state.energy, "J"))
@@ -111,6 +121,15 @@ def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
     )
     if not is_brief:
         _build_impulses(ui, step)
+
+
+def build_pairs(ui: Ui, measured: Measured) -> None:
+    """Write the friction and the restitution of each pair of surfaces that a body is one of."""
+    for one in measured.forces:
+        if one.pair is not None:
+            other, friction, restitution = one.pair
+            ui.faint(f"With {other}: mu = {friction:.4g}, e = {restitution:.4g}")
+            ui.tip("Of this pair: mu is the root of both frictions multiplied, e the smaller restitution")
 
 
 def _build_impulses(ui: Ui, step: LastStep) -> None:

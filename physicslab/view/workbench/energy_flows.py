@@ -145,7 +145,9 @@ def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
         long = abs(part.energy) / whole * width
         if long >= 1.0:
             high = left + max(long - 1.0, 1.0)
-            paper.add_rect_filled(ImVec2(left, corner.y), ImVec2(high, corner.y + height), packed(part.colour))
+            paper.add_rect_filled(
+                ImVec2(left, corner.y), ImVec2(high, corner.y + height), packed(part.colour)
+            )
             _write_name(ui, part.name, (left, corner.y, high - left, height))
         left += long
     zero = corner.x + sum(max(-part.energy, 0.0) for part in parts) / whole * width

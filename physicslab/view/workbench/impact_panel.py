@@ -18,13 +18,14 @@ from physicslab.world import World
 
 __all__ = ["build_impacts"]
 
-_HEADS = ("Time", "A", "B", "Approach", "Normal", "Friction", "Contact", "e found", "Energy lost")
-_WIDTHS = (5.0, 7.0, 7.0, 5.0, 5.6, 5.6, 4.0, 4.2, 5.6)
+_HEADS = ("Time", "A", "B", "Approach", "Normal", "Friction", "Contact", "mu", "e", "e found", "Energy lost")
+_WIDTHS = (5.0, 7.0, 7.0, 5.0, 5.6, 5.6, 4.0, 3.2, 3.2, 4.2, 5.6)
 """Widths of the columns, in heights of the text."""
 _TIPS = (
     "When it was", "The first body", "The second body: impulses are those on it",
     "How fast they approached, along the normal", "Impulse along the normal: it keeps them apart",
     "Impulse along the surface", "Whether friction stopped the sliding",
+    "Friction of the pair: the root of both multiplied", "Restitution of the pair: the smaller one",
     "Speed along the normal after the impact, as a share of the approach", "Kinetic energy that it took",
 )  # fmt: skip
 _HEIGHT = 11.0
@@ -140,7 +141,9 @@ def _build_row(ui: Ui, world: World, window: Window, n: int, record: Any) -> Non
     cells = (
         f"{record['time']:.4f} s", a, b, quantity(float(record["approach_speed"]), "m/s"),
         quantity(float(record["normal_impulse"]), "N s"), quantity(float(record["tangent_impulse"]), "N s"),
-        "sticks" if sticks else "slides", "-" if math.isnan(found) else f"{round(found, 4) + 0.0:.4f}",
+        "sticks" if sticks else "slides",
+        f"{record['friction']:.4g}", f"{record['restitution']:.4g}",
+        "-" if math.isnan(found) else f"{round(found, 4) + 0.0:.4f}",
         quantity(float(record["energy_lost"]), "J"),
     )  # fmt: skip
     shown = window.microscope.record

@@ -265,8 +265,8 @@ def _unit_shown(spec: Field, value: float | None) -> str:
     'rad = -30°'
     >>> _unit_shown(Field("angle", "number", unit="rad"), 1e-7)
     'rad = 0°'
-    >>> _unit_shown(Field("angle", "number", unit="°"), 900.0), _unit_shown(Field("angle", "number", unit="°"), 90.0)
-    ('° = 2.5 turns', '°')
+    >>> [_unit_shown(Field("angle", "number", unit="°"), degrees) for degrees in (900.0, 90.0)]
+    ['° = 2.5 turns', '°']
     """
     if spec.unit == "°":
         turned = value is not None and _TURN < abs(value) < _LARGEST_ANGLE
