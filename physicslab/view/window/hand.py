@@ -30,6 +30,8 @@ _WEIGHTS, _EARTH = 20.0, 9.81
 _PRESSED, _COMING_OUT = 0.04, 0.3
 """Share of its size by which a body that is pushed may be overlapped; deeper, and where it cannot be pushed,
 so much of the overlap is given back in a frame."""
+_MARGIN = 0.01
+"""Share of its size up to which it comes near at any speed."""
 _PASSES = 4
 """How often the limits of several neighbours are gone through."""
 _MIN_THROW_TIME = 0.03
@@ -93,10 +95,13 @@ def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vect
         into, row = Vector2(*direction.tolist()), int(rows[n])
         push = strength / _load(world, near, row, own, into) * coming
         gives_way = _force(world, entity, int(world.entity_index.entities[row])) <= strength
-        if deep > _PRESSED * float(min(held.size[0], others.size[n])) or not gives_way:
+        size = float(min(held.size[0], others.size[n]))
+        if deep > _PRESSED * size or not gives_way:
             push = 0.0
-        apart = -deep if push == 0.0 and deep > 0.0 else max(-deep, 0.0)
-        apart *= _COMING_OUT if apart < 0.0 else 1.0
+        if deep > 0.0:
+            apart = -_COMING_OUT * deep if push == 0.0 else 0.0
+        else:
+            apart = max(-deep - _MARGIN * size, -_COMING_OUT * deep)  # never onto it at full speed
         speed = Vector2(*table["linear"][row].tolist()).dot(into)
         limits.append((into, apart / coming + speed + push))
     velocity = wanted
