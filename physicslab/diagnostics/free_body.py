@@ -17,7 +17,8 @@ from physicslab.stepping.forces import forces_by_system
 from physicslab.world import World
 
 __all__ = [
-    "LastStep", "NamedForce", "Pair", "applied_forces", "contact_forces", "forces_on", "last_step", "net_force",
+    "LastStep", "NamedForce", "Pair",
+    "applied_forces", "contact_forces", "forces_on", "last_step", "net_force",
 ]  # fmt: skip
 
 type Kind = Literal["field", "normal", "friction"]

@@ -99,7 +99,8 @@ class RunRecorder:
     def bodies(self, world: World) -> list[dict[str, Any]]:
         """Return every entity with a Transform: name, outline, mass, and where it is if it does not move.
 
-        ``"entity"`` is its number, by which it has its colour as in a window; ``"moves"`` is the place of a body among those that move.
+        ``"entity"`` is its number, by which it has its colour as in a window; ``"moves"`` is the
+        place of a body among those that move.
         """
         transform, shape, mass, trail = map(world.table, (Transform, Shape, Mass, Trail))
         moves = {row: place for place, row in enumerate(self._rows.tolist())}

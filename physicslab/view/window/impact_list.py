@@ -67,11 +67,14 @@ class ImpactList:
         self._put(self.records[:0])
 
     def follow(self, world: World, history: History) -> None:
-        """Take in what the log has since the last call; the first call begins with the next impact."""
+        """Take in what the log has since the last call; the first call begins with all that it has."""
         if world is not self._world:
             self._world = world
             self.clear()
-        new = self._reader.new(world)
+            self._reader.follow(world)
+            new = _of_one_line(world.contacts.impacts)
+        else:
+            new = self._reader.new(world)
         if len(new):
             self._take(_with_derived(new))
         at_end = history.step_count == history.steps_range[1]
@@ -151,6 +154,13 @@ class ImpactList:
         if not len(rows):
             return None
         return self.records[rows[np.argmin(times[rows]) if by > 0 else np.argmax(times[rows])]].copy()
+
+
+def _of_one_line(log: Records) -> Records:
+    """Return the impacts of a log that were not taken back: none of those written later is earlier."""
+    earliest_after = np.minimum.accumulate(log["time"][::-1])[::-1]
+    kept: Records = log[log["time"] <= earliest_after]
+    return kept
 
 
 def _with_derived(records: Records) -> Records:

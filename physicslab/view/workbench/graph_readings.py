@@ -56,7 +56,7 @@ class ButtonRow:
 
 
 def colours_of(theme: Theme, graph: GraphShown) -> list[Colour]:
-    """Return the colour of each line: that of its body, those of the world in turn; tints of what is taken."""
+    """Return the colour of each line: that of its body, in turn for those of the world; tints of the same."""
     found: list[Colour] = []
     for n, line in enumerate(graph.lines):
         colour = own = theme.body(n if line.key[0] is None else line.key[0])
@@ -109,7 +109,8 @@ def build_moment(ui: Ui, world: World, window: Window, used: float) -> None:
     row = record.nearest(world.time if pointed is None else pointed)
     if row is None:
         return
-    words = f"t {record.times[row]:.3f} s"
+    past = window.dashboard.past
+    words = f"t {record.times[row]:.3f} s" if past is None else f"the past: {past.share:.0%}"
     style, room = imgui.get_style(), imgui.get_content_region_avail().x
     width = imgui.calc_text_size(words).x
     if used + style.item_spacing.x + width > room:

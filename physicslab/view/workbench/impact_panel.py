@@ -19,7 +19,7 @@ from physicslab.world import World
 __all__ = ["build_impacts"]
 
 _HEADS = ("Time", "A", "B", "Approach", "Normal", "Friction", "Contact", "mu", "e", "e found", "Energy lost")
-_WIDTHS = (5.0, 7.0, 7.0, 5.0, 5.6, 5.6, 4.0, 3.2, 3.2, 4.2, 5.6)
+_WIDTHS = (4.8, 5.8, 5.8, 4.8, 5.2, 5.2, 3.6, 2.4, 2.2, 4.0, 5.4)
 """Widths of the columns, in heights of the text."""
 _TIPS = (
     "When it was", "The first body", "The second body: impulses are those on it",
@@ -60,10 +60,7 @@ def _nothing(window: Window) -> str:
     impacts = window.impacts
     if len(impacts.records):
         return "None of the listed impacts is of what is selected."
-    return (
-        "Impacts are listed from now on: let time run (Space). Those before this table was opened were not "
-        "recorded; go back in time with the time line, and what is run again is listed too."
-    )
+    return "There was no impact so far: let time run (Space)."
 
 
 def _build_head(ui: Ui, world: World, window: Window) -> None:
