@@ -88,7 +88,7 @@ class ComponentRows:
             return
         degrees = None if now is None else math.degrees(now)
         self._numbers.row(
-            ui, key, _label(spec), replace(spec, unit="°"), degrees, lambda new: commit(math.radians(new))
+            ui, key, _label(spec), replace(spec, unit="deg"), degrees, lambda new: commit(math.radians(new))
         )
 
     def _vector(

@@ -60,9 +60,9 @@ def _build_motion(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
     ui.row("Momentum", quantity(mass.mass * speed, "kg m/s"))
     if not is_brief:
         ui.row("as a vector", vector_quantity(mass.mass * linear, "kg m/s"), lesser=True)
-    energy = 0.5 * mass.mass * speed**2
+    energy = without_rounding(0.5 * mass.mass * speed**2, scales["J"])
     inverse = float(world.bodies.inverse_inertia[row])
-    spin = 0.5 * angular**2 / inverse if inverse > 0.0 else 0.0
+    spin = without_rounding(0.5 * angular**2 / inverse, scales["J"]) if inverse > 0.0 else 0.0
     ui.row("Kinetic energy", quantity(energy + spin, "J"))
     if spin and np.isfinite(spin) and not is_brief:
         ui.row("of turning", quantity(spin, "J"), lesser=True)

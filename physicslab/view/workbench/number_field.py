@@ -224,7 +224,7 @@ class NumberFields:
             held = pygame.key.get_mods()
             factor = _FINER if held & pygame.KMOD_SHIFT else _COARSER if held & pygame.KMOD_CTRL else 1.0
             moved = imgui.get_mouse_drag_delta(0, 2.0).x
-            least = math.degrees(1.0) if spec.unit == "°" else 1.0
+            least = math.degrees(1.0) if spec.unit == "deg" else 1.0
             new = self._dragged[1] + moved * factor * _DRAG * max(abs(self._dragged[1]), least)
             with contextlib.suppress(InvalidValue):  # at the end of its range a drag does nothing more
                 commit(float(f"{new:.6g}"))
@@ -265,10 +265,10 @@ def _unit_shown(spec: Field, value: float | None) -> str:
     'rad = -30°'
     >>> _unit_shown(Field("angle", "number", unit="rad"), 1e-7)
     'rad = 0°'
-    >>> [_unit_shown(Field("angle", "number", unit="°"), degrees) for degrees in (900.0, 90.0)]
+    >>> [_unit_shown(Field("angle", "number", unit="deg"), degrees) for degrees in (900.0, 90.0)]
     ['° = 2.5 turns', '°']
     """
-    if spec.unit == "°":
+    if spec.unit == "deg":
         turned = value is not None and _TURN < abs(value) < _LARGEST_ANGLE
         return f"° = {value / _TURN:.3g} turns" if value is not None and turned else "°"
     unit = spec.unit.replace("^2", "²").replace("^3", "³") if spec.unit != "1" else ""
