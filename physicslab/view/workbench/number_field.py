@@ -33,7 +33,7 @@ _VARIOUS = "various"
 """What a field shows of several bodies whose numbers differ."""
 _LARGEST_ANGLE = 1e5
 """Larger angles are not shown in degrees as well [°]."""
-_TURN = 360.0
+_HALF_TURN = 180.0
 """[°]."""
 
 _LINES_SHOWN = 4
@@ -259,21 +259,23 @@ def _as_field(text: str, spec: Field) -> float | str:
 def _unit_shown(spec: Field, value: float | None) -> str:
     """Return what stands beside a field: its unit; after an angle, what it is in degrees, to a hundredth.
 
-    An angle of more than a turn is in turns there.
+    Of more than half a turn it is the direction that is written so.
 
-    >>> _unit_shown(Field("angle", "number", unit="rad"), math.radians(-30.0))
-    'rad = -30°'
-    >>> _unit_shown(Field("angle", "number", unit="rad"), 1e-7)
-    'rad = 0°'
-    >>> [_unit_shown(Field("angle", "number", unit="deg"), degrees) for degrees in (900.0, 90.0)]
-    ['° = 2.5 turns', '°']
+    >>> spec = Field("angle", "number", unit="rad")
+    >>> [_unit_shown(spec, math.radians(degrees)) for degrees in (-30.0, 1e-6, 900.5)]
+    ['rad = -30°', 'rad = 0°', 'rad, -179.5°']
+    >>> [_unit_shown(Field("angle", "number", unit="deg"), degrees) for degrees in (90.0, 900.5)]
+    ['°', '°, -179.5°']
     """
-    if spec.unit == "deg":
-        turned = value is not None and _TURN < abs(value) < _LARGEST_ANGLE
-        return f"° = {value / _TURN:.3g} turns" if value is not None and turned else "°"
-    unit = spec.unit.replace("^2", "²").replace("^3", "³") if spec.unit != "1" else ""
-    degrees = math.degrees(value) if value is not None and spec.unit == "rad" else math.inf
-    return f"{unit} = {round(degrees, 2) + 0.0:.5g}°" if abs(degrees) < _LARGEST_ANGLE else unit
+    is_angle = spec.unit in ("rad", "deg")
+    unit = spec.unit.replace("^2", "²").replace("^3", "³").replace("deg", "°") if spec.unit != "1" else ""
+    if value is None or not is_angle:
+        return unit
+    degrees = value if spec.unit == "deg" else math.degrees(value)
+    if abs(degrees) >= _LARGEST_ANGLE or (spec.unit == "deg" and abs(degrees) <= _HALF_TURN):
+        return unit
+    sign = " =" if abs(degrees) <= _HALF_TURN else ","
+    return f"{unit}{sign} {round(math.remainder(degrees, 2.0 * _HALF_TURN), 2) + 0.0:.5g}°"
 
 
 def _width(ui: Ui, unit: str) -> float:
