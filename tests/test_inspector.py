@@ -136,7 +136,7 @@ def test_every_field_is_in_the_table() -> None:
     assert set(WRITTEN) == all_fields()
 
 
-@pytest.mark.parametrize(("key", "end"), zip(WRITTEN, cycle(("return", "tab", "beside")), strict=False))
+@pytest.mark.parametrize(("key", "end"), list(zip(WRITTEN, cycle(("return", "tab", "beside")), strict=False)))
 def test_a_field_takes_a_number_with_a_unit(key: str, end: str) -> None:
     desk, body = bench(key)
     text, expected = WRITTEN[key]
@@ -155,7 +155,7 @@ def test_a_field_takes_a_number_with_a_unit(key: str, end: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "text"), zip(WRITTEN, cycle(("north", "1 +", "3 kg^7", "1/0")), strict=False)
+    ("key", "text"), list(zip(WRITTEN, cycle(("north", "1 +", "3 kg^7", "1/0")), strict=False))
 )
 def test_what_is_no_number_has_another_unit_or_is_out_of_range_is_refused_at_the_field(
     key: str, text: str
