@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
-from physicslab.contacts.outlines import overlap
+from physicslab.contacts.outlines import Outlines, overlap
 from physicslab.contacts.report import contact_between
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
@@ -24,7 +24,7 @@ from physicslab.world import World
 __all__ = ["Hand"]
 
 _ALONG, _MAX_BEHIND = 0.3, 24
-"""A body is behind another where the contact points at least so much along; so many are looked at."""
+"""A body is behind another where the way to it points at least so much along; so many are looked at."""
 _WEIGHTS, _EARTH = 20.0, 9.81
 """The hand is as strong as so many times the weight of what it holds, on the Earth [m/s^2]."""
 _PRESSED, _COMING_OUT = 0.04, 0.3
@@ -37,8 +37,7 @@ _PASSES = 4
 _MIN_THROW_TIME = 0.03
 """Time [s] over which a speed can be measured at all; a shorter pull is no throw."""
 
-type Contacts = NDArray[Any]
-"""Records of pairs (n,), as :mod:`physicslab.kernels.records` has them."""
+type Numbers = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,27 +81,30 @@ def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vect
     if not world.has(entity, Shape):
         return wanted
     world.synchronise()
-    world.contacts.sync()
-    near = world.contacts.manifolds[: world.contacts.recorded]
-    near, own, strength = near[near["count"] > 0], world.entity_index.row_of[entity], _strength(world, entity)
-    table = world.table(Velocity)
-    rows = world.batch(Transform, Velocity, Shape).rows
-    others, held = outlines_of(world, rows), outlines_of(world, np.array([own], np.int64))
-    around = np.abs(others.place - held.place[0]) < others.reach + held.reach[0] + wanted.magnitude * coming
+    rows, strength = world.batch(Transform, Shape).rows, _strength(world, entity)
+    shapes, own = outlines_of(world, rows), int(np.flatnonzero(rows == world.entity_index.row_of[entity])[0])
+    sizes, reaches, handles = shapes.size, shapes.reach, world.entity_index.entities
+    linear, inverse = world.table(Velocity)["linear"][rows], world.bodies.inverse_mass[rows]
+    moves = world.table(Velocity).present[rows]
+    moves[own] = False
     limits: list[tuple[Vector2, float]] = []
-    for n in np.flatnonzero(around.all(axis=1) & (rows != own)).tolist():
-        deep, direction = overlap(held, 0, others, n)
-        into, row = Vector2(*direction.tolist()), int(rows[n])
-        push = strength / _load(world, near, row, own, into) * coming
-        gives_way = _force(world, entity, int(world.entity_index.entities[row])) <= strength
-        size = float(min(held.size[0], others.size[n]))
-        if deep > _PRESSED * size or not gives_way:
+    for n in _around(shapes.place, reaches, own, wanted.magnitude * coming):
+        if not moves[n]:
+            continue
+        deep, direction = overlap(shapes, own, shapes, n)
+        into = Vector2(*direction.tolist())
+        speed, push = Vector2(*linear[n].tolist()).dot(into), strength * coming * float(inverse[n])
+        size = float(min(sizes[own], sizes[n]))
+        touches = deep > -_MARGIN * size
+        if deep > _PRESSED * size or (touches and _force(world, entity, handles[rows[n]]) > strength):
             push = 0.0
+        elif push > 0.0:
+            reach = (max(speed, 0.0) + push) * coming
+            push = strength * coming / _load(world, shapes, reaches, inverse, (own, n), into, reach)
         if deep > 0.0:
             apart = -_COMING_OUT * deep if push == 0.0 else 0.0
         else:
             apart = max(-deep - _MARGIN * size, -_COMING_OUT * deep)  # never onto it at full speed
-        speed = Vector2(*table["linear"][row].tolist()).dot(into)
         limits.append((into, apart / coming + speed + push))
     velocity = wanted
     for _ in range(_PASSES if len(limits) > 1 else 1):
@@ -111,32 +113,50 @@ def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vect
     return velocity
 
 
-def _load(world: World, near: Contacts, first: int, own: int, into: Vector2) -> float:
-    """Return the mass [kg] of the body of a row and of all that lies behind it, where it is pushed along.
+def _around(places: Numbers, reaches: Numbers, n: int, margin: float) -> list[int]:
+    """Return which others are near a shape: their boxes along the axes of the world, within a margin [m]."""
+    near = np.abs(places - places[n]) < reaches + reaches[n] + margin
+    found: list[int] = np.flatnonzero(near.all(axis=1)).tolist()
+    found.remove(n)
+    return found
 
-    It is infinite where something behind cannot move.
+
+def _load(
+    world: World, shapes: Outlines, reaches: Numbers, inverse: Numbers, pair: tuple[int, int], into: Vector2,
+    reach: float,
+) -> float:  # fmt: skip
+    """Return the mass [kg] of the second of a pair and of all that it meets where it is pushed so far [m].
+
+    It is infinite where that cannot move. ``reaches`` (n, 2) [m] and ``inverse`` masses (n,) [1/kg] are those
+    of the shapes.
     """
-    total, seen, waiting = 0.0, {own}, [first]
-    along = near["normal_x"] * into.x + near["normal_y"] * into.y
+    total, seen, waiting = 0.0, {pair[0]}, [pair[1]]
+    bounds = world.physics.bounds
     while waiting:
-        row = waiting.pop()
-        if row in seen:
+        n = waiting.pop()
+        if n in seen:
             continue
-        seen.add(row)
-        inverse = float(world.bodies.inverse_mass[row])
-        if inverse == 0.0 or len(seen) > _MAX_BEHIND:
+        seen.add(n)
+        if inverse[n] == 0.0 or len(seen) > _MAX_BEHIND:
             return math.inf
-        total += 1.0 / inverse
-        if ((near["entity_a"] == 0) & (near["b"] == row) & (along < -_ALONG)).any():
-            return math.inf  # a wall of the world
-        waiting += near["b"][(near["a"] == row) & (near["entity_a"] > 0) & (along > _ALONG)].tolist()
-        waiting += near["a"][(near["b"] == row) & (near["entity_a"] > 0) & (along < -_ALONG)].tolist()
+        total += 1.0 / float(inverse[n])
+        if bounds is not None:
+            low, high = shapes.place[n] - reaches[n], shapes.place[n] + reaches[n]
+            rooms = low[0] - bounds[0], low[1] - bounds[1], bounds[2] - high[0], bounds[3] - high[1]
+            for room, along in zip(rooms, (-into.x, -into.y, into.x, into.y), strict=True):
+                if room < reach and along > _ALONG:
+                    return math.inf
+        for k in _around(shapes.place, reaches, n, reach):
+            if k not in seen:
+                deep, direction = overlap(shapes, n, shapes, k)
+                if deep > -reach and direction @ (into.x, into.y) > _ALONG:
+                    waiting.append(k)
     return total
 
 
-def _force(world: World, entity: int, other: int) -> float:
+def _force(world: World, entity: int, other: Any) -> float:
     """Return how hard two bodies press against each other [N]."""
-    contact = contact_between(world, entity, other)
+    contact = contact_between(world, entity, int(other))
     return sum(point.normal_force for point in contact.points) if contact is not None else 0.0
 
 
