@@ -29,6 +29,7 @@ class SpringSystem(ForceSystem):
     needs = (Spring,)
     kernels = (packed_forces.springs,)
     potential = "spring"
+    turns = True
 
     def __init__(self) -> None:
         self._rows = self._a = self._b = np.zeros(0, np.int64)
@@ -59,6 +60,12 @@ class SpringSystem(ForceSystem):
             left: tuple[object, ...] = esper.components_for_entity(entity)
             if all(isinstance(component, Name) for component in left):
                 esper.delete_entity(entity, immediate=True)
+
+    def turned(self, state: State) -> NDArray[np.int64]:
+        """Return the rows that springs hold away from their middle."""
+        spring = state.table(Spring)
+        off_a, off_b = (spring[anchor][self._rows].any(axis=1) for anchor in ("anchor_a", "anchor_b"))
+        return np.concatenate((self._a[off_a], self._b[off_b]))
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the pull for compiled integrators."""

@@ -192,7 +192,8 @@ def book_kick(
     if rate > 0.0 and inverse_mass > 0.0:
         _, first, second = fall_shares(rate * kick)
         along = kick * (v[i] * first + acceleration[i] * kick * second)
-        work = (change * (v[i] + 0.5 * change) - acceleration[i] * along) / inverse_mass
+        gained = kick * first * (acceleration[i] - rate * v[i])  # by the law, whatever the motion's change is
+        work = (gained * (v[i] + 0.5 * gained) - acceleration[i] * along) / inverse_mass
         book_damping(v, places, q, i, work, -rate * along / inverse_mass)
     for k in range(KEPT, len(places), 2):
         v[places[k]] += acceleration[places[k + 1] + i] * along
