@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from physicslab.components import Transform, Velocity
+from physicslab.components.quantities import UNMEASURED_MOMENTA
 from physicslab.contacts.report import list_contacts
 from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
 from physicslab.diagnostics.audit import Audit
@@ -19,6 +20,8 @@ from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
 __all__ = ["RunRecord", "body_names", "find_not_finite", "run_report", "run_summary"]
+
+_UNMEASURED: dict[str, None] = dict.fromkeys(UNMEASURED_MOMENTA)
 
 
 @dataclass(slots=True)
@@ -110,8 +113,8 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         ],
         "energy": _energy(record.audit),
         "account": _account(record.audit.account.energy),
-        "momentum_account": _account(record.audit.account.momentum),
-        "angular_momentum_account": _account(record.audit.account.angular_momentum),
+        "momentum_account": _account(record.audit.account.momentum) | _UNMEASURED,
+        "angular_momentum_account": _account(record.audit.account.angular_momentum) | _UNMEASURED,
         "momentum": list(momentum.linear),
         "angular_momentum": momentum.angular,
         "candidate_pairs": int(world.contacts.candidate_pairs),
