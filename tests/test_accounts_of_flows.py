@@ -151,6 +151,19 @@ def test_a_body_that_cannot_turn_takes_its_torque_from_outside() -> None:
     assert account.momentum["springs"].magnitude < 1e-13
 
 
+def test_damped_turning_is_followed_as_all_that_depends_on_velocities() -> None:
+    world = empty("auto", gravity=(0.0, -G), angular_damping=0.5)
+    world.spawn(
+        Transform((0.3, -1)),
+        Velocity(),
+        Mass(1, 0.2),
+        Spring(anchor_a=(0.1, 0.2), rest_length=0, stiffness=50),
+    )
+    account = after(world, 1.0)
+    assert world.plan.integrator.name == "dop853", "blanes_moan has order 4 there"
+    assert abs(account.energy["numerical"]) < 1e-13
+
+
 # ---- fields ------------------------------------------------------------------------------------------------
 
 

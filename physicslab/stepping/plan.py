@@ -359,7 +359,8 @@ def _why_singular(state: State, forces: Sequence[ForceSystem]) -> str | None:
 
 
 def _sees_velocity(state: State, forces: Sequence[ForceSystem]) -> bool:
-    return state.physics.linear_damping > 0.0 or any(system.sees_velocity(state) for system in forces)
+    turns = state.physics.angular_damping > 0.0 and any(len(force.turned(state)) for force in forces)
+    return state.physics.linear_damping > 0.0 or turns or any(force.sees_velocity(state) for force in forces)
 
 
 def _too_fast(rate: float) -> str:
