@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Name, Spring, Transform, Velocity
 from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import InvalidValue
-from physicslab.kernels import accounts
+from physicslab.kernels import accounts, direct_entry
 from physicslab.kernels.forces import bookings, packed_forces, springs
 from physicslab.kernels.forces.resistance import damper_resistance
 from physicslab.state.packed import PackedForce, StateLayout, spring_ends, turned_anchors
@@ -193,7 +193,7 @@ class SpringSystem(ForceSystem):
         """Return the sum of k (length - rest_length)^2 / 2 [J]."""
         spring, transform = state.table(Spring), state.table(Transform)
         state.compile((springs.spring_potential,))
-        return springs.spring_potential(
+        return direct_entry(springs.spring_potential)(
             transform["position"], transform["angle"], self._rows, self._a, self._b,
             spring["anchor_a"], spring["anchor_b"], spring["rest_length"], spring["stiffness"],
         )  # fmt: skip
