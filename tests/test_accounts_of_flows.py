@@ -313,7 +313,7 @@ def test_a_torque_turns_and_works_in_flow(integrator: str, kind: type[ForceSyste
 def test_a_torque_turns_and_works_beside_contacts(
     contacts: str, stepper: str, kind: type[ForceSystem]
 ) -> None:
-    laws = PhysicsConfig(gravity=(0.0, -G))
+    laws = PhysicsConfig(gravity=Vector2(0.0, -G))
     simulation = SimulationConfig(dt=0.01, contacts=contacts)
     world = World(*standard_systems(), kind(), physics=laws, simulation=simulation)
     spun(world, contacts=True)

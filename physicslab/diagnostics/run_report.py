@@ -21,7 +21,7 @@ from physicslab.world import World
 
 __all__ = ["RunRecord", "body_names", "find_not_finite", "run_report", "run_summary"]
 
-_MOMENTA: dict[str, float] = dict.fromkeys(MOMENTUM_CAUSES, math.nan)
+_MOMENTA: dict[str, float | Vector2] = dict.fromkeys(MOMENTUM_CAUSES, math.nan)
 """In the order of the document; a cause whose momentum is not measured by itself stays without a number."""
 
 
@@ -114,8 +114,8 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         ],
         "energy": _energy(record.audit),
         "account": _account(record.audit.account.energy),
-        "momentum_account": _account(_MOMENTA | record.audit.account.momentum),
-        "angular_momentum_account": _account(_MOMENTA | record.audit.account.angular_momentum),
+        "momentum_account": _account({**_MOMENTA, **record.audit.account.momentum}),
+        "angular_momentum_account": _account({**_MOMENTA, **record.audit.account.angular_momentum}),
         "momentum": list(momentum.linear),
         "angular_momentum": momentum.angular,
         "candidate_pairs": int(world.contacts.candidate_pairs),

@@ -193,7 +193,8 @@ class SpringSystem(ForceSystem):
         """Return the sum of k (length - rest_length)^2 / 2 [J]."""
         spring, transform = state.table(Spring), state.table(Transform)
         state.compile((springs.spring_potential,))
-        return direct_entry(springs.spring_potential)(
+        stored: float = direct_entry(springs.spring_potential)(
             transform["position"], transform["angle"], self._rows, self._a, self._b,
             spring["anchor_a"], spring["anchor_b"], spring["rest_length"], spring["stiffness"],
         )  # fmt: skip
+        return stored
