@@ -323,7 +323,7 @@ def test_a_torque_turns_and_works_beside_contacts(
 def test_a_compiled_torque_that_is_not_announced_is_refused() -> None:
     world = empty("rk4", 0.01, Silent())
     world.spawn(Transform(), Velocity(), Mass(1.0, 1.0))
-    with pytest.raises(TypeError, match="turns = True"):
+    with pytest.raises(TypeError, match=r"Silent reads layout\.turn: set turns = True"):
         world.step()
 
 

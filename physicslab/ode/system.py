@@ -257,12 +257,9 @@ class OdeSystem:
         transform["angle"][layout.turning] = q[n:d]
         velocity["angular"][layout.turning] = v[n:d]
 
-    def _seen_by(self, force: ForceSystem) -> StateLayout:
-        return self.layout.seen_by(turns=force.turns)
-
     def _calls(self, state: State) -> None:
         packed = [
-            (system, system.packed(state, self._seen_by(system)) if type(system).packs() else None)
+            (system, system.packed(state, system.seen(self.layout)) if type(system).packs() else None)
             for system in self.forces
         ]
         book = BookKeeper(state, self.layout, packed, self.damping, self._also, kicked=self._kicked)

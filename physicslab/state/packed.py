@@ -89,7 +89,8 @@ class StateLayout:
 
     place: NDArray[np.int64]
     clock: int
-    _turn: NDArray[np.int64] | None
+    _turn: NDArray[np.int64]
+    _straight: str = ""
 
     @classmethod
     def of_rows(cls, rows: int) -> StateLayout:
@@ -133,14 +134,14 @@ class StateLayout:
         TypeError
             For a force that does not say that it turns bodies.
         """
-        if self._turn is None:
-            raise TypeError("layout.turn is for a force that turns bodies: its ForceSystem says turns = True")
+        if self._straight:
+            raise TypeError(f"{self._straight} reads layout.turn: set turns = True there, as it turns bodies")
         return self._turn
 
-    def seen_by(self, *, turns: bool) -> StateLayout:
-        """Return the layout as a force sees it that turns bodies, or does not: then without their angles."""
+    def without_angles(self, force: str) -> StateLayout:
+        """Return the layout as the force of that name sees it, which does not say that it turns bodies."""
         seen = copy.copy(self)
-        seen._turn = self._turn if turns else None
+        seen._straight = force
         return seen
 
     @property

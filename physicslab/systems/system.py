@@ -259,6 +259,10 @@ class ForceSystem(System):
         """
         return None
 
+    def seen(self, layout: StateLayout) -> StateLayout:
+        """Return a layout as :meth:`packed` is given it: the angles are for a force that ``turns`` bodies."""
+        return layout if self.turns else layout.without_angles(self.name)
+
     def needs_origin(self, state: State) -> bool:
         """Whether the force is another where everything that moves is moved by the same distance."""
         return True
@@ -314,7 +318,7 @@ class ForceSystem(System):
         masses = bodies.inverse_mass.tobytes(), bodies.inverse_inertia.tobytes()
         made_of = (*structure, state.physics, numbers, *masses)
         if numbers is None or made_of != self._packed_of:
-            force = self.packed(state, self._layout.seen_by(turns=self.turns))
+            force = self.packed(state, self.seen(self._layout))
             assert force is not None
             state.compile((force.kernel, add_forces))
             self._packed, self._calls, self._packed_of = force, np.array([force.call]), made_of
