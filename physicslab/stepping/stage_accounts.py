@@ -161,9 +161,10 @@ class StageAccounts:
 
 
 def _has_dampers(state: State) -> bool:
-    """Whether any spring has a damper."""
-    rows, _, _ = spring_ends(state)
-    return bool((state.table(Spring)["damping"][rows] > 0.0).any())
+    """Whether a spring has a damper that kicks: what is sub-integrated books its own."""
+    rows, a, b = spring_ends(state)
+    kicked = state.table(Velocity).present & ~state.bodies.sub_integrated
+    return bool(((state.table(Spring)["damping"][rows] > 0.0) & (kicked[a] | kicked[b])).any())
 
 
 def _pull_of_dampers(state: State) -> NDArray[np.float64]:
