@@ -17,6 +17,7 @@ from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS, REAC
 from physicslab.kernels.rigid.pieces import StagesTuple
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
+from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.rigid_bookings import book_overlap
 
 __all__ = ["MAX_POINTS", "MadeStep", "RigidMotion"]
@@ -142,7 +143,9 @@ class RigidMotion:
         made = MadeStep(self._equations[0], self._equations[1], self._equations[3][UNKNOWN])
         done = self._by_events(scene, state, at, h, made)
         if made.by_impulses:
-            made.refused = self._by_impulses(scene, state, at + done, h - done, h / _SHORT_STEPS, made)
+            rate = fastest_rate(state, self._ode.forces)  # kicks of longer steps than its inverse would grow
+            longest = min(h / _SHORT_STEPS, 1.0 / rate) if rate > 0.0 else h / _SHORT_STEPS
+            made.refused = self._by_impulses(scene, state, at + done, h - done, longest, made)
         return made
 
     def _by_events(self, scene: tuple[Any, ...], state: State, at: float, h: float, made: MadeStep) -> float:
