@@ -40,9 +40,8 @@ __all__ = ["EventDriven"]
 
 _ACCELERATION = slice(8, 10)
 """The columns of a path's acceleration."""
-_LOWS = (1, 3), (5, 7)
 _LOW = (1, 3, 5, 7)
-"""The columns of what rounding leaves out of a path's place and velocity, and both."""
+"""The columns of what rounding leaves out of a path's place and velocity."""
 _MASS = 12
 """The column of the mass that gravity accelerates."""
 _SHORT = 1e-6
@@ -87,6 +86,8 @@ class EventDriven:
         )
         self._mode = self._initial_mode.copy()
         self._moving = np.flatnonzero(moving)
+        self._lows = self._moving[:, None], np.array(_LOW)
+        self._kept: Remainders | None = None
         entities = state.entity_index.entities[self._moving]
         self._keys = coordinate_keys(entities, entities[:0])
         self._face = np.zeros(len(self._pairs), np.int64)
@@ -140,7 +141,7 @@ class EventDriven:
             set_motion(state, start)
             state.collisions, state.contacts.logged = collisions, logged
             state.account.sums[:] = booked
-            self._urgent, steps = -1, made // parts
+            self._urgent, self._kept, steps = -1, None, made // parts
         self._left = state.steps
         return 0
 
@@ -165,20 +166,24 @@ class EventDriven:
 
     def _recall_remainders(self, state: State) -> None:
         """Take what rounding left out of places and velocities, which the paths carry on."""
-        lows = state.remainders.of(self._keys, *self._moved(state))
-        self._paths[:, _LOW] = 0.0
-        for columns, low in zip(_LOWS, lows, strict=True):
-            self._paths[np.ix_(self._moving, columns)] = low.reshape(-1, 2)
+        (q, v), kept = self._moved(state), state.remainders
+        if kept is self._kept and (q.tobytes(), v.tobytes()) == (kept.q.tobytes(), kept.v.tobytes()):
+            return  # the paths have them
+        lows = kept.of(self._keys, q, v)
+        self._paths[self._lows] = np.concatenate([low.reshape(-1, 2) for low in lows], axis=1)
 
     def _keep_remainders(self, state: State) -> None:
         """Leave it to the next step."""
-        lows = (self._paths[np.ix_(self._moving, columns)].ravel() for columns in _LOWS)
-        state.remainders = Remainders(self._keys, *self._moved(state), *lows)
+        lows = self._paths[self._lows]
+        q, v = self._moved(state)
+        state.remainders = self._kept = Remainders(
+            self._keys, q, v, lows[:, :2].ravel(), lows[:, 2:].ravel()
+        )
 
     def _moved(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the coordinates and velocities of what moves, row by row."""
-        position, _, linear, _ = motion_of(state)
-        return position[self._moving].ravel(), linear[self._moving].ravel()
+        position, velocity = state.table(Transform)["position"], state.table(Velocity)["linear"]
+        return position.take(self._moving, axis=0).ravel(), velocity.take(self._moving, axis=0).ravel()
 
     def _give_up(self, why: int) -> None:
         """Leave all bodies to the contact step where impacts have no end."""
