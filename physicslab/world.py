@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows
-from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig
+from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.kernels.accounts import CONTACT
 from physicslab.ode.closed_form import NoClosedForm
@@ -28,7 +28,7 @@ from physicslab.systems.system import Stage, System
 
 __all__ = ["World"]
 
-_STEP = Field("dt", "number", minimum=MIN_TIME, unit="s", owner="step")
+_STEP = Field("dt", "number", minimum=MIN_TIME, maximum=MAX_TIME, unit="s", owner="step")
 
 
 class World(State):

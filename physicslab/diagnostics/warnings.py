@@ -17,6 +17,7 @@ from physicslab.components.shape import BOX
 from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
 from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, step_warnings
 from physicslab.diagnostics.warning_records import ModelWarning, WorstWarnings
+from physicslab.state.masses import quiet
 from physicslab.stepping.contact_model import why_not_rigid
 from physicslab.stepping.rigid import Rigid
 from physicslab.world import World
@@ -50,6 +51,7 @@ DISTANCE_LIMIT = 1e9
 """Coordinate in sizes of a body: float64 keeps places there to 1e-7 of the body, and a tower to 1e-3."""
 
 
+@quiet
 def find_warnings(world: World) -> tuple[ModelWarning, ...]:
     """Return the warnings about a world in its present state, the worst of each kind.
 

@@ -29,6 +29,8 @@ COLLISIONS = ("auto", "step", "exact")
 CONTACTS = ("auto", "rigid", "soft")
 MIN_TIME = 1e-100
 """The shortest step [s]: the parts of shorter ones, and their squares, would soon underflow to zero."""
+MAX_TIME = 1e100
+"""The longest step [s]: what falls for a longer one, and its square, would soon be infinite."""
 
 
 def _settle(config: PhysicsConfig | SimulationConfig) -> None:
@@ -152,7 +154,7 @@ class SimulationConfig:
 
     section: ClassVar[str] = "simulation"
     FIELDS: ClassVar[tuple[Field, ...]] = (
-        Field("dt", "number", unit="s", minimum=MIN_TIME, meaning="length of a step"),
+        Field("dt", "number", unit="s", minimum=MIN_TIME, maximum=MAX_TIME, meaning="length of a step"),
         Field("substeps", "whole", minimum=1, maximum=10_000, meaning="parts that a step is divided into"),
         Field("iterations", "whole", minimum=1, maximum=1_000, derived="from the solver", meaning="sweeps"),
         Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),

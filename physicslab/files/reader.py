@@ -10,7 +10,14 @@ import esper
 from physicslab.contacts.islands import restore_rests
 from physicslab.contacts.memory import restore_contacts
 from physicslab.ecs.component import Component, InvalidValue
-from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig, checked_box, field_names
+from physicslab.ecs.config import (
+    MAX_TIME,
+    MIN_TIME,
+    PhysicsConfig,
+    SimulationConfig,
+    checked_box,
+    field_names,
+)
 from physicslab.ecs.fields import Field
 from physicslab.files.checks import (
     SceneError,
@@ -177,7 +184,7 @@ def _view(value: object, source: str) -> View | None:
         raise refusal(f"{source}: view", value, error.allowed) from None
 
 
-_SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, owner="solver")
+_SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, maximum=MAX_TIME, owner="solver")
 _FINER = Field("finer", "whole", minimum=1, maximum=MAX_SUBSTEP_FACTOR, owner="solver")
 
 

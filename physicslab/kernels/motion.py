@@ -1,10 +1,18 @@
 """Newton's second law: the masses of bodies, and how forces change velocities and velocities positions."""
 
 import math
+import sys
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 
-__all__ = ["clear", "damped", "derive_masses", "drift", "find_not_finite", "kick", "predict"]
+__all__ = [
+    "FARTHEST", "LARGEST", "clear", "damped", "derive_masses", "drift", "find_beyond", "kick", "predict",
+]  # fmt: skip
+
+FARTHEST = 1e300
+"""The largest coordinate that a scene may hold [m] (``physicslab.ecs.fields.COORDINATE_LIMIT``)."""
+LARGEST = sys.float_info.max
+"""The largest number that is finite."""
 
 
 @kernel
@@ -132,9 +140,10 @@ def predict(
 
 
 @kernel
-def find_not_finite(vectors: Vectors, numbers: Numbers) -> int:
-    """Return the first row in which a vector or a number is not finite, or -1."""
+def find_beyond(vectors: Vectors, numbers: Numbers, limit: float) -> int:
+    """Return the first row with a vector beyond a finite limit, or a number that is not finite, or -1."""
     for i in range(len(numbers)):
-        if not (math.isfinite(vectors[i, 0]) and math.isfinite(vectors[i, 1]) and math.isfinite(numbers[i])):
+        within = abs(vectors[i, 0]) <= limit and abs(vectors[i, 1]) <= limit  # which NaN is not
+        if not (within and math.isfinite(numbers[i])):
             return i
     return -1

@@ -88,15 +88,20 @@ def check_finite(state: State, time: float) -> None:
     Raises
     ------
     Diverged
-        If a position, an angle or a velocity is not finite.
+        If a position, an angle or a velocity is not finite, or a position is one that no file may hold.
     """
     transform, velocity = state.table(Transform), state.table(Velocity)
-    for table, vectors, numbers in ((transform, "position", "angle"), (velocity, "linear", "angular")):
-        row = motion.find_not_finite(table[vectors], table[numbers])
+    for table, vectors, numbers, limit in (
+        (transform, "position", "angle", motion.FARTHEST),
+        (velocity, "linear", "angular", motion.LARGEST),
+    ):
+        row = motion.find_beyond(table[vectors], table[numbers], limit)
         if row >= 0:
-            lost = ~(np.isfinite(table[vectors]).all(axis=1) & np.isfinite(table[numbers]))
+            finite = np.isfinite(table[vectors]).all(axis=1) & np.isfinite(table[numbers])
+            lost = ~(finite & (np.abs(table[vectors]) <= limit).all(axis=1))
             row = int(next(iter(np.flatnonzero(lost & (state.bodies.inverse_mass > 0.0))), row))
+            what = f"is beyond {limit:g} m" if finite[row] else "is no longer finite"
             raise Diverged(
-                f"{state.label_of_row(row)}: {table.component.__name__} is no longer finite at "
+                f"{state.label_of_row(row)}: {table.component.__name__} {what} at "
                 f"t = {time:.9g} s; a smaller dt or more substeps may help"
             )

@@ -176,9 +176,7 @@ class EventDriven:
         """Leave it to the next step."""
         lows = self._paths[self._lows]
         q, v = self._moved(state)
-        state.remainders = self._kept = Remainders(
-            self._keys, q, v, lows[:, :2].ravel(), lows[:, 2:].ravel()
-        )
+        state.remainders = self._kept = Remainders(self._keys, q, v, lows[:, :2].ravel(), lows[:, 2:].ravel())
 
     def _moved(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the coordinates and velocities of what moves, row by row."""
@@ -315,7 +313,8 @@ class EventDriven:
             self._paths, self._mode, self._face, self._due, self._impact_positions,
             motion_of(state), sizes_of(state), materials_of(state),
             (bodies.inverse_mass, bodies.inverse_inertia), self._bounds,
-            state.account.sums, contacts.log, contacts.logged, state.time + offset, span, steps, dt, self._urgent,
+            state.account.sums, contacts.log, contacts.logged, state.time + offset, span, steps, dt,
+            self._urgent,
         )  # fmt: skip
         # The impact of a woken body is resolved first, or the body would come to rest again at once.
         self._urgent = pair if why == events.WOKEN else -1

@@ -34,7 +34,9 @@ class RigidRecords:
     def write(self, state: State, made: MadeStep, h: float) -> None:
         """Write the closed points and the impacts of a step of ``h`` seconds."""
         contacts = state.contacts
-        contacts.recorded = 0  # blank: what soft steps before have left would depend on where a run was parted
+        contacts.recorded = (
+            0  # blank: what soft steps before have left would depend on where a run was parted
+        )
         contacts.wide.reset(len(state.entity_index))
         list_all(state, self._pairs, len(self._pairs))
         records, points = contacts.manifolds[: contacts.recorded], contacts.points[: 2 * contacts.recorded]

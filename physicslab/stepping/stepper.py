@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
+from physicslab.ecs.fields import InvalidValue
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
 from physicslab.systems.schedule import Schedule
@@ -92,5 +93,6 @@ def divisions(state: State, h: float) -> int:
     if h <= own:
         return 1
     if h / own > _MAX_DIVISIONS:
-        raise ValueError(f"dt = {h!r}: must be at most {_MAX_DIVISIONS} times simulation.dt = {own!r} s")
+        most = f"at most {_MAX_DIVISIONS} times simulation.dt = {own!r} s"
+        raise InvalidValue("step", "dt", h, most)
     return max(1, math.ceil(h / own - _TOLERATED))

@@ -254,10 +254,11 @@ def run_events(
     account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int, dt: float,
     urgent: int,
 ) -> tuple[int, float, int, int, int]:  # fmt: skip
-    """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one comes to rest or is woken.
+    """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one rests or is woken.
 
-    ``paths`` (rows, 13) holds the remainders of places and velocities, which are carried on, the accelerations
-    [m/s^2] in columns 8 and 9 and in column 12 the mass [kg] of what gravity pulls, ``mode`` that of each row;
+    ``paths`` (rows, 13) holds the remainders of places and velocities, which are carried on, the
+    accelerations [m/s^2] in columns 8 and 9 and in column 12 the mass [kg] of what gravity pulls, ``mode``
+    that of each row;
     ``face`` (pairs,) and ``due`` (pairs, 5) are work space; ``impact_position`` (pairs, 2) receives where B
     was at the pair's last impact of the last step [m]. What impacts and gravity give is added to ``account``
     (:mod:`physicslab.kernels.accounts`). Impacts are logged from number ``logged`` on, with times from
@@ -267,8 +268,8 @@ def run_events(
     Returns
     -------
     made, elapsed, impacts, why, pair
-        How many whole steps were made; the time that passed of the one that was not [s]; how many impacts there
-        were; why it ended, and with which pair.
+        How many whole steps were made; the time that passed of the one that was not [s]; how many impacts
+        there were; why it ended, and with which pair.
     """
     now, low, impacts, window, within, p, made, why = 0.0, 0.0, 0, 0.0, 0, -1, 0, DONE
     flight = Flight(

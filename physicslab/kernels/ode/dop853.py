@@ -41,10 +41,10 @@ _NEAR = 0.1
 _NOISE = 1e-11
 """Share of the largest coordinate or speed above which an estimate is not taken for rounding."""
 _STEEP = 100.0
-"""How much worse an error of place may be than the error of speed that it makes in the time of a free fall."""
+"""How much worse an error of place may be than the error of speed that it makes in a free fall."""
 _MAX_FALL = 0.5
-"""Largest share of the time of the fastest free fall, 1 / sqrt(G (m_a + m_b) / d^3), that a step may take: stages
-that lie further apart may pass by each other's forces, and their error estimate with them."""
+"""Largest share of the time of the fastest free fall, 1 / sqrt(G (m_a + m_b) / d^3), that a step may take: the
+stages of longer ones may step over a close passage, and their error estimate with them."""
 
 
 @inlined
@@ -221,14 +221,15 @@ def dop853(
     may take many, but none of its parts may run without end.
 
     A step is made again, shorter, where its error is estimated to be more than ``tolerance`` of the largest
-    coordinate or speed: of those that were reached, or that the step reaches by the velocities and forces at its
-    start. What its stages reach is no measure, as in a step beyond the limit of stability it grows with the
-    error. For tolerances of at most 0.01 every such step is made again: its error is at least half of what it
-    amplifies. Sums are compensated: ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are
-    carried on.
+    coordinate or speed: of those that were reached, or that the step reaches by the velocities and forces at
+    its start. What its stages reach is no measure, as in a step beyond the limit of stability it grows with
+    the error. With tolerances of at most 0.01 every such step is made again: its error is at least half of
+    what it amplifies. Sums are compensated: ``q_low`` and ``v_low`` (n,) are the remainders of what moves,
+    and are carried on.
 
-    ``steepness`` (1,) is where forces note the square of the fastest rate of a free fall [1/s^2], if any does. It
-    bounds the step, and errors of place count by what they change in the forces; the largest is left there.
+    ``steepness`` (1,) is where forces note the square of the fastest rate of a free fall [1/s^2], if any
+    does. It bounds the step, and errors of place count by what they change in the forces; the largest is
+    left there.
 
     Where no force depends on the origin, ``bodies`` is how many pairs of coordinates the first ones are, and
     else 0: in a close passage the origin is moved there, so that the distance has all its digits.

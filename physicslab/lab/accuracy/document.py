@@ -90,8 +90,8 @@ def _curve(problem: Problem, curve: Curve) -> dict[str, Any]:
         "name": method.name,
         "title": method.title,
         "order": finite(method.order),
-        "order_holds": curve.holds,
         "order_measured": finite(curve.order),
+        "order_short": curve.short,
         "refused": curve.refused,
         "rows": [_row(problem, row) for row in curve.rows],
     }

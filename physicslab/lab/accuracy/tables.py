@@ -39,8 +39,8 @@ def study_text(study: Study, *, whole: bool) -> str:
         rows.append(_cells(problem, study.rigid, "rigid contacts", "", ""))
     for curve in study.curves:
         rows += _curve_cells(problem, curve, whole)
-    return "\n".join([*lines, _reported(rows), f"  auto: {study.auto.measurement.integrator}, "
-                      f"{study.auto.measurement.reason}", *_refusals(study), ""])  # fmt: skip
+    auto = f"  auto: {study.auto.measurement.integrator}, {study.auto.measurement.reason}"
+    return "\n".join([*lines, _reported(rows), auto, *_short_orders(study), *_refusals(study), ""])
 
 
 def _refusals(study: Study) -> list[str]:
@@ -54,10 +54,19 @@ def _refusals(study: Study) -> list[str]:
     return [f"  not {', '.join(names)}: {reason}" for reason, names in reasons.items()]
 
 
+def _short_orders(study: Study) -> list[str]:
+    """Return why orders are not reached, methods of one reason together."""
+    reasons: dict[str, list[str]] = {}
+    for curve in study.curves:
+        if curve.short:
+            reasons.setdefault(curve.short, []).append(curve.integrator.name)
+    return [f"  * order of {', '.join(names)}: {reason}" for reason, names in reasons.items()]
+
+
 def _curve_cells(problem: Problem, curve: Curve, whole: bool) -> list[tuple[str, ...]]:
     if not curve.rows:
         return []
-    order = f"{curve.integrator.order:g}" + ("" if curve.holds else "*")
+    order = f"{curve.integrator.order:g}" + ("*" if curve.short else "")
     measured = cell(curve.order, ".2f")
     if not whole:
         return [_cells(problem, _best_row(curve.rows), curve.integrator.name, order, measured)]
@@ -161,8 +170,6 @@ def summary_text(studies: Sequence[Study]) -> str:
             f"  {name}: auto has {cell(error, '.1e')} ({study.auto.verdict}), excellent would "
             f"be {limit:.1e}; {any_method}"
         )
-    if any(not curve.holds for study in studies for curve in study.curves if curve.rows):
-        lines.append("* an order that does not hold for these forces, or where bodies touch")
     touching = [study for study in studies if study.problem.touches]
     if touching and all(study.auto.measurement.integrator != "exact" for study in touching):
         lines.append("where bodies touch, contacts are found within steps: no impact is located in time")
