@@ -43,8 +43,8 @@ _NOISE = 1e-11
 _STEEP = 100.0
 """How much worse an error of place may be than the error of speed that it makes in a free fall."""
 _MAX_FALL = 0.5
-"""Largest share of the time of the fastest free fall, 1 / sqrt(G (m_a + m_b) / d^3), that a step may take: the
-stages of longer ones may step over a close passage, and their error estimate with them."""
+"""Largest share of the time of the fastest free fall, 1 / sqrt(G (m_a + m_b) / d^3), that a step may take:
+the stages of longer ones may step over a close passage, and their error estimate with them."""
 
 
 @inlined
