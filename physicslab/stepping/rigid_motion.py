@@ -14,6 +14,7 @@ from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
 from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS, REACH
+from physicslab.kernels.rigid.piece_end import STARTS
 from physicslab.kernels.rigid.pieces import StagesTuple
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
@@ -132,7 +133,7 @@ class RigidMotion:
             for _ in range(2)
         )  # fmt: skip
         self._stages = _stages_of(0)
-        self._start = np.zeros((6, max(MAX_POINTS, pairs)))
+        self._start = np.zeros((STARTS, max(MAX_POINTS, pairs)))
         self._changed = np.full((MAX_POINTS, POINT_FIELDS), -1)
 
     def step(self, scene: tuple[Any, ...], state: State, at: float, h: float) -> MadeStep:

@@ -11,6 +11,7 @@ from physicslab.kernels.rigid.detect import find_points, seen_from
 from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     BOX,
+    CENTRE,
     GAP,
     GIVEN,
     HEIGHT,
@@ -22,6 +23,7 @@ from physicslab.kernels.rigid.features import (
     REACH,
     RESTITUTION,
     STATUS,
+    VERTEX,
     VN,
     VT,
     WIDTH,
@@ -109,7 +111,9 @@ def find_open(
     for k in range(found):
         closed = False
         for i in range(count):
-            closed = closed or _is_same(equations.points, i, scratch.points, k)
+            # A disc touches a body at one point: where that comes to the end of its feature is an event.
+            round_one = equations.points[i, PAIR] == p and equations.points[i, VERTEX] == CENTRE
+            closed = closed or round_one or _is_same(equations.points, i, scratch.points, k)
         if closed:
             apart = -math.inf
         else:
