@@ -30,6 +30,7 @@ from physicslab.kernels.rigid.features import (
     GIVEN,
     MU,
     PAIR,
+    REACH,
     STATUS,
     VN,
     VT,
@@ -49,7 +50,7 @@ from physicslab.kernels.rigid.pieces import (
     make_stages,
     named_stages,
 )
-from physicslab.kernels.rigid.touching import find_touching, hold_closed, rest_limits
+from physicslab.kernels.rigid.touching import SLOW, find_touching, hold_closed, rest_limits
 
 __all__ = [
     "DONE",
@@ -96,7 +97,7 @@ def _note_changes(
             status = OPEN
         elif kind == HOLDS and (i == index or (equations.points[i, STATUS] == STICKS and left <= limit)):
             status = SLIDES_ON if rubbing < 0.0 else SLIDES_BACK
-        elif equations.points[i, STATUS] > STICKS and abs(equations.measures[i, VT]) <= rest:
+        elif equations.points[i, STATUS] > STICKS and abs(equations.measures[i, VT]) <= SLOW * rest:
             status = equations.points[i, STATUS]
         if status >= 0:
             for column in range(GIVEN):
@@ -112,8 +113,12 @@ def _at_rest(scene: Scene, acceleration: Numbers, v: Numbers, rest: float, least
     """Whether nothing moves, and nothing accelerates."""
     still = True
     for i in range(3 * scene.rows):
-        free = scene.inverse_mass[i] > 0.0
-        if abs(v[i]) > (1e-3 * rest if free else 0.0) or (free and abs(acceleration[i]) > 10.0 * least):
+        free, way = scene.inverse_mass[i] > 0.0, 1.0
+        if i >= 2 * scene.rows:  # what turns is measured by how its outline moves
+            way = scene.outlines[i - 2 * scene.rows, REACH]
+        if way * abs(v[i]) > (SLOW * rest if free else 0.0) or (
+            free and way * abs(acceleration[i]) > 10.0 * least
+        ):
             still = False
     return still
 

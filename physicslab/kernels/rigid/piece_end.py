@@ -23,7 +23,7 @@ from physicslab.kernels.rigid.features import (
     measure,
 )
 from physicslab.kernels.rigid.pieces import Stages, make_piece
-from physicslab.kernels.rigid.touching import find_open, moved_closer
+from physicslab.kernels.rigid.touching import SLOW, find_open, moved_closer
 
 __all__ = [
     "ALLOWED", "APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "STARTS", "cut_at_first_event", "note_start",
@@ -130,7 +130,7 @@ def _allowance(kind: int, i: int, scene: Scene, equations: Equations, start: flo
     A corner at the end of a face is on it as long as both are level.
     """
     if kind == SLIDES:
-        return rest if start <= rest else 0.0
+        return SLOW * rest if start <= SLOW * rest else 0.0
     if kind < REACHES:
         return 0.0
     size, least = scene.coefficients[i if kind == APART else equations.points[i, PAIR], 2], _CLOSED

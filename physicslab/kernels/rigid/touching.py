@@ -33,6 +33,7 @@ from physicslab.kernels.rigid.features import (
 )
 
 __all__ = [
+    "SLOW",
     "far_apart",
     "find_open",
     "find_touching",
@@ -46,6 +47,8 @@ _TOUCH = 1e-10
 """Share of the smaller size within which a gap is closed."""
 _REST = 1e-6
 """Speeds below this, times the speed of a fall over the smallest size, are none."""
+SLOW = 1e-3
+"""Share of that speed below which a point does not slide: what is slower comes to rest before it should."""
 
 
 @inlined
@@ -240,9 +243,9 @@ def hold_closed(
     for i in range(count):
         sliding, given = equations.measures[i, VT], STICKS
         changed_to = _changed_status(equations, i, changed)
-        if equations.measures[i, MU] == 0.0 or sliding > rest:
+        if equations.measures[i, MU] == 0.0 or sliding > SLOW * rest:
             given = SLIDES_ON
-        elif sliding < -rest:
+        elif sliding < -SLOW * rest:
             given = SLIDES_BACK
         elif changed_to > STICKS:
             given = changed_to
