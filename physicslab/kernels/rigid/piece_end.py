@@ -23,7 +23,7 @@ from physicslab.kernels.rigid.features import (
     measure,
 )
 from physicslab.kernels.rigid.pieces import Stages, make_piece
-from physicslab.kernels.rigid.touching import SLOW, find_open, moved_closer
+from physicslab.kernels.rigid.touching import NO_SPEED, SLOW, find_open, moved_closer
 
 __all__ = [
     "ALLOWED", "APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "STARTS", "cut_at_first_event", "note_start",
@@ -39,8 +39,6 @@ _CLOSED = 1e-13
 """Share of a size by which a gap may change by rounding."""
 _NO_FORCE = 1e-9
 """Share of the largest force that is rounding."""
-_NO_SPEED = 1e-8
-"""Share of the speed that counts as none that is rounding."""
 _ROUNDING = 1e-14
 """Share of a size that is rounding."""
 _HALVINGS = 40
@@ -147,7 +145,7 @@ def _noise(kind: int, index: int, scene: Scene, equations: Equations, rest: floa
         force: float = abs(equations.vectors[UNKNOWN, 2 * index])
         return _NO_FORCE * force
     if kind == SLIDES:
-        return _NO_SPEED * rest
+        return NO_SPEED * rest
     size: float = scene.coefficients[index if kind == APART else equations.points[index, PAIR], 2]
     return _ROUNDING * size
 

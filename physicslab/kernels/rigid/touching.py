@@ -33,6 +33,7 @@ from physicslab.kernels.rigid.features import (
 )
 
 __all__ = [
+    "NO_SPEED",
     "SLOW",
     "far_apart",
     "find_open",
@@ -49,6 +50,8 @@ _REST = 1e-6
 """Speeds below this, times the speed of a fall over the smallest size, are none."""
 SLOW = 1e-3
 """Share of that speed below which a point does not slide: what is slower comes to rest before it should."""
+NO_SPEED = 1e-8
+"""Share of that speed that is rounding."""
 
 
 @inlined
@@ -244,7 +247,7 @@ def hold_closed(
             return 0, True
         leaves = False
         for i in range(count):
-            leaves = leaves or equations.measures[i, VN] > SLOW * rest
+            leaves = leaves or equations.measures[i, VN] > NO_SPEED * rest
         leaves = leaves and attempt == 0
         assemble(scene, equations, count)
         if not leaves:
@@ -265,7 +268,7 @@ def hold_closed(
         if not leaves:
             break
         for i in range(count):  # what has just begun to open, and goes on, keeps its speed
-            opens = equations.points[i, STATUS] == OPEN and equations.measures[i, VN] > SLOW * rest
+            opens = equations.points[i, STATUS] == OPEN and equations.measures[i, VN] > NO_SPEED * rest
             if not (solved and opens):
                 n = _keep(equations, i, n)
         count, n = n, 0
