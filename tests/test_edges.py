@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from physicslab import World
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.kernels.accounts import ENERGY, IMPACTS
 from physicslab.prefabs import box, circle
 from physicslab.systems.standard import standard_systems
@@ -25,7 +26,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(60)
 def laboratory(dt: float, gravity: tuple[float, float] = (0.0, -G)) -> World:
     return World(
         *standard_systems(),
-        physics=PhysicsConfig(gravity=gravity),
+        physics=PhysicsConfig(gravity=Vector2(*gravity)),
         simulation=SimulationConfig(dt=dt, contacts="rigid"),
     )
 
@@ -94,7 +95,7 @@ def test_a_disc_goes_over_an_edge_at_whatever_moment(rolls: bool) -> None:
 
 
 def slides_off(world: World, draw: random.Random) -> int:
-    """A box over the edge of a table, over which it may tip."""
+    """Add a box that slides over the edge of a table, and may tip."""
     mu = draw.choice((0.0, 0.2, 0.5))
     box(world, (-5, -0.5), width=10, height=1, static=True, friction=mu, restitution=0.0)
     height, velocity = draw.uniform(0.1, 0.6), (draw.uniform(0.5, 3), 0.0)
@@ -104,7 +105,7 @@ def slides_off(world: World, draw: random.Random) -> int:
 
 
 def stands_on_a_corner(world: World, draw: random.Random) -> int:
-    """A box that stands on a corner, near to an edge, over which that slides."""
+    """Add a box that stands on a corner, which slides over an edge."""
     mu, angle = draw.choice((0.0, 0.2, 0.5)), draw.uniform(0.1, 1.4)
     box(world, (-5, -0.5), width=10, height=1, static=True, friction=mu, restitution=0.0)
     width, height = draw.uniform(0.2, 1), draw.uniform(0.1, 0.6)
@@ -116,9 +117,9 @@ def stands_on_a_corner(world: World, draw: random.Random) -> int:
 
 
 def crosses_a_seam(world: World, draw: random.Random) -> int:
-    """A box or a disc over the joint of two floors of different friction."""
-    for x, mu in ((-5, draw.choice((0.0, 0.1, 0.3))), (5, draw.choice((0.1, 0.6)))):
-        box(world, (x, -0.5), width=10, height=1, static=True, friction=mu, restitution=0.5)
+    """Add a box or a disc that crosses the joint of two floors of different friction."""
+    for floor, mu in ((-5, draw.choice((0.0, 0.1, 0.3))), (5, draw.choice((0.1, 0.6)))):
+        box(world, (floor, -0.5), width=10, height=1, static=True, friction=mu, restitution=0.5)
     half, x, velocity = draw.uniform(0.1, 0.4), -draw.uniform(0.5, 1.2), (draw.uniform(0.5, 3), 0.0)
     if draw.random() < 0.5:
         return circle(world, (x, half), radius=half, velocity=velocity, friction=1.0, restitution=0.5)
@@ -129,7 +130,7 @@ def crosses_a_seam(world: World, draw: random.Random) -> int:
 
 
 def enters_a_corner(world: World, draw: random.Random) -> int:
-    """A disc that rolls up a slope, and back."""
+    """Add a disc that rolls up a slope, and back."""
     slope = draw.uniform(0.1, 0.7)
     c, s = math.cos(slope), math.sin(slope)
     box(world, (-5, -0.5), width=10, height=1, static=True, friction=draw.choice((0.0, 0.3)))
@@ -139,7 +140,7 @@ def enters_a_corner(world: World, draw: random.Random) -> int:
 
 
 def lies_on_a_planet(world: World, draw: random.Random) -> int:
-    """A box that slides and turns over on a disc."""
+    """Add a box that slides and turns over on a disc."""
     r, half = draw.uniform(0.5, 2), draw.uniform(0.05, 0.2)
     circle(world, (0, -r), radius=r, static=True, friction=draw.choice((0.0, 0.5)), restitution=0.0)
     velocity = (draw.uniform(-2, 2), 0.0)
@@ -147,7 +148,7 @@ def lies_on_a_planet(world: World, draw: random.Random) -> int:
 
 
 def rolls_off_a_moving_box(world: World, draw: random.Random) -> int:
-    """A disc that leaves a box which slides on a floor itself."""
+    """Add a disc that leaves a box which slides on a floor itself."""
     box(world, (0, -1.5), width=20, height=1, static=True, friction=0.2)
     mu, mass = draw.choice((0.0, 0.2, 1.0)), draw.uniform(2, 10)
     box(world, (-1, -0.5), width=2, height=1, velocity=(draw.uniform(-1, 1), 0.0), friction=mu, mass=mass)

@@ -1,4 +1,4 @@
-"""Nothing falls through anything, however far it falls in a step: closed forms, and scenes drawn at random."""
+"""Nothing falls through anything, however far it falls in a step: closed forms, and random scenes."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import pytest
 from physicslab import World
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
 from physicslab.systems.standard import standard_systems
 
@@ -31,7 +32,7 @@ def dropped(
     """Return a world in which a body is ``drop`` sizes above a floor of some sizes ``thickness``."""
     world = World(
         *standard_systems(),
-        physics=PhysicsConfig(gravity=(0.0, -g)),
+        physics=PhysicsConfig(gravity=Vector2(0.0, -g)),
         simulation=SimulationConfig(dt=dt, **MODELS[model]),
     )
     height, width = thickness * size, 60.0 * size + 40.0 * speed * dt
@@ -83,9 +84,7 @@ def test_nothing_passes_through_a_floor(model: str) -> None:
         speed = draw.choice((0.0, 0.0, 10 ** draw.uniform(-2, 2) * math.sqrt(g * size)))
         kind, thickness = draw.choice(("box", "circle")), 10 ** draw.uniform(-1, 1)
         e = draw.choice((0.0, 0.0, 0.5, 0.9, 1.0))
-        world, body = dropped(
-            model, size, g, dt, drop, kind=kind, speed=speed, e=e, thickness=thickness
-        )
+        world, body = dropped(model, size, g, dt, drop, kind=kind, speed=speed, e=e, thickness=thickness)
         for step in range(4):
             world.step(dt)
             found = height_of(world, body) / size
@@ -108,7 +107,9 @@ def test_soft_contacts_stop_what_falls_thousands_of_sizes_in_a_step(
 def test_what_a_spring_draws_does_not_pass_through_a_plate() -> None:
     """At rest, and drawn by 10 km/s^2: 140 times its size in a step."""
     world = World(
-        *standard_systems(), physics=PhysicsConfig(gravity=(0.0, 0.0)), simulation=SimulationConfig(dt=1 / 60)
+        *standard_systems(),
+        physics=PhysicsConfig(gravity=Vector2(0.0, 0.0)),
+        simulation=SimulationConfig(dt=1 / 60),
     )
     box(world, (0, -0.005), width=1.0, height=0.01, static=True)
     ball = circle(world, (0.0, 0.05), radius=0.005, mass=1.0, restitution=0.0)

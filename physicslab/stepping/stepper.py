@@ -10,7 +10,7 @@ from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
 from physicslab.systems.schedule import Schedule
 
-__all__ = ["MAX_FACTOR", "Advance", "Stepper", "divisions", "falls_far"]
+__all__ = ["MAX_FACTOR", "MAX_FALL", "Advance", "Stepper", "divisions", "falls_far"]
 
 _MAX_DIVISIONS = 100_000
 """Largest number of parts of a step that is longer than the scene's own."""
@@ -18,8 +18,8 @@ _TOLERATED = 0.01
 """Share by which an undivided step may exceed the scene's own: the last of a run may include a remainder."""
 
 
-_MAX_FALL = 0.5
-"""Largest share of the smallest size by which uniform gravity adds to the way of a substep of soft contacts."""
+MAX_FALL = 0.5
+"""Largest share of the smallest size by which gravity adds to the way of a substep of soft contacts."""
 MAX_FACTOR = 256
 """Largest factor by which substeps are increased for that."""
 
@@ -110,5 +110,5 @@ def falls_far(state: State, h: float) -> int:
     substep, physics = h / state.simulation.substeps, state.physics
     if physics.gravity_mode != "linear":
         return 1
-    fall, most = physics.gravity.magnitude * substep * substep, _MAX_FALL * state.bodies.smallest
+    fall, most = physics.gravity.magnitude * substep * substep, MAX_FALL * state.bodies.smallest
     return 1 if fall <= most else min(MAX_FACTOR, math.ceil(math.sqrt(min(fall / most, 1e12))))

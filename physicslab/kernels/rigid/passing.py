@@ -38,9 +38,10 @@ def _turning_reach(scene: Scene, row: int) -> float:
 def _relative(scene: Scene, a: int, b: int, rates: Numbers) -> float:
     """Return the largest rate at which points of two bodies come together, of speeds or accelerations."""
     rows = scene.rows
-    rate = length_of(rates[2 * b] - rates[2 * a], rates[2 * b + 1] - rates[2 * a + 1])
+    rate: float = length_of(rates[2 * b] - rates[2 * a], rates[2 * b + 1] - rates[2 * a + 1])
     rate += abs(rates[2 * rows + a]) * _turning_reach(scene, a)
-    return rate + abs(rates[2 * rows + b]) * _turning_reach(scene, b)
+    rate += abs(rates[2 * rows + b]) * _turning_reach(scene, b)
+    return rate
 
 
 @inlined
@@ -69,8 +70,8 @@ def longest_piece(scene: Scene, q: Numbers, v: Numbers, acceleration: Numbers, a
 def share_of_ways(scene: Scene, v: Numbers, h: float, short: bool, stages: Stages, allowed: Numbers) -> float:
     """Return the largest share that two bodies may have come together of what is ``allowed`` [m].
 
-    In the piece of ``h`` seconds from speeds v that was just made. Under an even acceleration a body covers no
-    more than by the mean of its speeds at both ends; what the stages are off that is added.
+    In the piece of ``h`` seconds from speeds v that was just made. Under an even acceleration a body covers
+    no more than by the mean of its speeds at both ends; what the stages are off that is added.
     """
     rows, method, last, worst = scene.rows, 1 if short else 0, SHORT_LAST if short else LAST, 0.0
     strays = stages.pushes[_STRAYS]

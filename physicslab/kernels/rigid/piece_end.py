@@ -94,8 +94,9 @@ def note_start(
     scene: Scene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
     acceleration: Numbers, start: Vectors,
 ) -> float:  # fmt: skip
-    """Note all functions at the start of a piece, and distances of pairs: ``start`` (STARTS, points or pairs).
+    """Note all functions at the start of a piece, and distances of pairs.
 
+    ``start`` is (STARTS, points or pairs).
     Returns when the first gap would close if all went on as it begins [s].
     """
     soonest = math.inf

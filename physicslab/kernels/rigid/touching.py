@@ -215,7 +215,7 @@ def _changed_status(equations: Equations, i: int, changed: Points) -> int:
 
 @inlined
 def _stop_across(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
-    """Remove the speeds of points that count as none: equations of points that rest would contradict each other."""
+    """Remove speeds that count as none: equations of points that rest would contradict each other."""
     for i in range(count):
         equations.points[i, STATUS] = SLIDES_ON
         equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = equations.measures[i, VN], 0.0
