@@ -20,6 +20,7 @@ from physicslab.diagnostics.warning_records import ModelWarning, WorstWarnings
 from physicslab.state.masses import quiet
 from physicslab.stepping.contact_model import why_not_rigid
 from physicslab.stepping.rigid import Rigid
+from physicslab.stepping.stepper import MAX_FACTOR, MAX_FALL, falls_far
 from physicslab.world import World
 
 __all__ = [
@@ -73,7 +74,7 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
         graph = contact_graph(world)
         found += [
             *_overlap(world, graph), *_mass_ratios(world, graph), *_speeds(world, graph),
-            *_spins(world, graph),
+            *_spins(world, graph), *_falls(world),
         ]  # fmt: skip
     return tuple(found)
 
@@ -184,6 +185,15 @@ def _spins(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
         what = "turns so far in a substep that chance decides where its corners strike"
         spinning = int(world.entity_index.entities[rows[np.argmax(angles)]])
         yield ModelWarning.about(world, spinning, what, float(angles.max()), "rad", SPIN_LIMIT, setting)
+
+
+def _falls(world: World) -> Iterator[ModelWarning]:
+    """Yield how far gravity carries bodies in a substep, where no shorter one is made."""
+    if falls_far(world, world.simulation.dt) == MAX_FACTOR:
+        h = world.simulation.dt / (world.simulation.substeps * MAX_FACTOR)
+        sizes = world.physics.gravity.magnitude * h * h / world.bodies.smallest
+        what = "gravity carries bodies so many sizes of the smallest in a substep that they may pass others"
+        yield ModelWarning(None, what, sizes, "", MAX_FALL, "a smaller simulation.dt")
 
 
 def _rigid(world: World, graph: ContactGraph) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,8 @@ class Bodies:
         The same, and zero for sleeping bodies: the simulation uses these.
     unequal : bool
         Whether two bodies that may meet differ so much in mass that one may be too heavy for the other.
+    smallest : float
+        The smallest diameter or side of all shapes [m]; infinite where there are none.
     columns : tuple of an object and arrays
         What :func:`physicslab.state.masses.derive_masses` takes, and for which rows.
     sub_integrated : bool array (rows,)
@@ -37,7 +40,7 @@ class Bodies:
     """
 
     def __init__(self) -> None:
-        self.unequal = False
+        self.unequal, self.smallest = False, math.inf
         self.columns: tuple[object, tuple[NDArray[Any], ...]]
         self.resize(0)
 

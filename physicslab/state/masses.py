@@ -43,10 +43,10 @@ def derive_masses(state: State) -> None:
         state.compile((motion.derive_masses,))
     revision, columns = bodies.columns
     if revision == state.entity_index.revision and columns[-1] is state.sleep.asleep:
-        ratio, infinite, sizeless, driven = direct_entry(motion.derive_masses)(*columns)
+        ratio, infinite, sizeless, driven, bodies.smallest = direct_entry(motion.derive_masses)(*columns)
     else:
         columns = _columns(state)
-        ratio, infinite, sizeless, driven = motion.derive_masses(*columns)
+        ratio, infinite, sizeless, driven, bodies.smallest = motion.derive_masses(*columns)
         bodies.columns = state.entity_index.revision, columns
     if sizeless >= 0:
         _refuse_size(state, sizeless)

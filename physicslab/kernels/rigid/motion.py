@@ -27,9 +27,7 @@ from physicslab.kernels.rigid.equations import (
     named_equations,
 )
 from physicslab.kernels.rigid.features import (
-    BOX,
     GIVEN,
-    KIND,
     MU,
     PAIR,
     REACH,
@@ -41,7 +39,8 @@ from physicslab.kernels.rigid.features import (
     SceneTuple,
     named_scene,
 )
-from physicslab.kernels.rigid.piece_end import HOLDS, PRESSES, cut_at_first_event, note_start
+from physicslab.kernels.rigid.passing import longest_piece, share_of_ways
+from physicslab.kernels.rigid.piece_end import ALLOWED, HOLDS, PRESSES, cut_at_first_event, note_start
 from physicslab.kernels.rigid.pieces import (
     SHORT_LAST,
     Stages,
@@ -51,7 +50,7 @@ from physicslab.kernels.rigid.pieces import (
     make_stages,
     named_stages,
 )
-from physicslab.kernels.rigid.touching import far_apart, find_touching, hold_closed, length_of, rest_limits
+from physicslab.kernels.rigid.touching import SLOW, find_touching, hold_closed, rest_limits
 
 __all__ = [
     "DONE",
@@ -73,34 +72,10 @@ _SHORTENINGS = 60
 """How often a piece is shortened for its error."""
 _SHORTEST = 1e-9
 """Share of the time that is left below which a piece is not shortened."""
-_MAX_TURN = 0.25
-"""Largest angle of a piece [rad]."""
 _BEYOND = 1.1
 """Multiple of the time to the first event, by how all begins, that a piece is to last."""
 _SHORT = 0.1
 """Share of the longest piece below which a method of order 5 is tried; its curve shows if it is exact."""
-_STRIDE = 0.2
-"""Share of the smaller size that a pair may approach in a piece, beyond its gap."""
-
-
-@inlined
-def _longest_piece(scene: Scene, q: Numbers, v: Numbers) -> float:
-    """Return for how long no pair can pass through each other unseen, and no box turn far [s]."""
-    rows, longest = scene.rows, math.inf
-    for p in range(len(scene.pairs)):
-        a, b = scene.pairs[p, 0], scene.pairs[p, 1]
-        speed = length_of(v[2 * b] - v[2 * a], v[2 * b + 1] - v[2 * a + 1])
-        speed += (
-            abs(v[2 * rows + b]) * scene.outlines[b, REACH] + abs(v[2 * rows + a]) * scene.outlines[a, REACH]
-        )
-        if speed > 0.0:
-            free = max(far_apart(scene, p, q, math.inf), 0.0) + _STRIDE * scene.coefficients[p, 2]
-            longest = min(longest, free / speed)
-    for row in range(rows):
-        spin = abs(v[2 * rows + row])
-        if spin > 0.0 and scene.outlines[row, KIND] == BOX:
-            longest = min(longest, _MAX_TURN / spin)
-    return longest
 
 
 @inlined
@@ -122,7 +97,7 @@ def _note_changes(
             status = OPEN
         elif kind == HOLDS and (i == index or (equations.points[i, STATUS] == STICKS and left <= limit)):
             status = SLIDES_ON if rubbing < 0.0 else SLIDES_BACK
-        elif equations.points[i, STATUS] > STICKS and abs(equations.measures[i, VT]) <= rest:
+        elif equations.points[i, STATUS] > STICKS and abs(equations.measures[i, VT]) <= SLOW * rest:
             status = equations.points[i, STATUS]
         if status >= 0:
             for column in range(GIVEN):
@@ -138,8 +113,12 @@ def _at_rest(scene: Scene, acceleration: Numbers, v: Numbers, rest: float, least
     """Whether nothing moves, and nothing accelerates."""
     still = True
     for i in range(3 * scene.rows):
-        free = scene.inverse_mass[i] > 0.0
-        if abs(v[i]) > (1e-3 * rest if free else 0.0) or (free and abs(acceleration[i]) > 10.0 * least):
+        free, way = scene.inverse_mass[i] > 0.0, 1.0
+        if i >= 2 * scene.rows:  # what turns is measured by how its outline moves
+            way = scene.outlines[i - 2 * scene.rows, REACH]
+        if way * abs(v[i]) > (SLOW * rest if free else 0.0) or (
+            free and way * abs(acceleration[i]) > 10.0 * least
+        ):
             still = False
     return still
 
@@ -199,14 +178,18 @@ def _any_approaches(
 @inlined
 def _make_smooth(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
-    tolerance: float, stages: Stages,
+    tolerance: float, stages: Stages, allowed: Numbers,
 ) -> tuple[float, int]:  # fmt: skip
-    """Make a piece of ``h`` seconds, or less where its error demands it; return how long, and the trials."""
+    """Make a piece of ``h`` seconds, or less where its error or its ways demand it.
+
+    Returns how long it is, and how many trials there were.
+    """
     for trial in range(_SHORTENINGS):
         error = make_piece(scene, equations, count, q, v, h, tolerance, stages)
-        if error <= 1.0 or h <= _SHORTEST * left:
+        share = share_of_ways(scene, v, h, False, stages, allowed) if error <= 1.0 else 1.0
+        if max(error, share) <= 1.0 or h <= _SHORTEST * left:
             return h, trial + 1
-        h *= max(0.1, 0.9 * math.pow(error, -0.125))
+        h *= max(0.1, 0.9 * (math.pow(error, -0.125) if error > 1.0 else 1.0 / share))
     return h, _SHORTENINGS
 
 
@@ -225,15 +208,17 @@ def advance_piece(
     of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
     scratch = named_equations(room)
     soonest = note_start(of, points, count, scratch, q, v, at.acceleration, start)
-    limit, evaluations, kind, index = _longest_piece(of, q, v), 4, -1, -1
+    allowed, evaluations, kind, index = start[ALLOWED], 4, -1, -1
+    limit = longest_piece(of, q, v, at.acceleration, allowed)
     h = min(limit, left, _BEYOND * soonest if foreseen else left)
     short = h < _SHORT * limit
     for _ in range(2):
         if short:
             make_stages(of, points, count, q, v, h, True, at)
             evaluations += SHORT_LAST
-        else:
-            h, pieces = _make_smooth(of, points, count, q, v, h, left, tolerance, at)
+            short = share_of_ways(of, v, h, True, at, allowed) <= 1.0
+        if not short:
+            h, pieces = _make_smooth(of, points, count, q, v, h, left, tolerance, at, allowed)
             evaluations += pieces * LAST
         passed, kind, index, more = cut_at_first_event(
             of, points, count, scratch, start, at, q, v, h, tolerance, rest, short

@@ -11,6 +11,7 @@ from physicslab.kernels.rigid.detect import find_points, seen_from
 from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     BOX,
+    CENTRE,
     GAP,
     GIVEN,
     HEIGHT,
@@ -22,6 +23,7 @@ from physicslab.kernels.rigid.features import (
     REACH,
     RESTITUTION,
     STATUS,
+    VERTEX,
     VN,
     VT,
     WIDTH,
@@ -31,6 +33,8 @@ from physicslab.kernels.rigid.features import (
 )
 
 __all__ = [
+    "NO_SPEED",
+    "SLOW",
     "far_apart",
     "find_open",
     "find_touching",
@@ -44,6 +48,10 @@ _TOUCH = 1e-10
 """Share of the smaller size within which a gap is closed."""
 _REST = 1e-6
 """Speeds below this, times the speed of a fall over the smallest size, are none."""
+SLOW = 1e-3
+"""Share of that speed below which a point does not slide: what is slower comes to rest before it should."""
+NO_SPEED = 1e-8
+"""Share of that speed that is rounding."""
 
 
 @inlined
@@ -109,7 +117,9 @@ def find_open(
     for k in range(found):
         closed = False
         for i in range(count):
-            closed = closed or _is_same(equations.points, i, scratch.points, k)
+            # A disc touches a body at one point: where that comes to the end of its feature is an event.
+            round_one = equations.points[i, PAIR] == p and equations.points[i, VERTEX] == CENTRE
+            closed = closed or round_one or _is_same(equations.points, i, scratch.points, k)
         if closed:
             apart = -math.inf
         else:
@@ -203,6 +213,19 @@ def _changed_status(equations: Equations, i: int, changed: Points) -> int:
     return status
 
 
+@inlined
+def _stop_across(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
+    """Remove speeds that count as none: equations of points that rest would contradict each other."""
+    for i in range(count):
+        equations.points[i, STATUS] = SLIDES_ON
+        equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = equations.measures[i, VN], 0.0
+    solve_equations(equations, count, 0.0)
+    book_speeds(scene, q, v, -1.0)
+    apply(scene, equations, count, v)
+    book_speeds(scene, q, v, 1.0)
+    measure_all(scene, equations, count, q, v)
+
+
 @fused
 def hold_closed(
     scene: Scene, equations: Equations, count: int, changed: Points,
@@ -218,32 +241,37 @@ def hold_closed(
     for i in range(count):
         if equations.measures[i, VN] <= rest and _changed_status(equations, i, changed) != OPEN:
             n = _keep(equations, i, n)
-    count, n = n, 0
-    if count == 0:
-        return 0, True
-    assemble(scene, equations, count)
-    # Speeds below the limit are none: they would make equations of points that rest contradict each other.
-    for i in range(count):
-        equations.points[i, STATUS] = SLIDES_ON
-        equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = equations.measures[i, VN], 0.0
-    solve_equations(equations, count, 0.0)
-    book_speeds(scene, q, v, -1.0)
-    apply(scene, equations, count, v)
-    book_speeds(scene, q, v, 1.0)
-    measure_all(scene, equations, count, q, v)
-    accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
-    find_free_rates(scene, equations, count, acceleration)
-    for i in range(count):
-        sliding, given = equations.measures[i, VT], STICKS
-        changed_to = _changed_status(equations, i, changed)
-        if equations.measures[i, MU] == 0.0 or sliding > rest:
-            given = SLIDES_ON
-        elif sliding < -rest:
-            given = SLIDES_BACK
-        elif changed_to > STICKS:
-            given = changed_to
-        equations.points[i, GIVEN] = given
-    solved = solve_complementarity(equations, count, least, True) == SETTLED
+    count, n, solved = n, 0, True
+    for attempt in range(2):
+        if count == 0:
+            return 0, True
+        leaves = False
+        for i in range(count):
+            leaves = leaves or equations.measures[i, VN] > NO_SPEED * rest
+        leaves = leaves and attempt == 0
+        assemble(scene, equations, count)
+        if not leaves:
+            _stop_across(scene, equations, count, q, v)
+        accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
+        find_free_rates(scene, equations, count, acceleration)
+        for i in range(count):
+            sliding, given = equations.measures[i, VT], STICKS
+            changed_to = _changed_status(equations, i, changed)
+            if equations.measures[i, MU] == 0.0 or sliding > SLOW * rest:
+                given = SLIDES_ON
+            elif sliding < -SLOW * rest:
+                given = SLIDES_BACK
+            elif changed_to > STICKS:
+                given = changed_to
+            equations.points[i, GIVEN] = given
+        solved = solve_complementarity(equations, count, least, True) == SETTLED
+        if not leaves:
+            break
+        for i in range(count):  # what has just begun to open, and goes on, keeps its speed
+            opens = equations.points[i, STATUS] == OPEN and equations.measures[i, VN] > NO_SPEED * rest
+            if not (solved and opens):
+                n = _keep(equations, i, n)
+        count, n = n, 0
     for i in range(count):
         pressing = equations.vectors[UNKNOWN, 2 * i] * equations.a[2 * i, 2 * i]
         if equations.points[i, STATUS] != OPEN and pressing > least:
