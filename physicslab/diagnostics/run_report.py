@@ -264,10 +264,16 @@ def _trust_words(report: Mapping[str, Any]) -> str:
     """Return what can be relied on, on a line."""
     if report["digits"] is None:
         return f"cannot be measured: {report['failure']}"
+    fewest = [
+        f"{min(report[name].values()):.1f} of every {word}"
+        for name, word in (("velocities", "velocity"), ("angles", "angle"), ("spins", "spin"))
+    ]
     words = (
         f"{report['digits']:.1f} digits of every position at the end, fewest of {report['worst']}; "
-        f"{report['energy']:.1f} of the energy"
+        f"{', '.join(fewest)}; {report['energy']:.1f} of the energy"
     )
+    if report["left_out"]:
+        words += f"; left out: {', '.join(report['left_out'])}"
     if report["horizon_s"] is None:
-        return f"{words}; no rounding grows to another future"
+        return words if "horizon" in words else f"{words}; no rounding grows to another future"
     return f"{words}; one of many possible futures {report['horizon_s']:.3g} s after the start"

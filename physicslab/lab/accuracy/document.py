@@ -125,10 +125,10 @@ def _row(problem: Problem, row: Row) -> dict[str, Any]:
 
 def _scene(study: SceneStudy) -> dict[str, Any]:
     estimate = asdict(study.estimate)
-    for name in ("reference", "bodies", "path", "paths"):
+    for name in ("reference", "bodies", "path", "paths", "document", "own_s", "left_s"):
         del estimate[name]
     return {
-        "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.tightest,
+        "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.reference,
         "estimate": estimate, "rows": [_scene_row(row) for row in study.rows],
         "horizon_s": study.horizon_s,
     }  # fmt: skip
@@ -137,5 +137,4 @@ def _scene(study: SceneStudy) -> dict[str, Any]:
 def _scene_row(row: SceneRow) -> dict[str, Any]:
     found = asdict(row)
     found["cpu_ms"] = 1e3 * found.pop("cpu_s") if not row.failure else None
-    found["error"] = row.tightest or row.half_step  # the tightest is compared with itself at half the step
     return {key: finite(value) if isinstance(value, float) else value for key, value in found.items()}

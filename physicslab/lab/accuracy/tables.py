@@ -95,12 +95,12 @@ def _reported(rows: Sequence[tuple[str, ...]]) -> str:
 
 def scene_text(study: SceneStudy) -> str:
     """Return what was found of a scene as a table."""
-    head = ("method", "ran", "step", "forces", "CPU ms", "half step", "tightest", "energy", "")
+    head = ("method", "ran", "step", "forces", "CPU ms", "half step", "error [m]", "energy", "")
     return "\n".join([
         f"{study.name}: {ESTIMATE}",
         *_estimate_lines(study),
-        f"  how far bodies are [m] after {study.seconds:g} s from where they are with half the step "
-        f"(dop853: twice the step), and with {study.tightest}",
+        f"  how far bodies are [m] after {study.seconds:g} s from where they are with half the step (and a "
+        f"tenth of the tolerance); error: from {study.reference}",
         table([head, *map(_scene_cells, study.rows)], words=(0, 1, 8), indent="  "),
         f"  auto: {study.rows[0].reason}",
         "",
@@ -141,7 +141,8 @@ def _spread_cells(spread: Spread | None) -> tuple[str, str, str, str]:
 def _scene_cells(row: SceneRow) -> tuple[str, ...]:
     return (
         row.asked, row.integrator, row.step, str(row.evaluations), f"{1e3 * row.cpu_s:.3g}",
-        cell(row.half_step, ".1e"), cell(row.tightest, ".1e"), cell(row.energy, ".1e"), row.failure,
+        cell(row.half_step, ".1e"), f"{'at most ' if row.at_most else ''}{cell(row.error, '.1e')}",
+        cell(row.energy, ".1e"), row.failure,
     )  # fmt: skip
 
 
@@ -204,13 +205,15 @@ def trust_text(name: str, trust: Trust) -> str:
     """Return how many digits of a scene can be relied on, and until when."""
     if trust.failure:
         return f"{name}: cannot be measured: {trust.failure}\n"
-    head = ("until", "position", "energy", "momentum", "worst body")
+    head = ("until", "position", "velocity", "angle", "spin", "energy", "momentum", "worst body")
     rows = [
         (
-            f"{look.seconds:.4g} s", f"{look.digits:.1f}", f"{look.energy:.1f}", f"{look.momentum:.1f}",
+            f"{look.seconds:.4g} s", f"{look.digits:.1f}", f"{min(look.velocities):.1f}",
+            f"{min(look.angles):.1f}", f"{min(look.spins):.1f}", f"{look.energy:.1f}", f"{look.momentum:.1f}",
             [*trust.entities][look.bodies.index(look.digits)],
         )
         for look in trust.looks
     ]  # fmt: skip
-    lines = [f"{name}: digits that agree in all ways to compute it", table([head, *rows], words=(4,))]
+    lines = [f"{name}: digits that agree in all ways to compute it", table([head, *rows], words=(7,))]
+    lines += [f"  left out: {words}" for words in trust.left_out]
     return "\n".join([*lines, f"  horizon: {_horizon_words(trust.horizon_s)}", ""])

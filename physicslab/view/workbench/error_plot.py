@@ -67,8 +67,9 @@ def _build_result(ui: Ui, window: Window) -> None:
         imgui.push_text_wrap_pos(wide)
         ui.faint(
             f"How far bodies are off after {study.seconds:g} s: each mark is one run, left is fast, low is "
-            f"right. Compared with {study.reference}; there is no known answer. A click on a mark, or on a "
-            "name in the table, runs the scene by it.",
+            f"right. Compared with {study.reference}; there is no known answer. What is no further from it "
+            'than that has an error of "at most" so much. A click on a mark, or on a name in the table, runs '
+            "the scene by it.",
             wrapped=False,
         )
         if study.chaotic:
@@ -172,7 +173,7 @@ def _build_table(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, f
         imgui.table_next_column()
         if ui.button(f"Use run {n + 1}", "Run this scene by it from here on", shown=run.name):
             window.deeds.append(_using(run))
-        for words in (run.step, f"{run.cpu_ms:.3g} ms", f"{run.error:.2g} m"):
+        for words in (run.step, f"{run.cpu_ms:.3g} ms", run.words):
             imgui.table_next_column()
             ui.text(words)
     imgui.end_table()
@@ -212,10 +213,16 @@ def _opaque(colour: Colour) -> ImVec4:
 
 
 def _series(study: ErrorStudy) -> list[tuple[str, NDArray[np.float64], NDArray[np.float64]]]:
-    """Return the runs of each method, the fastest first: name, times [ms], errors [m]."""
+    """Return the runs of each method, the fastest first: name, times [ms], errors [m].
+
+    Those of which it is known only that the error is at most so large are apart.
+    """
     found = []
-    for name in dict.fromkeys(sample.name for sample in study.samples):
-        runs = sorted((s.cpu_ms, max(s.error, _FLOOR)) for s in study.samples if s.name == name)
+    for name, at_most in dict.fromkeys((sample.name, sample.at_most) for sample in study.samples):
+        runs = sorted(
+            (s.cpu_ms, max(s.error, _FLOOR)) for s in study.samples if s.name == name and s.at_most == at_most
+        )
         costs, errors = np.array(runs, np.float64).T.copy()
-        found.append((name, np.ascontiguousarray(costs), np.ascontiguousarray(errors)))
+        shown = f"{name}, at most" if at_most else name
+        found.append((shown, np.ascontiguousarray(costs), np.ascontiguousarray(errors)))
     return found
