@@ -30,7 +30,7 @@ CONTACT_STEP = 1.0 / 60.0
 _NEAR, _FAR, _SHARE = 10.0, 100.0, 0.95
 """Within what factor of the estimate true errors are to be, how much larger they may ever be, and how often
 they are to be as near."""
-_OF_ROUNDING = 2.0**-44
+_OF_ROUNDING = 1e-12
 """An estimate up to this is one of what rounding adds up to, and the sum may by chance be far less."""
 _FINER = ("tightest", "short steps")
 """Twins that are nearer to the truth than what is judged."""

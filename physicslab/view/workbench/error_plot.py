@@ -67,9 +67,8 @@ def _build_result(ui: Ui, window: Window) -> None:
         imgui.push_text_wrap_pos(wide)
         ui.faint(
             f"How far bodies are off after {study.seconds:g} s: each mark is one run, left is fast, low is "
-            f"right. Compared with {study.reference}; there is no known answer. What is no further from it "
-            'than that has an error of "at most" so much. A click on a mark, or on a name in the table, runs '
-            "the scene by it.",
+            f"right. Compared with {study.reference}; there is no known answer. A click on a mark, or on a "
+            "name in the table, runs the scene by it.",
             wrapped=False,
         )
         if study.chaotic:
