@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,7 +18,7 @@ from physicslab.ecs.text import unique_name
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
-__all__ = ["RunRecord", "body_names", "find_not_finite", "run_report", "run_summary"]
+__all__ = ["RunRecord", "advice_of", "body_names", "find_not_finite", "run_report", "run_summary"]
 
 
 @dataclass(slots=True)
@@ -68,9 +68,10 @@ def body_names(world: World) -> dict[int, str]:
     return names
 
 
-def _advice(warning: ModelWarning) -> dict[str, Any]:
-    """Return a warning as a report has it; entities have names there, and no numbers."""
-    return {key: value for key, value in dataclasses.asdict(warning).items() if key != "number"}
+def advice_of(warnings: Iterable[ModelWarning]) -> list[dict[str, Any]]:
+    """Return warnings as a report has them; entities have names there, and no numbers."""
+    found = [dataclasses.asdict(warning) for warning in warnings]
+    return [{key: value for key, value in each.items() if key != "number"} for each in found]
 
 
 def run_report(world: World, record: RunRecord) -> dict[str, Any]:
@@ -121,7 +122,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "collisions": int(world.collisions),
         "max_penetration": record.max_penetration,
         "divided": record.divided,
-        "advice": [_advice(warning) for warning in record.warnings.all],
+        "advice": advice_of(record.warnings.all),
         "entities": _bodies(world),
     }
 

@@ -10,6 +10,7 @@ from physicslab.lab.accuracy.catalogue import LEFT_OUT
 from physicslab.lab.accuracy.contacts.document import contact_document
 from physicslab.lab.accuracy.contacts.study import ContactStudy
 from physicslab.lab.accuracy.figures import record
+from physicslab.lab.accuracy.honesty.study import QUANTITIES, HonestRow, share_of
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
@@ -34,9 +35,11 @@ def document(
     )
 
 
-def trust_document(rows: Sequence[TrustRow], scenes: Mapping[str, Trust]) -> dict[str, Any]:
+def trust_document(
+    rows: Sequence[TrustRow], scenes: Mapping[str, Trust], random: Sequence[HonestRow] = ()
+) -> dict[str, Any]:
     """Return estimates of errors beside true errors, and what can be relied on in scenes by their names."""
-    found = summarise(rows)
+    found, share = summarise(rows), share_of(random)
     return lab_document(
         "trust",
         problems=[
@@ -51,6 +54,14 @@ def trust_document(rows: Sequence[TrustRow], scenes: Mapping[str, Trust]) -> dic
             for row in rows
         ],
         summary={"known": found.known, "near": found.near, "largest": found.largest, "holds": found.holds},
+        random=[{**asdict(row), "ratios": dict(zip(QUANTITIES, row.ratios, strict=False))} for row in random],
+        honest={
+            "known": share.known,
+            "honest": dict(zip(QUANTITIES, share.honest, strict=True)),
+            "too_large": share.too_large,
+            "worst": share.worst,
+            "holds": share.holds,
+        },
         scenes=[{"name": name, **trust_report(trust)} for name, trust in scenes.items()],
     )
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from physicslab.lab.accuracy.catalogue import LEFT_OUT
 from physicslab.lab.accuracy.estimate import Spread
+from physicslab.lab.accuracy.honesty.study import FAMILIES, QUANTITIES, HonestRow, share_of
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
@@ -14,7 +15,15 @@ from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
 from physicslab.lab.accuracy.verdict import Verdict
 from physicslab.lab.table import cell, table
 
-__all__ = ["left_out_text", "scene_text", "study_text", "summary_text", "trust_rows_text", "trust_text"]
+__all__ = [
+    "honest_text",
+    "left_out_text",
+    "scene_text",
+    "study_text",
+    "summary_text",
+    "trust_rows_text",
+    "trust_text",
+]
 
 _HEAD = ("method", "order", "measured", "dt or tol", "steps", "forces", "CPU ms", "ms / s", "error", "energy",
          "momentum", "ang. mom.", "omega dt", "overlap", "hits", "verdict")  # fmt: skip
@@ -199,6 +208,25 @@ def trust_rows_text(rows: Sequence[TrustRow]) -> str:
         f"{'as it is to be' if found.holds else 'NOT AS IT IS TO BE'} (95 %, and at most 100)"
     )
     return "\n".join([table([head, *lines], words=(0, 1, 5)), "", closing])
+
+
+def honest_text(rows: Sequence[HonestRow]) -> str:
+    """Return a line for each family of random scenes: how often the estimate of an error is honest."""
+    families = {family: [row for row in rows if row.family == family] for family in FAMILIES}
+    head = ("random scenes", "known", *QUANTITIES, "worst", "too large")
+    lines = []
+    for name, found in (*families.items(), ("all", rows)):
+        share = share_of(found)
+        shown = (f"{count / share.known:.1%}" if share.known else "-" for count in share.honest)
+        lines.append((name, str(share.known), *shown, f"{share.worst:.2g}", str(share.too_large)))
+    share = share_of(rows)
+    closing = (
+        f"honest, the true error at most 3 times the estimate: {share.honest[0]} of {share.known} "
+        f"positions ({share.honest[0] / max(share.known, 1):.1%}), wanted 99 of 100: "
+        f"{'as it is to be' if share.holds else 'NOT AS IT IS TO BE'}; more than 100 times too large "
+        f"(and not of rounding): {share.too_large}"
+    )
+    return "\n".join([table([head, *lines], words=(0,)), "", closing])
 
 
 def trust_text(name: str, trust: Trust) -> str:

@@ -28,7 +28,7 @@ from physicslab.lab.case import Job, attempt
 from physicslab.lab.document import finite
 from physicslab.world import World
 
-__all__ = ["Look", "Trust", "assess", "moments_of", "trust_report"]
+__all__ = ["Look", "Trust", "assess", "moments_of", "scales", "trust_report"]
 
 _TWINS, _NUDGED = 0.6, 0.85
 """Shares of the work after which the twins are run, and after which the starts are that are moved."""
@@ -175,16 +175,13 @@ def assess(
         found: _Errors = np.maximum(-np.log10(shares), 0.0)
         return found
 
-    reach = np.maximum(np.hypot(*np.moveaxis(own.places, 2, 0)), sizes_of(world, bodies))
-    elapsed = np.array(times)[:, None]
+    reach, speeds, angles, spins = scales(world, own, bodies, times)
     places = digits(_apart(own, _PLACES), reach)
     columns = _Columns(
         places,
-        digits(_apart(own, _VELOCITIES), np.maximum(own.speeds, sizes_of(world, bodies) / elapsed)),
-        digits(lambda path: np.abs(path.states[..., 2] - own.states[..., 2]),
-               np.maximum(np.abs(own.states[..., 2]), 1.0)),
-        digits(lambda path: np.abs(path.states[..., 5] - own.states[..., 5]),
-               np.maximum(own.spins, 1.0 / elapsed)),
+        digits(_apart(own, _VELOCITIES), speeds),
+        digits(lambda path: np.abs(path.states[..., 2] - own.states[..., 2]), angles),
+        digits(lambda path: np.abs(path.states[..., 5] - own.states[..., 5]), spins),
         digits(lambda path: np.abs(path.energy - own.energy), own.energy_scale),
         digits(lambda path: np.hypot(*(path.momentum - own.momentum).T), own.momentum_scale),
         digits(lambda path: np.abs(path.angular - own.angular), own.angular_scale),
@@ -200,6 +197,23 @@ def assess(
     )
     found.horizon_s, found.looks = horizon, columns.looks(times) if moments else []
     yield found
+
+
+def scales(
+    world: World, path: Path, bodies: Sequence[str], times: Sequence[float]
+) -> tuple[_Errors, _Errors, _Errors, _Errors]:
+    """Return of what digits are shares, at each moment and of each body (k, n).
+
+    Of a position it is that or the size of the body [m], of a velocity the largest since the start or that
+    size in the time since then [m/s], of an angle that or a radian, of a spin the largest since the start or
+    a radian in that time [rad/s].
+    """
+    sizes, elapsed = sizes_of(world, bodies), np.array(times)[:, None]
+    reach = np.hypot(path.places[..., 0], path.places[..., 1])
+    return (
+        np.maximum(reach, sizes), np.maximum(path.speeds, sizes / elapsed),
+        np.maximum(np.abs(path.states[..., 2]), 1.0), np.maximum(path.spins, 1.0 / elapsed),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
