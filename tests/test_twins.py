@@ -156,7 +156,9 @@ def test_rigid_contacts_have_no_stiffer_twin_and_no_rigid_one() -> None:
     (world,) = CONTACTS["slide_stop"].build(SimulationConfig(contacts="rigid"))
     found = estimate(lambda: CONTACTS["slide_stop"].build(SimulationConfig(contacts="rigid"))[0], 0.5)
     names = {twin.name for twin in found.twins}
-    assert names >= {"half step", "mirrored", "permuted", "nudged"} and names.isdisjoint({"stiffer", "rigid"})
+    assert names >= {"eighth of the step", "mirrored", "permuted", "nudged"} and names.isdisjoint(
+        {"stiffer", "rigid"}
+    )
     assert found.reference is None
     document = with_ids(write_scene(world))
     world.synchronise()

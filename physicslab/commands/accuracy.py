@@ -58,9 +58,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     seconds = f"how long scenes are run, in their time ({DEFAULT_S:g})"
     parser.add_argument("--seconds", metavar="T", type=positive_duration, default=DEFAULT_S, help=seconds)
     words = (
-        "print the estimate of the error of each problem, as run --trust makes it, beside its true error, and "
-        "of random scenes how often it is honest; of a scene, how many digits can be relied on from its start "
-        "to some moments"
+        "print the estimate of the error of each problem, as run --trust makes it, beside its true error, "
+        "and of random scenes how often it is honest; of a scene, how many digits can be relied on from its "
+        "start to some moments"
     )
     parser.add_argument("--trust", action="store_true", help=words)
     parser.epilog = (

@@ -26,6 +26,7 @@ DIGITS_LIMIT = 6.0
 _CAUSES = {
     "other steps": "it depends on when steps end, so events are not found at their own times",
     "half step": "it changes with the length of the step",
+    "eighth of the step": "it changes with the length of the step: events are not found at their own times",
     "stiffer": "contacts give way",
     "rigid": "contacts give way, and rigid ones end elsewhere",
     "tightest": "the method is not exact",
@@ -52,7 +53,7 @@ def words_of_digits(trust: Mapping[str, Any]) -> tuple[ModelWarning, ...]:
 
 
 def _shorter(trust: Mapping[str, Any]) -> bool:
-    return trust["cause"] in ("other steps", "half step", "short steps", "stiffer")
+    return trust["cause"] in ("other steps", "half step", "eighth of the step", "short steps", "stiffer")
 
 
 def _oscillation(world: World, audit: Audit) -> Iterator[ModelWarning]:
@@ -81,7 +82,7 @@ def _passage(world: World, audit: Audit) -> Iterator[ModelWarning]:
 def _softness(world: World, audit: Audit) -> Iterator[ModelWarning]:
     """Yield that contacts were soft."""
     if world.plan.collisions == "step" and world.plan.contacts == "soft" and math.isfinite(audit.error):
-        what = "contacts are soft: places are off by 1e-5 to 1e-2 of a size, run --trust says by how much"
+        what = "contacts are soft: places are off by 1e-5 to 1e-2 of a size, which --trust measures"
         yield ModelWarning(None, what, None, "", None, "")
 
 

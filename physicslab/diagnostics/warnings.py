@@ -96,7 +96,7 @@ def _falls_through(world: World) -> Iterator[ModelWarning]:
     found = passage(world) if world.plan.collisions != "none" else None
     if found is not None and found.sizes > PASSAGE_LIMIT:
         through = world.label(found.through)
-        what = f"may fall through {through}: so many times the thickness of both it falls from rest in a step"
+        what = f"may fall through {through}: in a step it falls so many times as far as both are thick"
         finer = world.simulation.dt / math.ceil(2.0 * math.sqrt(found.sizes))
         setting = f"simulation.dt = {finer:.2g}"
         yield ModelWarning.about(world, found.body, what, found.sizes, "", PASSAGE_LIMIT, setting)

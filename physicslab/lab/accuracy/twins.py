@@ -46,6 +46,8 @@ _RIGID_BUDGET_S = 10.0
 """Rigid contacts of many bodies, and of bodies that chatter, can take seconds a step."""
 GOLDEN = 0.5 * (1.0 + math.sqrt(5.0))
 """By what factor steps are shorter that end at other moments: no two of both ever end together."""
+_FINE = 8.0
+"""How many times shorter steps are where half a step misses the events that a step does."""
 _PARTS_LIMIT = 64
 """Into how many parts a step is divided at most so that nothing falls through what is thin."""
 _LEAST_TOLERANCE = 1e-20
@@ -117,8 +119,18 @@ def refined(document: Document, world: World, factor: float) -> World:
     return twin
 
 
-def _half(document: Document, world: World) -> World:
-    return refined(document, world, 2.0)
+def _half(document: Document, world: World) -> World | None:
+    return None if _follows_events(world) else refined(document, world, 2.0)
+
+
+def _fine(document: Document, world: World) -> World | None:
+    """Return the scene in so short steps that an event which is missed by a step is missed by little."""
+    return refined(document, world, _FINE) if _follows_events(world) else None
+
+
+def _follows_events(world: World) -> bool:
+    """Whether contacts are rigid: the step goes from event to event, and half of it may meet the same."""
+    return world.plan.collisions == "step" and world.plan.contacts == "rigid"
 
 
 def _other(document: Document, world: World) -> World | None:
@@ -238,6 +250,8 @@ TWINS: tuple[Twin, ...] = (
     Twin("other steps", "steps 0.618 times as long, which end at other moments", _other,
          differs_in_step=True),
     Twin("half step", "half the step, and a tenth of the tolerance", _half, differs_in_step=True),
+    Twin("eighth of the step", "steps an eighth as long, where contacts are rigid", _fine,
+         differs_in_step=True),
     Twin("tightest", f"{DOP853.name} with the tightest tolerance", _tightest),
     Twin("short steps", "steps in which nothing falls further than the thinnest body is thick", _short),
     Twin("stiffer", "contacts four times as stiff, at half the step", _stiffer, differs_in_step=True),
