@@ -245,3 +245,16 @@ def test_the_table_is_saved_as_csv(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert head.startswith("chosen,method,") and len(rows) == 3
     assert rows[0] == "rk4,rk4,0.01 s,8,1e-09,0.1,0.001,"
     assert rows[1] == "rk4,rk4,0.01 s,8,1e-09,10.0,1e-07,at most"
+
+
+def test_a_plot_without_any_growth_of_rounding_and_without_errors_is_shown(tmp_path: Path) -> None:
+    """Nothing grows, and the least error is 0: neither has a logarithm, and 0 is no chaos."""
+    nudged = {"twins": [{"name": "nudged", "spread": {"position": 0.0}}]}
+    for horizon in (None, 3.0):
+        found = FOUND | {"estimate": nudged, "horizon_s": horizon}
+        desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text({json.dumps({'scenes': [found]})!r})")
+        measured(desk)
+        desk.frames(SETTLED)
+        assert desk.window.error_study.shown and not desk.window.error_study.rounding_shows
+        assert desk.window.error_study.chaotic == (horizon is not None)
+        assert not any("One rounding at the start moves" in words for words in desk.ui.words)

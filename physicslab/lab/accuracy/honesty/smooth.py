@@ -91,7 +91,7 @@ def flyby(draw: Random) -> KnownScene:
     """Return a body that passes a heavy one closely, and goes off again."""
     entities = [
         body("star", (0.0, 0.0), mass=1.0),
-        body("p", (-draw.uniform(2.0, 8.0), _log(draw, 2e-3, 1.0)), mass=_log(draw, 1e-12, 0.5),
+        body("p", (-draw.uniform(2.0, 8.0), _log(draw, 0.03, 1.0)), mass=_log(draw, 1e-12, 0.5),
              velocity=(draw.uniform(0.5, 2.0), 0.0)),
     ]  # fmt: skip
     return _known(written(entities, _log(draw, 1 / 240, 1 / 20), _PLANETS), draw.uniform(6.0, 14.0))
