@@ -320,7 +320,7 @@ def test_any_duration_and_what_is_shown(tmp_path: Path, capsys: pytest.CaptureFi
 
 def test_methods_are_compared_with_the_finest_of_all_and_the_better_one_is_not_blamed() -> None:
     """Rigid contacts of ``auto`` are right to rounding; leapfrog in a quarter of the step is not."""
-    document = sliding(3.0, 0.3)
+    document = sliding(0.6, 0.3)
     document["simulation"] = {}
     *_, study = study_scene("slides", lambda: read_scene(document), 0.3)
     assert isinstance(study, SceneStudy)
@@ -329,4 +329,4 @@ def test_methods_are_compared_with_the_finest_of_all_and_the_better_one_is_not_b
     assert auto.at_most and auto.error is not None and auto.error < 1e-12
     leapfrog = [row for row in others if row.integrator == "leapfrog"]
     assert leapfrog and all(not row.at_most and row.error is not None for row in leapfrog)
-    assert min(row.error or 0.0 for row in leapfrog) > 1e-8
+    assert min(row.error or 0.0 for row in leapfrog) > 1e-9
