@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
@@ -31,16 +32,19 @@ class Passage:
     sizes: float
 
 
-def passage(world: World) -> Passage | None:
+def passage(world: World, held: NDArray[np.int64] | None = None) -> Passage | None:
     """Return how far a body falls in a step of the world, in sizes; ``None`` where none falls on anything.
 
-    The way is that under gravity from rest: the speed at which a step begins is followed anyway.
+    The way is that under gravity from rest: the speed at which a step begins is followed. Bodies in the
+    rows ``held`` are left out.
     """
     shapes, moving = world.batch(Transform, Shape), world.batch(Transform, Velocity, Shape)
     if world.physics.gravity_mode != "linear" or len(shapes) < 2 or not len(moving):
         return None
     way = 0.5 * world.physics.gravity.magnitude * world.simulation.dt**2
     falls = world.bodies.inverse_mass[moving.rows] > 0.0
+    if held is not None:
+        falls &= ~np.isin(moving.rows, held)
     if not falls.any():
         return None
     shape, rows = world.table(Shape), shapes.rows

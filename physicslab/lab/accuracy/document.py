@@ -50,6 +50,7 @@ def trust_document(
                 "estimate": finite(row.estimate),
                 "error": finite(row.error),
                 "ratio": finite(row.ratio),
+                "near": row.is_near,
             }
             for row in rows
         ],
