@@ -213,7 +213,7 @@ _OF_WORLD: dict[str, Callable[[Reading], float]] = {
     "kinetic energy": lambda now: now.energy.kinetic,
     "kinetic energy of translation": lambda now: now.energy.kinetic_linear,
     "kinetic energy of rotation": lambda now: now.energy.kinetic_angular,
-    "potential energy": lambda now: sum(now.energy.potential.values()),
+    "potential energy": lambda now: now.energy.stored,
     "energy of gravity": lambda now: now.energy.potential.get("gravity", 0.0),
     "energy of springs": lambda now: now.energy.potential.get("spring", 0.0),
     "total energy": lambda now: now.energy.total,
