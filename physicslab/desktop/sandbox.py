@@ -110,7 +110,8 @@ class Sandbox:
         window.overlays.forget()
         window.sparks.clear()
         window.selection.clear()
-        window.naming, window.measuring = None, Measuring()
+        window.naming, window.picking, window.measuring = None, None, Measuring()
+        self.interface.forget()
         window.microscope.forget()
         window.shows_stopwatch = bool(len(world.batch(Gate)))
         window.error, window.next_world = "", None
@@ -131,7 +132,7 @@ class Sandbox:
             self._go_on_to(self.window.next_world)
         self._advance()
         self.window.filming.advance(self.history)
-        self.window.selection.follow(self.world)  # in the past steps make and remove bodies
+        self._follow_entities()
         self._undrawn += elapsed
         drawn = not self._rests(elapsed) or self._undrawn > _REST_PERIOD
         if drawn:
@@ -143,6 +144,13 @@ class Sandbox:
         if self._autosave is not None:
             self._keep(self._autosave)
         return drawn
+
+    def _follow_entities(self) -> None:
+        """Let go of what is not there any more: in the past steps make and remove bodies."""
+        window, picking = self.window, self.window.picking
+        window.selection.follow(self.world)
+        if picking is not None and not self.world.has(picking.entity, picking.kind):
+            window.picking = None
 
     def _rests(self, elapsed: float) -> bool:
         """Whether only the clock changes in the picture: for a while nothing has moved or was done."""

@@ -20,6 +20,7 @@ from physicslab.view.controls.snapping import follow_snapping
 from physicslab.view.controls.spawning import spawn_box
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import TOOLS
+from physicslab.view.window.changing import set_end
 
 if TYPE_CHECKING:
     from physicslab.view.window.window import Window
@@ -143,7 +144,8 @@ class InputSystem(System):
         if event.button == pygame.BUTTON_LEFT:
             if self._window.picking is not None:
                 picking, self._window.picking = self._window.picking, None
-                picking(world, self._window, body_at(world, self._window.camera, event.pos))
+                picked = body_at(world, self._window.camera, event.pos)
+                set_end(self._window, picking.entity, picking.kind, picking.field, picked)
                 return
             if self._takes_handle(world, event.pos):
                 return
@@ -154,7 +156,8 @@ class InputSystem(System):
             self._tool.press(world, self._window)
         elif event.button == pygame.BUTTON_RIGHT:
             spawn_box(world, self._window)
-        if event.button == pygame.BUTTON_MIDDLE or (self._tool is not None and self._tool.pans):
+        by_tool = event.button == pygame.BUTTON_LEFT and self._tool is not None and self._tool.pans
+        if event.button == pygame.BUTTON_MIDDLE or by_tool:
             self._panning = event.button
 
     def _takes_handle(self, world: World, pixel: tuple[float, float]) -> bool:
