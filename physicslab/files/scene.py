@@ -134,18 +134,30 @@ def _read_text(path: str | os.PathLike[str], source: str) -> str:
         raise SceneError(f"{source}: is no file name: {error}") from error
 
 
-def read_bytes(path: str | os.PathLike[str], source: str) -> bytes:
-    """Read a plain file, and never more of it than the limit: what is opened may grow, or have no end."""
+def read_bytes(
+    path: str | os.PathLike[str], source: str, limit: int = FILE_LIMIT, what: str = "a scene file"
+) -> bytes:
+    """Read a plain file, and never more of it than ``limit``: what is opened may grow, or have no end.
+
+    ``source`` is what messages call it, and ``what`` what it should be.
+
+    Raises
+    ------
+    SceneError
+        If it is no plain file, or larger.
+    OSError
+        If it cannot be read.
+    """
     # Without O_NONBLOCK, opening a pipe without a writer would wait for ever.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     if os.path.isdir(path):  # Windows would say "permission denied"
-        raise SceneError(f"{source}: is a directory, not a scene file")
+        raise SceneError(f"{source}: is a directory, not {what}")
     with open(os.open(path, flags), "rb") as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise SceneError(f"{source}: is a pipe or a device; a scene must be a plain file")
-        content = file.read(FILE_LIMIT + 1)
-    if len(content) > FILE_LIMIT:
-        raise SceneError(f"{source}: is too large: a scene file must have at most {FILE_LIMIT:,} bytes")
+            raise SceneError(f"{source}: is a pipe or a device; {what} must be a plain file")
+        content = file.read(limit + 1)
+    if len(content) > limit:
+        raise SceneError(f"{source}: is too large: {what} must have at most {limit:,} bytes")
     return content
 
 
