@@ -67,6 +67,8 @@ class Ui:
         When windows that come back where they were are put where they are at first.
     keys_go_to : str
         What is to get the keys in this frame: ``"menu"`` or ``"fields"``.
+    scenes : int
+        How many scenes were shown: what is half written or dragged in a widget is for one of them.
     focused : str
         The widget that keys go to, by its words.
     room : Rect
@@ -83,6 +85,7 @@ class Ui:
         self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
         self.once = imgui.Cond_.first_use_ever
         self.keys_go_to = self.focused = ""
+        self.scenes = 0
         self.room: Rect = (0, 0, 1 << 20, 1 << 20)
 
     def begin(self, theme: Theme, room: Rect = (0, 0, 1 << 20, 1 << 20), *, rearranged: bool = False) -> None:
@@ -181,6 +184,10 @@ class Ui:
             surface.set_clip(clip)
             surface.blit(picture, corner)
         surface.set_clip(None)
+
+    def held(self, label: str) -> str:
+        """Return a label without words for what is written or dragged in, which ends with the scene."""
+        return widget_label("", f"{label} of scene {self.scenes}")
 
     # ---- words ---------------------------------------------------------------------------------------------
 
@@ -421,7 +428,7 @@ class Ui:
         imgui.set_next_item_width(width)
         flags = imgui.SliderFlags_.no_input  # Ctrl-click would make a field of it, without units
         words = shown.replace("%", "%%")
-        moved, new = imgui.slider_float(widget_label("", label), value, low, high, words, flags)
+        moved, new = imgui.slider_float(self.held(label), value, low, high, words, flags)
         self.note(label)
         return float(new) if moved else None
 
@@ -441,7 +448,7 @@ class Ui:
         if self.keys_go_to == "fields":
             imgui.set_keyboard_focus_here()
             self.keys_go_to = ""
-        flags, known = imgui.InputTextFlags_, widget_label("", label)
+        flags, known = imgui.InputTextFlags_, self.held(label)
         if lines == 1:
             _, text = imgui.input_text(known, text, flags.auto_select_all)
         else:

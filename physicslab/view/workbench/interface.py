@@ -82,6 +82,7 @@ class Interface:
         """Drop all that is half written or dragged in panels: it was for a world that is shown no more."""
         self._inspector, self._settings, self._note = Inspector(), SettingsPanel(), NotePanel()
         self._scene_panels.forget()
+        self.ui.scenes += 1
 
     @property
     def text(self) -> int:
