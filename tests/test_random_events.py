@@ -224,3 +224,18 @@ def test_points_snap_too(desk: Desk) -> None:
     post(pygame.MOUSEMOTION, pos=(500, 300), rel=(0, 0), buttons=(0, 0, 0), touch=False)
     desk.frames(2)
     desk.window.snapping.on = False
+
+
+def test_no_key_ends_the_window_in_a_folder_that_was_removed(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    for name in ("s", "shift+s", "o", "shift+o", "l"):
+        *held, key = name.split("+")
+        tap(desk, key, pygame.KMOD_CTRL | (pygame.KMOD_SHIFT if held else 0))
+    assert not desk.window.closing and desk.window.notice_failed
+    desk.window.naming = desk.window.opening = None
+    desk.window.shows_gallery = False

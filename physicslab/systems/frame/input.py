@@ -107,7 +107,14 @@ class InputSystem(System):
         window = self._window
         deeds, window.deeds = window.deeds, []
         for deed in deeds:
-            deed(world, window)
+            self._do(deed, world)
+
+    def _do(self, action: Callable[[World, Window], None], world: World) -> None:
+        """Do something; what the system refuses, as in a folder that was removed, is said and ends nothing."""
+        try:
+            action(world, self._window)
+        except OSError as error:
+            self._window.notify(f"Not done: {error.strerror or error}", 6.0, failed=True)
 
     def _key(self, world: World, event: pygame.Event) -> None:
         mod = getattr(event, "mod", 0)
@@ -117,7 +124,7 @@ class InputSystem(System):
         action = KEYS.get(held + name) or KEYS.get(held.replace("shift+", "") + name)
         other_use = mod & _OTHER_USE and name not in _BY_PRINT
         if action is not None and not other_use:
-            action(world, self._window)
+            self._do(action, world)
 
     def _follow_alt(self, world: World, event: pygame.Event) -> None:
         """Open the menus where Alt is pressed and let go alone: with other keys it is for the desktop."""
@@ -134,7 +141,7 @@ class InputSystem(System):
     def _key_up(self, world: World, event: pygame.Event) -> None:
         action = RELEASES.get(pygame.key.name(event.key).lower())
         if action is not None:  # whatever else is held by now: what was begun must end
-            action(world, self._window)
+            self._do(action, world)
 
     def _press(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
