@@ -30,6 +30,8 @@ class Bodies:
         Whether two bodies that may meet differ so much in mass that one may be too heavy for the other.
     columns : tuple of an object and arrays
         What :func:`physicslab.state.masses.derive_masses` takes, and for which rows.
+    checked : tuple of arrays
+        The columns of numbers that are checked before each step.
     sub_integrated : bool array (rows,)
         The rows with a method of their own between contacts (:class:`physicslab.stepping.split_forces`).
     unkicked : bool array (rows,)
@@ -39,6 +41,7 @@ class Bodies:
     def __init__(self) -> None:
         self.unequal = False
         self.columns: tuple[object, tuple[NDArray[Any], ...]]
+        self.checked: tuple[NDArray[Any], ...] = ()
         self.resize(0)
 
     def resize(self, rows: int) -> None:
