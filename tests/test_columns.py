@@ -414,7 +414,7 @@ def test_an_example_may_have_the_name_of_a_built_in_component() -> None:
 @pytest.mark.parametrize(
     ("kind", "name", "value"),
     [
-        (Mass, "mass", -1.0), (Mass, "mass", math.nan), (Mass, "mass", math.inf), (Mass, "mass", 0.0),
+        (Mass, "mass", -1.0), (Mass, "mass", math.nan), (Mass, "mass", math.inf), (Mass, "inertia", -1.0),
         (Material, "restitution", -1.0), (Material, "restitution", 1.5), (Material, "restitution", math.nan),
         (Material, "friction", -1.0), (Material, "friction", math.inf), (Spring, "stiffness", -1.0),
         (Spring, "damping", math.nan), (Spring, "rest_length", -1.0), (Drag, "linear", -1.0),

@@ -20,6 +20,7 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ecs.text import table_cell
 from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON
 from physicslab.state.state import State
 
@@ -157,9 +158,9 @@ def _since_last(records: NDArray[Any], last: LastTimes) -> Floats:
 
 
 def names_of(state: State, records: NDArray[Any]) -> tuple[list[str], list[str]]:
-    """Return what A and B of each impact are called; the bounds by their walls."""
+    """Return what A and B of each impact are called in a table; the bounds by their walls."""
     entities = np.unique(np.concatenate((records["entity_a"], records["entity_b"]))).tolist()
-    names = {entity: state.label(entity) for entity in entities if entity}
+    names = {entity: table_cell(state.label(entity)) for entity in entities if entity}
     pairs = zip(records["entity_a"].tolist(), records["wall"].tolist(), strict=True)
     first = [names[entity] if wall < 0 else WALLS[wall] for entity, wall in pairs]
     return first, [names[entity] for entity in records["entity_b"].tolist()]

@@ -6,7 +6,7 @@ import re
 import unicodedata
 from collections.abc import Container
 
-__all__ = ["SHORT", "has_width", "in_words", "is_line", "printable", "shortened", "unique_name"]
+__all__ = ["SHORT", "has_width", "in_words", "is_line", "printable", "shortened", "table_cell", "unique_name"]
 
 SHORT = 60
 """Characters of a value, a key or a name that a message shows."""
@@ -50,6 +50,15 @@ def shortened(text: str, length: int = SHORT) -> str:
     ('xxxxx...', 'drop')
     """
     return text if len(text) <= length else f"{text[: length - 3]}..."
+
+
+def table_cell(text: str) -> str:
+    """Return a text as a cell of a CSV file: an apostrophe is before one that spreadsheets would compute.
+
+    >>> table_cell("=1+1"), table_cell("ball")
+    ("'=1+1", 'ball')
+    """
+    return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r", "\n")) else text
 
 
 def unique_name(wanted: str, taken: Container[str]) -> str:

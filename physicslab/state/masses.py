@@ -80,7 +80,7 @@ def _checked(state: State) -> tuple[NDArray[Any], ...]:
     """Return the columns of numbers that no step can take where they are outside their ranges."""
     mass, material, spring, drag = (state.table(kind) for kind in (Mass, Material, Spring, Drag))
     return (
-        mass.present, mass["mass"], material["restitution"], material["friction"], spring["stiffness"],
+        mass.present, mass["mass"], mass["inertia"], material["restitution"], material["friction"], spring["stiffness"],
         spring["damping"], spring["rest_length"], drag["linear"], drag["quadratic"],
     )  # fmt: skip
 
@@ -89,10 +89,12 @@ def _refuse_number(state: State, row: int) -> None:
     """Refuse a number that was written to a column, as its handle would have; entities that have it first."""
     for kind in (Mass, Material, Spring, Drag):
         table = state.table(kind)
-        numbers = [spec for spec in kind.FIELDS if spec.kind == "number" and not spec.derived]
+        numbers = [spec for spec in kind.FIELDS if spec.kind == "number"]
         for spec in numbers:
             for one in (*np.flatnonzero(table.present).tolist(), *([] if kind is Mass else [row])):
                 value = float(table[spec.name][one])
+                if spec.derived and value >= 0.0:  # of a point it is 0
+                    continue
                 try:
                     spec.check(value)
                 except InvalidValue as error:
