@@ -11,8 +11,8 @@ from physicslab.commands.command_error import CommandError
 from physicslab.commands.output import Output
 from physicslab.commands.pictures import picture_directory
 from physicslab.commands.progress import Progress
-from physicslab.ecs.text import printable
-from physicslab.files.checks import shown, suggestion
+from physicslab.ecs.text import printable, suggestion
+from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
 from physicslab.lab.case import Case, Catalogue, Job, run_jobs
 from physicslab.lab.table import table

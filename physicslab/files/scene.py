@@ -10,8 +10,8 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from physicslab.ecs.text import printable
-from physicslab.files.checks import JsonObject, SceneError, suggestion
+from physicslab.ecs.text import printable, shortened, suggestion
+from physicslab.files.checks import JsonObject, SceneError
 from physicslab.files.json_text import json_bytes
 from physicslab.files.reader import check_scene, read_scene
 from physicslab.files.replace import replace_file
@@ -38,7 +38,7 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> World:
     Parameters
     ----------
     name_or_path : str or path
-        A built-in scene's name, or a path. Where there is a file of that name too, ``./drop`` is the file.
+        A built-in scene's name, or a path, as text or bytes. Where there is a file of that name too, ``./drop`` is the file.
 
     Returns
     -------
@@ -58,9 +58,10 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> World:
     """
     if isinstance(name_or_path, str) and name_or_path in SCENES:
         return SCENES[name_or_path].build()
-    source = printable(os.fspath(name_or_path))
+    path = _path(name_or_path)
+    source = printable(path)
     with _uncollected():
-        return read_scene(parse_json(_read_text(name_or_path, source), source), source)
+        return read_scene(parse_json(_read_text(path, source), source), source)
 
 
 def save_scene(world: World, path: str | os.PathLike[str]) -> None:
@@ -75,7 +76,21 @@ def save_scene(world: World, path: str | os.PathLike[str]) -> None:
     OSError
         If the file cannot be written.
     """
-    replace_file(path, scene_bytes(world, os.fspath(path)))
+    path = _path(path)
+    replace_file(path, scene_bytes(world, path))
+
+
+def _path(given: object) -> str:
+    """Return a path as text; what is none is a TypeError that says what makes a world of a document."""
+    if isinstance(given, dict):
+        raise TypeError(
+            "a scene is opened by its name or its path; physicslab.files.scene.read_scene(document, source) "
+            "makes a world of a dict"
+        )
+    try:
+        return os.fsdecode(given)  # type: ignore[arg-type]
+    except TypeError:
+        raise TypeError(f"a scene has a name or a path; got {shortened(repr(given))}") from None
 
 
 def scene_bytes(world: World, source: str) -> bytes:
