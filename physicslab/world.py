@@ -245,7 +245,8 @@ class World(State):
         if not moves and names not in _told and self.schedule.find(AccelerateSystem) is not None:
             _told.add(names)
             _log.warning(
-                "World(%s): velocities move nothing without an IntegrateSystem(); World() has all systems", names
+                "World(%s): velocities move nothing without an IntegrateSystem(); World() has all systems",
+                names,
             )
 
     def _choose(self, plan: StepPlan | None = None) -> None:

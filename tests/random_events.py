@@ -26,15 +26,44 @@ HOSTILE_NAMES = (
     b"x" * 240 + b".json", b"\x1b[2J.json", b"-.json", b"=1+1.json", b" .json",
 )  # fmt: skip
 _WORDS = (
-    "##", "###a", "a##b", "%d%s%n", "The world", "none", "a fixed point", "itself", "\u202ex", "e" + "\u0301" * 60,
-    "\U0001f680", "x" * 200, "Gravity", "wall", "circle 1", "=1", "'", '"', "\\", "\uf25a", "A##1", "a\u200bb",
+    "##", "###a", "a##b", "%d%s%n", "The world", "none", "a fixed point", "itself", "\u202ex",
+    "e" + "\u0301" * 60, "\U0001f680", "x" * 200, "Gravity", "wall", "circle 1", "=1", "'", '"', "\\",
+    "\uf25a", "A##1", "a\u200bb",
 )  # fmt: skip
-_TEXTS = ("", "1", "-1", "1e308", "nan", "2e", "1,5", "1/0", "a##b", "../x", "\u202e", "~nobody/x", "9" * 400, "é")
+_TEXTS = (
+    "",
+    "1",
+    "-1",
+    "1e308",
+    "nan",
+    "2e",
+    "1,5",
+    "1/0",
+    "a##b",
+    "../x",
+    "\u202e",
+    "~nobody/x",
+    "9" * 400,
+    "é",
+)
 _SIZES = ((1, 1), (64, 48), (320, 240), (1280, 720), (2000, 300))
 _APART = frozenset({"f5", "ctrl+s", "shift+f12", "f12", "ctrl+shift+s"})
 """Keys that begin other processes, or write files by the hundred."""
 _MODS = (0, 0, 0, pygame.KMOD_SHIFT, pygame.KMOD_CTRL, pygame.KMOD_ALT)
-_OTHER_KEYS = ("tab", "return", "escape", "backspace", "delete", "left", "right", "up", "down", "home", "f6", "f10")
+_OTHER_KEYS = (
+    "tab",
+    "return",
+    "escape",
+    "backspace",
+    "delete",
+    "left",
+    "right",
+    "up",
+    "down",
+    "home",
+    "f6",
+    "f10",
+)
 
 
 def with_hostile_words(world: World) -> World:
@@ -115,7 +144,9 @@ class Hands:
             self._desk.frames()
 
     def _click_widget(self) -> None:
-        places = [label for label in self._desk.ui.places if "screenshot" not in label and "rror" not in label]
+        places = [
+            label for label in self._desk.ui.places if "screenshot" not in label and "rror" not in label
+        ]
         if places:
             label = self._random.choice(places)
             self.done[-1] += f" {label!a}"
@@ -177,7 +208,9 @@ class Hands:
         self._post(pygame.DROPFILE, file=str(path), window=None)
 
     def _scene(self) -> None:
-        self._desk.window.next_world = with_hostile_words(load_scene(self._random.choice(("drop", "two_planets"))))
+        self._desk.window.next_world = with_hostile_words(
+            load_scene(self._random.choice(("drop", "two_planets")))
+        )
 
     def _leave(self) -> None:
         self._post(pygame.WINDOWFOCUSLOST, window=None)

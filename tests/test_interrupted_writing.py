@@ -108,7 +108,11 @@ def test_what_a_kill_left_is_removed_by_the_next_write_in_the_folder(
     write: Callable[[Path, bytes], None], tmp_path: Path
 ) -> None:
     old, fresh = (tmp_path / f".film.gif.{digit * 16}.physicslab-tmp" for digit in "ab")
-    others = tmp_path / "film.gif", tmp_path / ".film.gif.x.physicslab-tmp", tmp_path / f"{'a' * 16}.physicslab-tmp"
+    others = (
+        tmp_path / "film.gif",
+        tmp_path / ".film.gif.x.physicslab-tmp",
+        tmp_path / f"{'a' * 16}.physicslab-tmp",
+    )
     for path in (old, fresh, *others):
         path.touch()
         os.utime(path, (0, 0))

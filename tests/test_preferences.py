@@ -27,7 +27,8 @@ def test_colours_text_and_level_are_kept(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        '{"panels": "\\ud800"}', '{"panels": "a\\u0000b"}', '{"recent": ["\\ud800", 3, "a\\u0000"]}', '{"text": 1e99}', '{"text": "large"}', '{"level": "All"}', '{"level": []}',
+        '{"panels": "\\ud800"}', '{"panels": "a\\u0000b"}', '{"recent": ["\\ud800", 3, "a\\u0000"]}',
+        '{"text": 1e99}', '{"text": "large"}', '{"level": "All"}', '{"level": []}',
         '{"colours": {"a": 1}}', '{"text": NaN}', '{"text": true, "colours": null}',
     ],
 )  # fmt: skip
@@ -39,7 +40,10 @@ def test_what_is_no_choice_is_left_out(text: str, tmp_path: Path) -> None:
     assert (opened.theme, opened.text_scale, opened.level) == (DARK, 1.0, "Explore")
 
 
-@pytest.mark.parametrize("how", ["", "{", "[]", "7", "[" * 200_000, "9" * 10_000, "\ud800", " " * 2_000_000, "pipe", "zeros", "folder"])
+@pytest.mark.parametrize(
+    "how",
+    ["", "{", "[]", "7", "[" * 200_000, "9" * 10_000, "\ud800", " " * 2_000_000, "pipe", "zeros", "folder"],
+)
 def test_what_cannot_be_read_is_put_aside_and_told(how: str, tmp_path: Path) -> None:
     path, opened = tmp_path / "preferences.json", window()
     with deadline("preferences", seconds=5):

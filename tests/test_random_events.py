@@ -56,9 +56,7 @@ def click_pixel(desk: Desk, place: tuple[int, int]) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names that are not UTF-8, and pipes")
 @pytest.mark.parametrize("seed", [12, 31])
-def test_random_events_end_nothing(
-    seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_random_events_end_nothing(seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(LabProcess, "begin", lambda *_: None)
     files = hostile_folder(tmp_path)
@@ -197,7 +195,11 @@ def test_a_table_of_no_impacts_is_sorted_and_chosen_from() -> None:
 
 def test_a_side_button_pans_nothing(desk: Desk) -> None:
     desk.window.tool = "pan"
-    for kind, button in ((pygame.MOUSEMOTION, 0), (pygame.MOUSEBUTTONDOWN, LEFT), (pygame.MOUSEBUTTONDOWN, SIDE)):
+    for kind, button in (
+        (pygame.MOUSEMOTION, 0),
+        (pygame.MOUSEBUTTONDOWN, LEFT),
+        (pygame.MOUSEBUTTONDOWN, SIDE),
+    ):
         post(kind, pos=(500, 300), button=button, rel=(0, 0), buttons=(0, 0, 0), touch=False)
         desk.frames()
     before = desk.window.camera.centre

@@ -33,7 +33,9 @@ def load_preferences(path: Path, window: Window) -> None:
     A file that cannot be read is put aside, and the window says so.
     """
     try:
-        found: Any = json.loads(read_bytes(path, path.name, _MAX_BYTES, "a file of preferences").decode("utf-8"))
+        found: Any = json.loads(
+            read_bytes(path, path.name, _MAX_BYTES, "a file of preferences").decode("utf-8")
+        )
         if not isinstance(found, dict):
             raise ValueError("it holds no object")
     except FileNotFoundError:

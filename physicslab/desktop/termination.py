@@ -17,8 +17,8 @@ _SIGNALS = ("SIGTERM", "SIGHUP", "SIGINT")
 class Termination:
     """Notes the signals that end the program, within a ``with`` block, and has the window closed.
 
-    A second Ctrl+C interrupts what the window waits for. SDL would make of SIGTERM what a click on the window's cross is: the state would be removed as if the user
-    had left.
+    A second Ctrl+C interrupts what the window waits for. SDL would make of SIGTERM what a click on the
+    window's cross is: the state would be removed as if the user had left.
 
     Parameters
     ----------

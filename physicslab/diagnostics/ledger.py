@@ -21,17 +21,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.text import table_cell
+from physicslab.kernels.records import IMPACT
 from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON
 from physicslab.state.state import State
 
 __all__ = [
-    "LAWS", "WALLS", "ImpactColumns", "LedgerWriter", "ledger_csv", "names_of", "read_impacts", "speeds_at",
+    "LAWS", "NO_IMPACTS", "WALLS", "ImpactColumns", "LedgerWriter", "ledger_csv", "names_of", "read_impacts", "speeds_at",
 ]  # fmt: skip
 
 WALLS = ("bounds left", "bounds bottom", "bounds right", "bounds top")
 """What the world's bounds are called, by the number of the wall."""
 LAWS = {NEWTON: "Newton", ENERGETIC: "Stronge", LOWERED: "Newton, restitution lowered"}
 """The laws of :mod:`physicslab.kernels.solver.blow` in words."""
+NO_IMPACTS = np.zeros(0, IMPACT)
+"""An empty log, with all its columns."""
 _STICKS = 1e-9
 """Share of the speeds before an impact up to which the sliding after it is none."""
 _GROWS_FROM = 0.25

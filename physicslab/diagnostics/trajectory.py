@@ -35,8 +35,8 @@ class TrajectoryWriter:
     The columns after a body's own are sums over the world, alike in all rows of an instant: kinetic energy
     of translation and of rotation, what each force stores, and the total [J]; momentum [kg m/s]; angular
     momentum about the origin [kg m^2/s]; what each account of energy has since the start, and the error [J].
-    A number that is not finite is an empty cell. Numbers keep every bit; names are those of ``run --json``, with
-    an apostrophe before one that a spreadsheet would compute.
+    A number that is not finite is an empty cell. Numbers keep every bit; names are those of ``run --json``,
+    with an apostrophe before one that a spreadsheet would compute.
 
     Parameters
     ----------

@@ -190,7 +190,7 @@ def _refuse(vector: Vector2, name: str, value: object) -> None:
         raise AttributeError(f"a Vector2 has x and y, and no {name}")
     whole = f"({value!r}, {vector.y!r})" if name == "x" else f"({vector.x!r}, {value!r})"
     raise FrozenInstanceError(
-        f"a vector's {name} cannot be changed by itself: assign a whole one, as in transform.position = {whole}"
+        f"a vector's {name} cannot be changed by itself: assign a whole one, transform.position = {whole}"
     )
 
 

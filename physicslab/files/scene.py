@@ -10,6 +10,7 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened, suggestion
 from physicslab.files.checks import JsonObject, SceneError
 from physicslab.files.json_text import json_bytes
@@ -38,7 +39,8 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> World:
     Parameters
     ----------
     name_or_path : str or path
-        A built-in scene's name, or a path, as text or bytes. Where there is a file of that name too, ``./drop`` is the file.
+        A built-in scene's name, or a path, as text or bytes. Where there is a file of that name too,
+        ``./drop`` is the file.
 
     Returns
     -------
@@ -108,7 +110,10 @@ def scene_bytes(world: World, source: str) -> bytes:
     SceneError
         If the world holds what no scene may.
     """
-    document = write_scene(world)
+    try:
+        document = write_scene(world)
+    except InvalidValue as error:  # written to a column
+        raise SceneError(f"{printable(source)}: {error}") from error
     check_scene(document, printable(source))
     return json_bytes(document)
 

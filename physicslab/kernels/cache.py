@@ -42,8 +42,8 @@ __all__ = ["VARIABLE", "cache_directory", "cached", "is_kept", "mark", "note_use
 
 if numba.core.config.DISABLE_JIT:  # type: ignore[attr-defined]
     raise ImportError(
-        "physicslab cannot work while NUMBA_DISABLE_JIT is set: PHYSICSLAB_INTERPRET=1 has its kernels run as "
-        "plain Python, for a debugger"
+        "physicslab cannot work while NUMBA_DISABLE_JIT is set: PHYSICSLAB_INTERPRET=1 has its kernels run "
+        "as plain Python, for a debugger"
     )
 VARIABLE = "PHYSICSLAB_KERNELS"
 """The environment variable that says where compiled kernels are to be kept."""

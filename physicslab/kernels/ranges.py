@@ -9,8 +9,8 @@ __all__ = ["find_outside"]
 
 @kernel
 def find_outside(
-    has_mass: Flags, mass: Numbers, inertia: Numbers, restitution: Numbers, friction: Numbers, stiffness: Numbers,
-    damping: Numbers, rest_length: Numbers, linear_drag: Numbers, quadratic_drag: Numbers,
+    has_mass: Flags, mass: Numbers, inertia: Numbers, restitution: Numbers, friction: Numbers,
+    stiffness: Numbers, damping: Numbers, rest_length: Numbers, linear_drag: Numbers, quadratic_drag: Numbers,
 ) -> int:  # fmt: skip
     """Return the first row in which a number is not finite or below what a step can take, or -1.
 

@@ -45,15 +45,17 @@ def derive_masses(state: State) -> None:
     revision, columns = bodies.columns
     if revision == state.entity_index.revision and columns[-1] is state.sleep.asleep:
         outside = direct_entry(ranges.find_outside)(*bodies.checked)
+        if outside >= 0:
+            _refuse_number(state, outside)
         ratio, infinite, sizeless, driven = direct_entry(motion.derive_masses)(*columns)
     else:
         bodies.checked = _checked(state)
         outside = ranges.find_outside(*bodies.checked)
+        if outside >= 0:
+            _refuse_number(state, outside)
         columns = _columns(state)
         ratio, infinite, sizeless, driven = motion.derive_masses(*columns)
         bodies.columns = state.entity_index.revision, columns
-    if outside >= 0:
-        _refuse_number(state, outside)
     if sizeless >= 0:
         _refuse_size(state, sizeless)
     if infinite >= 0:
@@ -80,8 +82,8 @@ def _checked(state: State) -> tuple[NDArray[Any], ...]:
     """Return the columns of numbers that no step can take where they are outside their ranges."""
     mass, material, spring, drag = (state.table(kind) for kind in (Mass, Material, Spring, Drag))
     return (
-        mass.present, mass["mass"], mass["inertia"], material["restitution"], material["friction"], spring["stiffness"],
-        spring["damping"], spring["rest_length"], drag["linear"], drag["quadratic"],
+        mass.present, mass["mass"], mass["inertia"], material["restitution"], material["friction"],
+        spring["stiffness"], spring["damping"], spring["rest_length"], drag["linear"], drag["quadratic"],
     )  # fmt: skip
 
 

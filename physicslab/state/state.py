@@ -250,8 +250,9 @@ class State:
         """Whether an entity exists and has a component."""
         with self.active():
             number = self._holder(entity) if isinstance(entity, str) else entity
-            there = number is not None and esper.entity_exists(number)
-            return there and esper.has_component(number, _checked(component))
+            if number is None or not esper.entity_exists(number):
+                return False
+            return esper.has_component(number, _checked(component))
 
     def components(self, entity: int | str) -> tuple[Any, ...]:
         """Return all components of an entity."""
@@ -384,7 +385,7 @@ def _kind(component: Any) -> type[Any]:
 
 def _checked[C](component: type[C]) -> type[C]:
     """Return the type of a component; refuse its name, or a component, given in its place."""
-    if not isinstance(component, type):
+    if not isinstance(component, type):  # type: ignore[redundant-expr]
         words = shortened(printable(repr(component)))
         raise TypeError(f"a component is asked for by its type, as Mass is one; {words} is none")
     return component

@@ -110,7 +110,7 @@ class InputSystem(System):
             self._do(deed, world)
 
     def _do(self, action: Callable[[World, Window], None], world: World) -> None:
-        """Do something; what the system refuses, as in a folder that was removed, is said and ends nothing."""
+        """Do something; what the system refuses, as in a folder that was removed, is said."""
         try:
             action(world, self._window)
         except OSError as error:

@@ -45,7 +45,7 @@ def drawable(words: str) -> str:
 
 
 def encodable(text: str) -> str:
-    r"""Return text with each half of a surrogate pair and each NUL replaced: fields take UTF-8 that ends in NUL.
+    r"""Return text with each half of a surrogate pair and each NUL replaced: fields take UTF-8 up to a NUL.
 
     >>> encodable("a\nb\0\udce9")
     'a\nb\ufffd\ufffd'

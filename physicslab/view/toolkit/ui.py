@@ -36,9 +36,9 @@ _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_di
 
 
 def widget_label(words: str, identity: str) -> str:
-    """Return a label of Dear ImGui that shows words and is known by an identity, whatever either holds.
+    r"""Return a label of Dear ImGui that shows words and is known by an identity, whatever either holds.
 
-    >>> widget_label("a", "b"), widget_label("a", "b\\0#\\udce9").isascii()
+    >>> widget_label("a", "b"), widget_label("a", "b\0#\udce9").isascii()
     ('a###b', True)
     """
     shown = re.sub("#(?=#)", f"#{_UNSEEN}", drawable(words))
