@@ -14,6 +14,7 @@ from random_events import HOSTILE_NAMES, Hands, hostile_folder, with_hostile_wor
 
 from physicslab import World, load_scene
 from physicslab.components import Mass, Name, Slider, Spring, Transform
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
 from physicslab.view.panels.lab_process import LabProcess
 from physicslab.view.toolkit.ui import widget_label
@@ -181,6 +182,35 @@ def test_what_is_half_written_is_written_into_no_other_scene(desk: Desk) -> None
     click_pixel(desk, (600, 700))
     desk.window.level = "Explore"
     assert (other.simulation.dt, other.motion_edits) == (before, edits)
+
+
+def test_a_pin_that_is_dragged_moves_none_of_another_scene(desk: Desk) -> None:
+    def scene() -> tuple[World, int]:
+        world = empty_world(gravity_mode="none")
+        body = circle(world, (0.0, 0.0))
+        return world, world.spawn(Spring(a=body, anchor_b=(0.0, 2.0), rest_length=2.0))
+
+    world, _ = scene()
+    show(desk, world)
+    desk.window.tool = "select"
+    x, y = desk.pixel(0.0, 2.0)
+    for kind, place in ((pygame.MOUSEBUTTONDOWN, (x, y)), (pygame.MOUSEMOTION, (x + 40, y))):
+        post(kind, pos=place, button=LEFT, rel=(0, 0), buttons=(1, 0, 0), touch=False)
+        desk.frames()
+    assert desk.window.pins.dragged is not None
+    other, spring = scene()
+    show(desk, other)
+    post(pygame.MOUSEMOTION, pos=(x + 80, y), rel=(0, 0), buttons=(1, 0, 0), touch=False)
+    desk.frames()
+    post(pygame.MOUSEBUTTONUP, pos=(x + 80, y), button=LEFT, touch=False)
+    desk.frames()
+    assert other.component(spring, Spring).anchor_b == Vector2(0.0, 2.0)
+
+
+def test_the_errors_of_one_scene_are_not_shown_for_another(desk: Desk) -> None:
+    desk.window.error_study.shown = True
+    show(desk, load_scene("drop"))
+    assert not desk.window.error_study.shown
 
 
 # ---- what ended the window ---------------------------------------------------------------------------------

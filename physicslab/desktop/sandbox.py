@@ -19,7 +19,9 @@ from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
+from physicslab.view.window.handles import Handles
 from physicslab.view.window.measuring import Measuring
+from physicslab.view.window.pins import Pins
 from physicslab.view.window.window import Left, Window
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
@@ -110,7 +112,12 @@ class Sandbox:
         window.overlays.forget()
         window.sparks.clear()
         window.selection.clear()
-        window.naming, window.picking, window.measuring = None, None, Measuring()
+        window.naming, window.picking, window.band, window.measuring = None, None, None, Measuring()
+        window.handles, window.pins = Handles(), Pins()
+        if not is_again:  # what was found of another scene is not for this one
+            window.error_study.abandon()
+            window.error_study.shown = False
+        window.impacts.clear()
         self.interface.forget()
         window.microscope.forget()
         window.shows_stopwatch = bool(len(world.batch(Gate)))

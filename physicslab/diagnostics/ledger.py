@@ -26,7 +26,8 @@ from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON
 from physicslab.state.state import State
 
 __all__ = [
-    "LAWS", "NO_IMPACTS", "WALLS", "ImpactColumns", "LedgerWriter", "ledger_csv", "names_of", "read_impacts", "speeds_at",
+    "LAWS", "NO_IMPACTS", "WALLS", "ImpactColumns", "LedgerWriter", "ledger_csv", "names_of", "read_impacts",
+    "speeds_at",
 ]  # fmt: skip
 
 WALLS = ("bounds left", "bounds bottom", "bounds right", "bounds top")
