@@ -67,7 +67,7 @@ WRONG: dict[str, tuple[Callable[[World], object], type[Exception], str]] = {
     "id for an end": (lambda world: Spring(a="ball"), InvalidValue, "world.entity('ball')"),  # type: ignore[arg-type]
     "run": (lambda world: world.run(3.0), TypeError, "say run(seconds=3.0)"),  # type: ignore[arg-type]
     "stepping": (lambda world: world.stepping(3.0), TypeError, "say stepping(seconds=3.0)"),  # type: ignore[arg-type]
-    "name of a component": (lambda world: world.component("ball", "Shape"), TypeError, "by its type"),  # type: ignore[type-var]
+    "name of a component": (lambda world: world.component("ball", "Shape"), TypeError, "by its type"),  # type: ignore[arg-type]
     "has": (lambda world: world.has("ball", "Shape"), TypeError, "by its type"),  # type: ignore[arg-type]
     "misspelt id": (lambda world: world.entity("balll"), KeyError, 'did you mean "ball"?'),
     "misspelt id of a part": (lambda world: world.component("bal", Mass), KeyError, 'did you mean "ball"?'),
@@ -93,7 +93,7 @@ def test_it_is_refused_at_once_and_says_what_to_write(
 def test_an_id_is_taken_wherever_an_entity_is(world: World, tmp_path: Path) -> None:
     assert world.has("ball", Mass) and not world.has("bell", Mass)
     assert world.component("ball", Mass).mass == 2.0 and len(world.components("ball")) == 5
-    world.add("ball", Mass(np.array(3.0)))
+    world.add("ball", Mass(np.array(3.0)))  # type: ignore[arg-type]
     assert world.component("ball", Mass).mass == 3.0
     assert world.discard("ball", Shape) is not None and world.label("ball") == "ball"
     save_scene(world, os.fsencode(tmp_path / "b.json"))

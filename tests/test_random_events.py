@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pygame
 import pytest
@@ -45,7 +46,7 @@ def show(desk: Desk, world: World) -> World:
     return world
 
 
-def post(kind: int, **what: object) -> None:
+def post(kind: int, **what: Any) -> None:
     pygame.event.post(pygame.Event(kind, **what))
 
 
@@ -56,14 +57,18 @@ def click_pixel(desk: Desk, place: tuple[int, int]) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names that are not UTF-8, and pipes")
-@pytest.mark.parametrize("seed", [12, 31])
-def test_random_events_end_nothing(seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("seed", "count"),
+    [(4, 45), *(pytest.param(seed, 250, marks=pytest.mark.slow) for seed in range(100, 110))],
+)
+def test_random_events_end_nothing(
+    seed: int, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(LabProcess, "begin", lambda *_: None)
     files = hostile_folder(tmp_path)
-    desk = sized((960, 600), with_hostile_words(load_scene("spring_chain")))
-    hands = Hands(desk, files, seed)
-    for _ in range(70):
+    hands = Hands(sized((960, 600), with_hostile_words(load_scene("spring_chain"))), files, seed)
+    for _ in range(count):
         hands.act()
 
 

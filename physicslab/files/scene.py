@@ -33,7 +33,7 @@ VALUE_LIMIT = 8_000_000
 """Values that it may hold, counted by the brackets and commas before them, those within texts included."""
 
 
-def load_scene(name_or_path: str | os.PathLike[str]) -> World:
+def load_scene(name_or_path: str | bytes | os.PathLike[str]) -> World:
     """Return a new world: a built-in scene, or one from a file, with the systems that it needs.
 
     Parameters
@@ -66,7 +66,7 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> World:
         return read_scene(parse_json(_read_text(path, source), source), source)
 
 
-def save_scene(world: World, path: str | os.PathLike[str]) -> None:
+def save_scene(world: World, path: str | bytes | os.PathLike[str]) -> None:
     """Write a world to a scene file, from which :func:`load_scene` makes the same world, bit for bit.
 
     A file that was there before is replaced only by one that is complete and can be read again.

@@ -188,7 +188,7 @@ class State:
             if entity is not None:
                 return create_numbered(entity, components)
             for component in components:
-                _check_ends(component, next_number())
+                _check_ends(component)
             return esper.create_entity(*components)
 
     @property
@@ -228,7 +228,8 @@ class State:
     def discard[C](self, entity: int | str, component: type[C]) -> C | None:
         """Take a component from an entity and return it, or ``None`` if it had none."""
         with self.active():
-            return esper.try_remove_component(self._found(entity), _checked(component))
+            taken: C | None = esper.try_remove_component(self._found(entity), _checked(component))
+            return taken
 
     def component[C](self, entity: int | str, component: type[C]) -> C:
         """Return a component of an entity, which is given by its number or its id.
@@ -241,7 +242,7 @@ class State:
         with self.active():
             entity = self._found(entity)
             self._follow()
-            found = esper.try_component(entity, _checked(component))
+            found: C | None = esper.try_component(entity, _checked(component))
             if found is None:
                 raise KeyError(f"{self.label(entity)} has no {component.__name__}")
             return found
@@ -383,21 +384,21 @@ def _kind(component: Any) -> type[Any]:
     return type(component)
 
 
-def _checked[C](component: type[C]) -> type[C]:
+def _checked(component: Any) -> Any:
     """Return the type of a component; refuse its name, or a component, given in its place."""
-    if not isinstance(component, type):  # type: ignore[redundant-expr]
+    if not isinstance(component, type):
         words = shortened(printable(repr(component)))
         raise TypeError(f"a component is asked for by its type, as Mass is one; {words} is none")
     return component
 
 
-def _check_ends(component: Any, own: int) -> None:
-    """Refuse a component of the motion that refers to an entity that is not there, nor its own."""
+def _check_ends(component: Any, own: int | None = None) -> None:
+    """Refuse a component of the motion that refers to an entity that is not there, nor its own (the next)."""
     if not isinstance(component, Component) or not component.physical:
         return
     for spec in component.FIELDS:
         end = getattr(component, spec.name) if spec.kind == "entity" else None
-        if end is not None and end != own and not esper.entity_exists(end):
+        if end is not None and not esper.entity_exists(end) and end != (own or next_number()):
             raise InvalidValue(spec.owner, spec.name, end, "an entity of this world or null")
 
 
