@@ -10,6 +10,7 @@ from typing import Any
 
 import pygame
 import pytest
+from deadline import deadline
 from desk import Desk, click, empty_world, sized, tap, write
 from random_events import HOSTILE_NAMES, Hands, hostile_folder, with_hostile_words
 
@@ -17,6 +18,7 @@ from physicslab import World, load_scene
 from physicslab.components import Mass, Name, Slider, Spring, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
+from physicslab.view.controls import file_actions
 from physicslab.view.panels.lab_process import LabProcess
 from physicslab.view.toolkit.ui import widget_label
 from physicslab.view.window.impact_list import COLUMNS, ImpactList
@@ -276,3 +278,18 @@ def test_no_key_ends_the_window_in_a_folder_that_was_removed(
     assert not desk.window.closing and desk.window.notice_failed
     desk.window.naming = desk.window.opening = None
     desk.window.shows_gallery = False
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with names")
+def test_what_never_ends_or_never_begins_is_refused_at_once(desk: Desk, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.json")
+    (tmp_path / "zeros.json").symlink_to("/dev/zero")
+    for path in (tmp_path / "pipe.json", tmp_path / "zeros.json"):
+        with deadline(path.name, seconds=10):
+            post(pygame.DROPFILE, file=str(path), window=None)
+            desk.frames(4)
+            file_actions.open_named(desk.window, str(path))
+            assert "must be a plain file" in desk.window.notice and "must be" in desk.window.opening_refused
+            tap(desk, "l")
+            tap(desk, "l")
+    desk.window.opening_refused = ""

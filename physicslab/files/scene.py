@@ -9,6 +9,7 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import BinaryIO
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened, suggestion
@@ -21,8 +22,8 @@ from physicslab.scenes import SCENES
 from physicslab.world import World
 
 __all__ = [
-    "SceneError", "load_scene", "parse_json", "read_bytes", "read_scene", "save_scene", "scene_bytes",
-    "write_scene",
+    "SceneError", "load_scene", "open_plain", "parse_json", "read_bytes", "read_scene", "save_scene",
+    "scene_bytes", "write_scene",
 ]  # fmt: skip
 
 FILE_LIMIT = 100 * 2**20
@@ -168,17 +169,23 @@ def read_bytes(
     OSError
         If it cannot be read.
     """
-    # Without O_NONBLOCK, opening a pipe without a writer would wait for ever.
-    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    if os.path.isdir(path):  # Windows would say "permission denied"
-        raise SceneError(f"{source}: is a directory, not {what}")
-    with open(os.open(path, flags), "rb") as file:
-        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise SceneError(f"{source}: is a pipe or a device; {what} must be a plain file")
+    with open_plain(path, source, what) as file:
         content = file.read(limit + 1)
     if len(content) > limit:
         raise SceneError(f"{source}: is too large: {what} must have at most {limit:,} bytes")
     return content
+
+
+def open_plain(path: str | os.PathLike[str], source: str, what: str = "a scene file") -> BinaryIO:
+    """Open a plain file to read it; a pipe without a writer would wait for ever. Errors: :func:`read_bytes`."""
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    if os.path.isdir(path):  # Windows would say "permission denied"
+        raise SceneError(f"{source}: is a directory, not {what}")
+    descriptor = os.open(path, flags)
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise SceneError(f"{source}: is a pipe or a device; {what} must be a plain file")
+    return os.fdopen(descriptor, "rb")
 
 
 def parse_json(text: str, source: str) -> object:
