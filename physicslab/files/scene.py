@@ -177,7 +177,7 @@ def read_bytes(
 
 
 def open_plain(path: str | os.PathLike[str], source: str, what: str = "a scene file") -> BinaryIO:
-    """Open a plain file to read it; a pipe without a writer would wait for ever. Errors: :func:`read_bytes`."""
+    """Open a plain file to read: a pipe without a writer would wait for ever. Errors: :func:`read_bytes`."""
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     if os.path.isdir(path):  # Windows would say "permission denied"
         raise SceneError(f"{source}: is a directory, not {what}")
