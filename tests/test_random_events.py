@@ -20,7 +20,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
 from physicslab.view.controls import file_actions
 from physicslab.view.panels.lab_process import LabProcess
-from physicslab.view.toolkit.ui import widget_label
+from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.window.impact_list import COLUMNS, ImpactList
 from physicslab.view.window.window import Picking
 

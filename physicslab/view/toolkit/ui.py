@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
@@ -12,9 +11,10 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable, encodable
 from physicslab.view.canvas.theme import Colour, Theme
+from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.style import Fonts, packed
 
-__all__ = ["Ui", "widget_label"]
+__all__ = ["Ui"]
 
 _FLAGS = imgui.WindowFlags_
 _FIXED = (
@@ -30,19 +30,7 @@ _ONLY_SIDES = (
 _APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
 _TITLE = 6.0
 """Height of what a floating window has above what fills it, at most, in heights of the text."""
-_UNSEEN = "\u200b"
-"""A space without width: it parts two signs ``#`` that Dear ImGui would take for a mark of its own."""
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
-
-
-def widget_label(words: str, identity: str) -> str:
-    r"""Return a label of Dear ImGui that shows words and is known by an identity, whatever either holds.
-
-    >>> widget_label("a", "b"), widget_label("a", "b\0#\udce9").isascii()
-    ('a###b', True)
-    """
-    shown = re.sub("#(?=#)", f"#{_UNSEEN}", drawable(words))
-    return f"{shown}###{ascii(identity)[1:-1].replace('#', '|23')}"
 
 
 class Ui:
@@ -323,8 +311,7 @@ class Ui:
     ) -> bool:  # fmt: skip
         """Draw a line of the menu that is open, and return whether it was chosen.
 
-        ``shown`` is written on it, where that is not the label; ``identity`` tells it from lines with the
-        same label.
+        ``shown`` is written on it, where not the label; ``identity`` tells it from lines with the same one.
         """
         words = label if shown is None else shown
         self.words.append(drawable(words))
@@ -386,8 +373,7 @@ class Ui:
         Parameters
         ----------
         choices : sequence, or callable
-            The texts that can be chosen; or what is called while the list is unfolded, and returns the words
-            of each thing that can be.
+            The texts there are; or what returns the words of each thing, called while the list is unfolded.
         shown : str, optional
             The words of what is chosen, where it is no text.
         """

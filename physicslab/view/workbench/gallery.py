@@ -15,7 +15,8 @@ from physicslab.view.canvas.theme import Theme
 from physicslab.view.controls.file_actions import opening
 from physicslab.view.controls.scene_files import scene_files
 from physicslab.view.picture.picture import picture_of
-from physicslab.view.toolkit.ui import Ui, widget_label
+from physicslab.view.toolkit.labels import widget_label
+from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 
 __all__ = ["Gallery"]

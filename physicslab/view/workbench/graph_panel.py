@@ -10,7 +10,8 @@ from physicslab.components import Graph
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.controls import dashboard_actions
-from physicslab.view.toolkit.ui import Ui, widget_label
+from physicslab.view.toolkit.labels import widget_label
+from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window

@@ -13,8 +13,9 @@ from physicslab.components.quantities import QUANTITIES
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.canvas.units import written_unit
 from physicslab.view.controls import dashboard_actions
+from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.style import packed
-from physicslab.view.toolkit.ui import Ui, widget_label
+from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.plot_data import line_to_show, path_to_show, range_to_show, unbroken
 from physicslab.view.window.record import Key, Record

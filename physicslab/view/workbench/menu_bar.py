@@ -12,7 +12,8 @@ from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import file_actions
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.scene_files import scene_files
-from physicslab.view.toolkit.ui import Ui, widget_label
+from physicslab.view.toolkit.labels import widget_label
+from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.open_panel import recent_label
 from physicslab.view.workbench.trust_badge import badge_width, build_badge
