@@ -127,8 +127,10 @@ class World(State):
         """
         with Undoing(self, self._motion):
             forces = self.schedule.forces
-            open_account(self, forces)
+            if self.account.start is None:
+                open_account(self, forces)
             self.schedule.run(Stage.PREPARE, self, h)
+            open_account(self, forces)  # with what was written at PREPARE
             made = self._advance(h, steps)
             rest = CONTACT if self.stepper is not None and self.stepper.contacts_take_the_rest else None
             close_account(self, forces, rest)

@@ -216,7 +216,11 @@ def test_a_body_is_hung_on_a_rod_and_swings() -> None:
     click(desk, "Hang on a rod")
     (made,) = [e for e in world.entities() if world.has(e, Spring)]
     assert world.component(made, Spring).anchor_b == Vector2(0.0, 1.5)
-    assert desk.ui.rows["Period"] == f"{2 * math.pi * math.sqrt(1.503 / 9.81):.4g} s"
+    assert desk.ui.rows["Period"] == f"{2 * math.pi * math.sqrt(1.50015 / 9.81):.4g} s"
+    assert desk.window.notice == "This rod is a stiff spring: weight makes it give way 0.1500 mm"
+    desk.window.selection.entities = (made,)
+    desk.frames(SETTLED)
+    assert desk.ui.rows["Gives way"] == "0.1500 mm"
     fixed = box(world, (3, 3), static=True)
     desk.window.selection.entities = (fixed,)
     desk.frames(SETTLED)

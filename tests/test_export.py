@@ -120,13 +120,14 @@ def test_bodies_springs_and_laws_are_described() -> None:
     world.spawn(Spring(a=ball, anchor_b=(0, 9)))
     recorder = RunRecorder(world)
     assert recorder.bodies(world) == [
-        {"name": "wall", "kind": "box", "size": [4.0, 1.0], "pose": [1.0, 2.0, 0.5]},
+        {"name": "wall", "kind": "box", "entity": 1, "size": [4.0, 1.0], "pose": [1.0, 2.0, 0.5]},
         {
-            "name": "ball", "kind": "circle", "radius": 0.5, "mass": 2.0, "inertia": 0.25, "trail": 3.0,
+            "name": "ball", "kind": "circle", "entity": ball, "radius": 0.5,
+            "mass": 2.0, "inertia": 0.25, "trail": 3.0,
             "moves": 0,
         },
-        {"name": "mark", "kind": "none", "pose": [5.0, 5.0, 0.0]},
-        {"name": "lift", "kind": "point", "moves": 1},
+        {"name": "mark", "kind": "none", "entity": 3, "pose": [5.0, 5.0, 0.0]},
+        {"name": "lift", "kind": "point", "entity": 4, "moves": 1},
     ]  # fmt: skip
     assert recorder.springs(world) == [{"a": 1, "b": None, "anchor_a": [0.0, 0.0], "anchor_b": [0.0, 9.0]}]
     assert recorder.energies == ("kinetic", "gravity", "spring", "total")

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pygame
 import pytest
-from desk import Desk, empty_world
+from desk import SETTLED, Desk, empty_world
 from recording import RecordingCanvas
 from test_hud import frame, recorded, row
 
@@ -21,6 +21,7 @@ from physicslab.view.canvas.quantities import length_of, percentage, quantity, v
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.panels.figures import EnergyWatch, measure_world
 from physicslab.view.panels.scale_bar import draw_scale_bar
+from physicslab.view.toolkit.ui import Ui
 from physicslab.view.workbench.energy_flows import parts_of
 from physicslab.world import World
 
@@ -128,11 +129,49 @@ def test_both_bars_of_the_energy_are_equally_long(scene: str) -> None:
     for _ in world.stepping(seconds=2.0, stride=30):
         figures = measure_world(world, watch)
         came, went = parts_of(figures, DARK)
-        assert all(part.energy >= 0.0 for part in (*came, *went)), "a part has a length"
+        assert [went[0].energy, went[1].energy] == [figures.energy.kinetic, figures.energy.stored]
+        assert all(part.energy >= 0.0 for part in (*came[1:], *went[2:])), "an account is what was taken"
         whole = sum(part.energy for part in came)
         error = figures.audit.account.energy["numerical"]
         assert sum(part.energy for part in went) == pytest.approx(whole + error, rel=1e-9, abs=1e-9)
-    assert whole > 0.0
+    assert whole != 0.0
+
+
+def test_the_first_picture_of_the_bar_is_what_the_figures_above_it_say() -> None:
+    figures = measure_world(load_scene("drop"), EnergyWatch())
+    _, went = parts_of(figures, DARK)
+    assert [(part.name, round(part.energy, 2)) for part in went] == [("kinetic", 0.5), ("potential", 39.24)]
+
+
+def test_an_edit_that_is_taken_back_leaves_no_trace_in_the_bar() -> None:
+    desk, _ = recorded(load_scene("slope"))
+    desk.frames(20)
+    desk.key("space")
+    desk.frames(SETTLED)
+    watch = EnergyWatch()
+    before = parts_of(measure_world(desk.world, watch), DARK)
+    desk.press(0, -2.5)
+    desk.release(0, -2.5)
+    desk.frames(SETTLED)
+    assert parts_of(measure_world(desk.world, watch), DARK) != before
+    desk.key("z", pygame.KMOD_CTRL)
+    desk.frames(SETTLED)
+    assert parts_of(measure_world(desk.world, watch), DARK) == before
+
+
+def test_a_bar_of_what_is_negative_lies_left_of_its_zero(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: dict[str, tuple[float, float]] = {}
+
+    def bar(ui: Ui, label: str, value: str, share: float, colour: object, *, zero: float, tip: str) -> None:
+        drawn[label] = zero, zero + share
+
+    monkeypatch.setattr(Ui, "bar", bar)
+    recorded(load_scene("two_planets"))[0].frames(2)
+    (zero, kinetic), (left, stored), (again, total) = (
+        drawn[f"{kind} energy"] for kind in ("Kinetic", "Potential", "Total")
+    )
+    assert left == again == zero, "one zero for all three"
+    assert stored == pytest.approx(0.0) and 0.0 < total < zero < kinetic == pytest.approx(1.0)
 
 
 def test_a_body_in_the_hand_and_out_of_it_leaves_the_rest_as_it_was() -> None:

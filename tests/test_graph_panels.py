@@ -22,7 +22,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Desk:
 
 
 def test_the_picture_of_a_graph_is_its_panel(desk: Desk, tmp_path: Path) -> None:
-    ball_of(desk)
+    ball = ball_of(desk)
     tap(desk, "m")
     desk.frames(40)
     click(desk, "More of graph 1")
@@ -38,7 +38,7 @@ def test_the_picture_of_a_graph_is_its_panel(desk: Desk, tmp_path: Path) -> None
     colours = {
         tuple(picture.get_at((x, y)))[:3] for x in range(0, picture.get_width(), 2) for y in range(40, 200, 2)
     }
-    assert within and desk.window.theme.bodies[0] in colours
+    assert within and desk.window.theme.body(ball) in colours
     assert "Saved" in desk.window.notice
 
 

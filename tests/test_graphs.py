@@ -8,11 +8,14 @@ import pytest
 from desk import SETTLED, Desk, click, click_at, empty_world, point, sized, tap
 from plotting import CTRL, SHIFT, ball_of, drawn_lines, graph_of, in_plot, pause
 
-from physicslab.components import Graph, GraphLine
+from physicslab.components import Graph, GraphLine, Transform
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.history import SetField
 from physicslab.prefabs import circle
+from physicslab.view.canvas.theme import DARK
 from physicslab.view.controls import actions, dashboard_actions, file_actions
+from physicslab.view.window.dashboard import GraphShown, LineShown
+from physicslab.view.workbench.graph_readings import colours_of
 
 
 @pytest.fixture
@@ -299,3 +302,30 @@ def test_any_name_can_be_plotted(desk: Desk, name: str) -> None:
     desk.frames(10)
     assert (ball, "speed") in desk.window.dashboard.graphs[0].keys
     assert desk.window.dashboard.record.times.size > 5
+
+
+def test_a_graph_knows_what_was_before_it_and_every_step_of_it() -> None:
+    desk = Desk(load_scene("drop"))
+    desk.window.pace.chosen = 4.0
+    desk.frames(40)
+    ball = desk.world.entity("ball")
+    desk.window.selection.take(ball)
+    tap(desk, "m")
+    desk.frames(60)
+    history, record = desk.sandbox.history, desk.window.dashboard.record
+    assert desk.window.dashboard.past is None
+    assert record.steps.tolist() == list(range(1, history.step_count + 1)), (
+        "one sample a step, from the first"
+    )
+    height = record.values((ball, "y"))
+    for step in (1, 77, history.step_count):
+        history.seek(step)
+        assert height[step - 1] == desk.world.component(ball, Transform).position.y
+
+
+def test_a_line_has_the_colour_of_its_body_and_the_next_of_the_same_a_tint() -> None:
+    one, two = (LineShown(20 + n, (body, "speed")) for n, body in enumerate((5, 9)))
+    graph = GraphShown(1, 1, None, "right", (two, one, LineShown(23, (9, "x"))))
+    colours = colours_of(DARK, graph)
+    assert colours[:2] == [DARK.body(9), DARK.body(5)]
+    assert colours[2] not in DARK.bodies and len(set(colours)) == 3

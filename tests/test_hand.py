@@ -1,11 +1,13 @@
 """Hand: takes hold of a body, leads it, throws it."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from desk import FRAME, empty_world
 
 from physicslab.components import Held, Mass, Transform, Velocity
+from physicslab.diagnostics.account import measure_account
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
@@ -174,3 +176,38 @@ def test_a_planet_without_a_shape_can_be_held(world: World) -> None:
     assert hand.take(world, planet, Vector2(1, 0), 0.0)
     lead(hand, world, [Vector2(2, 0)])
     assert world.component(planet, Transform).position.x == pytest.approx(2.0)
+
+
+def tower(contacts: str) -> tuple[World, list[int]]:
+    """Return boxes on a floor, two side by side and one on both, the last of them, at rest."""
+    world = empty_world(bounds=(-3.0, 0.0, 3.0, 4.0))
+    world.simulation = replace(world.simulation, contacts=contacts)
+    boxes = [box(world, (x, y), width=0.5, height=0.5) for x, y in ((-0.26, 0.25), (0.26, 0.25), (0.0, 0.75))]
+    world.run(seconds=0.5)
+    return world, boxes
+
+
+@pytest.mark.parametrize("contacts", ["soft", "rigid"])
+@pytest.mark.parametrize(("pull", "frames"), [(0.65, 120), (2.3, 36)])
+def test_a_pull_into_what_cannot_give_way_does_no_work_and_throws_nothing(
+    contacts: str, pull: float, frames: int
+) -> None:
+    world, boxes = tower(contacts)
+    places = [world.component(body, Transform).position for body in boxes]
+    hand = Hand(WindowConfig())
+    hand.take(world, boxes[-1], places[-1], 0.0)
+    before = measure_account(world).energy["hand"]
+    path = [places[-1] - Vector2(0.0, pull * min(n / frames, 1.0)) for n in range(1, frames + 60)]
+    lead(hand, world, path)
+    assert abs(measure_account(world).energy["hand"] - before) < 0.01
+    for body, place in zip(boxes, places, strict=True):
+        assert (world.component(body, Transform).position - place).magnitude < 1e-3
+        assert world.component(body, Velocity).linear.magnitude < 1e-3, "it does not tremble"
+
+
+def test_what_the_hand_pushes_gets_no_more_than_its_strength(world: World) -> None:
+    ball, heavy = circle(world, (0, 0), radius=0.2, mass=1.0), circle(world, (1, 0), radius=0.2, mass=1000.0)
+    hand = Hand(WindowConfig())
+    hand.take(world, ball, Vector2(), 0.0)
+    lead(hand, world, [Vector2(0.1 * n, 0) for n in range(1, 61)])
+    assert 0.0 < world.component(heavy, Velocity).linear.x < 20.0 * 9.81 / 1000.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import cycle
+from types import SimpleNamespace
 from typing import Any
 
 import pygame
@@ -25,10 +26,16 @@ from desk import (
 )  # fmt: skip
 
 from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.diagnostics.collision import Body, Motion
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.view.canvas.quantities import quantity, vector_quantity
+from physicslab.view.canvas.theme import DARK
+from physicslab.view.workbench.collision_drawing import colours_of
+
+REST = Motion(Vector2(), 0.0)
 
 WRITTEN: dict[str, tuple[str, float]] = {
     "Transform.position.x": ("250 cm", 2.5),
@@ -129,7 +136,7 @@ def test_every_field_is_in_the_table() -> None:
     assert set(WRITTEN) == all_fields()
 
 
-@pytest.mark.parametrize(("key", "end"), zip(WRITTEN, cycle(("return", "tab", "beside")), strict=False))
+@pytest.mark.parametrize(("key", "end"), list(zip(WRITTEN, cycle(("return", "tab", "beside")), strict=False)))
 def test_a_field_takes_a_number_with_a_unit(key: str, end: str) -> None:
     desk, body = bench(key)
     text, expected = WRITTEN[key]
@@ -148,7 +155,7 @@ def test_a_field_takes_a_number_with_a_unit(key: str, end: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "text"), zip(WRITTEN, cycle(("north", "1 +", "3 kg^7", "1/0")), strict=False)
+    ("key", "text"), list(zip(WRITTEN, cycle(("north", "1 +", "3 kg^7", "1/0")), strict=False))
 )
 def test_what_is_no_number_has_another_unit_or_is_out_of_range_is_refused_at_the_field(
     key: str, text: str
@@ -380,3 +387,56 @@ def test_an_angle_is_shown_in_degrees_beside() -> None:
     fill(desk, "Transform.angle", "30 deg")
     assert held(desk, body, "Transform.angle") == pytest.approx(math.pi / 6)
     assert "rad = 30°" in desk.ui.words
+    desk.window.level = "Explore"
+    desk.frames(SETTLED)
+    assert "30" in desk.ui.words and "°" in desk.ui.words, "degrees come first for those who explore"
+
+
+def test_in_degrees_a_number_alone_is_degrees_and_many_turns_fit_into_the_field() -> None:
+    desk, body = bench("Transform.angle")
+    desk.window.level = "Explore"
+    desk.frames(SETTLED)
+    fill(desk, "Transform.angle", "45")
+    assert held(desk, body, "Transform.angle") == pytest.approx(math.pi / 4)
+    desk.world.component(body, Transform).angle = -18.2946
+    desk.world.edited()
+    for level, shown, beside in (("Explore", "-1048.2", "°, 31.8°"), ("Measure", "-18.2946", "rad, 31.8°")):
+        desk.window.level = level
+        desk.frames(SETTLED)
+        assert {shown, beside} <= set(desk.ui.words)
+
+
+def test_rounding_is_shown_as_0_and_kept() -> None:
+    world = empty_world()
+    body = box(world, (2.0, 3e-16), width=1.0, height=1.0, angle=-1.95055e-17, angular_velocity=3e-33)
+    world.component(body, Velocity).linear = Vector2(4e-34, 0.0)
+    desk = Desk(world)
+    desk.window.pace.paused = True
+    desk.window.selection.take(body)
+    for level in ("Explore", "Measure"):
+        desk.window.level = level
+        desk.frames(SETTLED)
+        assert not [words for words in desk.ui.words if "e-" in words or "10⁻" in words]
+    assert desk.world.component(body, Transform).angle == -1.95055e-17
+
+
+def test_the_friction_and_the_restitution_of_a_pair_are_written() -> None:
+    desk = Desk(load_scene("slope"))
+    desk.window.selection.take(desk.world.entity("mu = 0.5"))
+    desk.frames(20)
+    for level in ("Explore", "Measure"):
+        desk.window.level = level
+        desk.frames(SETTLED)
+        assert "With slope: mu = 0.5, e = 0" in desk.ui.words
+
+
+def test_a_body_has_its_colour_in_the_microscope() -> None:
+    a, b = (Body(n, 1.0, 1.0, Vector2(), 0.0, REST, REST) for n in (3, 5))
+    wall = Body(1, 0.0, 0.0, Vector2(), 0.0, REST, REST)
+    for one, other, colours in (
+        (a, b, (DARK.body(3), DARK.body(5))),
+        (wall, b, (DARK.static, DARK.body(5))),
+    ):
+        assert colours_of(DARK, SimpleNamespace(a=one, b=other)) == colours  # type: ignore[arg-type]
+    first, second = colours_of(DARK, SimpleNamespace(a=a, b=a))  # type: ignore[arg-type]
+    assert first == DARK.body(3) != second

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import pytest
 from desk import empty_world
 
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.diagnostics.period import period_of, spring_state
+from physicslab.diagnostics.period import gives_way, period_of, spring_state
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle, pendulum
+from physicslab.view.window.spring_tool import spring_between
 from physicslab.world import World
 
 
@@ -38,6 +40,53 @@ def test_the_period_of_a_pendulum_is_that_of_its_amplitude(angle: float) -> None
     assert found.seconds == pytest.approx(run_period(world, bob), rel=2e-3)
     later = period_of(world, bob)
     assert later is not None and later.seconds == pytest.approx(found.seconds, rel=2e-3), "wherever it is"
+
+
+def a_rod(world: World, angle: float) -> int:
+    """Hang a body on a rod of 1.5 m as the window does."""
+    place = 1.5 * Vector2(math.sin(angle), -math.cos(angle))
+    body = circle(world, place, mass=1.41)
+    made = spring_between(world, body, None, (place, Vector2()), stiff=True)
+    assert isinstance(made, Spring)
+    world.spawn(made)
+    return body
+
+
+def a_soft_one(world: World, angle: float) -> int:
+    return pendulum(world, (0, 0), length=1.5, angle=angle, stiffness=5000.0, mass=1.41)
+
+
+@pytest.mark.parametrize(("make", "agrees", "rigid"), [(a_rod, 1e-6, 2e-4), (a_soft_one, 1e-4, 5e-3)])
+def test_the_period_is_that_of_the_spring_that_a_rod_is(
+    make: Callable[[World, float], int], agrees: float, rigid: float
+) -> None:
+    world = empty_world()
+    bob = make(world, math.pi / 3)
+    found = period_of(world, bob)
+    assert found is not None
+    passed, before = list[float](), 1.0
+    while len(passed) < 3:
+        world.step(0.01)
+        x, v = world.component(bob, Transform).position.x, world.component(bob, Velocity).linear.x
+        if before < 0.0 <= x:
+            passed.append(world.time - x / v)
+        before = x
+    measured = (passed[2] - passed[0]) / 2
+    assert found.seconds == pytest.approx(measured, rel=agrees)
+    assert measured == pytest.approx(2.63672, rel=rigid), "of a rigid rod, by the elliptic integral"
+    later = period_of(world, bob)
+    assert later is not None and later.seconds == pytest.approx(found.seconds, rel=agrees)
+
+
+def test_a_rod_gives_way_by_the_same_share_whatever_it_carries() -> None:
+    world = empty_world()
+    for n, mass in enumerate((1e-3, 1.0, 1e4)):
+        body = circle(world, (10.0 * n, 0), mass=mass)
+        made = spring_between(world, body, None, (Vector2(10.0 * n, 0), Vector2(10.0 * n, 2)), stiff=True)
+        assert isinstance(made, Spring)
+        assert gives_way(world, world.spawn(made)) == pytest.approx(2e-4)
+    soft = world.spawn(Spring(a=body, rest_length=2.0, stiffness=50.0))
+    assert gives_way(world, soft) is None
 
 
 def test_the_period_of_a_body_on_a_spring() -> None:

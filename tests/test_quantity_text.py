@@ -33,6 +33,8 @@ UNITS = ("1", "m", "kg", "s", "rad", "m/s", "rad/s", "kg m^2", "N/m", "N s/m", "
         ("sqrt(2)", "1", math.sqrt(2)), ("sin(30 deg)", "1", 0.5), ("30 %", "1", 0.3), ("\u22123", "m", -3.0),
         ("2 \u00d7 3", "1", 6.0), ("2 m", "m", 2.0), ("  7  ", "s", 7.0), ("1/2 m", "m", 0.5),
         ("e", "1", math.e), ("9.81 m/s^2 * 2 s", "m/s", 19.62), ("3(2)", "1", 6.0), ("1 min", "s", 60.0),
+        ("1+1.5*sin(60 deg)", "m", 1 + 0.75 * math.sqrt(3)), 
+        ("2 kg * cos(0 deg)", "kg", 2.0),
     ],
 )  # fmt: skip
 def test_what_a_text_stands_for(text: str, unit: str, value: float) -> None:
@@ -44,7 +46,8 @@ def test_what_a_text_stands_for(text: str, unit: str, value: float) -> None:
     [
         ("", "m", "a number is needed"), ("  ", "m", "a number is needed"),
         ("3 kg", "m", "'3 kg' is in kg; this is in m"), ("3 m", "1", "'3 m' is in m; this is in no unit"),
-        ("30 deg", "m", "'30 deg' is in no unit; this is in m"), ("1 m + 2 kg", "m", "cannot be added"),
+        ("30 deg", "m", "'30 deg' is in no unit; this is in m"), 
+        ("1 + 30 deg", "m", "is in no unit"), ("1 m + 2 kg", "m", "cannot be added"),
         ("5 parsec", "m", "'parsec' is no unit that is known"), ("1/0", "m", "is not finite"),
         ("1e999", "m", "is not finite"), ("9^9^9^9", "m", ""), ("sin(2 m)", "1", "takes a pure number"),
         ("m^0.5", "m", "broken power"), ("sqrt(-1)", "1", "is no number"),

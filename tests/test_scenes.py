@@ -42,6 +42,29 @@ def test_every_scene_runs_and_stays_finite(name: str) -> None:
     assert math.isfinite(measure_energy(world).total)
 
 
+def test_planets_keep_the_third_law_that_their_scene_tells_of() -> None:
+    world, turned, nearest, farthest = (
+        load_scene("solar_system"),
+        np.zeros(5),
+        np.full(5, np.inf),
+        np.zeros(5),
+    )
+    before, since = None, 0.0
+    for _ in world.stepping(seconds=100.0, stride=6):
+        star, *planets = world.table(Transform)["position"][world.batch(Mass).rows]
+        x, y = (np.array(planets) - star).T
+        angle, distance = np.arctan2(y, x), np.hypot(x, y)
+        if before is None:
+            since = world.time
+        else:
+            turned += np.mod(angle - before, 2.0 * math.pi)
+        before, nearest, farthest = angle, np.minimum(nearest, distance), np.maximum(farthest, distance)
+    period = 2.0 * math.pi * (world.time - since) / turned
+    star_mass = world.component(world.entity("star"), Mass).mass
+    law = 4.0 * math.pi**2 / (world.physics.G * star_mass)
+    assert period**2 / (0.5 * (nearest + farthest)) ** 3 == pytest.approx(law, rel=1e-3)
+
+
 def test_the_measured_scenes_are_what_the_measurements_say() -> None:
     pyramid = load_scene("pyramid")
     pyramid.synchronise()

@@ -223,6 +223,8 @@ class Sandbox:
                 logged, before = self.world.contacts.logged, self.world.time
                 self._step(dt * pace.shortening)
                 made += 1
+                if made < due and self.window.dashboard.graphs:
+                    self.window.dashboard.follow(self.world, self.history)  # the last of them is the frame's
                 if microscope.struck(self.world, logged, before):
                     pace.halt()
                     self.history.divide()

@@ -8,7 +8,6 @@ import numpy as np
 
 from physicslab.diagnostics.account import Accounts, measure_account
 from physicslab.diagnostics.energy import Energy
-from physicslab.stepping.accounting import held_in
 from physicslab.world import World
 
 __all__ = ["Audit"]
@@ -44,8 +43,6 @@ class Audit:
         The energy at the beginning [J].
     latest : Energy
         The energy at the last sample.
-    lowest : float
-        The lowest potential energy seen while no body was in a hand [J].
     largest_change, largest_error : float
         The largest size, so far, of E - E0 and of ``numerical`` [J]; NaN once either was no number.
     """
@@ -55,23 +52,20 @@ class Audit:
         self._begin = None if whole else found
         self._moved: dict[str, None] = {}
         self.largest_change = self.largest_error = self.exchanged = 0.0
-        self.lowest = self._low = math.inf
-        self._high = -math.inf
-        self._take(found, is_held=False)
+        self._low, self._high = math.inf, -math.inf
+        self._take(found)
         self.initial = self.account.start.energy
 
     def sample(self, world: World) -> None:
         """Read the accounts as they are now."""
-        self._take(measure_account(world), is_held=bool(held_in(world)))
+        self._take(measure_account(world))
 
     @np.errstate(all="ignore")
-    def _take(self, found: Accounts, *, is_held: bool) -> None:
+    def _take(self, found: Accounts) -> None:
         self.account = account = found if self._begin is None else found.after(self._begin)
         self.latest: Energy = account.parts
         booked = account.energy
-        stored = sum(self.latest.potential.values())
-        self.lowest = self.lowest if is_held else min(self.lowest, stored)
-        inside = stored - booked["edits"] - booked["hand"]
+        inside = self.latest.stored - booked["edits"] - booked["hand"]
         self._low, self._high = min(self._low, inside), max(self._high, inside)
         sizes = (abs(value) for name, value in booked.items() if name not in _OUTSIDE)
         self.exchanged = max(self.exchanged, self.latest.kinetic, self._high - self._low, *sizes)

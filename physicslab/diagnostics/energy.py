@@ -42,6 +42,11 @@ class Energy:
         return self.kinetic_linear + self.kinetic_angular
 
     @property
+    def stored(self) -> float:
+        """Potential energy [J]; it may be negative, and where it is zero depends on the force."""
+        return sum(self.potential.values())
+
+    @property
     def total(self) -> float:
         """Kinetic and potential energy [J], added up in the order in which balances do (to the bit)."""
         return sum(self.potential.values(), self.kinetic)

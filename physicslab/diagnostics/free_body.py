@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,8 @@ from physicslab.stepping.forces import forces_by_system
 from physicslab.world import World
 
 __all__ = [
-    "LastStep", "NamedForce", "applied_forces", "contact_forces", "forces_on", "last_step", "net_force",
+    "LastStep", "NamedForce", "Pair",
+    "applied_forces", "contact_forces", "forces_on", "last_step", "net_force",
 ]  # fmt: skip
 
 type Kind = Literal["field", "normal", "friction"]
@@ -29,6 +30,14 @@ _LONGEST = 1.5
 """How long the last step may have been, in steps of the scene: what is longer was not one step."""
 _ROUNDING = 1e-12
 """Forces below this share of the largest are rounding, and left out."""
+
+
+class Pair(NamedTuple):
+    """What a body touches, in words, and the friction and restitution of both surfaces together."""
+
+    other: str
+    friction: float
+    restitution: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +54,15 @@ class NamedForce:
         Where it acts [m].
     kind : str
         ``"field"``, or for a contact ``"normal"`` or ``"friction"``.
+    pair : Pair, optional
+        Of a normal force, the pair of surfaces.
     """
 
     name: str
     force: Vector2
     place: Vector2
     kind: Kind
+    pair: Pair | None = None
 
 
 def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
@@ -78,8 +90,8 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
         normal, tangent = contact.normal, contact.normal.perpendicular
         total_n = sum(point.normal_force for point in contact.points)
         total_t = sum(point.tangent_force for point in contact.points)
-        place = _place(contact.points)
-        found.append(NamedForce(f"normal, from {other}", sign * total_n * normal, place, "normal"))
+        place, pair = _place(contact.points), Pair(other, contact.friction, contact.restitution)
+        found.append(NamedForce(f"normal, from {other}", sign * total_n * normal, place, "normal", pair))
         found.append(NamedForce(f"friction, from {other}", sign * total_t * tangent, place, "friction"))
     largest = max((one.force.magnitude for one in found), default=0.0)
     return tuple(one for one in found if one.force.magnitude > _ROUNDING * largest)

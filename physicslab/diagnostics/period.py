@@ -9,7 +9,7 @@ from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
-__all__ = ["Period", "SpringState", "period_of", "spring_state"]
+__all__ = ["Period", "SpringState", "gives_way", "period_of", "spring_state"]
 
 _STRING = 0.005
 """Share of its length by which weight stretches a spring that is a string: what hangs on it is a pendulum."""
@@ -76,7 +76,7 @@ def period_of(world: World, entity: int) -> Period | None:
 
     One spring alone may hold the body, and its other end something fixed; then uniform gravity and the spring
     are looked at, and no other force and no contact. A body that its weight hardly stretches the spring of is
-    a pendulum, whose period follows from its amplitude (by the arithmetic-geometric mean).
+    a pendulum, whose period follows from its amplitude and from how far the spring gives way.
     """
     holding = [entity] if world.has(entity, Spring) else _springs_at(world, entity)
     if len(holding) != 1:
@@ -109,27 +109,56 @@ def _pendulum(world: World, number: int, body: int, mass: float) -> Period | Non
     if stretch > _STRING * spring.rest_length or anchor or state.length <= 0.0:
         return None
     pivot = state.end if own == body else state.start
-    arm = world.component(body, Transform).position - pivot
-    length, speed = spring.rest_length + stretch, world.component(body, Velocity).linear.magnitude
-    highest = arm.dot(physics.gravity) / (arm.magnitude * pull) - speed**2 / (2.0 * pull * length)
+    arm, velocity = world.component(body, Transform).position - pivot, world.component(body, Velocity).linear
+    # The spring follows the pull on it: it is longer by e (c + u) of its length, e = m g / (k L), at the
+    # cosine c of the angle and with u = L w^2 / g. To first order in e the energy, in m g L, is
+    # u/2 - c + e (3/2 u^2 + u c - c^2/2), and so w^2 = 2 g/L (c - c0) (1 - e (15/2 c - 13/2 c0)).
+    length, give = spring.rest_length, stretch / spring.rest_length
+    c, swept = arm.dot(physics.gravity) / (arm.magnitude * pull), arm.cross(velocity)
+    u = length * (swept / arm.dot(arm)) ** 2 / pull
+    # Where it rings about that length, the angular momentum does not: w is that without the ringing.
+    u = length * (swept / (length * (1.0 + give * (c + u))) ** 2) ** 2 / pull
+    energy = 0.5 * u - c + give * (1.5 * u * u + u * c - 0.5 * c * c)
+    highest = -2.0 * energy / (1.0 + math.sqrt(1.0 - 2.0 * give * energy))
     if highest <= -1.0:
         return Period(0.0, "")
-    half = 0.5 * math.acos(min(highest, 1.0))
-    seconds = 2.0 * math.pi * math.sqrt(length / pull) / _mean(1.0, math.cos(half))
-    return Period(seconds, f"of a pendulum that swings to {math.degrees(2.0 * half):.1f}° on each side")
+    first, second = _elliptic(0.5 * (1.0 - min(highest, 1.0)))
+    turning = first * (1.0 - give * (3.75 + 3.25 * highest)) + 7.5 * give * second
+    angle = math.degrees(math.acos(min(highest, 1.0)))
+    law = f"of a pendulum that swings to {angle:.1f}° on each side"
+    return Period(4.0 * math.sqrt(length / pull) * turning, law)
 
 
-def _mean(a: float, b: float) -> float:
-    """Return the arithmetic-geometric mean of two numbers above 0.
+def _elliptic(m: float) -> tuple[float, float]:
+    """Return the complete elliptic integrals of both kinds, K(m) and E(m), for 0 <= m < 1.
 
-    >>> round(_mean(1.0, 2.0**0.5), 12)
-    1.198140234736
+    >>> [round(value, 12) for value in _elliptic(0.5)]
+    [1.854074677301, 1.350643881048]
     """
+    a, b, taken, power = 1.0, math.sqrt(1.0 - m), 0.5 * m, 0.5
     for _ in range(_HALVES):
         if abs(a - b) <= 1e-15 * a:
             break
-        a, b = 0.5 * (a + b), math.sqrt(a * b)
-    return a
+        a, b, power = 0.5 * (a + b), math.sqrt(a * b), 2.0 * power
+        taken += power * (a * a - b * b)
+    first = 0.5 * math.pi / a
+    return first, first * (1.0 - taken)
+
+
+def gives_way(world: World, entity: int) -> float | None:
+    """Return by how much the weight of its bodies stretches a spring that serves as a rod [m].
+
+    It is that of the heavier one. ``None`` where weight stretches it by more than a rod, or nothing has any.
+    """
+    if not world.has(entity, Spring) or world.physics.gravity_mode != "linear":
+        return None
+    spring = world.component(entity, Spring)
+    ends = [end for end in (spring.a or entity, spring.b) if end is not None and _moves(world, end)]
+    if not ends or spring.stiffness <= 0.0:
+        return None
+    heaviest = max(world.component(end, Mass).mass for end in ends)
+    stretch = heaviest * world.physics.gravity.magnitude / spring.stiffness
+    return stretch if 0.0 < stretch <= _STRING * spring.rest_length else None
 
 
 def _moves(world: World, entity: int) -> bool:

@@ -8,7 +8,7 @@ import operator
 import re
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from physicslab.ecs.text import printable, shortened
 
@@ -30,14 +30,17 @@ class InvalidText(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class _Quantity:
+    """A value, the powers of its unit, and whether a unit is named: what a function returns has none."""
+
     value: float
     dimension: Dimension = (0, 0, 0)
+    has_unit: bool = False
 
 
 _L, _M, _T, _ONE = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
 _V, _N, _J, _W, _PA, _HZ = (1, 0, -1), (1, 1, -2), (2, 1, -2), (2, 1, -3), (-1, 1, -2), (0, 0, -1)
 _UNITS: dict[str, _Quantity] = {
-    name: _Quantity(value, dimension)
+    name: _Quantity(value, dimension, has_unit=True)
     for value, dimension, names in (
         (1.0, _L, "m"), (1e3, _L, "km"), (0.1, _L, "dm"), (1e-2, _L, "cm"), (1e-3, _L, "mm"),
         (1e-6, _L, "um µm"), (1e-9, _L, "nm"), (0.0254, _L, "inch"), (0.3048, _L, "ft foot"),
@@ -97,6 +100,8 @@ def evaluate(text: str, unit: str = "1") -> float:
     --------
     >>> evaluate("36 km/h", "m/s"), evaluate("180 deg", "rad"), evaluate("1e3 g", "kg"), evaluate("2,5", "m")
     (10.0, 3.141592653589793, 1.0, 2.5)
+    >>> evaluate("1 + 1.5*sin(30 deg)", "m")
+    1.75
     >>> evaluate("3 kg", "m")
     Traceback (most recent call last):
         ...
@@ -112,7 +117,7 @@ def evaluate(text: str, unit: str = "1") -> float:
             raise InvalidText(f"'{shown}' {why}")
     found = _evaluated(text, shown)
     wanted = _evaluated(unit, unit) if unit not in ("", "1") else _Quantity(1.0)
-    if found.dimension == _ONE and not _names_unit(text):
+    if not found.has_unit:
         value = found.value
     elif found.dimension == wanted.dimension:
         value = found.value / wanted.value
@@ -123,11 +128,6 @@ def evaluate(text: str, unit: str = "1") -> float:
     if not math.isfinite(value):
         raise InvalidText(f"'{shown}' is not finite")
     return value
-
-
-def _names_unit(text: str) -> bool:
-    words = re.findall(r"[A-Za-zµ°]+", re.sub(r"(?<=[\d.])[eE](?=[+-]?\d)", " ", text))
-    return any(word in _UNITS for word in words)
 
 
 def _evaluated(text: str, shown: str) -> _Quantity:
@@ -156,7 +156,7 @@ def _value(node: ast.expr, shown: str) -> _Quantity:
             return _named(name, shown)
         case ast.UnaryOp(op=ast.USub() | ast.UAdd() as sign, operand=operand):
             inner = _value(operand, shown)
-            return _Quantity(-inner.value if isinstance(sign, ast.USub) else inner.value, inner.dimension)
+            return replace(inner, value=-inner.value if isinstance(sign, ast.USub) else inner.value)
         case ast.BinOp(left=left, op=kind, right=right):
             return _combined(kind, _value(left, shown), _value(right, shown), shown)
         case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in _FUNCTIONS:
@@ -175,18 +175,19 @@ def _named(name: str, shown: str) -> _Quantity:
 
 
 def _combined(kind: ast.operator, left: _Quantity, right: _Quantity, shown: str) -> _Quantity:
+    has_unit = left.has_unit or right.has_unit
     match kind:
         case ast.Mult() | ast.Div():
             sign = 1 if isinstance(kind, ast.Mult) else -1
             deed = operator.mul if sign == 1 else operator.truediv
             a, b, c = (p + sign * q for p, q in zip(left.dimension, right.dimension, strict=True))
-            return _Quantity(deed(left.value, right.value), (a, b, c))
+            return _Quantity(deed(left.value, right.value), (a, b, c), has_unit)
         case ast.Add() | ast.Sub():
             if left.dimension != right.dimension:
                 words = f"{_in_words(left.dimension)} and {_in_words(right.dimension)}"
                 raise InvalidText(f"'{shown}': {words} cannot be added")
             deed = operator.add if isinstance(kind, ast.Add) else operator.sub
-            return _Quantity(deed(left.value, right.value), left.dimension)
+            return _Quantity(deed(left.value, right.value), left.dimension, has_unit)
         case ast.Pow() if right.dimension == _ONE and abs(right.value) <= _POWER_LIMIT:
             raised_to = [p * right.value for p in left.dimension]
             if not all(power.is_integer() for power in raised_to):
@@ -195,7 +196,7 @@ def _combined(kind: ast.operator, left: _Quantity, right: _Quantity, shown: str)
             if isinstance(raised, complex):
                 raise InvalidText(f"'{shown}' is no real number")
             a, b, c = map(int, raised_to)
-            return _Quantity(raised, (a, b, c))
+            return _Quantity(raised, (a, b, c), has_unit)
     raise InvalidText(f"'{shown}' is no number")
 
 

@@ -99,16 +99,19 @@ class RunRecorder:
     def bodies(self, world: World) -> list[dict[str, Any]]:
         """Return every entity with a Transform: name, outline, mass, and where it is if it does not move.
 
-        ``"moves"`` is the place of a body among those that move.
+        ``"entity"`` is its number, by which it has its colour as in a window; ``"moves"`` is the
+        place of a body among those that move.
         """
         transform, shape, mass, trail = map(world.table, (Transform, Shape, Mass, Trail))
         moves = {row: place for place, row in enumerate(self._rows.tolist())}
         found: list[dict[str, Any]] = []
-        for name, row in zip(body_names(world).values(), world.batch(Transform).rows.tolist(), strict=True):
+        for (entity, name), row in zip(
+            body_names(world).items(), world.batch(Transform).rows.tolist(), strict=True
+        ):
             kind = ("point", "circle", "box")[int(shape["kind"][row])]
             if kind == "point" and row not in moves and not mass.present[row]:
                 kind = "none"
-            body: dict[str, Any] = {"name": name, "kind": kind}
+            body: dict[str, Any] = {"name": name, "kind": kind, "entity": entity}
             if kind == "circle":
                 body["radius"] = float(shape["radius"][row])
             elif kind == "box":

@@ -14,7 +14,7 @@ from physicslab.history.keyframe import Keyframe
 from physicslab.history.line import Edit, Run, Steps
 from physicslab.history.places import Places
 from physicslab.history.recording import load, save
-from physicslab.history.replay import edit
+from physicslab.history.replay import Played, edit, play
 from physicslab.history.seen import Difference, HistoryEntry
 from physicslab.world import World
 
@@ -268,6 +268,14 @@ class History:
     def size(self) -> int:
         """Bytes that the key frames take."""
         return self._places.size
+
+    def again(self) -> Iterator[tuple[World, Played]]:
+        """Make all steps of the line as it is now again in another world, yielding it after each.
+
+        The world of the history is not touched, and what is done to it meanwhile is not made again.
+        """
+        line, world = self._places.line.head(self._end), self._places.beginning.replica()
+        return ((world, played) for played in play(world, line, world.name))
 
     # ---- recordings ----------------------------------------------------------------------------------------
 

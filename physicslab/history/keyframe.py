@@ -9,7 +9,8 @@ numbers, and entities keep theirs.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from typing import Any
 
 import esper
@@ -24,6 +25,7 @@ from physicslab.ecs.table import Table
 from physicslab.state.account import KeptAccount
 from physicslab.state.remainders import Remainders
 from physicslab.stepping.plan import StepPlan
+from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import System
 from physicslab.world import World
 
@@ -171,6 +173,13 @@ class Keyframe:
         yield from self._sleep.arrays()
         low = self._remainders
         yield from (low.keys, low.q, low.v, low.q_low, low.v_low)
+
+    def replica(self) -> World:
+        """Return another world at this moment, with the systems that every scene has."""
+        world, frame = World(*standard_systems()), copy(self)
+        frame._structure, frame._own = replace(self._structure, changes=-1), {}
+        frame.restore(world)
+        return world
 
     def restore(self, world: World) -> None:
         """Put the world back to this moment, in place; every entity has the number that it had."""

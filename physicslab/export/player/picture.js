@@ -20,8 +20,8 @@ function readColours() {
     line.beginPath(); line.moveTo(shift - 1, 11); line.lineTo(shift + 11, -1); line.stroke();
   }
   colours.hatch = pen.createPattern(tile, "repeat");
-  run.bodies.forEach((body, i) => {
-    const own = "mass" in body ? colours[`b${i % 7}`] : colours.text;
+  run.bodies.forEach(body => {
+    const own = "mass" in body ? colours[`b${body.entity % 7}`] : colours.text;
     body.colour = body.columns ? own : colours.static;
   });
   stale = true;

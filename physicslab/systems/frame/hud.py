@@ -72,6 +72,7 @@ class HudSystem(System):
         self._watch.follow(world)
         self._refresh(world)
         window.dashboard.follow(world, window.edits.history)
+        window.dashboard.fill(window.edits.history)
         if window.impacts.shown or window.microscope.is_open:
             window.impacts.follow(world, window.edits.history)
         if window.error_study.poll():

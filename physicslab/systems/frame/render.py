@@ -89,10 +89,10 @@ class RenderSystem(System):
             draw_snap_marks(marks, snapping.place, window.camera, theme, canvas)
 
     def _draw_forces(self, world: World) -> None:
-        """Measure the forces on what is selected where they are shown, and draw them with the arrows."""
+        """Measure the forces on what is selected where its panel is shown, and draw them with the arrows."""
         window, overlays = self._window, self._window.overlays
         chosen = window.selection.entities
-        shown = len(chosen) == 1 and (overlays.arrows or (window.figures and window.level != "Explore"))
+        shown = len(chosen) == 1 and (overlays.arrows or window.figures)
         window.measured.follow(world, chosen[0] if shown else None, window.now, paused=window.pace.paused)
         if overlays.arrows and window.measured.forces:
             size = text_size(window.canvas, window.text_scale) - 1

@@ -52,7 +52,7 @@ def without_rounding(value: float, scale: float) -> float:
     >>> without_rounding(3e-16, 2.0), without_rounding(3e-9, 2.0)
     (0.0, 3e-09)
     """
-    return value if abs(value) > _NONE * scale else 0.0
+    return value if not abs(value) <= _NONE * scale or math.isinf(scale) else 0.0
 
 
 def round_quantity(value: float, unit: str) -> str:

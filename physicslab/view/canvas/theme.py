@@ -91,6 +91,10 @@ class Theme:
     error: Colour
     notice: Colour
 
+    def body(self, entity: int) -> Colour:
+        """Return the colour of a moving body."""
+        return self.bodies[entity % len(self.bodies)]
+
     def fill(self, rim: Colour) -> Colour:
         """Return the colour inside a body with this rim."""
         return mixed(self.background, rim, self.fill_share)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from physicslab.components import Transform
+from physicslab.diagnostics.period import gives_way
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Spawn
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.window.spring_tool import spring_between
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -69,4 +71,7 @@ def _attach(
     if isinstance(made, str):
         window.notify(made)
         return
-    window.edits.do(Spawn([made]))
+    (spring,) = window.edits.do(Spawn([made]))
+    give = gives_way(world, spring) if stiff else None
+    if give is not None:
+        window.notify(f"This rod is a stiff spring: weight makes it give way {quantity(1e3 * give, 'mm')}")

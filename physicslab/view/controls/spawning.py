@@ -15,6 +15,7 @@ from physicslab.history import Command, Group, Spawn
 from physicslab.prefabs import binary, box, chain, circle, container, pendulum, pile, pyramid, stack
 from physicslab.view.window.placing import Outlines, outlines_of, refused_place
 from physicslab.view.window.recipe import Recipe
+from physicslab.view.window.spring_tool import rod_stiffness
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -54,7 +55,7 @@ def _plank(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
 
 
 def _pendulum(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
-    pendulum(world, place, length=1.5, angle=0.7)
+    pendulum(world, place, length=1.5, angle=0.7, stiffness=rod_stiffness(1.0, 1.5))
 
 
 def _chain(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:

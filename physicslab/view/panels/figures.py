@@ -9,7 +9,9 @@ from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.energy import Energy, Momentum
 from physicslab.diagnostics.reference_solution import ReferenceSolution, reference_solution
+from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.picture.bodies import body_rows
 from physicslab.world import World
 
@@ -41,6 +43,8 @@ class WorldFigures:
         The exact solution since the last edit, where there is one.
     error : float
         How far the body that is furthest off is from that [m].
+    scales : dict of str to float
+        How large quantities are here, by unit.
     frame_rate : float
         Frames per second of late.
     """
@@ -57,7 +61,12 @@ class WorldFigures:
     momentum: Momentum
     known: ReferenceSolution | None
     error: float
+    scales: dict[str, float]
     frame_rate: float = 0.0
+
+    def joules(self, energy: float) -> str:
+        """Return an energy in words; what is rounding beside the energies exchanged is 0."""
+        return quantity(without_rounding(energy, max(self.scales["J"], self.audit.exchanged)), "J")
 
 
 def measure_world(world: World, watch: EnergyWatch, frame_rate: float = 0.0) -> WorldFigures:
@@ -68,7 +77,8 @@ def measure_world(world: World, watch: EnergyWatch, frame_rate: float = 0.0) -> 
         len(body_rows(world)), world.sleep.count, contacts.candidate_pairs, contacts.count,
         audit.latest, audit, len(world.batch(Held)) > 0,
         _are_driven(world), watch.since, Momentum(Vector2(now.px, now.py), now.spin),
-        known, known.error(world) if known is not None else 0.0, frame_rate,
+        known, known.error(world) if known is not None else 0.0, scales_of(world),
+        frame_rate,
     )  # fmt: skip
 
 

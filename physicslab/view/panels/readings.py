@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
 from physicslab.diagnostics.energy import summation
-from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity
+from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity, without_rounding
 from physicslab.view.panels.figures import FrameMeter, WorldFigures
 from physicslab.view.panels.panels import Line
 from physicslab.world import World
@@ -14,12 +15,15 @@ __all__ = ["cost_lines", "impulse_lines", "left_out_lines", "measure_lines", "me
 
 def measure_lines(world: World, figures: WorldFigures) -> list[Line]:
     """Return how it moves, and what should not change."""
+    momentum, scales = figures.momentum, figures.scales
+    linear = Vector2(*(without_rounding(part, scales["kg m/s"]) for part in momentum.linear))
+    angular = without_rounding(momentum.angular, scales["kg m^2/s"])
     return [
         *_energy_lines(figures),
         *_error_lines(figures),
-        Line("Total momentum", quantity(figures.momentum.linear.magnitude, "kg m/s")),
-        Line("as a vector", vector_quantity(figures.momentum.linear, "kg m/s"), "detail"),
-        Line("Angular momentum", quantity(figures.momentum.angular, "kg m²/s")),
+        Line("Total momentum", quantity(linear.magnitude, "kg m/s")),
+        Line("as a vector", vector_quantity(linear, "kg m/s"), "detail"),
+        Line("Angular momentum", quantity(angular, "kg m²/s")),
         *(Line(remark, kind="remark") for remark in [summation(world)] if remark),
     ]
 
@@ -27,17 +31,17 @@ def measure_lines(world: World, figures: WorldFigures) -> list[Line]:
 def _energy_lines(figures: WorldFigures) -> list[Line]:
     energy, audit = figures.energy, figures.audit
     lines = [
-        Line("Kinetic energy", quantity(energy.kinetic, "J")),
-        Line("linear", quantity(energy.kinetic_linear, "J"), "detail"),
-        Line("rotational", quantity(energy.kinetic_angular, "J"), "detail"),
+        Line("Kinetic energy", figures.joules(energy.kinetic)),
+        Line("linear", figures.joules(energy.kinetic_linear), "detail"),
+        Line("rotational", figures.joules(energy.kinetic_angular), "detail"),
     ]
     if energy.potential:
-        lines.append(Line("Potential energy", quantity(sum(energy.potential.values()), "J")))
-        lines += [Line(name, quantity(stored, "J"), "detail") for name, stored in energy.potential.items()]
+        lines.append(Line("Potential energy", figures.joules(energy.stored)))
+        lines += [Line(name, figures.joules(stored), "detail") for name, stored in energy.potential.items()]
     return [
         *lines,
-        Line("Total energy", quantity(energy.total, "J")),
-        Line("Energy change", quantity(audit.account.change, "J")),
+        Line("Total energy", figures.joules(energy.total)),
+        Line("Energy change", figures.joules(audit.account.change)),
         *(Line(f"by {ACCOUNT_WORDS[name]}", quantity(value, "J"), "detail")
           for name, value in flows(audit.notable)),
         Line("Error of the method", quantity(audit.account.energy["numerical"], "J")),

@@ -11,6 +11,7 @@ from physicslab.components.graph import TIME
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.component import Component
 from physicslab.history import History
+from physicslab.view.window.past_samples import PastSamples
 from physicslab.view.window.record import Key, Record
 from physicslab.world import World
 
@@ -102,6 +103,8 @@ class Dashboard:
         The graph that is open where there is room for one alone.
     picture_of : int, optional
         The graph of which a picture is to be written.
+    past : PastSamples, optional
+        What is being measured again of the time before there was such a line.
     labels : dict of int to str
         What bodies that are measured are called, those that are gone among them.
     """
@@ -116,7 +119,9 @@ class Dashboard:
         self.free_axes: set[int] = set()
         self.active: int | None = None
         self.picture_of: int | None = None
+        self.past: PastSamples | None = None
         self.labels: dict[int, str] = {}
+        self._known: set[Key] = set()
         self._own: WeakKeyDictionary[World, frozenset[int]] = WeakKeyDictionary()
         self._sampled: object = None
         self._structure: object = None
@@ -130,7 +135,8 @@ class Dashboard:
     def state(self) -> tuple[object, ...]:
         """What panels are built from, but for the samples."""
         panels = self.graphs, self.meters, self.sliders, self.active
-        return *panels, self.pointed, *self.marks, len(self.free_axes)
+        filled = None if self.past is None else round(self.past.share, 2)
+        return *panels, self.pointed, *self.marks, len(self.free_axes), filled
 
     def begin(self, world: World, before: World | None, *, is_new: bool) -> None:
         """Follow another world; ``before`` is the one that showed the same scene until now, if one did.
@@ -150,7 +156,21 @@ class Dashboard:
         self.free_axes.clear()
         self.labels.clear()
         self.marks, self.pointed = [None, None], None
-        self._sampled = self._structure = None
+        self._sampled = self._structure = self.past = None
+        self._known.clear()
+
+    def fill(self, history: History) -> None:
+        """Measure a part of what lines were before they were made, where there are such lines."""
+        keys = {key for graph in self.graphs for key in graph.keys}
+        if not history.steps_range[1]:
+            self._known |= keys
+        if self.past is not None and not self.past.is_of(history):
+            self.past = None
+        if self.past is None and not keys <= self._known:
+            self.past = PastSamples(history, tuple(keys.union(self.record.keys)))
+        if self.past is not None and self.past.go_on():
+            self._known |= set(self.past.keys)
+            self.record, self.past = self.record.after(self.past.record), None
 
     def follow(self, world: World, history: History) -> None:
         """Find the instruments of the world, and record what they show, where the history is at its end."""

@@ -8,30 +8,36 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
-from physicslab.contacts.report import contacts_of
+from physicslab.contacts.outlines import Outlines, overlap
+from physicslab.contacts.report import contact_between
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, RemoveComponent, SetField
-from physicslab.view.window.placing import free_way
+from physicslab.view.window.placing import free_way, outlines_of
 from physicslab.world import World
 
 __all__ = ["Hand"]
 
-_PRESSED = 0.04
-"""How deep what is held may be pressed into others, as a share of half its size."""
-_TOUCHING, _PRESSING = 0.02, 0.2
-"""Of what is nearer than this share of half its size, the hand goes only so much faster [m/s]: what is free
-is pushed along ever faster, what is pressed against something is not pressed through it."""
 _ALONG, _MAX_BEHIND = 0.3, 24
-"""A body is behind another where the contact points at least so much along, and so many are looked at."""
+"""A body is behind another where the way to it points at least so much along; so many are looked at."""
 _WEIGHTS, _EARTH = 20.0, 9.81
 """The hand is as strong as so many times the weight of what it holds, on the Earth [m/s^2]."""
-_COMING_OUT = 0.3
-"""Share of what is deeper than that by which it comes out again in a frame."""
+_PRESSED, _COMING_OUT = 0.04, 0.3
+"""Share of its size by which a body that is pushed may be overlapped; deeper, and where it cannot be pushed,
+so much of the overlap is given back in a frame."""
+_MARGIN = 0.01
+"""Share of its size up to which it comes near at any speed."""
+_PASSES = 4
+"""How often the limits of several neighbours are gone through."""
 _MIN_THROW_TIME = 0.03
 """Time [s] over which a speed can be measured at all; a shorter pull is no throw."""
+
+type Numbers = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,50 +71,93 @@ def _reach(world: World, entity: int) -> Vector2:
 
 
 def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vector2:
-    """Return the velocity [m/s] of the hand where what it holds is pressed against something.
+    """Return the velocity [m/s] at which the hand takes along what it holds.
 
-    A body in the hand is infinitely heavy, and would press others through a floor. Where contacts push back
-    harder than the hand is strong, or it overlaps by more than contacts allow, it goes no further, and comes
-    out again.
+    A body in the hand is infinitely heavy, and would press others through a floor. Towards each it goes no
+    faster than it comes there in the time that is coming, and gives it in that time the velocity that the
+    hand's strength gives to it and to what lies behind it: none to a box on a floor that is pressed down.
+    Where contacts push back harder than the hand is strong all the same, it comes out again.
     """
-    velocity, size = wanted, max(*_reach(world, entity), 1e-9)
-    strength = _strength(world, entity)
-    for contact in contacts_of(world, entity):
-        other = contact.b if contact.a == entity else contact.a
-        into = contact.normal if contact.a == entity else -contact.normal
-        force = sum(point.normal_force for point in contact.points)
-        too_deep = max(contact.depth, _depth_behind(world, entity, other, into)) - _PRESSED * size
-        if too_deep > 0.0 or force > strength:
-            fastest = -_COMING_OUT * max(too_deep, _PRESSED * size if force > strength else 0.0) / coming
-        elif contact.depth > -_TOUCHING * size:
-            fastest = _speed_along(world, other, into) + _PRESSING
-        else:
+    if not world.has(entity, Shape):
+        return wanted
+    world.synchronise()
+    rows, strength = world.batch(Transform, Shape).rows, _strength(world, entity)
+    shapes, own = outlines_of(world, rows), int(np.flatnonzero(rows == world.entity_index.row_of[entity])[0])
+    sizes, reaches, handles = shapes.size, shapes.reach, world.entity_index.entities
+    linear, inverse = world.table(Velocity)["linear"][rows], world.bodies.inverse_mass[rows]
+    moves = world.table(Velocity).present[rows]
+    moves[own] = False
+    limits: list[tuple[Vector2, float]] = []
+    for n in _around(shapes.place, reaches, own, wanted.magnitude * coming):
+        if not moves[n]:
             continue
-        velocity = velocity - into * max(velocity.dot(into) - fastest, 0.0)
+        deep, direction = overlap(shapes, own, shapes, n)
+        into = Vector2(*direction.tolist())
+        speed, push = Vector2(*linear[n].tolist()).dot(into), strength * coming * float(inverse[n])
+        size = float(min(sizes[own], sizes[n]))
+        touches = deep > -_MARGIN * size
+        if deep > _PRESSED * size or (touches and _force(world, entity, handles[rows[n]]) > strength):
+            push = 0.0
+        elif push > 0.0:
+            reach = (max(speed, 0.0) + push) * coming
+            push = strength * coming / _load(world, shapes, reaches, inverse, (own, n), into, reach)
+        if deep > 0.0:
+            apart = -_COMING_OUT * deep if push == 0.0 else 0.0
+        else:
+            apart = max(-deep - _MARGIN * size, -_COMING_OUT * deep)  # never onto it at full speed
+        limits.append((into, apart / coming + speed + push))
+    velocity = wanted
+    for _ in range(_PASSES if len(limits) > 1 else 1):
+        for into, fastest in limits:
+            velocity = velocity - into * max(velocity.dot(into) - fastest, 0.0)
     return velocity
 
 
-def _depth_behind(world: World, entity: int, other: int, into: Vector2) -> float:
-    """Return the deepest overlap [m] of what is pressed along: of bodies behind the one that is touched."""
-    deepest, seen, waiting = 0.0, {entity}, [other]
-    while waiting and len(seen) < _MAX_BEHIND:
-        body = waiting.pop()
-        if body in seen or not (body and world.has(body, Velocity)):
+def _around(places: Numbers, reaches: Numbers, n: int, margin: float) -> list[int]:
+    """Return which others are near a shape: their boxes along the axes of the world, within a margin [m]."""
+    near = np.abs(places - places[n]) < reaches + reaches[n] + margin
+    found: list[int] = np.flatnonzero(near.all(axis=1)).tolist()
+    found.remove(n)
+    return found
+
+
+def _load(
+    world: World, shapes: Outlines, reaches: Numbers, inverse: Numbers, pair: tuple[int, int], into: Vector2,
+    reach: float,
+) -> float:  # fmt: skip
+    """Return the mass [kg] of the second of a pair and of all that it meets where it is pushed so far [m].
+
+    It is infinite where that cannot move. ``reaches`` (n, 2) [m] and ``inverse`` masses (n,) [1/kg] are those
+    of the shapes.
+    """
+    total, seen, waiting = 0.0, {pair[0]}, [pair[1]]
+    bounds = world.physics.bounds
+    while waiting:
+        n = waiting.pop()
+        if n in seen:
             continue
-        seen.add(body)
-        for contact in contacts_of(world, body):
-            beyond = contact.b if contact.a == body else contact.a
-            way = contact.normal if contact.a == body else -contact.normal
-            if beyond not in seen and way.dot(into) > _ALONG:
-                deepest = max(deepest, contact.depth)
-                waiting.append(beyond)
-    return deepest
+        seen.add(n)
+        if inverse[n] == 0.0 or len(seen) > _MAX_BEHIND:
+            return math.inf
+        total += 1.0 / float(inverse[n])
+        if bounds is not None:
+            low, high = shapes.place[n] - reaches[n], shapes.place[n] + reaches[n]
+            rooms = low[0] - bounds[0], low[1] - bounds[1], bounds[2] - high[0], bounds[3] - high[1]
+            for room, along in zip(rooms, (-into.x, -into.y, into.x, into.y), strict=True):
+                if room < reach and along > _ALONG:
+                    return math.inf
+        for k in _around(shapes.place, reaches, n, reach):
+            if k not in seen:
+                deep, direction = overlap(shapes, n, shapes, k)
+                if deep > -reach and direction @ (into.x, into.y) > _ALONG:
+                    waiting.append(k)
+    return total
 
 
-def _speed_along(world: World, entity: int, direction: Vector2) -> float:
-    """Return how fast a body moves along a direction [m/s]; what is fixed does not."""
-    moves = bool(entity) and world.has(entity, Velocity)
-    return world.component(entity, Velocity).linear.dot(direction) if moves else 0.0
+def _force(world: World, entity: int, other: Any) -> float:
+    """Return how hard two bodies press against each other [N]."""
+    contact = contact_between(world, entity, int(other))
+    return sum(point.normal_force for point in contact.points) if contact is not None else 0.0
 
 
 def _weight(world: World, entity: int) -> float:

@@ -25,7 +25,10 @@ _SAME = ["time", "entity_a", "entity_b", "wall", "normal_impulse"]
 """What two records of one impact have in common: one that was made again, in a step that was made again."""
 _DERIVED = ("sticks", "e_found", "energy_lost")
 """Columns that follow from a record, and that rows are sorted by."""
-COLUMNS = ("time", "entity_a", "entity_b", "approach_speed", "normal_impulse", "tangent_impulse", *_DERIVED)
+COLUMNS = (
+    "time", "entity_a", "entity_b", "approach_speed", "normal_impulse", "tangent_impulse",
+    "sticks", "friction", "restitution", "e_found", "energy_lost",
+)  # fmt: skip
 """What rows can be sorted by."""
 
 
@@ -64,11 +67,14 @@ class ImpactList:
         self._put(self.records[:0])
 
     def follow(self, world: World, history: History) -> None:
-        """Take in what the log has since the last call; the first call begins with the next impact."""
+        """Take in what the log has since the last call; the first call begins with all that it has."""
         if world is not self._world:
             self._world = world
             self.clear()
-        new = self._reader.new(world)
+            self._reader.follow(world)
+            new = _of_one_line(world.contacts.impacts)
+        else:
+            new = self._reader.new(world)
         if len(new):
             self._take(_with_derived(new))
         at_end = history.step_count == history.steps_range[1]
@@ -148,6 +154,13 @@ class ImpactList:
         if not len(rows):
             return None
         return self.records[rows[np.argmin(times[rows]) if by > 0 else np.argmax(times[rows])]].copy()
+
+
+def _of_one_line(log: Records) -> Records:
+    """Return the impacts of a log that were not taken back: none of those written later is earlier."""
+    earliest_after = np.minimum.accumulate(log["time"][::-1])[::-1]
+    kept: Records = log[log["time"] <= earliest_after]
+    return kept
 
 
 def _with_derived(records: Records) -> Records:

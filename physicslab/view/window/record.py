@@ -71,6 +71,27 @@ class Record:
         self._count += 1
         self.version += 1
 
+    @property
+    def keys(self) -> tuple[Key, ...]:
+        """All that was measured at some moment."""
+        return tuple(key for key in self._columns if not isinstance(key, str))
+
+    def after(self, past: Record) -> Record:
+        """Return what was measured in the ``past``, and behind it what was measured here since then."""
+        first = int(np.searchsorted(self.times, past.times[-1], "right")) if len(past) else 0
+        made = Record()
+        made._count, made.version = len(past) + self._count - first, self.version + past.version
+        for key in {**past._columns, **self._columns}:
+            parts = [
+                source._columns[key][begin : source._count] if key in source._columns
+                else np.full(source._count - begin, np.nan)
+                for source, begin in ((past, 0), (self, first))
+            ]  # fmt: skip
+            made._columns[key] = np.concatenate((*parts, np.full(_FIRST, np.nan)))
+        while made._count >= CAPACITY:
+            made._thin()
+        return made
+
     def _column(self, key: Key) -> Numbers:
         if key not in self._columns:
             self._columns[key] = np.full(len(self._columns["time"]), np.nan)

@@ -14,13 +14,13 @@ from physicslab.view.canvas.theme import Theme
 from physicslab.view.window.points import local_point, point_of
 from physicslab.world import World
 
-__all__ = ["SpringTool", "spring_between"]
+__all__ = ["SpringTool", "rod_stiffness", "spring_between"]
 
 _FREQUENCY = 2.0
 """How fast two bodies swing on a new spring [Hz]: soft enough to be seen, stiff enough to carry them."""
 _DAMPING_RATIO = 0.05
-_ROD_STRETCH, _EARTH = 2e-3, 9.81
-"""Share of its length by which the weight of a body on the Earth [m/s^2] stretches what serves as a rod."""
+_ROD_STRETCH, _EARTH = 1e-4, 9.81
+"""Share of its length by which the weight of the heavier body on the Earth [m/s^2] stretches a rod."""
 _DASH = 9.0
 """Length of a dash of the preview [px]."""
 _END = 4.0
@@ -111,13 +111,21 @@ def spring_between(
     length = (point_of(world, other, end) - point_of(world, one, start)).magnitude
     if length == 0.0:
         return "No spring: its ends are at one place"
-    rate, damping = 2.0 * math.pi * _FREQUENCY, _DAMPING_RATIO
+    rate = 2.0 * math.pi * _FREQUENCY
+    stiffness, damping = rate * rate / inverse, 2.0 * _DAMPING_RATIO * rate / inverse
     if stiff:
-        rate, damping = max(rate, math.sqrt(_EARTH / (_ROD_STRETCH * length))), 0.0
+        inverses = (_inverse_mass(world, end) for end in (one, other) if end is not None)
+        heaviest = max(1.0 / part for part in inverses if part > 0.0)
+        stiffness, damping = rod_stiffness(heaviest, length), 0.0
     return Spring(
         a=one, b=other, anchor_a=start, anchor_b=end, rest_length=length,
-        stiffness=rate * rate / inverse, damping=2.0 * damping * rate / inverse,
+        stiffness=stiffness, damping=damping,
     )  # fmt: skip
+
+
+def rod_stiffness(mass: float, length: float) -> float:
+    """Return the stiffness [N/m] of a spring that serves as a rod for a mass [kg]."""
+    return mass * _EARTH / (_ROD_STRETCH * length)
 
 
 def _inverse_mass(world: World, entity: int) -> float:

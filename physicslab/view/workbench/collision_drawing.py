@@ -9,7 +9,7 @@ from physicslab.components import Shape
 from physicslab.diagnostics.collision import Body, Collision
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, without_rounding
-from physicslab.view.canvas.theme import Colour, Theme
+from physicslab.view.canvas.theme import Colour, Theme, mixed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.workbench.sketch import Place, Sketch, sketch
 from physicslab.world import World
@@ -26,13 +26,16 @@ _BIGGEST = 1.6
 _ROOM = 1.08
 _ALIKE = 0.05
 """How far arrows may point away from one line, and be drawn beside each other."""
+_TINT = 0.5
+"""Share of its own colour in a tint."""
 _SHORT = 2.0
 """Arrows shorter than that are not drawn [px]."""
 
 
-def colours_of(theme: Theme) -> tuple[Colour, Colour]:
-    """Return the colours of A and of B."""
-    return theme.bodies[0], theme.bodies[1]
+def colours_of(theme: Theme, seen: Collision) -> tuple[Colour, Colour]:
+    """Return the colours of A and of B: their own in the world; of two alike B has a tint of it."""
+    a, b = (theme.body(body.entity) if body.is_free else theme.static for body in (seen.a, seen.b))
+    return a, mixed(theme.text, b, _TINT) if a == b else b
 
 
 # ---- both bodies -------------------------------------------------------------------------------------------
@@ -52,12 +55,12 @@ def draw_bodies(ui: Ui, world: World, seen: Collision, size: tuple[float, float]
     speeds = [m.linear.magnitude for body in (seen.a, seen.b) for m in (body.before, body.after)]
     per_speed = _REACH * min(width, height) / max(*speeds, 1e-300)
     with sketch(ui, width, height) as paper:
-        for body, colour in zip((seen.a, seen.b), colours_of(theme), strict=True):
+        for body, colour in zip((seen.a, seen.b), colours_of(theme, seen), strict=True):
             _draw_body(paper, world, body, seen, at, scale, colour)
         _draw_axes(paper, seen, at(middle))
         for spot in seen.spots:
             paper.disc(at(spot.place), 4.0, theme.contact_normal, theme.background)
-        for name, body, colour in zip("AB", (seen.a, seen.b), colours_of(theme), strict=True):
+        for name, body, colour in zip("AB", (seen.a, seen.b), colours_of(theme, seen), strict=True):
             start = at(body.centre)
             for motion, mark, before in ((body.before, "", True), (body.after, "'", False)):
                 way = per_speed * motion.linear
@@ -160,7 +163,7 @@ def draw_momenta(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
 
     Where nothing moves one of them, the momentum of the other changes by the impulse.
     """
-    theme, (a_colour, b_colour) = ui.theme, colours_of(ui.theme)
+    theme, (a_colour, b_colour) = ui.theme, colours_of(ui.theme, seen)
     before, after = ([b.momentum(m) for b, m in zip((seen.a, seen.b), ms, strict=True)]
                      for ms in ((seen.a.before, seen.b.before), (seen.a.after, seen.b.after)))  # fmt: skip
     if seen.a.is_free and seen.b.is_free:
@@ -240,7 +243,7 @@ def _beside(start: Place, end: Place, by: float) -> Place:
 def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
     """Draw the kinetic energies before and after as bars, with what was lost and to what, and write them."""
     theme = ui.theme
-    a_colour, b_colour = colours_of(theme)
+    a_colour, b_colour = colours_of(theme, seen)
     parts = []
     for a, b in ((seen.a.before, seen.b.before), (seen.a.after, seen.b.after)):
         (a_along, a_turn), (b_along, b_turn) = seen.a.energies(a), seen.b.energies(b)
@@ -276,7 +279,7 @@ def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
                     (x, end),
                     top + 0.5 * high,
                     theme,
-                    plain=hatched or colour not in colours_of(theme),
+                    plain=hatched or colour not in (a_colour, b_colour),
                 )
                 x = end
     _write_losses(ui, seen, full)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from imgui_bundle import imgui
 
 from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetField
+from physicslab.view.canvas.quantities import without_rounding
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.changing import change_fields, set_end
 from physicslab.view.window.window import Picking, Window
@@ -45,6 +49,7 @@ class ComponentRows:
         """Build a row for each field of a component that all of what is selected has."""
         held = [world.component(entity, kind) for entity in window.selection.entities]
         rows = [spec for spec in kind.FIELDS if all(_is_shown(spec, part) for part in held)]
+        scales = scales_of(world) if kind in (Transform, Velocity) else {}
         if window.level == "Explore":
             rows = [spec for spec in rows if spec.name not in _LESSER]
         if rows:
@@ -54,6 +59,8 @@ class ComponentRows:
             values = [getattr(part, spec.name) for part in held]
             match spec.kind:
                 case "vector":
+                    scale = scales.get(spec.unit, 0.0)
+                    values = [Vector2(*(without_rounding(part, scale) for part in value)) for value in values]
                     self._vector(ui, window, kind, spec, key, values)
                 case "flag":
                     self._flag(ui, window, kind, spec, values)
@@ -62,6 +69,8 @@ class ComponentRows:
                 case "entity":
                     self._entity(ui, world, window, kind, spec, key, values)
                 case _:
+                    if spec.unit in scales:
+                        values = [without_rounding(value, scales[spec.unit]) for value in values]
                     self._number(ui, world, window, kind, spec, key, values)
 
     def _number(
@@ -73,7 +82,14 @@ class ComponentRows:
                 kind(**(world.component(entity, kind).given() | {spec.name: new}))
             _set(window, kind, spec, new)
 
-        self._numbers.row(ui, key, _label(spec), spec, _common(values), commit)
+        now = _common(values)
+        if spec.unit != "rad" or window.level != "Explore":
+            self._numbers.row(ui, key, _label(spec), spec, now, commit)
+            return
+        degrees = None if now is None else math.degrees(now)
+        self._numbers.row(
+            ui, key, _label(spec), replace(spec, unit="deg"), degrees, lambda new: commit(math.radians(new))
+        )
 
     def _vector(
         self, ui: Ui, window: Window, kind: Kind, spec: Field, key: str, values: Sequence[Vector2]

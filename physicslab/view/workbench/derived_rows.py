@@ -8,17 +8,16 @@ import numpy as np
 
 from physicslab.components import Mass, Spring, Velocity
 from physicslab.diagnostics.free_body import LastStep
-from physicslab.diagnostics.period import SpringState, period_of, spring_state
+from physicslab.diagnostics.period import SpringState, gives_way, period_of, spring_state
+from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.quantities import quantity, vector_quantity
+from physicslab.view.canvas.quantities import quantity, vector_quantity, without_rounding
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.measured import Measured
 from physicslab.world import World
 
-__all__ = ["build_derived", "build_forces"]
+__all__ = ["build_derived", "build_forces", "build_pairs"]
 
-_AT_REST = 1e-10
-"""A speed [m/s], [rad/s] below this is rounding, and shown as none."""
 _ROUNDING = 1e-9
 """A sum of forces below this share of the largest is none."""
 
@@ -30,6 +29,12 @@ def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
     """
     if world.has(entity, Spring):
         _build_spring(ui, spring_state(world, entity))
+        give = gives_way(world, entity)
+        if give is not None:
+            tip = (
+                "It serves as a rod and is a stiff spring: weight makes it so much longer, a wide swing more"
+            )
+            ui.row("Gives way", quantity(1e3 * give, "mm"), tip)
     if world.has(entity, Velocity):
         _build_motion(ui, world, entity, is_brief=is_brief)
     period = period_of(world, entity)
@@ -39,8 +44,9 @@ def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
 
 def _build_motion(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
     velocity = world.component(entity, Velocity)
-    linear = velocity.linear if velocity.linear.magnitude > _AT_REST else Vector2()
-    angular = velocity.angular if abs(velocity.angular) > _AT_REST else 0.0
+    scales = scales_of(world)
+    linear = velocity.linear if without_rounding(velocity.linear.magnitude, scales["m/s"]) else Vector2()
+    angular = without_rounding(velocity.angular, scales["rad/s"])
     ui.gap(0.2)
     ui.rule()
     speed = linear.magnitude
@@ -54,9 +60,9 @@ def _build_motion(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
     ui.row("Momentum", quantity(mass.mass * speed, "kg m/s"))
     if not is_brief:
         ui.row("as a vector", vector_quantity(mass.mass * linear, "kg m/s"), lesser=True)
-    energy = 0.5 * mass.mass * speed**2
+    energy = without_rounding(0.5 * mass.mass * speed**2, scales["J"])
     inverse = float(world.bodies.inverse_inertia[row])
-    spin = 0.5 * angular**2 / inverse if inverse > 0.0 else 0.0
+    spin = without_rounding(0.5 * angular**2 / inverse, scales["J"]) if inverse > 0.0 else 0.0
     ui.row("Kinetic energy", quantity(energy + spin, "J"))
     if spin and np.isfinite(spin) and not is_brief:
         ui.row("of turning", quantity(spin, "J"), lesser=True)
@@ -68,7 +74,11 @@ def _build_spring(ui: Ui, state: SpringState | None) -> None:
     ui.gap(0.2)
     ui.rule()
     ui.row("Length", quantity(state.length, "m"))
-    ui.row("Longer by", quantity(state.extension, "m"), "than at rest; negative where it is shorter")
+    ui.row(
+        "Longer by",
+        quantity(without_rounding(state.extension, state.length), "m"),
+        "than at rest; negative where it is shorter",
+    )
     pulls = "pulls its ends together" if state.force >= 0.0 else "pushes its ends apart"
     ui.row("Spring force", quantity(abs(state.force), "N"), pulls)
     ui.row("Energy stored", quantity(state.energy, "J"))
@@ -111,6 +121,15 @@ def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
     )
     if not is_brief:
         _build_impulses(ui, step)
+
+
+def build_pairs(ui: Ui, measured: Measured) -> None:
+    """Write the friction and the restitution of each pair of surfaces that a body is one of."""
+    for one in measured.forces:
+        if one.pair is not None:
+            other, friction, restitution = one.pair
+            ui.faint(f"With {other}: mu = {friction:.4g}, e = {restitution:.4g}")
+            ui.tip("Of this pair: mu is the root of both frictions multiplied, e the smaller restitution")
 
 
 def _build_impulses(ui: Ui, step: LastStep) -> None:

@@ -15,14 +15,17 @@ from physicslab.view.panels.figures import WorldFigures
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 
-__all__ = ["Part", "build_flows", "flow_words", "parts_of"]
+__all__ = ["Part", "build_energies", "flow_words", "parts_of"]
 
 _VISIBLE = 1e-3
 """Share of the energy exchanged below which a flow is left out of the words; other levels have its figure."""
 _SMALL = 1e-9
 """Share that is not worth a word, even where there is nothing else."""
 _VERBS = {True: "Given", False: "Taken"}
-_POTENTIAL_TIP = "potential energy is counted from the lowest so far"
+_ZERO_TIP = (
+    "The energy of gravity is zero at y = 0 and negative below, that of bodies which attract each other zero "
+    "infinitely far apart, that of a spring zero at its rest length: here, in graphs and in files"
+)
 _ERROR_TIP = (
     "What no cause explains. It comes from computing in steps, not from physics: "
     "shorter steps make it smaller"
@@ -35,7 +38,7 @@ _LABEL = 0.85
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A part of the bar: its name, its energy [J] and its colour."""
+    """A part of a bar: its name, its energy [J], which may be below zero, and its colour."""
 
     name: str
     energy: float
@@ -77,27 +80,23 @@ def _short(energy: float) -> str:
 def parts_of(figures: WorldFigures, theme: Theme) -> tuple[list[Part], list[Part]]:
     """Return of what the energy came, and where it is: two lists whose sums differ by the error alone.
 
-    Potential energy is counted from the lowest seen, as where it is zero has no meaning. What a body in a
-    hand takes below that is left out of both.
+    The energy at the start and the potential energy have the zero that all figures have, and may be below it.
     """
     audit = figures.audit
-    start = audit.account.start.energy - audit.lowest
-    stored = sum(audit.latest.potential.values()) - audit.lowest
-    below = max(-stored, 0.0)
-    came = [Part("at the start", start, theme.faint)]
+    came = [Part("at the start", audit.account.start.energy, theme.faint)]
     went = [
         Part("kinetic", audit.latest.kinetic, theme.velocity),
-        Part("potential", stored + below, theme.force),
+        Part("potential", audit.latest.stored, theme.force),
     ]
     for name, value in flows(audit.notable):
         colour = theme.bodies[_COLOURS[name]] if name in _COLOURS else theme.kinematic
-        energy = max(-value - below, 0.0) if name == "hand" and value < 0.0 else abs(value)
-        (came if value > 0.0 else went).append(Part(_named(name, figures), energy, colour))
+        (came if value > 0.0 else went).append(Part(_named(name, figures), abs(value), colour))
     return came, went
 
 
-def build_flows(ui: Ui, figures: WorldFigures, *, error: bool) -> None:
-    """Build the bars and the words, with the ``error`` of the energy if that is wanted."""
+def build_energies(ui: Ui, figures: WorldFigures, *, error: bool) -> None:
+    """Build the energies, bars of where they come from and are, and the ``error`` if that is wanted."""
+    _build_sums(ui, figures)
     came, went = parts_of(figures, ui.theme)
     if len(came) > 1:
         _build_bar(ui, "Where the energy came from", came)
@@ -107,6 +106,19 @@ def build_flows(ui: Ui, figures: WorldFigures, *, error: bool) -> None:
         ui.row("Error of the method", _rounded(figures.audit.account.energy["numerical"]), _ERROR_TIP)
 
 
+def _build_sums(ui: Ui, figures: WorldFigures) -> None:
+    """Build kinetic, potential and total energy, each as a bar from the line that is zero for all three."""
+    energy, theme = figures.energy, ui.theme
+    rows = [("Kinetic energy", energy.kinetic, theme.velocity, "")]
+    if energy.potential:
+        rows.append(("Potential energy", energy.stored, theme.force, _ZERO_TIP))
+        rows.append(("Total energy", energy.total, theme.normal_impulse, ""))
+    low, high = (limit(0.0, *(value for _, value, _, _ in rows)) for limit in (min, max))
+    scale = max(high - low, 1e-300)
+    for label, value, colour, tip in rows:
+        ui.bar(label, figures.joules(value), value / scale, colour, zero=-low / scale, tip=tip)
+
+
 def _rounded(energy: float) -> str:
     """Return an error: of one figure there is enough."""
     written = round_quantity if energy and math.isfinite(energy) else quantity
@@ -114,8 +126,11 @@ def _rounded(energy: float) -> str:
 
 
 def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
-    """Build a bar as wide as the panel, in parts as long as their energies; what has room is named on it."""
-    whole = sum(part.energy for part in parts)
+    """Build a bar as wide as the panel, in parts as long as their energies; what has room is named on it.
+
+    Parts below zero lie to the left of a line, the others to its right.
+    """
+    whole = sum(abs(part.energy) for part in parts)
     if whole == 0.0:
         return
     ui.faint(title, wrapped=False)
@@ -125,17 +140,22 @@ def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
     paper.add_rect_filled(corner, end, packed(ui.theme.key))
     if not 0.0 < whole < math.inf:
         parts = []
-    left = 0.0
-    for part in parts:
-        long = part.energy / whole * width
+    left = corner.x
+    for part in sorted(parts, key=lambda part: part.energy >= 0.0):
+        long = abs(part.energy) / whole * width
         if long >= 1.0:
-            low, high = corner.x + left, corner.x + left + max(long - 1.0, 1.0)
-            paper.add_rect_filled(ImVec2(low, corner.y), ImVec2(high, corner.y + height), packed(part.colour))
-            _write_name(ui, part.name, (low, corner.y, high - low, height))
+            high = left + max(long - 1.0, 1.0)
+            paper.add_rect_filled(
+                ImVec2(left, corner.y), ImVec2(high, corner.y + height), packed(part.colour)
+            )
+            _write_name(ui, part.name, (left, corner.y, high - left, height))
         left += long
+    zero = corner.x + sum(max(-part.energy, 0.0) for part in parts) / whole * width
+    if zero > corner.x:
+        ui.zero_line(zero, corner.y, height)
     imgui.dummy(ImVec2(width, height))
     figures = [f"{part.name} {quantity(part.energy, 'J')}" for part in parts]
-    ui.tip("; ".join((*figures, _POTENTIAL_TIP)))
+    ui.tip(". ".join(("; ".join(figures), _ZERO_TIP)))
 
 
 def _write_name(ui: Ui, name: str, rect: tuple[float, float, float, float]) -> None:

@@ -20,7 +20,7 @@ from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.plot_data import line_to_show, path_to_show, range_to_show, unbroken
 from physicslab.view.window.record import Key, Record
 from physicslab.view.window.window import Window
-from physicslab.view.workbench.graph_readings import colour_of, line_name
+from physicslab.view.workbench.graph_readings import colours_of, line_name
 from physicslab.world import World
 
 __all__ = ["GraphPlot"]
@@ -124,9 +124,9 @@ class GraphPlot:
         dashboard = window.dashboard
         keys = set(graph.keys)
         self._drawn = {kept: drawn for kept, drawn in self._drawn.items() if kept[1] in keys}
-        for n, line in enumerate(graph.lines):
+        for line, colour in zip(graph.lines, colours_of(ui.theme, graph), strict=True):
             implot.set_axes(implot.ImAxis_.x1, axis_of[line.key])
-            colour, name = colour_of(ui, n), line_name(graph, line.key, window)
+            name = line_name(graph, line.key, window)
             ui.words.append(name)
             for is_before, record in ((True, dashboard.before), (False, dashboard.record)):
                 x, y = self._points(graph, line.key, record, is_before=is_before)

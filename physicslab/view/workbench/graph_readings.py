@@ -7,8 +7,9 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.components.quantities import QUANTITIES
 from physicslab.diagnostics.quantities import why_undefined
-from physicslab.view.canvas.quantities import quantity
-from physicslab.view.canvas.theme import Colour
+from physicslab.diagnostics.scales import scales_of
+from physicslab.view.canvas.quantities import quantity, without_rounding
+from physicslab.view.canvas.theme import Colour, Theme, mixed
 from physicslab.view.canvas.units import product, quotient, written_unit
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.style import packed
@@ -17,13 +18,15 @@ from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.plot_data import area_between, slope_between
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
-from physicslab.view.workbench.quantity_menu import named_key, unit_of
+from physicslab.view.workbench.quantity_menu import named_key, scale_of, unit_of
 from physicslab.world import World
 
-__all__ = ["ButtonRow", "build_cursors", "build_moment", "build_readings", "colour_of", "line_name"]
+__all__ = ["ButtonRow", "build_cursors", "build_moment", "build_readings", "colours_of", "line_name"]
 
 _VALUE = "-0.0000"
 """As wide as most values are: what follows stays in its place while they change."""
+_TINT = 0.6
+"""Share of a colour in its tint: what a body's next line has."""
 _MARK = 1.1
 """Length of the mark in a line's colour, in heights of the text."""
 
@@ -52,9 +55,15 @@ class ButtonRow:
             self.used = width
 
 
-def colour_of(ui: Ui, number: int) -> Colour:
-    """Return the colour of a graph's line, by its place from 0."""
-    return ui.theme.bodies[number % len(ui.theme.bodies)]
+def colours_of(theme: Theme, graph: GraphShown) -> list[Colour]:
+    """Return the colour of each line: that of its body, in turn for those of the world; tints of the same."""
+    found: list[Colour] = []
+    for n, line in enumerate(graph.lines):
+        colour = own = theme.body(n if line.key[0] is None else line.key[0])
+        while colour in found and colour != theme.text:
+            colour = mixed(theme.text, colour, _TINT)
+        found.append(colour if colour != theme.text else own)
+    return found
 
 
 def line_name(graph: GraphShown, key: Key, window: Window) -> str:
@@ -100,7 +109,8 @@ def build_moment(ui: Ui, world: World, window: Window, used: float) -> None:
     row = record.nearest(world.time if pointed is None else pointed)
     if row is None:
         return
-    words = f"t {record.times[row]:.3f} s"
+    past = window.dashboard.past
+    words = f"t {record.times[row]:.3f} s" if past is None else f"the past: {past.share:.0%}"
     style, room = imgui.get_style(), imgui.get_content_region_avail().x
     width = imgui.calc_text_size(words).x
     if used + style.item_spacing.x + width > room:
@@ -114,7 +124,8 @@ def build_moment(ui: Ui, world: World, window: Window, used: float) -> None:
 def _entries(ui: Ui, graph: GraphShown) -> list[tuple[Colour | None, Key]]:
     """Return what is across, and every line with its colour."""
     across: list[tuple[Colour | None, Key]] = [] if graph.across is None else [(None, graph.across)]
-    return [*across, *((colour_of(ui, n), line.key) for n, line in enumerate(graph.lines))]
+    colours = colours_of(ui.theme, graph)
+    return [*across, *((colour, line.key) for colour, line in zip(colours, graph.lines, strict=True))]
 
 
 def _entry(ui: Ui, colour: Colour | None, name: str, value: str, *, wrapped: bool = False) -> None:
@@ -138,6 +149,7 @@ def _value(world: World, window: Window, key: Key, row: int | None) -> str:
     why = why_undefined(world, key[1], key[0])
     if np.isnan(value):
         return f"({why})" if why else "not recorded"
+    value = without_rounding(value, scale_of(key, scales_of(world)))
     words, record = quantity(value, unit_of(key)), window.dashboard.record
     return f"{words} (gone)" if why == "gone" and world.time >= record.times[-1] else words
 

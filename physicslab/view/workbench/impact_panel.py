@@ -7,7 +7,7 @@ from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
-from physicslab.view.canvas.quantities import quantity
+from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.controls import impact_actions
 from physicslab.view.panels.collision_words import body_name
 from physicslab.view.toolkit.style import packed
@@ -18,13 +18,14 @@ from physicslab.world import World
 
 __all__ = ["build_impacts"]
 
-_HEADS = ("Time", "A", "B", "Approach", "Normal", "Friction", "Contact", "e found", "Energy lost")
-_WIDTHS = (5.0, 7.0, 7.0, 5.0, 5.6, 5.6, 4.0, 4.2, 5.6)
+_HEADS = ("Time", "A", "B", "Approach", "Normal", "Friction", "Contact", "mu", "e", "e found", "Energy lost")
+_WIDTHS = (4.6, 5.2, 5.2, 4.8, 5.0, 5.0, 3.6, 2.4, 2.2, 3.8, 5.0)
 """Widths of the columns, in heights of the text."""
 _TIPS = (
     "When it was", "The first body", "The second body: impulses are those on it",
     "How fast they approached, along the normal", "Impulse along the normal: it keeps them apart",
     "Impulse along the surface", "Whether friction stopped the sliding",
+    "Friction of the pair: the root of both multiplied", "Restitution of the pair: the smaller one",
     "Speed along the normal after the impact, as a share of the approach", "Kinetic energy that it took",
 )  # fmt: skip
 _HEIGHT = 11.0
@@ -59,10 +60,7 @@ def _nothing(window: Window) -> str:
     impacts = window.impacts
     if len(impacts.records):
         return "None of the listed impacts is of what is selected."
-    return (
-        "Impacts are listed from now on: let time run (Space). Those before this table was opened were not "
-        "recorded; go back in time with the time line, and what is run again is listed too."
-    )
+    return "There was no impact so far: let time run (Space)."
 
 
 def _build_head(ui: Ui, world: World, window: Window) -> None:
@@ -137,11 +135,14 @@ def _build_row(ui: Ui, world: World, window: Window, n: int, record: Any) -> Non
     wall = int(record["wall"])
     a, b = (body_name(world, int(record[side]), wall) for side in ("entity_a", "entity_b"))
     sticks, found = record["sticks"], float(record["e_found"])
+    speed, normal = float(record["approach_speed"]), float(record["normal_impulse"])
     cells = (
-        f"{record['time']:.4f} s", a, b, quantity(float(record["approach_speed"]), "m/s"),
-        quantity(float(record["normal_impulse"]), "N s"), quantity(float(record["tangent_impulse"]), "N s"),
-        "sticks" if sticks else "slides", "-" if math.isnan(found) else f"{round(found, 4) + 0.0:.4f}",
-        quantity(float(record["energy_lost"]), "J"),
+        f"{record['time']:.4f} s", a, b, quantity(speed, "m/s"), quantity(normal, "N s"),
+        quantity(without_rounding(float(record["tangent_impulse"]), normal), "N s"),
+        "sticks" if sticks else "slides",
+        f"{record['friction']:.4g}", f"{record['restitution']:.4g}",
+        "-" if math.isnan(found) else f"{round(found, 4) + 0.0:.4f}",
+        quantity(without_rounding(float(record["energy_lost"]), normal * speed), "J"),
     )  # fmt: skip
     shown = window.microscope.record
     is_shown = shown is not None and all(shown[k] == record[k] for k in ("time", "entity_a", "entity_b"))

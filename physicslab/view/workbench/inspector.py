@@ -19,7 +19,7 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window import changing
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.component_rows import ORDER, ComponentRows
-from physicslab.view.workbench.derived_rows import build_derived, build_forces
+from physicslab.view.workbench.derived_rows import build_derived, build_forces, build_pairs
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.view.workbench.trust_badge import build_body_digits
 from physicslab.world import World
@@ -78,6 +78,7 @@ class Inspector:
             build_body_digits(ui, world, window, first)
             if window.level != "Explore" or window.overlays.arrows:
                 build_forces(ui, window.measured, is_brief=window.level != "Engineer")
+            build_pairs(ui, window.measured)
         self._build_components(ui, world, window)
         self._build_buttons(ui, world, window)
 

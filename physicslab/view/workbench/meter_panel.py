@@ -9,15 +9,16 @@ from imgui_bundle import imgui
 from physicslab.components import Meter
 from physicslab.components.meter import CORNERS
 from physicslab.diagnostics.quantities import Reading, why_undefined
+from physicslab.diagnostics.scales import scales_of
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.canvas.quantities import quantity
+from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import MeterShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.panel_places import Small
-from physicslab.view.workbench.quantity_menu import build_quantities, named_key, unit_of
+from physicslab.view.workbench.quantity_menu import build_quantities, named_key, scale_of, unit_of
 from physicslab.view.workbench.small_panel import build_corners, build_title, size_of
 from physicslab.world import World
 
@@ -38,7 +39,8 @@ class MeterPanels:
     def sizes(self, ui: Ui, world: World, window: Window) -> list[Small]:
         """Return how large each meter is."""
         found, reading = [], Reading(world)
-        shown = {meter.entity: _figures_of(reading, meter.key) for meter in window.dashboard.meters}
+        scales = scales_of(world)
+        shown = {meter.entity: _figures_of(reading, meter.key, scales) for meter in window.dashboard.meters}
         known = {entity: self._figures.get(entity, _WIDEST) for entity in shown}
         self._figures = {entity: max(known[entity], shown[entity], key=len) for entity in shown}
         for meter in window.dashboard.meters:
@@ -53,7 +55,7 @@ class MeterPanels:
     @staticmethod
     def build(ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
         """Build every meter at its place."""
-        reading = Reading(world)
+        reading, scales = Reading(world), scales_of(world)
         for meter in window.dashboard.meters:
             with ui.panel(f"meter {meter.entity}", places[meter.entity], rounded=True):
                 if build_title(ui, named_key(meter.key, window), f"Meter {meter.number}"):
@@ -65,12 +67,12 @@ class MeterPanels:
                 if why:
                     ui.faint(f"The body is {why}" if why == "gone" else f"It {why}")
                 else:
-                    _build_number(ui, _figures_of(reading, meter.key), unit_of(meter.key))
+                    _build_number(ui, _figures_of(reading, meter.key, scales), unit_of(meter.key))
 
 
-def _figures_of(reading: Reading, key: Key) -> str:
+def _figures_of(reading: Reading, key: Key, scales: dict[str, float]) -> str:
     """Return a number as a meter shows it, without its unit."""
-    value = reading.value(key[1], key[0])
+    value = without_rounding(reading.value(key[1], key[0]), scale_of(key, scales))
     return quantity(value, "").strip() if math.isfinite(value) else "-"
 
 

@@ -75,7 +75,8 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
     microscope, collision = window.microscope, window.microscope.collision
     a, b = (body_name(world, body.entity, collision.wall) for body in (collision.a, collision.b))
     imgui.push_text_wrap_pos(wide)
-    ui.text(f"At {collision.time:.6f} s   ·   A: {a}   ·   B: {b}")
+    pair = f"mu = {collision.friction:.4g}, e = {collision.restitution:.4g}"
+    ui.text(f"At {collision.time:.6f} s   ·   A: {a}   ·   B: {b}   ·   {pair}")
     imgui.pop_text_wrap_pos()
     end = imgui.get_cursor_pos_x() + wide
     buttons: tuple[tuple[str, str, Callable[[World, Window], None], bool], ...] = (

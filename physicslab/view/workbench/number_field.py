@@ -23,6 +23,8 @@ _DRAG = 0.005
 _FINER, _COARSER = 0.1, 10.0
 """What Shift and Ctrl make of that."""
 _ONLY_MOUSE = imgui.ItemFlags_.no_nav | imgui.ItemFlags_.no_tab_stop
+_FIGURES = 6
+"""Figures to which a number is shown where there is room."""
 _PART = 6
 """Characters that the field of a part of a vector has room for."""
 _SMALL = 1e-3
@@ -31,6 +33,8 @@ _VARIOUS = "various"
 """What a field shows of several bodies whose numbers differ."""
 _LARGEST_ANGLE = 1e5
 """Larger angles are not shown in degrees as well [°]."""
+_HALF_TURN = 180.0
+"""[°]."""
 
 _LINES_SHOWN = 4
 """Lines of a longer text that a field shows at one time."""
@@ -39,7 +43,7 @@ type Commit = Callable[[Any], None]
 type CommitPart = Callable[[int, float], None]
 
 
-def shown_number(value: float, figures: int = 6) -> str:
+def shown_number(value: float, figures: int = _FIGURES) -> str:
     """Return a number as a field shows it: so many figures, and no more than it has.
 
     >>> shown_number(0.1 + 0.2), shown_number(-0.0), shown_number(1234567.0), shown_number(2.0)
@@ -154,7 +158,7 @@ class NumberFields:
     ) -> str:  # fmt: skip
         """Build one field, and return why what was written in it is refused; empty while it is not."""
         draft = self._drafts.get(key)
-        shown = zero if zero and value == 0.0 else _shown(value, spec)
+        shown = zero if zero and value == 0.0 else _shown(value, spec, width)
         wrong, lines = bool(draft and draft.refusal), min(spec.lines, _LINES_SHOWN)
         text, active = ui.field(key, draft.text if draft else shown, width, wrong=wrong, lines=lines)
         if active:
@@ -220,7 +224,8 @@ class NumberFields:
             held = pygame.key.get_mods()
             factor = _FINER if held & pygame.KMOD_SHIFT else _COARSER if held & pygame.KMOD_CTRL else 1.0
             moved = imgui.get_mouse_drag_delta(0, 2.0).x
-            new = self._dragged[1] + moved * factor * _DRAG * max(abs(self._dragged[1]), 1.0)
+            least = math.degrees(1.0) if spec.unit == "deg" else 1.0
+            new = self._dragged[1] + moved * factor * _DRAG * max(abs(self._dragged[1]), least)
             with contextlib.suppress(InvalidValue):  # at the end of its range a drag does nothing more
                 commit(float(f"{new:.6g}"))
         elif self._dragged is not None and self._dragged[0] == key:
@@ -230,12 +235,17 @@ class NumberFields:
             ui.tip(f"{spec.meaning}\n{tip}" if spec.meaning else tip)
 
 
-def _shown(value: float | str | None, spec: Field) -> str:
+def _shown(value: float | str | None, spec: Field, width: float) -> str:
+    """Return a value as it stands in a field: a number to as many figures as the field has room for [px]."""
     if value is None:
         return _VARIOUS
     if isinstance(value, str):
         return value
-    return shown_vector_part(value) if spec.kind == "vector" else shown_number(value)
+    if spec.kind == "vector":
+        return shown_vector_part(value)
+    room = width - 2.0 * imgui.get_style().frame_padding.x
+    texts = [shown_number(value, figures) for figures in range(_FIGURES, 1, -1)]
+    return next((text for text in texts if imgui.calc_text_size(text).x <= room), texts[-1])
 
 
 def _as_field(text: str, spec: Field) -> float | str:
@@ -249,14 +259,23 @@ def _as_field(text: str, spec: Field) -> float | str:
 def _unit_shown(spec: Field, value: float | None) -> str:
     """Return what stands beside a field: its unit; after an angle, what it is in degrees, to a hundredth.
 
-    >>> _unit_shown(Field("angle", "number", unit="rad"), math.radians(-30.0))
-    'rad = -30°'
-    >>> _unit_shown(Field("angle", "number", unit="rad"), 1e-7)
-    'rad = 0°'
+    Of more than half a turn it is the direction that is written so.
+
+    >>> spec = Field("angle", "number", unit="rad")
+    >>> [_unit_shown(spec, math.radians(degrees)) for degrees in (-30.0, 1e-6, 900.5)]
+    ['rad = -30°', 'rad = 0°', 'rad, -179.5°']
+    >>> [_unit_shown(Field("angle", "number", unit="deg"), degrees) for degrees in (90.0, 900.5)]
+    ['°', '°, -179.5°']
     """
-    unit = spec.unit.replace("^2", "²").replace("^3", "³") if spec.unit != "1" else ""
-    degrees = math.degrees(value) if value is not None and spec.unit == "rad" else math.inf
-    return f"{unit} = {round(degrees, 2) + 0.0:.5g}°" if abs(degrees) < _LARGEST_ANGLE else unit
+    is_angle = spec.unit in ("rad", "deg")
+    unit = spec.unit.replace("^2", "²").replace("^3", "³").replace("deg", "°") if spec.unit != "1" else ""
+    if value is None or not is_angle:
+        return unit
+    degrees = value if spec.unit == "deg" else math.degrees(value)
+    if abs(degrees) >= _LARGEST_ANGLE or (spec.unit == "deg" and abs(degrees) <= _HALF_TURN):
+        return unit
+    sign = " =" if abs(degrees) <= _HALF_TURN else ","
+    return f"{unit}{sign} {round(math.remainder(degrees, 2.0 * _HALF_TURN), 2) + 0.0:.5g}°"
 
 
 def _width(ui: Ui, unit: str) -> float:

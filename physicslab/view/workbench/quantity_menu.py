@@ -13,7 +13,7 @@ from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["build_quantities", "named_key", "unit_of"]
+__all__ = ["build_quantities", "named_key", "scale_of", "unit_of"]
 
 _OFFERED = 24
 """Bodies that a menu lists beside those that are selected or shown already."""
@@ -33,6 +33,12 @@ _OF_WORLD, _OF_BODY = _grouped(WORLD_QUANTITIES), _grouped(BODY_QUANTITIES)
 def unit_of(key: Key) -> str:
     """Return the unit of a quantity, as people write it."""
     return written_unit(QUANTITIES[key[1]].unit)
+
+
+def scale_of(key: Key, scales: dict[str, float]) -> float:
+    """Return how large a quantity is where it is not rounding; 0 of accounts, whose rounding is shown."""
+    quantity = QUANTITIES[key[1]]
+    return 0.0 if quantity.group else scales.get(quantity.unit, 0.0)
 
 
 def named_key(key: Key, window: Window) -> str:

@@ -8,13 +8,13 @@ from imgui_bundle import imgui
 
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetPhysics
-from physicslab.view.canvas.quantities import quantity
+from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.panels.figures import WorldFigures
 from physicslab.view.panels.laws import gravity_in_words, has_gravity
 from physicslab.view.panels.panels import Line
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import LEVELS, Window
-from physicslab.view.workbench.energy_flows import build_flows
+from physicslab.view.workbench.energy_flows import build_energies
 from physicslab.world import World
 
 __all__ = ["build_figures", "build_levels", "build_world"]
@@ -40,17 +40,9 @@ def build_world(ui: Ui, world: World, figures: WorldFigures, window: Window) -> 
     if world.description:
         ui.faint(world.description)
     ui.gap(0.2)
-    energy = figures.energy
-    potential = sum(energy.potential.values())
-    scale = max(abs(energy.kinetic), abs(potential), abs(energy.total), 1e-300)
-    ui.bar("Kinetic energy", quantity(energy.kinetic, "J"), energy.kinetic / scale, ui.theme.velocity)
-    if energy.potential:
-        ui.bar("Potential energy", quantity(potential, "J"), abs(potential) / scale, ui.theme.force)
-        ui.bar(
-            "Total energy", quantity(energy.total, "J"), abs(energy.total) / scale, ui.theme.normal_impulse
-        )
-    build_flows(ui, figures, error=window.level == "Explore")
-    ui.row("Total momentum", quantity(figures.momentum.linear.magnitude, "kg m/s"))
+    build_energies(ui, figures, error=window.level == "Explore")
+    momentum = without_rounding(figures.momentum.linear.magnitude, figures.scales["kg m/s"])
+    ui.row("Total momentum", quantity(momentum, "kg m/s"))
     ui.gap(0.2)
     _build_gravity(ui, world, window)
 
