@@ -15,7 +15,7 @@ from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
 from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.energy import measure_momentum, summation
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
-from physicslab.ecs.text import unique_name
+from physicslab.ecs.text import printable, unique_name
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
@@ -231,7 +231,7 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
     wall = report["wall_s"]
     systems = ", ".join(f"{system['name']} {system['ms']:.1f} ms" for system in report["systems"])
     lines = [
-        f"{report['scene']}: {title}" if title else str(report["scene"]),
+        f"{report['scene']}: {printable(title)}" if title else str(report["scene"]),
         f"  time        {report['time']:.9g} s in {report['steps']} steps of {report['dt']:.6g} s, "
         f"{report['substeps']} substeps each",
         f"  method      {report['integrator']}: {report['integrator_reason']}; "
