@@ -99,16 +99,16 @@ def test_compiling_again_costs_nothing() -> None:
 
 
 def test_numbers_that_are_none_survive_fast_arithmetic() -> None:
-    compile_kernels((motion.find_not_finite,))
+    compile_kernels((motion.find_beyond,))
     vectors, numbers = np.zeros((5, 2)), np.zeros(5)
-    assert motion.find_not_finite(vectors, numbers) == -1
+    assert motion.find_beyond(vectors, numbers, motion.LARGEST) == -1
     for odd in (np.nan, np.inf, -np.inf):
         for column, place in ((vectors, (3, 0)), (vectors, (3, 1)), (numbers, 3)):
             column[place] = odd
-            assert motion.find_not_finite(vectors, numbers) == 3
+            assert motion.find_beyond(vectors, numbers, motion.LARGEST) == 3
             column[place] = 0.0
     vectors[:], numbers[:] = 1.7e308, 1.7e308
-    assert motion.find_not_finite(vectors, numbers) == -1
+    assert motion.find_beyond(vectors, numbers, motion.LARGEST) == -1
 
 
 def test_half_kicks_compose_to_whole_ones() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import FrozenInstanceError, dataclass, fields, replace
 from typing import Any, ClassVar, Literal
 
 from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue
@@ -29,6 +29,8 @@ COLLISIONS = ("auto", "step", "exact")
 CONTACTS = ("auto", "rigid", "soft")
 MIN_TIME = 1e-100
 """The shortest step [s]: the parts of shorter ones, and their squares, would soon underflow to zero."""
+MAX_TIME = 1e100
+"""The longest step [s]: what falls for a longer one, and its square, would soon be infinite."""
 
 
 def _settle(config: PhysicsConfig | SimulationConfig) -> None:
@@ -97,6 +99,15 @@ class PhysicsConfig:
             object.__setattr__(self, "bounds", checked_box(self.section, "bounds", self.bounds))
 
 
+def _refuse(config: PhysicsConfig | SimulationConfig, name: str, value: object) -> None:
+    """Refuse to change a part: a world notes that its laws are others where a record is assigned."""
+    record = f"world.{config.section}"
+    raise FrozenInstanceError(
+        f"{config.section}.{name} cannot be changed by itself: "
+        f"{record} = dataclasses.replace({record}, {name}=...)"
+    )
+
+
 def checked_box(owner: str, name: str, value: Any) -> tuple[float, float, float, float]:
     """Return a rectangle xmin, ymin, xmax, ymax [m], or raise :class:`InvalidValue`."""
     corner = Field(name, "vector", limit=COORDINATE_LIMIT, owner=owner)
@@ -152,7 +163,7 @@ class SimulationConfig:
 
     section: ClassVar[str] = "simulation"
     FIELDS: ClassVar[tuple[Field, ...]] = (
-        Field("dt", "number", unit="s", minimum=MIN_TIME, meaning="length of a step"),
+        Field("dt", "number", unit="s", minimum=MIN_TIME, maximum=MAX_TIME, meaning="length of a step"),
         Field("substeps", "whole", minimum=1, maximum=10_000, meaning="parts that a step is divided into"),
         Field("iterations", "whole", minimum=1, maximum=1_000, derived="from the solver", meaning="sweeps"),
         Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),
@@ -195,6 +206,10 @@ class WindowConfig:
     max_dt: float = 0.1
     throw_window: float = 0.15
     max_throw_speed: float = 30.0
+
+
+for _kind in (PhysicsConfig, SimulationConfig):
+    setattr(_kind, "__setattr__", _refuse)  # noqa: B010
 
 
 def field_names(config: type[PhysicsConfig] | type[SimulationConfig]) -> tuple[str, ...]:

@@ -10,7 +10,14 @@ import esper
 from physicslab.contacts.islands import restore_rests
 from physicslab.contacts.memory import restore_contacts
 from physicslab.ecs.component import Component, InvalidValue
-from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig, checked_box, field_names
+from physicslab.ecs.config import (
+    MAX_TIME,
+    MIN_TIME,
+    PhysicsConfig,
+    SimulationConfig,
+    checked_box,
+    field_names,
+)
 from physicslab.ecs.fields import Field
 from physicslab.files.checks import (
     SceneError,
@@ -120,8 +127,7 @@ def read_scene(document: object, source: str = "scene") -> World:
     world.name, world.title, world.description = draft.name, draft.title, draft.description
     world.view, world.time = draft.view, draft.time
     for number, (id_, components) in enumerate(draft.entities, start=1):
-        entity = world.spawn(*components, name=id_)
-        assert entity == number, "a new world numbers its entities from 1"
+        world.spawn(*components, name=id_, entity=number)  # by which springs name bodies that are yet to come
     world.contacts.impulse_dt, world.contacts.substep_factor, chosen = draft.solver
     if draft.contacts or draft.rests or chosen:
         world.synchronise()
@@ -177,7 +183,7 @@ def _view(value: object, source: str) -> View | None:
         raise refusal(f"{source}: view", value, error.allowed) from None
 
 
-_SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, owner="solver")
+_SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, maximum=MAX_TIME, owner="solver")
 _FINER = Field("finer", "whole", minimum=1, maximum=MAX_SUBSTEP_FACTOR, owner="solver")
 
 

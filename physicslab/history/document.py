@@ -12,7 +12,7 @@ import numpy as np
 
 from physicslab.components import Name
 from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
-from physicslab.ecs.config import MIN_TIME
+from physicslab.ecs.config import MAX_TIME, MIN_TIME
 from physicslab.ecs.vector import Vector2
 from physicslab.files.checks import SceneError, checked_keys, checked_object, is_number, refusal, shown
 from physicslab.history.commands import (
@@ -141,9 +141,9 @@ def _read_run(found: Mapping[str, Any], where: str) -> Run:
 
 
 def _steps(piece: list[Any], where: str, most: int) -> tuple[float, int]:
-    allowed = f"[a finite dt >= {MIN_TIME:g} s, a whole number of steps of which there are digests]"
+    allowed = f"[a dt of {MIN_TIME:g} to {MAX_TIME:g} s, a whole number of steps with digests]"
     dt, count = piece if len(piece) == 2 else (0.0, 0)
-    if is_number(dt) and dt >= MIN_TIME and type(count) is int and 1 <= count <= most:
+    if is_number(dt) and MIN_TIME <= dt <= MAX_TIME and type(count) is int and 1 <= count <= most:
         return float(dt), count
     raise refusal(where, piece, allowed)
 

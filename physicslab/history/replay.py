@@ -52,7 +52,7 @@ def play(world: World, line: Line, source: str) -> Iterator[Played]:
     Raises
     ------
     SceneError
-        If the world refuses an edit, which it cannot have done when the recording was made.
+        If the world refuses an edit or a step, which it cannot have done when the recording was made.
     Diverged
         If a step cannot be made.
     """
@@ -60,7 +60,10 @@ def play(world: World, line: Line, source: str) -> Iterator[Played]:
     for piece in line.between(0, line.ticks):
         if isinstance(piece, Steps):
             for _ in range(piece.count):
-                world.step(piece.dt)
+                try:
+                    world.step(piece.dt)
+                except InvalidValue as error:
+                    raise SceneError(f"{source}: after step {made}: {error}") from error
                 made, place = made + 1, place + 1
                 yield Played(made, world.time, differing(digester.digest(world), line.digest_before(place)))
             continue

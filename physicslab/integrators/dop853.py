@@ -35,6 +35,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         state.simulation.dt,
         most,
         eq.free_bodies,
+        eq.steepness,
     )
     if made == NOT_FINITE:
         raise StepTooSmall(f"forces are no longer finite at t = {state.time:.9g} s")

@@ -1,10 +1,18 @@
 """Newton's second law: the masses of bodies, and how forces change velocities and velocities positions."""
 
 import math
+import sys
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 
-__all__ = ["clear", "damped", "derive_masses", "drift", "find_not_finite", "kick", "predict"]
+__all__ = [
+    "FARTHEST", "LARGEST", "clear", "damped", "derive_masses", "drift", "find_beyond", "kick", "predict",
+]  # fmt: skip
+
+FARTHEST = 1e300
+"""The largest coordinate that a scene may hold [m] (``physicslab.ecs.fields.COORDINATE_LIMIT``)."""
+LARGEST = sys.float_info.max
+"""The largest number that is finite."""
 
 
 @kernel
@@ -14,22 +22,25 @@ def derive_masses(
     kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
     awake_inverse_mass: Numbers, awake_inverse_inertia: Numbers, asleep: Flags,
-) -> tuple[float, int, int, int]:  # fmt: skip
+) -> tuple[float, int, int, int, float]:  # fmt: skip
     """Compute each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
 
     Returns the ratio of the greatest mass that can be moved to the least, of what has a shape, 1 if none has;
     and the first row of which the moment of inertia is not finite, or -1; and the first row of
-    which a size is not above 0, or -1; and how many rows have a velocity that nothing changes.
+    which a size is not above 0, or -1; and how many rows have a velocity that nothing changes; and the
+    smallest diameter or side of all shapes [m], infinite if there are none.
 
     A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. A body without velocity or mass, or one that is
     held, has infinite mass; one too small to have an inverse inertia does not turn.
     """
-    lightest, heaviest, infinite, sizeless, driven = 0.0, math.inf, -1, -1, 0
+    lightest, heaviest, infinite, sizeless, driven, smallest = 0.0, math.inf, -1, -1, 0, math.inf
     for i in range(len(mass)):
         if kind[i] == 1:
             sized = 0.0 < radius[i] < math.inf
+            smallest = min(smallest, 2.0 * radius[i])
         elif kind[i] == 2:
             sized = 0.0 < width[i] < math.inf and 0.0 < height[i] < math.inf
+            smallest = min(smallest, min(width[i], height[i]))
         else:
             sized = True
         if sizeless < 0 and not sized:
@@ -55,7 +66,7 @@ def derive_masses(
             lightest, heaviest = max(lightest, inverse_mass[i]), min(heaviest, inverse_mass[i])
         if infinite < 0 and not math.isfinite(inertia[i]):
             infinite = i
-    return (lightest / heaviest if lightest > 0.0 else 1.0), infinite, sizeless, driven
+    return (lightest / heaviest if lightest > 0.0 else 1.0), infinite, sizeless, driven, smallest
 
 
 @kernel
@@ -132,9 +143,10 @@ def predict(
 
 
 @kernel
-def find_not_finite(vectors: Vectors, numbers: Numbers) -> int:
-    """Return the first row in which a vector or a number is not finite, or -1."""
+def find_beyond(vectors: Vectors, numbers: Numbers, limit: float) -> int:
+    """Return the first row with a vector beyond a finite limit, or a number that is not finite, or -1."""
     for i in range(len(numbers)):
-        if not (math.isfinite(vectors[i, 0]) and math.isfinite(vectors[i, 1]) and math.isfinite(numbers[i])):
+        within = abs(vectors[i, 0]) <= limit and abs(vectors[i, 1]) <= limit  # which NaN is not
+        if not (within and math.isfinite(numbers[i])):
             return i
     return -1

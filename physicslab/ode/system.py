@@ -61,6 +61,8 @@ class OdeSystem:
         once by the method that needs it, as it depends on the layout alone.
     free_bodies : int
         How many bodies move, where no force depends on the origin and they are few; else 0.
+    steepness : float64 array (1,)
+        Where attraction notes the square of the fastest rate of a free fall [1/s^2]; zero without one.
     tolerance : float
         Relative error a step for methods that choose their steps.
     forces : tuple of ForceSystem
@@ -275,6 +277,8 @@ class OdeSystem:
             if force.resistance is not None
         ]
         self._measured = [(system, force) for system, force in packed if force and force.steepest is not None]
+        noted = [force.parameters[force.steepest :][:1] for _, force in self._measured]
+        self.steepness = noted[0] if noted else np.zeros(1)
         damping = book.damping(self.damping, self.inverse_mass)
         booked = [call for system, force in packed if force for call in book.around(system, force)]
         self._kept: list[Any] = [*booked, *resisting, damping]  # while C may read them

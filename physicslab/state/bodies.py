@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -28,8 +29,12 @@ class Bodies:
         The same, and zero for sleeping bodies: the simulation uses these.
     unequal : bool
         Whether two bodies that may meet differ so much in mass that one may be too heavy for the other.
+    smallest : float
+        The smallest diameter or side of all shapes [m]; infinite where there are none.
     columns : tuple of an object and arrays
         What :func:`physicslab.state.masses.derive_masses` takes, and for which rows.
+    checked : tuple of arrays
+        The columns of numbers that are checked before each step.
     sub_integrated : bool array (rows,)
         The rows with a method of their own between contacts (:class:`physicslab.stepping.split_forces`).
     unkicked : bool array (rows,)
@@ -37,8 +42,9 @@ class Bodies:
     """
 
     def __init__(self) -> None:
-        self.unequal = False
+        self.unequal, self.smallest = False, math.inf
         self.columns: tuple[object, tuple[NDArray[Any], ...]]
+        self.checked: tuple[NDArray[Any], ...] = ()
         self.resize(0)
 
     def resize(self, rows: int) -> None:

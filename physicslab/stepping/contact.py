@@ -12,7 +12,7 @@ from physicslab.stepping.bounds import bring_back
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.split_forces import OF_SPLIT_FORCES, SplitForces
 from physicslab.stepping.stage_accounts import StageAccounts
-from physicslab.stepping.stepper import Advance, divisions
+from physicslab.stepping.stepper import Advance, divisions, falls_far
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
@@ -65,7 +65,8 @@ class Contact:
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make one step."""
         parts = divisions(state, h)
-        state.substeps = state.contacts.substep_factor * state.simulation.substeps
+        factor = max(state.contacts.substep_factor, falls_far(state, h / parts))
+        state.substeps = factor * state.simulation.substeps
         self.begin(state)
         self.go_through(state, state.time, h / parts / state.substeps, parts * state.substeps)
         check_finite(state, state.time + h)

@@ -16,6 +16,7 @@ from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.events import events, path
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
+from physicslab.state.remainders import Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import pairs_that_may_meet, turning_boxes
 from physicslab.stepping.plan import StepPlan
@@ -40,6 +41,8 @@ __all__ = ["EventDriven"]
 
 _ACCELERATION = slice(8, 10)
 """The columns of a path's acceleration."""
+_LOW = (1, 3, 5, 7)
+"""The columns of what rounding leaves out of a path's place and velocity."""
 _MASS = 12
 """The column of the mass that gravity accelerates."""
 _SHORT = 1e-6
@@ -56,7 +59,8 @@ class EventDriven:
     nothing presses on it or when a ballistic body hits it: the step is then divided at the time of the
     impact.
 
-    Which bodies rest follows from the contacts of the last step, so that nothing here needs to be saved.
+    Which bodies rest follows from the contacts of the last step, and what rounding leaves out is part of the
+    state, so that nothing here needs to be saved. Any number of steps has the bits of single ones.
     """
 
     name: ClassVar[str] = "event_driven"
@@ -84,6 +88,11 @@ class EventDriven:
             free, events.BALLISTIC, np.where(moving, events.KINEMATIC, events.FIXED)
         )
         self._mode = self._initial_mode.copy()
+        self._moving = np.flatnonzero(moving)
+        self._lows = self._moving[:, None], np.array(_LOW)
+        self._kept: Remainders | None = None
+        entities = state.entity_index.entities[self._moving]
+        self._keys = coordinate_keys(entities, entities[:0])
         self._face = np.zeros(len(self._pairs), np.int64)
         self._due = np.zeros((len(self._pairs), 5))
         self._impact_positions = np.full((len(self._pairs), 2), np.nan)
@@ -111,10 +120,11 @@ class EventDriven:
         parts = divisions(state, h)
         if self._leaves_rest:
             steps = self._run_until_rest(state, h, parts, steps)
-        elif parts * steps > 1:
-            self._run(state, h / parts, parts * steps)
         else:
-            self._step(state, h)
+            self._run(state, h / parts, parts * steps)
+        if steps:
+            self._point_to_impacts(state)
+            self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
         check_finite(state, state.time + h * steps)
         return Advance(steps, parts)
 
@@ -123,45 +133,63 @@ class EventDriven:
         start, collisions, logged = copy_motion(state), state.collisions, state.contacts.logged
         booked = state.account.sums.copy()
         while steps:
+            self._recall_remainders(state)
             self._begin(state)
-            gone, why = 0.0, events.CAME_TO_REST
+            made, why = 0, events.CAME_TO_REST
             if not (self._mode == events.IN_CONTACT).any():
-                gone, why = self._run_events(state, h * steps, h / parts, 0.0)
+                made, _, why = self._run_events(state, h / parts, parts * steps, h / parts, 0.0)
             if why == events.DONE:
-                self._point_to_impacts(state)
-                self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
+                self._keep_remainders(state)
                 return steps
             set_motion(state, start)
             state.collisions, state.contacts.logged = collisions, logged
             state.account.sums[:] = booked
-            self._urgent, steps = -1, min(int(gone / h), steps - 1)
+            self._urgent, self._kept, steps = -1, None, made // parts
         self._left = state.steps
         return 0
-
-    def _step(self, state: State, dt: float) -> None:
-        """Make one step, and call the systems that observe its impacts."""
-        self._begin(state)
-        self._resting.begin_step(state)
-        self._advance(state, dt, dt, 0.0)
-        self._point_to_impacts(state)
-        self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, dt)
 
     def _run(self, state: State, dt: float, steps: int) -> None:
         """Make so many steps."""
         done = 0
+        self._recall_remainders(state)
         while done < steps:
             self._begin(state)
             gone = 0.0
             if not (self._mode == events.IN_CONTACT).any():
-                gone, why = self._run_events(state, dt * (steps - done), dt, done * dt)
+                made, gone, why = self._run_events(state, dt, steps - done, dt, done * dt)
+                done += made
                 if why == events.DONE:
-                    return
-                whole = min(int(gone / dt), steps - done - 1)
-                done, gone = done + whole, gone - whole * dt
+                    break
+                self._give_up(why)
             # Resting bodies are moved by the contact step from here on, which makes whole steps.
             self._resting.begin_step(state)
             self._advance(state, dt - gone, dt, done * dt + gone)
             done += 1
+        self._keep_remainders(state)
+
+    def _recall_remainders(self, state: State) -> None:
+        """Take what rounding left out of places and velocities, which the paths carry on."""
+        (q, v), kept = self._moved(state), state.remainders
+        if kept is self._kept and (q.tobytes(), v.tobytes()) == (kept.q.tobytes(), kept.v.tobytes()):
+            return  # the paths have them
+        lows = kept.of(self._keys, q, v)
+        self._paths[self._lows] = np.concatenate([low.reshape(-1, 2) for low in lows], axis=1)
+
+    def _keep_remainders(self, state: State) -> None:
+        """Leave it to the next step."""
+        lows = self._paths[self._lows]
+        q, v = self._moved(state)
+        state.remainders = self._kept = Remainders(self._keys, q, v, lows[:, :2].ravel(), lows[:, 2:].ravel())
+
+    def _moved(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the coordinates and velocities of what moves, row by row."""
+        position, velocity = state.table(Transform)["position"], state.table(Velocity)["linear"]
+        return position.take(self._moving, axis=0).ravel(), velocity.take(self._moving, axis=0).ravel()
+
+    def _give_up(self, why: int) -> None:
+        """Leave all bodies to the contact step where impacts have no end."""
+        if why == events.TOO_MANY_IMPACTS:
+            self._mode[self._mode == events.BALLISTIC] = events.IN_CONTACT
 
     def _begin(self, state: State) -> None:
         """Find the mode of each row, and clear the impacts of the step before."""
@@ -198,12 +226,11 @@ class EventDriven:
             if (self._mode == events.IN_CONTACT).any():
                 elapsed = self._advance_both(state, left, dt, offset + (span - left))
             else:
-                elapsed, why = self._run_events(state, left, dt, offset + (span - left), ordered)
-                ordered = False
+                made, elapsed, why = self._run_events(state, left, 1, dt, offset + (span - left), ordered)
+                elapsed, ordered = left if made else elapsed, False
                 if why == events.TOGETHER:
                     ordered = not self._collide(state, offset + (span - left) + elapsed)
-                if why == events.TOO_MANY_IMPACTS:
-                    self._mode[self._mode == events.BALLISTIC] = events.IN_CONTACT
+                self._give_up(why)
             left = left - elapsed if elapsed < left else 0.0
 
     def _advance_both(self, state: State, span: float, dt: float, offset: float) -> float:
@@ -220,7 +247,8 @@ class EventDriven:
             self._lead_resting(in_contact, start.motion, end, span, dt)
             set_motion(state, start.motion)
             resting = state.account.sums.copy()
-            elapsed, _ = self._run_events(state, span, dt, offset, ordered=True)
+            made, elapsed, _ = self._run_events(state, span, 1, dt, offset, ordered=True)
+            elapsed = span if made else elapsed
             motion = copy_motion(state)
             if elapsed < span:
                 flown = state.account.sums - resting
@@ -230,6 +258,7 @@ class EventDriven:
             for whole, part in zip(motion, end, strict=True):
                 whole[in_contact] = part[in_contact]
             set_motion(state, motion)
+        self._paths[np.ix_(in_contact, _LOW)] = 0.0
         if elapsed > _SHORT * dt:
             released = in_contact & (self._mode == events.IN_CONTACT) & ~self._resting.held(state)
             self._mode[released] = events.BALLISTIC
@@ -276,12 +305,16 @@ class EventDriven:
         self._together = self._together or Rigid(state, self._schedule, self._plan)
         impacts = self._together.collide(state, state.time + offset)
         state.collisions += impacts
+        self._paths[self._lows] = 0.0
         return impacts > 0
 
     def _run_events(
-        self, state: State, span: float, dt: float, offset: float, ordered: bool = False
-    ) -> tuple[float, int]:
-        """Move bodies from impact to impact for ``span`` s, or until an event; return the time and why."""
+        self, state: State, span: float, steps: int, dt: float, offset: float, ordered: bool = False
+    ) -> tuple[int, float, int]:
+        """Move bodies from impact to impact for ``steps`` times ``span`` s, or until an event.
+
+        Returns how many steps were made, the time of the one that was not, and why.
+        """
         began = time.perf_counter_ns()
         contacts, bodies = state.contacts, state.bodies
         ballistic = self._mode == events.BALLISTIC
@@ -291,19 +324,20 @@ class EventDriven:
             ballistic[:, None] * self._gravity,
         )
         self._paths[:, _MASS] = np.where(ballistic, state.table(Mass)["mass"], 0.0)
-        elapsed, impacts, why, pair = events.run_events(
+        made, elapsed, impacts, why, pair = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,
             self._paths, self._mode, self._face, self._due, self._impact_positions,
             motion_of(state), sizes_of(state), materials_of(state),
             (bodies.inverse_mass, bodies.inverse_inertia), self._bounds,
-            state.account.sums, contacts.log, contacts.logged, state.time + offset, span, dt, self._urgent,
-            ordered,
+            state.account.sums, contacts.log, contacts.logged, state.time + offset, span, steps, dt,
+            self._urgent, ordered,
         )  # fmt: skip
         # The impact of a woken body is resolved first, or the body would come to rest again at once.
         self._urgent = pair if why == events.WOKEN else -1
         contacts.logged += impacts
         state.collisions += impacts
-        self._schedule.note(IntegrateSystem.__name__, 1, time.perf_counter_ns() - began)
+        calls = max(made, 1)
+        self._schedule.note(IntegrateSystem.__name__, calls, time.perf_counter_ns() - began)
         for name in self._within:
-            self._schedule.note(name, 1, 0)  # their time is part of the loop's
-        return elapsed, why
+            self._schedule.note(name, calls, 0)  # their time is part of the loop's
+        return made, elapsed, why

@@ -32,7 +32,7 @@ from physicslab.state.masses import check_finite
 from physicslab.state.state import State
 from physicslab.stepping.bounds import bring_back
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.stepper import Advance, divisions
+from physicslab.stepping.stepper import Advance, divisions, falls_far
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
@@ -117,9 +117,9 @@ class FusedContact:
         return True
 
     def ready(self, state: State, h: float) -> bool:
-        """Whether no body carries a far heavier one, and the coming step is not divided."""
+        """Whether no body carries a far heavier one, and neither the step nor its substeps are divided."""
         heavy = state.bodies.unequal and state.has_forces
-        return not (heavy or state.sleep.unverified or divisions(state, h) > 1)
+        return not (heavy or state.sleep.unverified or divisions(state, h) > 1 or falls_far(state, h) > 1)
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make ``steps`` steps or fewer; where one fails, those before it are counted."""

@@ -13,6 +13,7 @@ from physicslab.kernels.events import events
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.stage_accounts import StageAccounts
+from physicslab.stepping.stepper import falls_far
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import Stage
@@ -152,7 +153,7 @@ class RestingBodies:
         others[pairs] = False
         near["count"][others] = -1  # the contact step passes over them
         impact_count, earlier = near["impact_count"].copy(), [points[name].copy() for name in _IMPACT_FIELDS]
-        substeps = state.simulation.substeps
+        substeps = falls_far(state, span) * state.simulation.substeps
         # Kernels of the stages are compiled at their first call: most are not called here.
         for substep in range(substeps):
             state.moment = began + (substep + 0.5) * span / substeps

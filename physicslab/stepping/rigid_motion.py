@@ -14,9 +14,11 @@ from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
 from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS, REACH
+from physicslab.kernels.rigid.piece_end import STARTS
 from physicslab.kernels.rigid.pieces import StagesTuple
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
+from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.rigid_bookings import book_overlap
 
 __all__ = ["MAX_POINTS", "MadeStep", "RigidMotion"]
@@ -132,7 +134,7 @@ class RigidMotion:
             for _ in range(2)
         )  # fmt: skip
         self._stages = _stages_of(0)
-        self._start = np.zeros((6, max(MAX_POINTS, pairs)))
+        self._start = np.zeros((STARTS, max(MAX_POINTS, pairs)))
         self._changed = np.full((MAX_POINTS, POINT_FIELDS), -1)
 
     def step(self, scene: tuple[Any, ...], state: State, at: float, h: float) -> MadeStep:
@@ -142,7 +144,9 @@ class RigidMotion:
         made = MadeStep(self._equations[0], self._equations[1], self._equations[3][UNKNOWN])
         done = self._by_events(scene, state, at, h, made)
         if made.by_impulses:
-            made.refused = self._by_impulses(scene, state, at + done, h - done, h / _SHORT_STEPS, made)
+            rate = fastest_rate(state, self._ode.forces)  # kicks of longer steps than its inverse would grow
+            longest = min(h / _SHORT_STEPS, 1.0 / rate) if rate > 0.0 else h / _SHORT_STEPS
+            made.refused = self._by_impulses(scene, state, at + done, h - done, longest, made)
         return made
 
     def collide(self, scene: tuple[Any, ...], state: State, at: float) -> int:
@@ -201,28 +205,34 @@ class RigidMotion:
         """Make the rest of a step by short ones; return why that is not possible, nothing if it is."""
         q, v = self._ode.q, self._ode.v
         self._changed[0, PAIR] = -1
-        count = math.ceil(left / min(longest, self._time_to_pass(scene)))
-        if count > _MAX_SHORT_STEPS:
-            return "bodies are too fast for short steps"
-        h = left / max(count, 1)
-        for k in range(count):
+        h, end, made_steps = longest, at + left, 0
+        while left > 0.0:
+            short = min(longest, self._time_to_pass(scene))
+            if made_steps == 0 or short < h:
+                h = left / math.ceil(left / short) if short > 0.0 else 0.0
+            if left > (_MAX_SHORT_STEPS - made_steps) * h:
+                return "bodies are too fast for short steps"
+            made_steps += 1
+            last = left <= 1.5 * h
+            h = left if last else h
             time_stepping.drift(q, v, 0.5 * h)
-            gained = time_stepping.kick(scene, self._stages[-1], q, v, h)
+            gained = h * time_stepping.kick(scene, self._stages[-1], q, v, h)
             none = _NONE * gained
             made.evaluations, made.closed = made.evaluations + 1, 0
-            why = self._resist(scene, state, at + (k + 0.5) * h, h, none, made)
+            why = self._resist(scene, state, end - left + 0.5 * h, h, none, made)
             if why != motion.DONE:
                 return _WHY[why]
             time_stepping.drift(q, v, 0.5 * h)
+            left = 0.0 if last else left - h
             # What is as slow as a short step makes it comes to rest; moved each time, it would not.
             rests = float(np.abs(v[: self._ode.layout.clock]).max(initial=0.0)) <= _RESTING * gained
-            if rests and k < count - 1:
+            if rests and not last:
                 continue
             refused = self._move_apart(scene, state, math.inf, made, pay=True)
             if refused:
                 return refused
         made.forces /= h
-        self._find_forces(scene, state, at + left, made)
+        self._find_forces(scene, state, end, made)
         return ""
 
     def _go_on_at_rest(self, span: float) -> None:
@@ -232,11 +242,17 @@ class RigidMotion:
         self._ode.v[first:].reshape(-1, ACCOUNTS)[:, PX:] += span * given[:, PX:]
 
     def _time_to_pass(self, scene: tuple[Any, ...]) -> float:
-        """Return for how long nothing can pass through half of the smallest size [s]."""
+        """Return how long a short step may be in which nothing passes a quarter of the smallest size [s].
+
+        A step changes the velocity, and moves by what it is then.
+        """
         v, rows, outlines, sizes = self._ode.v, scene[0], scene[4], scene[7][:, 2]
         spins = np.abs(v[2 * rows : 3 * rows]) * outlines[:, REACH]
         fastest = float((np.hypot(v[0 : 2 * rows : 2], v[1 : 2 * rows : 2]) + spins).max())
-        return 0.25 * float(sizes.min(initial=math.inf)) / fastest if fastest > 0.0 else math.inf
+        push = time_stepping.kick(scene, self._stages[-1], self._ode.q, v, 0.0)
+        way = 0.25 * float(sizes.min(initial=math.inf))
+        total = fastest + math.sqrt(fastest * fastest + 4.0 * push * way)
+        return 2.0 * way / total if total > 0.0 else math.inf
 
     def _find_forces(self, scene: tuple[Any, ...], state: State, at: float, made: MadeStep) -> None:
         """Find the forces at the end of a step; where there are none, the mean ones of the last impulses."""

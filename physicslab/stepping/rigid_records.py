@@ -34,12 +34,12 @@ class RigidRecords:
     def write(self, state: State, made: MadeStep, h: float) -> None:
         """Write the closed points and the impacts of a step of ``h`` seconds."""
         contacts = state.contacts
+        contacts.recorded = (
+            0  # blank: what soft steps before have left would depend on where a run was parted
+        )
         contacts.wide.reset(len(state.entity_index))
         list_all(state, self._pairs, len(self._pairs))
         records, points = contacts.manifolds[: contacts.recorded], contacts.points[: 2 * contacts.recorded]
-        records["count"] = records["impact_count"] = records["found"] = 0
-        for name in (*_IMPACT_FIELDS, "normal_impulse", "tangent_impulse"):
-            points[name] = 0.0
         contacts.impulse_dt = h / state.simulation.substeps
         position = state.table(Transform)["position"]
         of, measures, forces = made.points, made.measures, made.forces

@@ -6,16 +6,23 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
+from physicslab.ecs.fields import InvalidValue
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
 from physicslab.systems.schedule import Schedule
 
-__all__ = ["Advance", "Stepper", "divisions"]
+__all__ = ["MAX_FACTOR", "MAX_FALL", "Advance", "Stepper", "divisions", "falls_far"]
 
 _MAX_DIVISIONS = 100_000
 """Largest number of parts of a step that is longer than the scene's own."""
 _TOLERATED = 0.01
 """Share by which an undivided step may exceed the scene's own: the last of a run may include a remainder."""
+
+
+MAX_FALL = 0.5
+"""Largest share of the smallest size by which gravity adds to the way of a substep of soft contacts."""
+MAX_FACTOR = 256
+"""Largest factor by which substeps are increased for that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,5 +99,18 @@ def divisions(state: State, h: float) -> int:
     if h <= own:
         return 1
     if h / own > _MAX_DIVISIONS:
-        raise ValueError(f"dt = {h!r}: must be at most {_MAX_DIVISIONS} times simulation.dt = {own!r} s")
+        most = f"at most {_MAX_DIVISIONS} times simulation.dt = {own!r} s"
+        raise InvalidValue("step", "dt", h, most)
     return max(1, math.ceil(h / own - _TOLERATED))
+
+
+def falls_far(state: State, h: float) -> int:
+    """Return by which factor the substeps of a step of ``h`` seconds must be more for soft contacts.
+
+    In a substep, what gravity adds to the way of a body at rest must not carry it past another one.
+    """
+    substep, physics = h / state.simulation.substeps, state.physics
+    if physics.gravity_mode != "linear":
+        return 1
+    fall, most = physics.gravity.magnitude * substep * substep, MAX_FALL * state.bodies.smallest
+    return 1 if fall <= most else min(MAX_FACTOR, math.ceil(math.sqrt(min(fall / most, 1e12))))

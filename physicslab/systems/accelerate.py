@@ -14,7 +14,7 @@ class AccelerateSystem(System):
     """Adds up forces from zero and turns them into velocities. Every world has one."""
 
     engine = True
-    kernels = (motion.clear, motion.kick, motion.find_not_finite)
+    kernels = (motion.clear, motion.kick, motion.find_beyond)
 
     def attach(self, state: State) -> None:
         """Clear the forces of systems that may not run any more."""

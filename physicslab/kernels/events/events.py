@@ -243,6 +243,18 @@ def _meet(
     return why, 1 if approach > 0.0 else 0
 
 
+@inlined
+def _clear_impacts(flight: Flight) -> None:
+    """Clear the records of the impacts of a step, before the next."""
+    for p in range(flight.pairs):
+        if flight.manifolds[p].impact_count > 0:
+            flight.manifolds[p].impact_count = 0
+            flight.impact_position[p, 0] = flight.impact_position[p, 1] = math.nan
+            for k in range(2):
+                point = flight.points[2 * p + k]
+                point.approach_speed = point.impact_normal = point.impact_tangent = 0.0
+
+
 @fused
 def _end_all(flight: Flight, now: float, low: float) -> None:
     """Move all bodies to where they are at the time ``now + low``."""
@@ -259,54 +271,64 @@ def run_events(
     manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, due: Vectors,
     impact_position: Vectors, motion: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, bounds: BoundsTuple,
-    account: Vectors, log: Impacts, logged: int, start: float, span: float, dt: float, urgent: int,
-    ordered: bool,
-) -> tuple[float, int, int, int]:  # fmt: skip
-    """Move bodies from impact to impact for ``span`` seconds, or until one comes to rest or is woken.
+    account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int, dt: float,
+    urgent: int, ordered: bool,
+) -> tuple[int, float, int, int, int]:  # fmt: skip
+    """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one rests or is woken.
 
     So does one that meets two others at once, unless impacts are ``ordered``: then it meets one after the
     other.
 
-    ``paths`` (rows, 13) holds the accelerations [m/s^2] in columns 8 and 9 and in column 12 the mass [kg] of
-    what gravity pulls, ``mode`` that of each row;
+    ``paths`` (rows, 13) holds the remainders of places and velocities, which are carried on, the
+    accelerations [m/s^2] in columns 8 and 9 and in column 12 the mass [kg] of what gravity pulls, ``mode``
+    that of each row;
     ``face`` (pairs,) and ``due`` (pairs, 5) are work space; ``impact_position`` (pairs, 2) receives where B
-    was at the pair's last impact [m]. What impacts and gravity give is added to ``account``
+    was at the pair's last impact of the last step [m]. What impacts and gravity give is added to ``account``
     (:mod:`physicslab.kernels.accounts`). Impacts are logged from number ``logged`` on, with times from
     ``start`` [s]; a step has ``dt`` seconds. ``urgent`` is a pair that meets now, before all others, or -1.
+    All paths begin again after ``span`` seconds, so that steps made at once have the bits of single ones.
 
     Returns
     -------
-    elapsed, impacts, why, pair
-        The time that passed [s]; how many impacts there were; why it ended, and with which pair.
+    made, elapsed, impacts, why, pair
+        How many whole steps were made; the time that passed of the one that was not [s]; how many impacts
+        there were; why it ended, and with which pair.
     """
-    now, low, impacts, window, within, p = 0.0, 0.0, 0, 0.0, 0, -1
+    now, low, impacts, window, within, p, made, why = 0.0, 0.0, 0, 0.0, 0, -1, 0, DONE
     flight = Flight(
         manifolds, points, count, paths, mode, Motion(*motion), face, due, impact_position,
         Sizes(*sizes), Inverse(*inverse), Bounds(*bounds), account,
     )  # fmt: skip
-    why, min_speed = _begin_all(flight, Materials(*materials))
-    if why == OVERLAP:
-        return 0.0, 0, why, p
-    first, second = -1, -1
-    while why == DONE:
-        _predict_pairs(flight, first, second, now, low, span - now, min_speed)
-        p = _first(due, count)
-        if urgent >= 0:
-            p, due[urgent, 0], due[urgent, 1], urgent = urgent, 0.0, 0.0, -1
-        if p < 0 or due[p, 0] >= span:
-            now, low = span, 0.0
+    mixed = Materials(*materials)
+    while made < steps:
+        if made > 0:
+            _clear_impacts(flight)
+        why, min_speed = _begin_all(flight, mixed)
+        if why == OVERLAP:
+            return made, 0.0, impacts, why, -1
+        now, low, window, within, first, second = 0.0, 0.0, 0.0, 0, -1, -1
+        while why == DONE:
+            _predict_pairs(flight, first, second, now, low, span - now, min_speed)
+            p = _first(due, count)
+            if urgent >= 0:
+                p, due[urgent, 0], due[urgent, 1], urgent = urgent, 0.0, 0.0, -1
+            if p < 0 or due[p, 0] >= span:
+                now, low = span, 0.0
+                break
+            now, low = due[p, 0], due[p, 1]
+            within = within + 1 if now < window + dt else 1
+            window = window if now < window + dt else now
+            if within > _MAX_IMPACTS:
+                why = TOO_MANY_IMPACTS
+                break
+            first, second = manifolds[p].a, manifolds[p].b
+            why, new = _meet(flight, p, log, logged + impacts, start + made * span, now, low, dt, ordered)
+            impacts += new
+        _end_all(flight, now, low)
+        if why != DONE:
             break
-        now, low = due[p, 0], due[p, 1]
-        within = within + 1 if now < window + dt else 1
-        window = window if now < window + dt else now
-        if within > _MAX_IMPACTS:
-            why = TOO_MANY_IMPACTS
-            break
-        first, second = manifolds[p].a, manifolds[p].b
-        why, new = _meet(flight, p, log, logged + impacts, start, now, low, dt, ordered)
-        impacts += new
-    _end_all(flight, now, low)
-    return now + low, impacts, why, p
+        made += 1
+    return made, now + low if why != DONE else 0.0, impacts, why, p
 
 
 @endless

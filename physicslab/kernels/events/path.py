@@ -21,9 +21,8 @@ start; the mass."""
 
 @inlined
 def begin(paths: Vectors, i: int, x: float, y: float, vx: float, vy: float) -> None:
-    """Begin the path of row i at time 0; its acceleration stays."""
-    paths[i, _X], paths[i, _X + 1], paths[i, _X + 2], paths[i, _X + 3] = x, 0.0, y, 0.0
-    paths[i, _VX], paths[i, _VX + 1], paths[i, _VX + 2], paths[i, _VX + 3] = vx, 0.0, vy, 0.0
+    """Begin the path of row i at time 0; its acceleration and its remainders stay."""
+    paths[i, _X], paths[i, _X + 2], paths[i, _VX], paths[i, _VX + 2] = x, y, vx, vy
     paths[i, _T], paths[i, _T + 1] = 0.0, 0.0
 
 

@@ -38,8 +38,13 @@ _MIN_STEP = 1e-13
 """The shortest step, as a share of the time to go; shorter ones would never finish."""
 _NEAR = 0.1
 """Distance of two bodies, as a share of their distance from the origin, below which it is moved to them."""
-_NOISE = 1e6
-"""Multiple of the tolerance above which an estimate is not taken for rounding."""
+_NOISE = 1e-11
+"""Share of the largest coordinate or speed above which an estimate is not taken for rounding."""
+_STEEP = 100.0
+"""How much worse an error of place may be than the error of speed that it makes in a free fall."""
+_MAX_FALL = 0.5
+"""Largest share of the time of the fastest free fall, 1 / sqrt(G (m_a + m_b) / d^3), that a step may take:
+the stages of longer ones may step over a close passage, and their error estimate with them."""
 
 
 @inlined
@@ -212,7 +217,7 @@ def _book(
 def dop853(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
     calls: Calls, places: Rows, span: float, tolerance: float, period: float, max_evaluations: int,
-    bodies: int,
+    bodies: int, steepness: Numbers,
 ) -> int:  # fmt: skip
     """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
@@ -220,8 +225,15 @@ def dop853(
     may take many, but none of its parts may run without end.
 
     A step is made again, shorter, where its error is estimated to be more than ``tolerance`` of the largest
-    coordinate or speed. Sums are compensated: ``q_low`` and ``v_low`` (n,) are the remainders of what moves,
+    coordinate or speed: of those that were reached, or that the step reaches by the velocities and forces at
+    its start. What its stages reach is no measure, as in a step beyond the limit of stability it grows with
+    the error. With tolerances of at most 0.01 every such step is made again: its error is at least half of
+    what it amplifies. Sums are compensated: ``q_low`` and ``v_low`` (n,) are the remainders of what moves,
     and are carried on.
+
+    ``steepness`` (1,) is where forces note the square of the fastest rate of a free fall [1/s^2], if any
+    does. It bounds the step, and errors of place count by what they change in the forces; the largest is
+    left there.
 
     Where no force depends on the origin, ``bodies`` is how many pairs of coordinates the first ones are, and
     else 0: in a close passage the origin is moved there, so that the distance has all its digits.
@@ -232,7 +244,8 @@ def dop853(
     start, booked = q[clock], places[END] - places[CLOCK] - 1
     stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
     rates, pushes = np.zeros((n, 16)), np.zeros((n + booked, 16))
-    q_scale, v_scale = largest(q, n), largest(v, n)
+    q_scale, v_scale, steepest = largest(q, n), largest(v, n), steepness[0]
+    steepness[0] = 0.0
     make_stages(
         q,
         v,
@@ -254,7 +267,8 @@ def dop853(
         return NOT_FINITE
     evaluations, done, done_low = 1, 0.0, 0.0
     h = first_step(pushes, n, q_scale, v_scale, span, tolerance)
-    grow, last_error, last_taken = _MAX_GROWTH, math.inf, 1.0
+    grow, last_error, last_taken, noise = _MAX_GROWTH, math.inf, 1.0, _NOISE / tolerance
+    last_fall2 = steepness[0]
     spent, mark = 0, 0.0
     origin, moved_origin = np.zeros(4), False
     while True:
@@ -276,15 +290,24 @@ def dop853(
         if spent > max_evaluations - LAST:
             evaluations = EXHAUSTED
             break
+        steepness[0] = 0.0
         make_stages(
             q, v, stage_q, stage_v, acceleration, rates, pushes,
             inverse_mass, damping, calls, clock, booked, taken, 1, LAST + 1,
         )  # fmt: skip
+        fall2 = max(last_fall2, steepness[0])
         evaluations += LAST
         spent += LAST
-        q_reach, v_reach = max(q_scale, largest(stage_q, n)), max(v_scale, largest(stage_v, n))
+        push = 0.0
+        for i in range(n):
+            push = max(push, abs(pushes[i, 0]))
+        q_end, v_end = max(q_scale, largest(stage_q, n)), max(v_scale, largest(stage_v, n))
+        v_reach = min(v_end, v_scale + taken * push)
+        q_reach = min(q_end, q_scale + taken * v_reach)
+        fall = math.sqrt(fall2)
+        counts = min(q_reach, _STEEP * v_reach / fall) if fall > 0.0 else q_reach
         # Where all is at rest, the measure is the distance that an error of the speed makes within the step.
-        error = step_error(rates, pushes, taken, q_reach, max(v_reach, _LEADS * q_reach / taken), tolerance)
+        error = step_error(rates, pushes, taken, counts, max(v_reach, _LEADS * counts / taken), tolerance)
         if not (math.isfinite(error) and _all_finite(stage_q, stage_v, n)):
             h, grow = _MIN_GROWTH * taken, 1.0
             last_error = math.inf
@@ -292,12 +315,16 @@ def dop853(
         factor = min(max(_SAFETY * math.pow(error, -0.125), _MIN_GROWTH), grow) if error > 0.0 else grow
         h = factor * taken
         # Rounding decreases as the step, a kink of the force as its square: no shorter step is better.
-        rounding = error < _NOISE and error > last_error * math.pow(taken / last_taken, 1.5)
-        if error > 1.0 and not rounding:
+        rounding = error < noise and error > last_error * math.pow(taken / last_taken, 1.5)
+        leaps = taken * fall > _MAX_FALL
+        if fall > 0.0:
+            h = min(h, _SAFETY * _MAX_FALL / fall)
+        if leaps or (error > 1.0 and not rounding):
             grow, last_error, last_taken = 1.0, error, taken
             continue
         if rounding:
             h = taken
+        last_fall2, steepest = steepness[0], max(steepest, fall2)
         grow, last_error = _MAX_GROWTH, math.inf
         for i in range(n):
             moved, moved_low = total(rates[i])
@@ -313,7 +340,8 @@ def dop853(
         q[clock] = start + done
         if last:
             break
-        q_scale, v_scale = q_reach, v_reach
+        q_scale, v_scale = q_end, v_end
+    steepness[0] = steepest
     if moved_origin:
         _restore_origin(q, q_low, bodies, origin)
     return evaluations

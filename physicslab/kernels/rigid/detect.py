@@ -22,10 +22,11 @@ from physicslab.kernels.rigid.features import (
     vertex_of,
 )
 
-__all__ = ["find_points", "seen_from"]
+__all__ = ["TIE", "find_points", "seen_from"]
 
-_TIE = 1e-9
-"""Share of the size within which two faces are equally far, so that speeds decide."""
+TIE = 1e-9
+"""Share of the size within which two faces are equally far, or one takes over from a corner, so that speeds
+decide."""
 Lie = tuple[float, float, float, float]
 """Centre of a box in another one's directions, from its centre [m]; cosine and sine of the angle between
 them."""
@@ -56,11 +57,21 @@ def _corner(q: Numbers, rows: int, outlines: Vectors, row: int, vertex: int) -> 
 
 @inlined
 def _disc_to_box(
-    points: Points, n: int, pair: int, q: Numbers, rows: int, outlines: Vectors, box: int, disc: int
-) -> int:
-    """Find the face or the corner of a box that is nearest to a disc."""
+    points: Points, n: int, pair: int, q: Numbers, v: Numbers, rows: int, outlines: Vectors, box: int,
+    disc: int, tie: float,
+) -> int:  # fmt: skip
+    """Find the face or the corner of a box that is nearest to a disc.
+
+    On the line between them, where one takes over from the other, it is that towards which the disc moves.
+    """
     x, y = seen_from(q, rows, box, q[2 * disc], q[2 * disc + 1])
     over_x, over_y = abs(x) - 0.5 * outlines[box, WIDTH], abs(y) - 0.5 * outlines[box, HEIGHT]
+    if min(abs(over_x), abs(over_y)) <= tie:
+        c, s, spin = math.cos(q[2 * rows + box]), math.sin(q[2 * rows + box]), v[2 * rows + box]
+        vx, vy = v[2 * disc] - v[2 * box], v[2 * disc + 1] - v[2 * box + 1]
+        rate_x, rate_y = c * vx + s * vy + spin * y, c * vy - s * vx - spin * x
+        over_x = over_x if abs(over_x) > tie else (rate_x if x > 0.0 else -rate_x)
+        over_y = over_y if abs(over_y) > tie else (rate_y if y > 0.0 else -rate_y)
     if over_x > 0.0 and over_y > 0.0:
         corner = (0 if x > 0.0 else 1) if y > 0.0 else (3 if x > 0.0 else 2)
         return _write(points, n, pair, box, CORNER + corner, disc, CENTRE)
@@ -215,16 +226,16 @@ def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points) ->
     And, of two boxes, a distance that they have at least where it is positive [m]; infinity of other pairs,
     which have the smallest gap of their points.
     """
-    rows, outlines = scene.rows, scene.outlines
+    rows, outlines, tie = scene.rows, scene.outlines, TIE * scene.coefficients[p, 2]
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
     if wall >= 0:
         if outlines[b, KIND] == BOX:
             return _box_to_wall(points, 0, p, q, rows, outlines, b, wall), math.inf
         return _write(points, 0, p, 0, WALL + wall, b, CENTRE), math.inf
     if outlines[a, KIND] == BOX and outlines[b, KIND] == BOX:
-        return _box_to_box(points, 0, p, q, v, rows, outlines, a, b, _TIE * scene.coefficients[p, 2])
+        return _box_to_box(points, 0, p, q, v, rows, outlines, a, b, tie)
     if outlines[a, KIND] == BOX:
-        return _disc_to_box(points, 0, p, q, rows, outlines, a, b), math.inf
+        return _disc_to_box(points, 0, p, q, v, rows, outlines, a, b, tie), math.inf
     if outlines[b, KIND] == BOX:
-        return _disc_to_box(points, 0, p, q, rows, outlines, b, a), math.inf
+        return _disc_to_box(points, 0, p, q, v, rows, outlines, b, a, tie), math.inf
     return _write(points, 0, p, a, CENTRE, b, CENTRE), math.inf

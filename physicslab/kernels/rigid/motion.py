@@ -28,9 +28,7 @@ from physicslab.kernels.rigid.equations import (
     named_equations,
 )
 from physicslab.kernels.rigid.features import (
-    BOX,
     GIVEN,
-    KIND,
     MU,
     PAIR,
     REACH,
@@ -42,7 +40,8 @@ from physicslab.kernels.rigid.features import (
     SceneTuple,
     named_scene,
 )
-from physicslab.kernels.rigid.piece_end import HOLDS, PRESSES, cut_at_first_event, note_start
+from physicslab.kernels.rigid.passing import longest_piece, share_of_ways
+from physicslab.kernels.rigid.piece_end import ALLOWED, HOLDS, PRESSES, cut_at_first_event, note_start
 from physicslab.kernels.rigid.pieces import (
     SHORT_LAST,
     Stages,
@@ -53,12 +52,11 @@ from physicslab.kernels.rigid.pieces import (
     named_stages,
 )
 from physicslab.kernels.rigid.touching import (
-    far_apart,
+    SLOW,
     find_touching,
     hold_closed,
     hold_evenly,
     keep_pressing,
-    length_of,
     rest_limits,
     take_closed,
 )
@@ -85,34 +83,10 @@ _SHORTENINGS = 60
 """How often a piece is shortened for its error."""
 _SHORTEST = 1e-9
 """Share of the time that is left below which a piece is not shortened."""
-_MAX_TURN = 0.25
-"""Largest angle of a piece [rad]."""
 _BEYOND = 1.1
 """Multiple of the time to the first event, by how all begins, that a piece is to last."""
 _SHORT = 0.1
 """Share of the longest piece below which a method of order 5 is tried; its curve shows if it is exact."""
-_STRIDE = 0.2
-"""Share of the smaller size that a pair may approach in a piece, beyond its gap."""
-
-
-@inlined
-def _longest_piece(scene: Scene, q: Numbers, v: Numbers) -> float:
-    """Return for how long no pair can pass through each other unseen, and no box turn far [s]."""
-    rows, longest = scene.rows, math.inf
-    for p in range(len(scene.pairs)):
-        a, b = scene.pairs[p, 0], scene.pairs[p, 1]
-        speed = length_of(v[2 * b] - v[2 * a], v[2 * b + 1] - v[2 * a + 1])
-        speed += (
-            abs(v[2 * rows + b]) * scene.outlines[b, REACH] + abs(v[2 * rows + a]) * scene.outlines[a, REACH]
-        )
-        if speed > 0.0:
-            free = max(far_apart(scene, p, q, math.inf), 0.0) + _STRIDE * scene.coefficients[p, 2]
-            longest = min(longest, free / speed)
-    for row in range(rows):
-        spin = abs(v[2 * rows + row])
-        if spin > 0.0 and scene.outlines[row, KIND] == BOX:
-            longest = min(longest, _MAX_TURN / spin)
-    return longest
 
 
 @inlined
@@ -134,7 +108,7 @@ def _note_changes(
             status = OPEN
         elif kind == HOLDS and (i == index or (equations.points[i, STATUS] == STICKS and left <= limit)):
             status = SLIDES_ON if rubbing < 0.0 else SLIDES_BACK
-        elif equations.points[i, STATUS] > STICKS and abs(equations.measures[i, VT]) <= rest:
+        elif equations.points[i, STATUS] > STICKS and abs(equations.measures[i, VT]) <= SLOW * rest:
             status = equations.points[i, STATUS]
         if status >= 0:
             for column in range(GIVEN):
@@ -150,7 +124,8 @@ def _is_slow(scene: Scene, v: Numbers, rest: float) -> bool:
     """Whether nothing moves."""
     slow = True
     for i in range(3 * scene.rows):
-        slow = slow and abs(v[i]) <= (1e-3 * rest if scene.inverse_mass[i] > 0.0 else 0.0)
+        way = scene.outlines[i - 2 * scene.rows, REACH] if i >= 2 * scene.rows else 1.0
+        slow = slow and way * abs(v[i]) <= (SLOW * rest if scene.inverse_mass[i] > 0.0 else 0.0)
     return slow
 
 
@@ -169,7 +144,8 @@ def _is_balanced(
     find_loads(scene, equations, closed, loads)
     apply(scene, equations, closed, acceleration)
     for i in range(3 * scene.rows):
-        if scene.inverse_mass[i] > 0.0 and abs(acceleration[i]) > 10.0 * least + share * loads[i]:
+        way = scene.outlines[i - 2 * scene.rows, REACH] if i >= 2 * scene.rows else 1.0
+        if scene.inverse_mass[i] > 0.0 and way * abs(acceleration[i]) > 10.0 * least + share * way * loads[i]:
             return False
     return True
 
@@ -229,14 +205,18 @@ def _any_approaches(
 @inlined
 def _make_smooth(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
-    tolerance: float, stages: Stages,
+    tolerance: float, stages: Stages, allowed: Numbers,
 ) -> tuple[float, int]:  # fmt: skip
-    """Make a piece of ``h`` seconds, or less where its error demands it; return how long, and the trials."""
+    """Make a piece of ``h`` seconds, or less where its error or its ways demand it.
+
+    Returns how long it is, and how many trials there were.
+    """
     for trial in range(_SHORTENINGS):
         error = make_piece(scene, equations, count, q, v, h, tolerance, stages)
-        if error <= 1.0 or h <= _SHORTEST * left:
+        share = share_of_ways(scene, v, h, False, stages, allowed) if error <= 1.0 else 1.0
+        if max(error, share) <= 1.0 or h <= _SHORTEST * left:
             return h, trial + 1
-        h *= max(0.1, 0.9 * math.pow(error, -0.125))
+        h *= max(0.1, 0.9 * (math.pow(error, -0.125) if error > 1.0 else 1.0 / share))
     return h, _SHORTENINGS
 
 
@@ -255,15 +235,17 @@ def advance_piece(
     of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
     scratch = named_equations(room)
     soonest = note_start(of, points, count, scratch, q, v, at.acceleration, start)
-    limit, evaluations, kind, index = _longest_piece(of, q, v), 4, -1, -1
+    allowed, evaluations, kind, index = start[ALLOWED], 4, -1, -1
+    limit = longest_piece(of, q, v, at.acceleration, allowed)
     h = min(limit, left, _BEYOND * soonest if foreseen else left)
     short = h < _SHORT * limit
     for _ in range(2):
         if short:
             make_stages(of, points, count, q, v, h, True, at)
             evaluations += SHORT_LAST
-        else:
-            h, pieces = _make_smooth(of, points, count, q, v, h, left, tolerance, at)
+            short = share_of_ways(of, v, h, True, at, allowed) <= 1.0
+        if not short:
+            h, pieces = _make_smooth(of, points, count, q, v, h, left, tolerance, at, allowed)
             evaluations += pieces * LAST
         passed, kind, index, more = cut_at_first_event(
             of, points, count, scratch, start, at, q, v, h, tolerance, rest, short
@@ -292,9 +274,9 @@ def begin_motion(
     of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
     accelerate(q, v, at.acceleration, of.inverse_mass, of.damping, of.calls)
     rest, least = rest_limits(of, at.acceleration, v)
-    count = take_closed(of, points, count, changed, q, v, at.acceleration, rest)
+    count = take_closed(of, points, count, changed, q, v, rest)
     if steady and _is_slow(of, v, rest):
-        held = hold_evenly(of, points, count, at.acceleration, least, at.v, at.q)
+        held = hold_evenly(of, points, count, changed, at.acceleration, rest, least, at.v, at.q)
         share = _BALANCED if held == SETTLED else _FITTED
         if held != NOT_FOUND and _is_balanced(of, points, count, share, at.acceleration, least, at.q):
             book_speeds(of, q, v, -1.0)
@@ -302,8 +284,8 @@ def begin_motion(
                 v[i] = 0.0
             book_contacts(of, points, count, q, v, at.acceleration)
             return DONE, keep_pressing(points, count, least), rest, True
-        accelerate(q, v, at.acceleration, of.inverse_mass, of.damping, of.calls)
-    if hold_closed(of, points, count, at.acceleration, least) != SETTLED:
+    count, solved = hold_closed(of, points, count, changed, q, v, at.acceleration, rest, least)
+    if not solved:
         return NO_FORCES, 0, rest, False
     closed = keep_pressing(points, count, least)
     if closed > 0:

@@ -5,8 +5,10 @@ import math
 from physicslab.kernels import Numbers, Vectors, fused, inlined
 from physicslab.kernels.rigid.constraints import constrained_acceleration, rates_without_forces
 from physicslab.kernels.rigid.curve import curve_is_exact, fit_curve, place_bodies, place_on_curve
+from physicslab.kernels.rigid.detect import TIE
 from physicslab.kernels.rigid.equations import SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
+    CENTRE,
     GAP,
     MARGIN,
     MU,
@@ -14,27 +16,29 @@ from physicslab.kernels.rigid.features import (
     OTHER,
     PAIR,
     STATUS,
+    VERTEX,
     VN,
     VT,
     Scene,
     measure,
 )
 from physicslab.kernels.rigid.pieces import Stages, make_piece
-from physicslab.kernels.rigid.touching import find_open, moved_closer
+from physicslab.kernels.rigid.touching import NO_SPEED, SLOW, find_open, moved_closer
 
-__all__ = ["APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "cut_at_first_event", "note_start"]
+__all__ = [
+    "ALLOWED", "APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "STARTS", "cut_at_first_event", "note_start",
+]  # fmt: skip
 
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
 """What must stay positive: a normal force, what is
 left of the friction cone, a sliding speed, the distance to the end of a feature, a gap."""
-_CLEAR = 5
-"""The row of what is noted at a start that holds how far pairs are apart at least."""
+_CLEAR, ALLOWED, STARTS = 5, 6, 7
+"""The rows of what is noted at a start that hold how far pairs are apart at least, and how far they may come
+together; the number of rows."""
 _CLOSED = 1e-13
 """Share of a size by which a gap may change by rounding."""
 _NO_FORCE = 1e-9
 """Share of the largest force that is rounding."""
-_NO_SPEED = 1e-8
-"""Share of the speed that counts as none that is rounding."""
 _ROUNDING = 1e-14
 """Share of a size that is rounding."""
 _HALVINGS = 40
@@ -90,8 +94,9 @@ def note_start(
     scene: Scene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
     acceleration: Numbers, start: Vectors,
 ) -> float:  # fmt: skip
-    """Note all functions at the start of a piece, and distances of pairs: ``start`` (6, points or pairs).
+    """Note all functions at the start of a piece, and distances of pairs.
 
+    ``start`` is (STARTS, points or pairs).
     Returns when the first gap would close if all went on as it begins [s].
     """
     soonest = math.inf
@@ -108,24 +113,30 @@ def note_start(
 
 
 @inlined
-def _can_end(kind: int, i: int, equations: Equations, start: float) -> bool:
+def _can_end(kind: int, i: int, equations: Equations) -> bool:
     """Whether a function can end the piece."""
     if kind in (HOLDS, SLIDES):
         sticks: bool = equations.points[i, STATUS] == STICKS
         rubs: bool = equations.measures[i, MU] > 0.0
         return sticks if kind == HOLDS else rubs and not sticks
-    return kind != REACHES or start > 0.0
+    return True
 
 
 @inlined
-def _allowance(kind: int, i: int, scene: Scene, start: float, rest: float) -> float:
-    """Return how far a function may fall that begins at nothing: by as much as counts as none."""
+def _allowance(kind: int, i: int, scene: Scene, equations: Equations, start: float, rest: float) -> float:
+    """Return how far a function may fall that begins at nothing: by as much as counts as none.
+
+    A corner at the end of a face is on it as long as both are level.
+    """
     if kind == SLIDES:
-        return rest if start <= rest else 0.0
-    if kind == APART and start <= _CLOSED * scene.coefficients[i, 2]:
-        allowance: float = _CLOSED * scene.coefficients[i, 2] - min(start, 0.0)
-        return allowance
-    return 0.0
+        return SLOW * rest if start <= SLOW * rest else 0.0
+    if kind < REACHES:
+        return 0.0
+    size, least = scene.coefficients[i if kind == APART else equations.points[i, PAIR], 2], _CLOSED
+    if kind == REACHES and equations.points[i, VERTEX] != CENTRE:
+        least = 2.0 * TIE
+    allowance: float = least * size - min(start, 0.0) if start <= least * size else 0.0
+    return allowance
 
 
 @inlined
@@ -135,7 +146,7 @@ def _noise(kind: int, index: int, scene: Scene, equations: Equations, rest: floa
         force: float = abs(equations.vectors[UNKNOWN, 2 * index])
         return _NO_FORCE * force
     if kind == SLIDES:
-        return _NO_SPEED * rest
+        return NO_SPEED * rest
     size: float = scene.coefficients[index if kind == APART else equations.points[index, PAIR], 2]
     return _ROUNDING * size
 
@@ -157,9 +168,9 @@ def _first_event(
             before = start[kind, i]
             if kind == APART and start[_CLEAR, i] > moved_closer(scene, i, q, stages.q):
                 continue
-            if (kind == last_kind and i == last) or not _can_end(kind, i, equations, before):
+            if (kind == last_kind and i == last) or not _can_end(kind, i, equations):
                 continue
-            allowance = _allowance(kind, i, scene, before, rest)
+            allowance = _allowance(kind, i, scene, equations, before, rest)
             after = _value(kind, i, scene, equations, count, scratch, stages.q, stages.v) + allowance
             if after < (-_NO_FORCE * force if kind <= HOLDS else 0.0):
                 before = max(before + allowance, 0.0)
@@ -255,7 +266,7 @@ def cut_at_first_event(
         on_curve = next_kind >= 0 and cut < _CUTS
         if on_curve:
             kind, index, end, slope = next_kind, next_index, at, 0.0
-            allowance = _allowance(kind, index, scene, start[kind, index], rest)
+            allowance = _allowance(kind, index, scene, equations, start[kind, index], rest)
             f_low = max(start[kind, index] + allowance, 0.0)
         elif kind < 0 or (exact and next_kind < 0):
             if kind < 0 and short:

@@ -135,7 +135,12 @@ def make_piece(
     n, free = 3 * scene.rows, 0  # without the clock
     for i in range(n):  # rows of what is fixed, or gone, are no reason for another step
         free += 1 if scene.inverse_mass[i] > 0.0 else 0
-    q_scale = max(largest(q, n), largest(stages.q, n))
-    v_scale = max(largest(v, n), largest(stages.v, n))
+    # What the start reaches by itself: in a step beyond the limit of stability the end grows with the error.
+    q_start, v_start = largest(q, n), largest(v, n)
+    push = 0.0
+    for i in range(n):
+        push = max(push, abs(stages.pushes[0, i]))
+    v_scale = min(max(v_start, largest(stages.v, n)), v_start + h * push)
+    q_scale = min(max(q_start, largest(stages.q, n)), q_start + h * v_scale)
     error = _error(stages, n, max(free, 1), h, q_scale, max(v_scale, _LEADS * q_scale / h), tolerance)
     return error if math.isfinite(error) else math.inf

@@ -49,14 +49,14 @@ def drift(q: Numbers, v: Numbers, h: float) -> None:
 
 @kernel
 def kick(scene: SceneTuple, acceleration: Numbers, q: Numbers, v: Numbers, h: float) -> float:
-    """Change speeds by the forces of ``h`` seconds; return the largest change of a body's velocity [m/s]."""
+    """Change speeds by the forces of ``h`` seconds; return the largest acceleration of a body [m/s^2]."""
     of, largest = named_scene(scene), 0.0
     accelerate(q, v, acceleration, of.inverse_mass, of.damping, of.calls)
     _move(v, acceleration, h)
     for row in range(of.rows):
         if of.inverse_mass[2 * row] > 0.0:
             largest = max(largest, length_of(acceleration[2 * row], acceleration[2 * row + 1]))
-    return h * largest
+    return largest
 
 
 @kernel

@@ -11,6 +11,7 @@ from physicslab.kernels.rigid.detect import find_points, seen_from
 from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     BOX,
+    CENTRE,
     GAP,
     GIVEN,
     HEIGHT,
@@ -22,6 +23,7 @@ from physicslab.kernels.rigid.features import (
     REACH,
     RESTITUTION,
     STATUS,
+    VERTEX,
     VN,
     VT,
     WIDTH,
@@ -31,6 +33,8 @@ from physicslab.kernels.rigid.features import (
 )
 
 __all__ = [
+    "NO_SPEED",
+    "SLOW",
     "far_apart",
     "find_open",
     "find_touching",
@@ -47,6 +51,10 @@ _TOUCH = 1e-10
 """Share of the smaller size within which a gap is closed."""
 _REST = 1e-6
 """Speeds below this, times the speed of a fall over the smallest size, are none."""
+SLOW = 1e-3
+"""Share of that speed below which a point does not slide: what is slower comes to rest before it should."""
+NO_SPEED = 1e-8
+"""Share of that speed that is rounding."""
 
 
 @inlined
@@ -112,7 +120,9 @@ def find_open(
     for k in range(found):
         closed = False
         for i in range(count):
-            closed = closed or _is_same(equations.points, i, scratch.points, k)
+            # A disc touches a body at one point: where that comes to the end of its feature is an event.
+            round_one = equations.points[i, PAIR] == p and equations.points[i, VERTEX] == CENTRE
+            closed = closed or round_one or _is_same(equations.points, i, scratch.points, k)
         if closed:
             apart = -math.inf
         else:
@@ -206,26 +216,9 @@ def _changed_status(equations: Equations, i: int, changed: Points) -> int:
     return status
 
 
-@fused
-def take_closed(
-    scene: Scene, equations: Equations, count: int, changed: Points,
-    q: Numbers, v: Numbers, acceleration: Numbers, rest: float,
-) -> int:  # fmt: skip
-    """Keep the points that do not part, take their slow speeds away and note what they may do.
-
-    ``changed`` has the points that ended the piece before and what they do from now on, where the laws alone
-    would leave that to rounding. Returns how many there are.
-    """
-    n = 0
-    measure_all(scene, equations, count, q, v)
-    for i in range(count):
-        if equations.measures[i, VN] <= rest and _changed_status(equations, i, changed) != OPEN:
-            n = _keep(equations, i, n)
-    count, n = n, 0
-    if count == 0:
-        return 0
-    assemble(scene, equations, count)
-    # Speeds below the limit are none: they would make equations of points that rest contradict each other.
+@inlined
+def _stop_across(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
+    """Remove speeds that count as none: equations of points that rest would contradict each other."""
     for i in range(count):
         equations.points[i, STATUS] = SLIDES_ON
         equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = equations.measures[i, VN], 0.0
@@ -234,35 +227,75 @@ def take_closed(
     apply(scene, equations, count, v)
     book_speeds(scene, q, v, 1.0)
     measure_all(scene, equations, count, q, v)
-    accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
+
+
+@fused
+def take_closed(
+    scene: Scene, equations: Equations, count: int, changed: Points, q: Numbers, v: Numbers, rest: float
+) -> int:
+    """Keep the points that do not part; return how many.
+
+    ``changed`` has the points that ended the piece before and what they do from now on, where the laws alone
+    would leave that to rounding.
+    """
+    n = 0
+    measure_all(scene, equations, count, q, v)
+    for i in range(count):
+        if equations.measures[i, VN] <= rest and _changed_status(equations, i, changed) != OPEN:
+            n = _keep(equations, i, n)
+    return n
+
+
+@inlined
+def _note_given(equations: Equations, count: int, changed: Points, rest: float) -> None:
+    """Note what points may do by how they move: those of ``changed`` go on with what they began."""
     for i in range(count):
         sliding, given = equations.measures[i, VT], STICKS
         changed_to = _changed_status(equations, i, changed)
-        if equations.measures[i, MU] == 0.0 or sliding > rest:
+        if equations.measures[i, MU] == 0.0 or sliding > SLOW * rest:
             given = SLIDES_ON
-        elif sliding < -rest:
+        elif sliding < -SLOW * rest:
             given = SLIDES_BACK
         elif changed_to > STICKS:
             given = changed_to
         equations.points[i, GIVEN] = given
-    return count
 
 
 @inlined
-def hold_closed(scene: Scene, equations: Equations, count: int, acceleration: Numbers, least: float) -> int:
-    """Find the forces of ``count`` points and what they do, as :func:`solve_complementarity` returns it."""
-    if count == 0:
-        return SETTLED
-    assemble(scene, equations, count)
-    find_free_rates(scene, equations, count, acceleration)
-    found: int = solve_complementarity(equations, count, least, True)
-    return found
+def hold_closed(
+    scene: Scene, equations: Equations, count: int, changed: Points,
+    q: Numbers, v: Numbers, acceleration: Numbers, rest: float, least: float,
+) -> tuple[int, bool]:  # fmt: skip
+    """Find what ``count`` points do, and with what forces; return how many they are, and if laws are kept."""
+    n, solved = 0, True
+    for attempt in range(2):
+        if count == 0:
+            return 0, True
+        leaves = False
+        for i in range(count):
+            leaves = leaves or equations.measures[i, VN] > NO_SPEED * rest
+        leaves = leaves and attempt == 0
+        assemble(scene, equations, count)
+        if not leaves:
+            _stop_across(scene, equations, count, q, v)
+        accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
+        find_free_rates(scene, equations, count, acceleration)
+        _note_given(equations, count, changed, rest)
+        solved = solve_complementarity(equations, count, least, True) == SETTLED
+        if not leaves:
+            break
+        for i in range(count):  # what has just begun to open, and goes on, keeps its speed
+            opens = equations.points[i, STATUS] == OPEN and equations.measures[i, VN] > NO_SPEED * rest
+            if not (solved and opens):
+                n = _keep(equations, i, n)
+        count, n = n, 0
+    return count, solved
 
 
 @inlined
 def hold_evenly(
-    scene: Scene, equations: Equations, count: int, acceleration: Numbers, least: float,
-    inverse_mass: Numbers, pulled: Numbers,
+    scene: Scene, equations: Equations, count: int, changed: Points, acceleration: Numbers, rest: float,
+    least: float, inverse_mass: Numbers, pulled: Numbers,
 ) -> int:  # fmt: skip
     """Find the forces that would hold ``count`` points of equal bodies that are pulled as these are.
 
@@ -282,7 +315,10 @@ def hold_evenly(
         scene.rows, inverse_mass, scene.damping, scene.calls, scene.outlines, scene.walls, scene.pairs,
         scene.coefficients, scene.accounts,
     )  # fmt: skip
-    found: int = hold_closed(even, equations, count, pulled, least)
+    _note_given(equations, count, changed, rest)
+    assemble(even, equations, count)
+    find_free_rates(even, equations, count, pulled)
+    found: int = solve_complementarity(equations, count, least, True)
     return found
 
 

@@ -30,7 +30,7 @@ from physicslab.kernels.arguments import (
 from physicslab.kernels.broad.fat_boxes import still_holds
 from physicslab.kernels.energy import moments_of_mass
 from physicslab.kernels.forces.gravity import uniform_gravity
-from physicslab.kernels.motion import clear, drift, find_not_finite, kick
+from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick
 from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.islands import count_rest, find_touched
@@ -202,7 +202,7 @@ def _advance(
         substep += 1
         if substep == plan.substeps:
             substep = 0
-            failed = find_not_finite(position, angle) >= 0 or find_not_finite(linear, angular) >= 0
+            failed = find_beyond(position, angle, FARTHEST) >= 0 or find_beyond(linear, angular, LARGEST) >= 0
             now = charge(cost, ACCELERATE, now)
             if failed:
                 return DIVERGED, done, substep, finished_impacts, impact_count, impulse_dt

@@ -13,7 +13,7 @@ from physicslab.integrators import INTEGRATORS, Integrator
 from physicslab.lab.accuracy.measure import Measurement, finish, measure
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting, ladder, refusal, sees_velocity
-from physicslab.lab.accuracy.verdict import Verdict, measured_order, verdict
+from physicslab.lab.accuracy.verdict import Verdict, measured_order, verdict, why_order_short
 from physicslab.lab.case import Job, attempt
 
 __all__ = ["Curve", "Row", "Study", "rounding_floor", "study"]
@@ -44,15 +44,18 @@ class Curve:
         The power of the work with which its error falls, where that can be measured.
     refused : str
         Why the engine does not use it here; it then has no rows.
-    holds : bool
-        Whether the order that the method states holds for these forces.
+    exception : str
+        Why the order that the method states does not hold for these forces; empty where it does.
+    short : str
+        Why the measured order is below the stated one, from the rows; empty where it is not.
     """
 
     integrator: Integrator
     rows: list[Row] = field(default_factory=list)
     order: float | None = None
     refused: str = ""
-    holds: bool = True
+    exception: str = ""
+    short: str = ""
 
     @property
     def best(self) -> float | None:
@@ -106,8 +109,7 @@ def study(problem: Problem, *, sparse: bool = False) -> Job[Study]:
     plan = []
     for method in INTEGRATORS.values():
         refused = refusal(problem, method)
-        holds = not (method.positions_only and sees_velocity(problem)) and not problem.touches
-        curve = Curve(method, refused=refused, holds=holds)
+        curve = Curve(method, refused=refused, exception=_exception(problem, method))
         settings = [] if refused else list(ladder(problem, method))
         plan.append((curve, settings[1 - len(settings) % 2 :: 2] if sparse else settings))
     whole = 1 + sum(len(settings) for _, settings in plan)
@@ -128,8 +130,22 @@ def study(problem: Problem, *, sparse: bool = False) -> Job[Study]:
         efforts = [m.evaluations if curve.integrator.chooses_steps else m.steps for m in measured]
         if curve.rows and curve.integrator.evaluations and problem.search is None:
             even = not curve.integrator.chooses_steps
-            curve.order = measured_order(efforts, [m.error for m in measured], even=even)
+            errors, rates = [m.error for m in measured], [m.watched.rate_dt for m in measured]
+            curve.order = measured_order(efforts, errors, even=even)
+            curve.short = why_order_short(
+                curve.integrator.order, efforts, errors, rates, curve.integrator.stability_limit,
+                even=even, exception=curve.exception,
+            )  # fmt: skip
     yield Study(problem, auto, [curve for curve, _ in plan], floor, rigid)
+
+
+def _exception(problem: Problem, method: Integrator) -> str:
+    """Return why a method's order does not hold for the forces of a problem; empty where it does."""
+    if problem.touches:
+        return "bodies touch: contacts are found within steps"
+    if method.positions_only and sees_velocity(problem):
+        return "forces depend on velocities, and its kicks take those from before"
+    return ""
 
 
 def _row(problem: Problem, setting: Setting, floor: float | None) -> Row:

@@ -1,0 +1,94 @@
+"""How long a piece of motion may last so that no body passes through another one unseen."""
+
+import math
+
+from physicslab.kernels import Numbers, inlined
+from physicslab.kernels.ode.dop853_tableau import LAST
+from physicslab.kernels.rigid.features import BOX, KIND, REACH, Scene
+from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages
+from physicslab.kernels.rigid.touching import far_apart, length_of
+
+__all__ = ["longest_piece", "share_of_ways", "time_to_pass"]
+
+_NODES = METHODS.sum(axis=2)
+"""When the stages of both methods are, as shares of a step."""
+_STRAYS = LAST + 1
+"""The row of pushes that holds how far each body may be from where an even acceleration leads it [m]."""
+_MAX_TURN = 0.25
+"""Largest angle of a piece [rad]."""
+_STRIDE = 0.2
+"""Share of the smaller size that a pair may approach in a piece, beyond its gap."""
+
+
+@inlined
+def time_to_pass(way: float, speed: float, acceleration: float) -> float:
+    """Return how long a way takes from a speed on, under an even acceleration [s]."""
+    mean: float = 0.5 * (speed + math.sqrt(speed * speed + 2.0 * acceleration * way))
+    return way / mean if mean > 0.0 else math.inf
+
+
+@inlined
+def _turning_reach(scene: Scene, row: int) -> float:
+    """Return how far from its centre the outline of a body moves as it turns [m]."""
+    reach: float = scene.outlines[row, REACH] if scene.outlines[row, KIND] == BOX else 0.0
+    return reach
+
+
+@inlined
+def _relative(scene: Scene, a: int, b: int, rates: Numbers) -> float:
+    """Return the largest rate at which points of two bodies come together, of speeds or accelerations."""
+    rows = scene.rows
+    rate: float = length_of(rates[2 * b] - rates[2 * a], rates[2 * b + 1] - rates[2 * a + 1])
+    rate += abs(rates[2 * rows + a]) * _turning_reach(scene, a)
+    rate += abs(rates[2 * rows + b]) * _turning_reach(scene, b)
+    return rate
+
+
+@inlined
+def longest_piece(scene: Scene, q: Numbers, v: Numbers, acceleration: Numbers, allowed: Numbers) -> float:
+    """Return for how long no pair can pass through each other unseen, and no box turn far [s].
+
+    If all went on as it begins. How far each pair may come together is noted in ``allowed`` [m].
+    """
+    longest = math.inf
+    for p in range(len(scene.pairs)):
+        a, b = scene.pairs[p, 0], scene.pairs[p, 1]
+        speed, push = _relative(scene, a, b, v), _relative(scene, a, b, acceleration)
+        allowed[p] = math.inf
+        if speed > 0.0 or push > 0.0:
+            allowed[p] = max(far_apart(scene, p, q, math.inf), 0.0) + _STRIDE * scene.coefficients[p, 2]
+            longest = min(longest, time_to_pass(allowed[p], speed, push))
+            allowed[p] += _STRIDE * scene.coefficients[p, 2]
+    for row in range(scene.rows):
+        turning = 2 * scene.rows + row
+        if scene.outlines[row, KIND] == BOX:
+            longest = min(longest, time_to_pass(_MAX_TURN, abs(v[turning]), abs(acceleration[turning])))
+    return longest
+
+
+@inlined
+def share_of_ways(scene: Scene, v: Numbers, h: float, short: bool, stages: Stages, allowed: Numbers) -> float:
+    """Return the largest share that two bodies may have come together of what is ``allowed`` [m].
+
+    In the piece of ``h`` seconds from speeds v that was just made. Under an even acceleration a body covers
+    no more than by the mean of its speeds at both ends; what the stages are off that is added.
+    """
+    rows, method, last, worst = scene.rows, 1 if short else 0, SHORT_LAST if short else LAST, 0.0
+    strays = stages.pushes[_STRAYS]
+    for row in range(rows):
+        off, turned = 0.0, 0.0
+        for stage in range(1, last):
+            rates, share = stages.rates[stage], _NODES[method, stage]
+            for k in range(3):
+                i = 2 * row + k if k < 2 else 2 * rows + row
+                change = abs(rates[i] - v[i] - share * (stages.v[i] - v[i]))
+                if k < 2:
+                    off = max(off, change)
+                else:
+                    turned = max(turned, change)
+        strays[row] = h * (math.sqrt(2.0) * off + turned * _turning_reach(scene, row))
+    for p in range(len(scene.pairs)):
+        a, b = scene.pairs[p, 0], scene.pairs[p, 1]
+        way = 0.5 * h * (_relative(scene, a, b, v) + _relative(scene, a, b, stages.v))
+        worst = max(worst, (way + strays[a] + strays[b]) / allowed[p])
+    return worst
