@@ -275,19 +275,24 @@ def begin_motion(
     accelerate(q, v, at.acceleration, of.inverse_mass, of.damping, of.calls)
     rest, least = rest_limits(of, at.acceleration, v)
     count = take_closed(of, points, count, changed, q, v, rest)
-    if steady and _is_slow(of, v, rest):
-        held = hold_evenly(of, points, count, changed, at.acceleration, rest, least, at.v, at.q)
-        share = _BALANCED if held == SETTLED else _FITTED
-        if held != NOT_FOUND and _is_balanced(of, points, count, share, at.acceleration, least, at.q):
-            book_speeds(of, q, v, -1.0)
-            for i in range(3 * of.rows):
-                v[i] = 0.0
-            book_contacts(of, points, count, q, v, at.acceleration)
-            return DONE, keep_pressing(points, count, least), rest, True
-    count, solved = hold_closed(of, points, count, changed, q, v, at.acceleration, rest, least)
-    if not solved:
-        return NO_FORCES, 0, rest, False
+    slow, held = steady and _is_slow(of, v, rest), False
+    if slow:
+        found = hold_evenly(of, points, count, changed, at.acceleration, rest, least, at.v, at.q)
+        share = _BALANCED if found == SETTLED else _FITTED
+        held = found != NOT_FOUND and _is_balanced(of, points, count, share, at.acceleration, least, at.q)
+    if not held:
+        count, solved = hold_closed(of, points, count, changed, q, v, at.acceleration, rest, least)
+        if not solved:
+            return NO_FORCES, 0, rest, False
+        # What is light on top of what is heavy is held to more digits by its own mass.
+        held = slow and _is_balanced(of, points, count, _BALANCED, at.acceleration, least, at.q)
     closed = keep_pressing(points, count, least)
+    if held:
+        book_speeds(of, q, v, -1.0)
+        for i in range(3 * of.rows):
+            v[i] = 0.0
+        book_contacts(of, points, closed, q, v, at.acceleration)
+        return DONE, closed, rest, True
     if closed > 0:
         project(of, points, closed, q, v)
     begin_piece(of, points, closed, q, v, at)
