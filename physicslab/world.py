@@ -10,7 +10,6 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows
 from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
-from physicslab.kernels.accounts import CONTACT
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
 from physicslab.state.state import State
@@ -113,8 +112,7 @@ class World(State):
             open_account(self, forces)
             self.schedule.run(Stage.PREPARE, self, h)
             made = self._advance(h, steps)
-            rest = CONTACT if self.stepper is not None and self.stepper.contacts_take_the_rest else None
-            close_account(self, forces, rest)
+            close_account(self, forces)
             self.schedule.run(Stage.FINISH, self, h * steps)
         self.steps += made.steps
         self.step_divisions = made.divisions

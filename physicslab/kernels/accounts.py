@@ -4,11 +4,9 @@ A row is a cause; its columns are the energy that it has given to the world [J],
 the angular momentum about the origin [N m s]. What a cause takes is negative.
 """
 
-from physicslab.kernels import Vectors, kernel
-
 __all__ = [
     "CAUSES", "CONTACT", "DAMPING", "EDITS", "ENERGY", "FIELDS", "FRICTION", "GRAVITY", "HAND", "IMPACTS",
-    "JOINTS", "MOTORS", "OVERLAP", "PX", "PY", "SPIN", "SPRINGS", "THRUST", "book_rest",
+    "JOINTS", "MOTORS", "OVERLAP", "PX", "PY", "SPIN", "SPRINGS", "THRUST",
 ]  # fmt: skip
 
 CAUSES = 13
@@ -21,15 +19,3 @@ of what pulls from outside, as a planet below or a fixed end. The momentum of fr
 is that of ``CONTACT``."""
 ENERGY, PX, PY, SPIN = range(4)
 """The columns."""
-
-
-@kernel
-def book_rest(
-    sums: Vectors, before: Vectors, cause: int, energy: float, px: float, py: float, spin: float
-) -> None:
-    """Book to a cause what is left of a change of energy and momentum after all bookings since ``before``."""
-    for column in range(4):
-        left = (energy, px, py, spin)[column]
-        for row in range(CAUSES):
-            left -= sums[row, column] - before[row, column]
-        sums[cause, column] += left

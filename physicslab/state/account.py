@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels import direct_entry
-from physicslab.kernels.accounts import CAUSES, EDITS, HAND, book_rest
+from physicslab.kernels.accounts import CAUSES, EDITS, HAND
 
 __all__ = ["Account", "Balance", "KeptAccount"]
 
@@ -97,17 +96,6 @@ class Account:
             self.sums[cause] += change
             self.last = now
         self.held = held
-
-    def close(self, now: Balance, rest: int | None, before: KeptAccount) -> None:
-        """End a step at a balance; all that is not booked goes to the cause ``rest``, if one is given.
-
-        ``before`` is what there was when the step began; an edit since then is booked, and no rest.
-        """
-        if rest is not None and math.isfinite(before.last.energy):
-            old = self.last if before.start is None else before.last
-            energy, px, py, spin = now[0] - old[0], now[1] - old[1], now[2] - old[2], now[3] - old[3]
-            direct_entry(book_rest)(self.sums, before.sums, rest, energy, px, py, spin)
-        self.last = now
 
     def keep(self) -> KeptAccount:
         """Return what there is, to go back to."""

@@ -12,7 +12,6 @@ from physicslab.components import Held, Mass, Shape, Transform, Velocity
 from physicslab.components.shape import CIRCLE
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels import direct_entry, motion
-from physicslab.kernels.near_counts import DRIVEN
 from physicslab.kernels.solver import impulse
 from physicslab.state.state import State
 
@@ -43,10 +42,10 @@ def derive_masses(state: State) -> None:
         state.compile((motion.derive_masses,))
     revision, columns = bodies.columns
     if revision == state.entity_index.revision and columns[-1] is state.sleep.asleep:
-        ratio, infinite, sizeless, driven = direct_entry(motion.derive_masses)(*columns)
+        ratio, infinite, sizeless = direct_entry(motion.derive_masses)(*columns)
     else:
         columns = _columns(state)
-        ratio, infinite, sizeless, driven = motion.derive_masses(*columns)
+        ratio, infinite, sizeless = motion.derive_masses(*columns)
         bodies.columns = state.entity_index.revision, columns
     if sizeless >= 0:
         _refuse_size(state, sizeless)
@@ -55,7 +54,6 @@ def derive_masses(state: State) -> None:
         inertia, allowed = float(mass["inertia"][infinite]), f"{_INERTIA.allowed}, of mass and Shape too"
         raise InvalidValue(f"{state.label_of_row(infinite)}: Mass", "inertia", inertia, allowed)
     bodies.unequal = ratio > impulse.HEAVY_RATIO
-    state.contacts.counts[DRIVEN] = driven
 
 
 def _columns(state: State) -> tuple[NDArray[Any], ...]:

@@ -96,7 +96,7 @@ def book_account(state: State, forces: Sequence[ForceSystem]) -> None:
     state.account.seen = None  # what was seen belongs to the balance before
 
 
-def close_account(state: State, forces: Sequence[ForceSystem], rest: int | None) -> None:
-    """End a step; all that is not booked goes to the cause ``rest``, if one is given."""
-    state.account.close(balance_of(state, forces), rest, state.checkpoint.account)
+def close_account(state: State, forces: Sequence[ForceSystem]) -> None:
+    """End a step: what is not booked of what it changed is an error."""
+    state.account.last = balance_of(state, forces)
     state.account.seen = _seen(state, forces)

@@ -30,7 +30,6 @@ class Flow:
     title: ClassVar[str] = "Steps as one compiled flow"
     leaps: bool = True
     leaves_forces: ClassVar[bool] = False
-    contacts_take_the_rest: ClassVar[bool] = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator

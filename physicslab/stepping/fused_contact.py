@@ -63,7 +63,6 @@ class FusedContact:
     title: ClassVar[str] = "Compiled steps, contacts within them"
     leaps: bool = False
     leaves_forces: ClassVar[bool] = True
-    contacts_take_the_rest: ClassVar[bool] = True
     kernels: tuple[Any, ...] = (
         fused.advance, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs,
         near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
