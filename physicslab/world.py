@@ -108,11 +108,12 @@ class World(State):
         The clock is the caller's. Where that fails or is broken off, the world goes back to before the step.
         """
         with Undoing(self, self._motion):
-            forces = self.schedule.forces
-            open_account(self, forces)
+            if self.schedule.acts_at(Stage.PREPARE):
+                open_account(self, self.schedule.forces)
             self.schedule.run(Stage.PREPARE, self, h)
             made = self._advance(h, steps)
-            close_account(self, forces)
+            if self.account.is_open:
+                close_account(self, self.schedule.forces)
             self.schedule.run(Stage.FINISH, self, h * steps)
         self.steps += made.steps
         self.step_divisions = made.divisions
@@ -136,6 +137,8 @@ class World(State):
         """Make steps with the best stepper for the coming one, with its kernels compiled."""
         self.stepper = self.stepper_for(h)
         self.compile(self.stepper.kernels)
+        if not (self.stepper.keeps_balance or self.account.is_open):
+            open_account(self, self.schedule.forces)
         return self.stepper.advance(self, h, self.steppers.at_once(self.stepper, steps))
 
     def stepper_for(self, h: float) -> Stepper:

@@ -70,7 +70,7 @@ def near_in(state: State) -> NearTuple:
         contacts.counts, contacts.manifolds, contacts.points, contacts.scalar, contacts.touching,
         contacts.wide.discs.slots, contacts.wide.boxes.slots,
         contacts.proximity, contacts.activation_distance, state.entity_index.entities,
-        contacts.rotations, state.account.sums, contacts.noted, contacts.linear_before,
+        contacts.rotations, state.account.table, contacts.noted, contacts.linear_before,
         contacts.angular_before,
     )  # fmt: skip
 

@@ -73,8 +73,8 @@ class Near(NamedTuple):
     Then the slots of discs and of boxes; the pairs without records, the distance at which each gets one [m],
     the entities of all rows, and the angle of each box when its cosine and sine were computed, and those; the
     account that contacts and impacts add to (:mod:`physicslab.kernels.accounts`). For that, room for what is
-    noted of points (points, 4), and for the velocities (rows, 2) and angular velocities of before the impulses
-    of a substep (:mod:`physicslab.kernels.solver.work`).
+    noted of points (points, 4), and for the velocities (rows, 2) and angular velocities from before the
+    impulses of a substep (:mod:`physicslab.kernels.solver.work`).
     """
 
     counts: Rows
@@ -139,10 +139,15 @@ class Plan(NamedTuple):
 
 
 class Gravity(NamedTuple):
-    """Masses [kg], inverse masses (of all) [1/kg], gravity [m/s^2], the speculative margin [m]."""
+    """Masses and moments of inertia, the inverse of both (of all bodies), gravity [m/s^2].
+
+    Then the speculative margin [m].
+    """
 
     mass: Numbers
+    inertia: Numbers
     inverse_mass: Numbers
+    inverse_inertia: Numbers
     gx: float
     gy: float
     margin: float
@@ -189,7 +194,7 @@ NearTuple = tuple[
 ]
 SoftnessTuple = tuple[float, float, float]
 PlanTuple = tuple[int, int, float, float, float]
-GravityTuple = tuple[Numbers, Numbers, float, float, float]
+GravityTuple = tuple[Numbers, Numbers, Numbers, Numbers, float, float, float]
 SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows]
 """The same, without names."""
 

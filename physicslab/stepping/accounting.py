@@ -88,6 +88,7 @@ def open_account(state: State, forces: Sequence[ForceSystem]) -> None:
     unchanged = seen is not None and seen == account.seen and account.start is not None
     now = account.last if unchanged else balance_of(state, forces)
     account.open(now, held_in(state), state.time)
+    account.is_open = True
 
 
 def book_account(state: State, forces: Sequence[ForceSystem]) -> None:
@@ -98,5 +99,5 @@ def book_account(state: State, forces: Sequence[ForceSystem]) -> None:
 
 def close_account(state: State, forces: Sequence[ForceSystem]) -> None:
     """End a step: what is not booked of what it changed is an error."""
-    state.account.last = balance_of(state, forces)
+    state.account.last, state.account.is_open = balance_of(state, forces), False
     state.account.seen = _seen(state, forces)

@@ -19,6 +19,7 @@ class Asleep:
     name: ClassVar[str] = "asleep"
     title: ClassVar[str] = "Everything sleeps: only time passes"
     leaps: bool = False
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = True
     kernels: tuple[Any, ...] = ()
 

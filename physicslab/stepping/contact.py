@@ -29,6 +29,7 @@ class Contact:
     name: ClassVar[str] = "contact"
     title: ClassVar[str] = "Steps stage by stage, contacts within them"
     leaps: bool = False
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = True
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:

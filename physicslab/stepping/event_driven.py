@@ -60,6 +60,7 @@ class EventDriven:
 
     name: ClassVar[str] = "event_driven"
     title: ClassVar[str] = "Impacts at their exact times"
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 

@@ -29,6 +29,7 @@ class Flow:
     name: ClassVar[str] = "flow"
     title: ClassVar[str] = "Steps as one compiled flow"
     leaps: bool = True
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:

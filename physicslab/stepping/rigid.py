@@ -58,6 +58,7 @@ class Rigid:
     name: ClassVar[str] = "rigid"
     title: ClassVar[str] = "Rigid contacts, events at their exact times"
     leaps: bool = False
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (
         motion.touch, motion.collide, motion.advance_piece, motion.begin_motion,

@@ -42,12 +42,15 @@ class Stepper(Protocol):
         What it calls; compiled before it first advances, and not before.
     leaps : bool
         Whether several steps are one advance, made as a whole or not at all.
+    keeps_balance : bool
+        Whether it measures energy and momentum before its steps and after them.
     leaves_forces : bool
         Whether ``bodies.force`` holds the forces after a step.
     """
 
     name: ClassVar[str]
     title: ClassVar[str]
+    keeps_balance: ClassVar[bool]
     leaves_forces: ClassVar[bool]
     reason: str
 

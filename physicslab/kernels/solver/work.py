@@ -87,7 +87,7 @@ def _relative(point: Point, a: int, b: int, linear: Vectors, angular: Numbers) -
 def book_solved(
     contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: float
 ) -> tuple[float, float]:
-    """Return the work of normal and of tangential impulses of scalar contacts [J] since velocities were noted.
+    """Return the work of normal and tangential impulses of scalar contacts [J] since velocities were noted.
 
     Bodies have moved for ``h`` seconds since, which separations follow. What comes from outside is booked by
     :func:`book_relaxed`, at the places that bodies have now; that these impulses acted before is booked here.
@@ -173,7 +173,7 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
 
 @inlined
 def book_slots(near: Near, motion: Motion, inverse: Inverse, sign: float) -> None:
-    """Book what comes from outside by the impulses of wide contacts, where bodies are now, with a ``sign``."""
+    """Book what comes from outside by wide contacts, where bodies are now, with a ``sign``."""
     for slots in (near.discs, near.boxes):
         data, rows = slots.data, rows_of(slots.kind)
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
