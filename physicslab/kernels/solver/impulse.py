@@ -117,7 +117,7 @@ def solve(
     for n in range(sweeps):
         unsettled, _, _ = sweep(contacts, motion, inverse, soft, n % 2 == 1, False)
         if near.counts[WIDE_COUNT] > 0:
-            sweep_wide(near, motion, 0.0, soft)
+            sweep_wide(near, motion, 0.0, soft, False)
         elif not unsettled:
             break
 
@@ -151,7 +151,7 @@ def relax(contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: f
         unsettled, push, rub = sweep(contacts, motion, inverse, rigid, n % 2 == 1, crowd)
         pressed, rubbed = pressed + push, rubbed + rub
         if crowd:
-            push, rub = sweep_wide(near, motion, drift, rigid)
+            push, rub = sweep_wide(near, motion, drift, rigid, True)
             pressed, rubbed, drift = pressed + push, rubbed + rub, 0.0
         elif not unsettled:
             break

@@ -50,14 +50,34 @@ def _note(near: Near, row: int, motion: Motion, inverse: Inverse, acting: Acting
     near.angular_before[row] = spin
 
 
+@inlined
+def _note_all(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float) -> None:
+    """Note all velocities, in loops that are vectorised."""
+    size = motion.linear.size
+    before, now, force = (
+        near.linear_before.reshape(size),
+        motion.linear.reshape(size),
+        acting.force.reshape(size),
+    )
+    for i in range(size):
+        before[i] = now[i]
+    for row in range(len(motion.angular)):
+        near.angular_before[row] = motion.angular[row]
+    if acting.any:
+        for row in range(len(motion.angular)):
+            span = 0.0 if acting.unkicked[row] else h
+            before[2 * row] -= span * inverse.mass[row] * force[2 * row]
+            before[2 * row + 1] -= span * inverse.mass[row] * force[2 * row + 1]
+            near.angular_before[row] -= span * inverse.inertia[row] * acting.torque[row]
+
+
 @always_inlined
 def note_velocities(
     contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float
 ) -> None:
     """Note the velocities of bodies in contact before the impulses of a substep of ``h`` seconds."""
     if near.counts[WIDE_COUNT] > 0:
-        for row in range(len(motion.angular)):
-            _note(near, row, motion, inverse, acting, h)
+        _note_all(near, motion, inverse, acting, h)
         return
     for k in range(contacts.number):
         manifold = contacts.manifolds[contacts.touching[k]]
@@ -68,10 +88,11 @@ def note_velocities(
 @inlined
 def take_means(near: Near, motion: Motion) -> None:
     """Put in place of the velocities noted their mean with those of now."""
-    before, now = near.linear_before, motion.linear
+    size = motion.linear.size
+    before, now = near.linear_before.reshape(size), motion.linear.reshape(size)
+    for i in range(size):
+        before[i] = 0.5 * (before[i] + now[i])
     for row in range(len(motion.angular)):
-        before[row, 0] = 0.5 * (before[row, 0] + now[row, 0])
-        before[row, 1] = 0.5 * (before[row, 1] + now[row, 1])
         near.angular_before[row] = 0.5 * (near.angular_before[row] + motion.angular[row])
 
 
@@ -99,7 +120,6 @@ def book_solved(
         a, b, nx, ny, px, py = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y, 0.0, 0.0
         for j in range(2 * p, 2 * p + manifold.count):
             point = contacts.points[j]
-            ux, uy = _relative(point, a, b, near.linear_before, near.angular_before)
             vx, vy = _relative(point, a, b, motion.linear, motion.angular)
             push, rub, along, across = (
                 point.normal_impulse,
@@ -107,8 +127,10 @@ def book_solved(
                 nx * vx + ny * vy,
                 nx * vy - ny * vx,
             )
-            pressed += 0.5 * push * (nx * ux + ny * uy + along)
-            rubbed += 0.5 * rub * (nx * uy - ny * ux + across)
+            if push != 0.0 or rub != 0.0:  # most that do not touch yet have none
+                ux, uy = _relative(point, a, b, near.linear_before, near.angular_before)
+                pressed += 0.5 * push * (nx * ux + ny * uy + along)
+                rubbed += 0.5 * rub * (nx * uy - ny * ux + across)
             point.separation += h * along
             near.noted[j, 0], near.noted[j, 1], near.noted[j, 2], near.noted[j, 3] = push, rub, along, across
             px += push * nx - rub * ny
@@ -156,9 +178,11 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
         for j in range(2 * p, 2 * p + manifold.count):
             point, noted = contacts.points[j], near.noted
             push, rub = point.normal_impulse, point.tangent_impulse
-            vx, vy = _relative(point, a, b, motion.linear, motion.angular)
-            pressed += 0.5 * (push - noted[j, 0]) * (noted[j, 2] + nx * vx + ny * vy)
-            rubbed += 0.5 * (rub - noted[j, 1]) * (noted[j, 3] + nx * vy - ny * vx)
+            more, also = push - noted[j, 0], rub - noted[j, 1]
+            if more != 0.0 or also != 0.0:
+                vx, vy = _relative(point, a, b, motion.linear, motion.angular)
+                pressed += 0.5 * more * (noted[j, 2] + nx * vx + ny * vy)
+                rubbed += 0.5 * also * (noted[j, 3] + nx * vy - ny * vx)
             x, y = push * nx - rub * ny, push * ny + rub * nx
             px, py = px + x, py + y
             turn_a += point.arm_ax * y - point.arm_ay * x

@@ -48,8 +48,8 @@ from physicslab.kernels.wide.layout import (
 )  # fmt: skip
 
 __all__ = [
-    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "one_normal", "sweep_wide",
-    "two_frictions", "two_normals", "warm_start_wide", "work_of",
+    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "one_normal", "relative",
+    "sweep_wide", "two_frictions", "two_normals", "warm_start_wide", "work_of",
 ]  # fmt: skip
 
 SOFT = 0.02
@@ -205,13 +205,20 @@ def _velocities(
 
 
 @fused
+def relative(slots: Slots, k: int, mean: Mean) -> tuple[Wide, Wide, Wide, Wide]:
+    """Return the mean velocity of B against A in a block, and the mean angular velocities of A and of B."""
+    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, mean.linear, mean.angular)
+    return vbx - vax, vby - vay, wa, wb
+
+
+@fused
 def _sweep_discs(
-    slots: Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint
+    slots: Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint, booked: bool
 ) -> Work:
     """Solve a block of discs; normal impulses turn no disc, so friction does not depend on them.
 
-    Returns the work of this sweep's impulses, and where there is a ``drift`` that of those so far, at the
-    ``mean`` velocities.
+    Where it is ``booked`` this returns the work of the sweep's impulses; where there is a ``drift`` also that
+    of those so far, at the ``mean`` velocities.
     """
     data, at = slots.data, k * DISC_ROWS
     vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion.linear, motion.angular)
@@ -231,16 +238,17 @@ def _sweep_discs(
     put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
     put_numbers(motion.angular, slots.a, k * WIDE, wa - ia * ra * friction_impulse)
     put_numbers(motion.angular, slots.b, k * WIDE, wb - ib * rb * friction_impulse)
-    pressed = push * (approach + 0.5 * (ma + mb) * push)
-    rubbed = work_of(
-        friction_impulse * across, friction_impulse, ra * friction_impulse, rb * friction_impulse,
-        ma + mb, ia, ib,
-    )  # fmt: skip
+    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    if booked:
+        pressed = push * (approach + 0.5 * (ma + mb) * push)
+        rubbed = work_of(
+            friction_impulse * across, friction_impulse, ra * friction_impulse, rb * friction_impulse,
+            ma + mb, ia, ib,
+        )  # fmt: skip
     if drift != 0.0:
-        ux, uy, spun_a, vx, vy, spun_b = _velocities(slots, k, mean.linear, mean.angular)
-        ux, uy = vx - ux, vy - uy
+        ux, uy, wa, wb = relative(slots, k, mean)
         pressed = pressed + impulse * (nx * ux + ny * uy)
-        rubbed = rubbed + tangent * (nx * uy - ny * ux - rb * spun_b - ra * spun_a)
+        rubbed = rubbed + tangent * (nx * uy - ny * ux - rb * wb - ra * wa)
     return pressed, rubbed
 
 
@@ -254,7 +262,7 @@ def _levers(data: Numbers, point: int, nx: Wide, ny: Wide) -> tuple[Wide, Wide, 
 
 @fused
 def _sweep_boxes(
-    slots: Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint
+    slots: Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint, booked: bool
 ) -> Work:
     """Solve a block of boxes: both normal impulses, then both points' friction.
 
@@ -282,7 +290,11 @@ def _sweep_boxes(
     put(data, at + TWO + IMPULSE, impulse2 + push2)
     turn_a, turn_b = n1a * push1 + n2a * push2, n1b * push1 + n2b * push2
     wa, wb = wa - ia * turn_a, wb + ib * turn_b
-    pressed = work_of(push1 * approach1 + push2 * approach2, push1 + push2, turn_a, turn_b, ma + mb, ia, ib)
+    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    if booked:
+        pressed = work_of(
+            push1 * approach1 + push2 * approach2, push1 + push2, turn_a, turn_b, ma + mb, ia, ib
+        )
     tangent1, tangent2 = take(data, at + ONE + TANGENT_IMPULSE), take(data, at + TWO + TANGENT_IMPULSE)
     sliding1, sliding2 = across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a
     friction1, friction2 = two_frictions(
@@ -300,36 +312,37 @@ def _sweep_boxes(
     turn_a, turn_b = t1a * friction1 + t2a * friction2, t1b * friction1 + t2b * friction2
     put_numbers(motion.angular, slots.a, k * WIDE, wa - ia * turn_a)
     put_numbers(motion.angular, slots.b, k * WIDE, wb + ib * turn_b)
-    rubbed = work_of(
-        friction1 * sliding1 + friction2 * sliding2, friction_impulse, turn_a, turn_b, ma + mb, ia, ib
-    )
+    if booked:
+        rubbed = work_of(
+            friction1 * sliding1 + friction2 * sliding2, friction_impulse, turn_a, turn_b, ma + mb, ia, ib
+        )
     if drift != 0.0:
-        ux, uy, wa, vx, vy, wb = _velocities(slots, k, mean.linear, mean.angular)
-        ux, uy = vx - ux, vy - uy
+        ux, uy, wa, wb = relative(slots, k, mean)
         along, across = nx * ux + ny * uy, nx * uy - ny * ux
-        pressed = (
-            pressed + impulse1 * (along + wb * n1b - wa * n1a) + impulse2 * (along + wb * n2b - wa * n2a)
-        )
-        rubbed = (
-            rubbed + tangent1 * (across + wb * t1b - wa * t1a) + tangent2 * (across + wb * t2b - wa * t2a)
-        )
+        pressed = pressed + impulse1 * (along + wb * n1b - wa * n1a)
+        pressed = pressed + impulse2 * (along + wb * n2b - wa * n2a)
+        rubbed = rubbed + tangent1 * (across + wb * t1b - wa * t1a)
+        rubbed = rubbed + tangent2 * (across + wb * t2b - wa * t2a)
     return pressed, rubbed
 
 
 @inlined
-def sweep_wide(near: Near, motion: Motion, drift: float, soft: SoftConstraint) -> tuple[float, float]:
+def sweep_wide(
+    near: Near, motion: Motion, drift: float, soft: SoftConstraint, booked: bool
+) -> tuple[float, float]:
     """Solve all blocks once. Separations are first advanced by ``drift`` s at the present velocities.
 
-    Returns the work of normal and of tangential impulses [J]: of those of this sweep, and where there is a
-    drift of those before it, at the mean velocities that ``near.linear_before`` and the angular ones hold.
+    Returns the work of normal and of tangential impulses [J]: where it is ``booked`` that of this sweep's,
+    and where there is a drift that of those before it, at the mean velocities that ``near.linear_before`` and
+    the angular ones hold.
     """
     pressed, rubbed = everywhere(0.0), everywhere(0.0)
     mean = Mean(near.linear_before, near.angular_before)
     for number in range(near.counts[DISC_BLOCKS]):
-        one, other = _sweep_discs(near.discs, near.discs.order[number], motion, mean, drift, soft)
+        one, other = _sweep_discs(near.discs, near.discs.order[number], motion, mean, drift, soft, booked)
         pressed, rubbed = pressed + one, rubbed + other
     for number in range(near.counts[BOX_BLOCKS]):
-        one, other = _sweep_boxes(near.boxes, near.boxes.order[number], motion, mean, drift, soft)
+        one, other = _sweep_boxes(near.boxes, near.boxes.order[number], motion, mean, drift, soft, booked)
         pressed, rubbed = pressed + one, rubbed + other
     return sum_of(pressed), sum_of(rubbed)
 
