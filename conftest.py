@@ -30,17 +30,25 @@ if sys.dont_write_bytecode:
     os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
+_BEGUN = pytest.StashKey[float]()
+_COSTS: dict[str, float] = {}
 # No deadline: the first example of a test may load kernels.
 settings.register_profile("physicslab", deadline=None, max_examples=40)
-# All that is fuzzed, 10,000 examples: pytest -m "" tests/test_fuzz_*.py --hypothesis-profile=thorough
-settings.register_profile("thorough", deadline=None, max_examples=2500)
+# All that is fuzzed, as .ci/run does it: pytest -m "" tests/test_fuzz_*.py --hypothesis-profile=thorough
+settings.register_profile("thorough", deadline=None, max_examples=600)
 settings.load_profile("physicslab")
 
 
+_COSTLY = Path(__file__).parent / "tests" / "costly.txt"
+"""Tests that are slow because of what they cost, as ``pytest -m "" --costs SECONDS`` measured it."""
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Declare how long the longest test of the time machine is."""
+    """Declare how long the longest test of the time machine is, and that costs are measured."""
     words = "random commands that a slow test of tests/test_history.py makes and takes back (10,000)"
     parser.addoption("--commands", metavar="N", type=int, default=10_000, help=words)
+    words = f"list tests that take longer than this [s of processor time] in {_COSTLY.name}: they are slow"
+    parser.addoption("--costs", metavar="SECONDS", type=float, help=words)
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
@@ -64,9 +72,47 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         subprocess.run([sys.executable, "-m", "physicslab.kernels"], stdout=subprocess.DEVNULL, check=False)
 
 
+def _processor_time() -> float:
+    """Return the processor time of this process and of those that it has waited for [s]."""
+    return sum(os.times()[:4])
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Note when a test begins."""
+    item.stash[_BEGUN] = _processor_time()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item) -> None:
+    """Note what a test has cost, where a worker tells the process that started it."""
+    item.user_properties.append(("processor_s", _processor_time() - item.stash[_BEGUN]))
+
+
+def pytest_runtest_logreport(report: pytest.TestReport) -> None:
+    """Keep what each test has cost."""
+    if report.when == "teardown":
+        _COSTS[report.nodeid] = float(dict(report.user_properties)["processor_s"])  # type: ignore[arg-type]
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """List the costly tests, if costs are measured; what was not run keeps its place."""
+    limit = session.config.getoption("--costs")
+    if limit is None or hasattr(session.config, "workerinput"):
+        return
+    listed = {name for name in _COSTLY.read_text(encoding="utf-8").splitlines() if name not in _COSTS}
+    listed |= {name for name, cost in _COSTS.items() if cost > limit}
+    _COSTLY.write_text("".join(f"{name}\n" for name in sorted(listed)), encoding="utf-8")
+    print(f"\n{sum(_COSTS.values()):.0f} s of processor time, {len(listed)} tests are costly")
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with what mostly waits for a window: it fills no processor, and would be late at the end."""
+    """Mark what is costly as slow, and begin with what mostly waits for a window: it fills no processor."""
+    costly = set(_COSTLY.read_text(encoding="utf-8").splitlines())
+    for item in items:
+        if item.nodeid in costly:
+            item.add_marker(pytest.mark.slow)
     items.sort(key=lambda item: "screen" not in getattr(item, "fixturenames", ()))
 
 

@@ -20,7 +20,7 @@ from physicslab.world import World
 FRAME = 1.0 / 60.0
 BUTTONS = {"left": 1, "middle": 2, "right": 3}
 MENUS = ("File", "Scenes", "Edit", "World", "Instruments", "View", "Help")
-SETTLED = 4
+SETTLED = 3
 """Frames after which panels show what an event has done, and its deed is done."""
 
 
@@ -143,13 +143,13 @@ def middle_of(desk: Desk, label: str) -> Place:
 def point(desk: Desk, place: Place, held: tuple[int, int, int] = (0, 0, 0)) -> None:
     """Move the cursor to a pixel, and let panels follow."""
     pygame.event.post(pygame.Event(pygame.MOUSEMOTION, pos=place, rel=(0, 0), buttons=held, touch=False))
-    desk.frames(2)
+    desk.frames()
 
 
 def button_down(desk: Desk, place: Place, button: str = "left") -> None:
     """Press a mouse button at a pixel."""
     pygame.event.post(pygame.Event(pygame.MOUSEBUTTONDOWN, button=BUTTONS[button], pos=place, touch=False))
-    desk.frames(2)
+    desk.frames()
 
 
 def button_up(desk: Desk, place: Place, button: str = "left") -> None:

@@ -24,8 +24,7 @@ from physicslab.files.scene import load_scene
 from physicslab.view.controls.scene_files import new_scene_paths
 folder, start = Path(sys.argv[1]), float(sys.argv[2])
 world = load_scene("drop")
-while time.time() < start:
-    pass
+time.sleep(max(0.0, start - time.time()))
 for _ in range(10):
     print(save_last_good(world, "boom", folder))
     print(save_new_scene(world, new_scene_paths(folder, "boom")))

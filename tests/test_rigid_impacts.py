@@ -226,10 +226,11 @@ def aimed(random: np.random.Generator, number: int) -> tuple[World, list[int], f
     "seed", [20260723, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(9))]
 )
 def test_random_impacts_keep_all_laws(seed: int) -> None:
-    """10,000 of all pairs of shapes, in ten parts."""
+    """9,000 of all pairs of shapes, in nine parts; 100 for every run of the tests."""
     random = np.random.default_rng(seed)
     by_energy = compared = 0
-    for number in range(1000):
+    count = 100 if seed == 20260723 else 1000
+    for number in range(count):
         world, bodies, e, mu = aimed(random, number)
         world.synchronise()
         v = np.concatenate([motion(world, body) for body in bodies])
@@ -276,8 +277,8 @@ def test_random_impacts_keep_all_laws(seed: int) -> None:
             by_energy += 1
             asked = stronge(a, speeds, e, mu)
             assert impulse == pytest.approx(asked, rel=1e-9, abs=1e-9 * asked[0]), number
-    assert compared > 700
-    assert by_energy > 3
+    assert compared > 0.7 * count
+    assert by_energy > 0.003 * count
 
 
 def test_the_impact_of_two_free_boxes_keeps_angular_momentum() -> None:

@@ -175,10 +175,11 @@ def aimed(random: np.random.Generator, number: int, spin: float) -> tuple[World,
     return world, bodies, mu
 
 
+@pytest.mark.parametrize("count", [40, pytest.param(400, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("spin", [1.0, 4.0])
-def test_random_impacts_keep_momenta_and_gain_no_energy(spin: float) -> None:
+def test_random_impacts_keep_momenta_and_gain_no_energy(spin: float, count: int) -> None:
     random, met = np.random.default_rng(20261122), 0
-    for number in range(400):
+    for number in range(count):
         world, bodies, mu = aimed(random, number, spin)
         world.synchronise()
         momentum, energy = measure_momentum(world), measure_energy(world).kinetic
@@ -199,7 +200,7 @@ def test_random_impacts_keep_momenta_and_gain_no_energy(spin: float) -> None:
         impacts = world.contacts.impacts
         pushed, rubbed = impacts["normal_impulse"], np.abs(impacts["tangent_impulse"])
         assert (pushed > 0.0).all() and (rubbed <= mu * pushed * (1.0 + 1e-12)).all(), number
-    assert met > 300
+    assert met > 0.75 * count
 
 
 @pytest.mark.parametrize("spin", [2.0, 8.0, -25.0])

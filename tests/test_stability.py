@@ -3,11 +3,15 @@
 import dataclasses
 import json
 import math
+import os
+import signal
+from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
 import pytest
 
 from physicslab import cli
+from physicslab.lab.processes import in_processes
 from physicslab.lab.stability.case import StabilityCase, Verdict, run_case
 from physicslab.lab.stability.catalogue import CASES
 from physicslab.state.masses import Diverged
@@ -129,3 +133,22 @@ def test_a_case_that_falls_short_is_named_at_the_end(
     found = json.loads(out, parse_constant=lambda word: pytest.fail(f"{word} in JSON"))
     assert found["falls_short"] == ["x"]
     assert found["cases"][1]["figure"] is None
+
+
+def _square_or_end(name: str) -> int:
+    """Return the square of a number, or end the process: what another process is given."""
+    if name == "end":
+        os.kill(os.getpid(), signal.SIGKILL)
+    return int(name) ** 2
+
+
+def test_many_cases_are_spread_over_processes_and_their_results_come_in_order(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(os, "cpu_count", lambda: 2)
+    names = [str(n) for n in range(16)]
+    found = list(in_processes(_square_or_end, names, early=["15"]))
+    assert [one for one in found if isinstance(one, int)] == [n * n for n in range(16)]
+    assert all(0.0 <= share <= 1.0 for share in found if isinstance(share, float))
+    with pytest.raises(BrokenProcessPool):
+        list(in_processes(_square_or_end, [*names[:-1], "end"]))

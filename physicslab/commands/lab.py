@@ -100,9 +100,13 @@ class LabRun:
 
     def results[Result](self, jobs: Sequence[tuple[float, Job[Result]]]) -> Iterator[Result]:
         """Yield the result of each job, and show on the terminal how far all are."""
+        return self.shown(run_jobs(jobs))
+
+    def shown[Result](self, work: Iterable[float | Result]) -> Iterator[Result]:
+        """Yield the results of work, and show on the terminal the shares of it that are done."""
         progress = Progress(self._label, sys.stderr, always=self._progress)
         try:
-            for found in run_jobs(jobs):
+            for found in work:
                 if isinstance(found, float):
                     progress.show(found)
                 else:

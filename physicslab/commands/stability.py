@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator
+from concurrent.futures.process import BrokenProcessPool
 
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
-from physicslab.lab.stability.case import Outcome, StabilityCase, Verdict, run_case
-from physicslab.lab.stability.catalogue import CASES
+from physicslab.lab.processes import in_processes
+from physicslab.lab.stability.case import Outcome, StabilityCase, Verdict
+from physicslab.lab.stability.catalogue import CASES, run_named
 from physicslab.lab.stability.document import document
 from physicslab.lab.stability.tables import columns, head_text, row_text, summary_text
 
@@ -29,9 +30,15 @@ def execute(arguments: Namespace) -> int:
     run, aligned = LabRun("stability", arguments), columns(cases)
     outcomes: list[Outcome] = []
     run.show(head_text(aligned))
-    for outcome in run.results([(1.0, _job(case)) for case in cases]):
-        outcomes.append(outcome)
-        run.show(row_text(outcome, aligned))
+    long = [case.name for case in cases if case.long]
+    found = run.shown(in_processes(run_named, [case.name for case in cases], early=long))
+    try:
+        for case, figures in zip(cases, found, strict=True):
+            outcomes.append(Outcome(case, *figures))
+            run.show(row_text(outcomes[-1], aligned))
+    except BrokenProcessPool:
+        reason = "a process was ended from outside; is there enough memory?"
+        raise CommandError(f"{cases[len(outcomes)].name}: {reason}", FAILED) from None
     run.show(summary_text(outcomes))
     run.write(document(outcomes))
     short = [outcome.case.name for outcome in outcomes if outcome.verdict is Verdict.SHORT]
@@ -43,7 +50,3 @@ def execute(arguments: Namespace) -> int:
 def _unknown(name: str) -> StabilityCase | None:
     known = f"there are the groups {', '.join(CASES.families)}, and the cases that --list names"
     raise unknown_name(name, "case", CASES.names, known)
-
-
-def _job(case: StabilityCase) -> Iterator[float | Outcome]:
-    yield run_case(case)

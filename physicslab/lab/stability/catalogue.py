@@ -6,6 +6,7 @@ from physicslab.lab.case import Catalogue
 from physicslab.lab.stability.attraction import ATTRACTION
 from physicslab.lab.stability.bounces import BOUNCES
 from physicslab.lab.stability.bullets import BULLETS
+from physicslab.lab.stability.case import run_case
 from physicslab.lab.stability.chains import CHAINS
 from physicslab.lab.stability.crowds import CROWDS
 from physicslab.lab.stability.extremes import EXTREMES
@@ -18,7 +19,7 @@ from physicslab.lab.stability.stacks import STACKS
 from physicslab.lab.stability.steps import STEPS
 from physicslab.lab.stability.towers import TOWERS
 
-__all__ = ["CASES"]
+__all__ = ["CASES", "run_named"]
 
 CASES = Catalogue(
     (
@@ -39,3 +40,9 @@ CASES = Catalogue(
     )
 )
 """Every case by name; families are groups."""
+
+
+def run_named(name: str) -> tuple[float | None, str, float]:
+    """Run the case of a name; return figure, failure and time [s]: no case can be sent to another process."""
+    outcome = run_case(CASES[name])
+    return outcome.figure, outcome.failure, outcome.wall_s
