@@ -20,7 +20,7 @@ from physicslab.kernels.events import path
 from physicslab.kernels.interpreter import interpreted
 from physicslab.kernels.rigid import constraints, curve
 from physicslab.kernels.solver import impact, impulse, sweep
-from physicslab.kernels.wide import solve
+from physicslab.kernels.wide import float64x8
 
 __all__ = ["FAULT", "WRONG_DRIFTS", "WRONG_KICKS", "lost_impulses", "mutated"]
 
@@ -144,7 +144,7 @@ def lost_impulses(rows: set[int]) -> Iterator[None]:
 
     faults: tuple[tuple[Any, Mutant], ...] = (
         (impact._strike, last), (impulse.apply_impulse, last), (sweep._pushed, pushed),
-        (solve.put_vectors, put), (solve.put_numbers, put),
+        (float64x8.put_vectors, put), (float64x8.put_numbers, put),
         (path.push, not_pushed), (constraints.apply, applied),
     )  # fmt: skip
     with ExitStack() as stack:

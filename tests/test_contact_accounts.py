@@ -34,7 +34,7 @@ def world(staged: bool = False, gravity: float = -GRAVITY, contacts: str = "soft
         *standard_systems(),
         *others,
         physics=laws,
-        simulation=SimulationConfig(contacts=contacts, collisions="step"),  # type: ignore[arg-type]
+        simulation=SimulationConfig(contacts=contacts, collisions="step"),
     )
 
 

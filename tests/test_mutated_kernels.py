@@ -1,5 +1,7 @@
 """A wrong kick, a wrong drift and a lost impulse are errors of their true size, whatever makes the steps."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from mutations import FAULT, WRONG_DRIFTS, WRONG_KICKS, lost_impulses, mutated
@@ -63,9 +65,7 @@ def energy(of: World) -> float:
 
 @STEPPERS
 @pytest.mark.parametrize("faults", [WRONG_KICKS, WRONG_DRIFTS], ids=["kick", "drift"])
-def test_a_wrong_fall_is_an_error_of_its_true_size(
-    stepper: str, faults: dict[str, tuple[object, object]]
-) -> None:
+def test_a_wrong_fall_is_an_error_of_its_true_size(stepper: str, faults: dict[str, tuple[Any, Any]]) -> None:
     of = world(stepper)
     floor(of)
     disc(of, 0.0, 9.0)
