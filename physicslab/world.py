@@ -108,9 +108,10 @@ class World(State):
         The clock is the caller's. Where that fails or is broken off, the world goes back to before the step.
         """
         with Undoing(self, self._motion):
-            if self.schedule.acts_at(Stage.PREPARE):
+            if self.account.start is None:
                 open_account(self, self.schedule.forces)
             self.schedule.run(Stage.PREPARE, self, h)
+            self.account.is_open = False  # what was written at PREPARE is booked with what was before
             made = self._advance(h, steps)
             if self.account.is_open:
                 close_account(self, self.schedule.forces)

@@ -4,9 +4,13 @@ import math
 
 import pytest
 
+from physicslab import load_scene
 from physicslab.components import Held, Mass, Shape, Spring, Transform, Velocity
+from physicslab.diagnostics.account import measure_account
 from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.energy import Energy, measure_energy, measure_momentum
+from physicslab.diagnostics.quantities import Reading, why_undefined
+from physicslab.diagnostics.run_report import RunRecord, run_report
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
@@ -101,16 +105,50 @@ def test_shares_from_nothing_are_of_the_kinetic_energy_seen() -> None:
     assert audit.error < 1e-12 and audit.exchanged == pytest.approx(0.5 * 9.81**2)
 
 
-class Leak(System):
-    """Takes a tenth of the velocity at the end of every step, and books nothing: an error."""
+class Brake(System):
+    """Takes a tenth of the velocity within every substep, and books nothing."""
 
     @at(Stage.KICK)
     def take(self, world: World, dt: float) -> None:
         world.table(Velocity)["linear"][1:] *= 0.9
 
 
+class Leak(IntegrateSystem):
+    """Moves bodies and takes a tenth of their velocity each time: an error of the method."""
+
+    @at(Stage.DRIFT)
+    def drift(self, state: State, h: float) -> None:
+        super().drift(state, h)
+        state.table(Velocity)["linear"][1:] *= 0.9
+
+
+@pytest.mark.parametrize("stage", [Stage.KICK, Stage.PREPARE, Stage.FINISH])
+def test_what_a_system_of_ones_own_writes_is_measured_and_no_error(stage: Stage) -> None:
+    brake = type("Brake", (System,), {"take": at(stage)(Brake.take)})
+    world = World(brake(), IntegrateSystem())
+    ball = world.spawn(Transform((2, 1)), Velocity((1, -0.5)), Mass(2))
+    for _ in range(5):
+        world.step(0.01)
+    account = measure_account(world)
+    cause = "fields" if stage is Stage.KICK else "edits"
+    assert account.energy[cause] < -0.3 and account.momentum[cause].x < -0.5
+    place, velocity = world.component(ball, Transform).position, world.component(ball, Velocity).linear
+    assert account.angular_momentum[cause] == pytest.approx(2.0 * place.cross(velocity) + 4.0, abs=1e-13)
+    assert abs(account.energy["numerical"]) < 1e-13 and account.momentum["numerical"].magnitude < 1e-13
+
+
+def test_the_momentum_of_friction_is_not_measured_by_itself_and_said_so() -> None:
+    world = load_scene("slope")
+    record = RunRecord("slope", Audit(world))
+    report = run_report(world, record)
+    assert report["momentum_account"]["friction"] is report["angular_momentum_account"]["friction"] is None
+    assert math.isnan(Reading(world).value("impulse x: friction"))
+    assert "not measured" in why_undefined(world, "angular impulse: friction", None)
+    assert why_undefined(world, "impulse x: contact", None) == ""
+
+
 def test_what_no_account_has_is_an_error_and_the_largest_is_kept() -> None:
-    world = World(Leak(), IntegrateSystem())
+    world = World(Leak())
     velocity = world.component(world.spawn(Transform(), Velocity((1, 0)), Mass(2)), Velocity)
     audit = Audit(world)
     world.step(0.01)

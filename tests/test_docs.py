@@ -21,7 +21,8 @@ EXAMPLES = [match.groups() for match in BLOCK.finditer(CONTRIBUTING.read_text(en
 NEW = {path for kind, path, _ in EXAMPLES if kind == "python"}
 CHANGES = [(name, text) for kind, name, text in EXAMPLES if kind == "diff" and name not in NEW]
 FOR_ALL = {
-    "tests/test_integrate.py": "yoshida4", "tests/test_scenes.py": "balloons",
+    "tests/test_integrate.py": "yoshida4", "tests/test_accounts_of_flows.py": "yoshida4",
+    "tests/test_mutated_flows.py": "yoshida4", "tests/test_scenes.py": "balloons",
     "tests/test_workbench.py": "every_control", "tests/test_input.py": "table_of_controls",
     "tests/test_docs.py": "has_every_key or every_method_is_in", "README.md": "README",
 }  # fmt: skip

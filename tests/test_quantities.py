@@ -50,7 +50,8 @@ def test_every_quantity_has_a_value_where_it_is_defined() -> None:
     world = load_scene("pendulum")
     world.run(seconds=0.5)
     reading = Reading(world)
-    assert all(math.isfinite(reading.value(name)) for name in WORLD_QUANTITIES)
+    for name in WORLD_QUANTITIES:
+        assert math.isfinite(reading.value(name)) == (why_undefined(world, name, None) == ""), name
     assert all(math.isfinite(reading.value(name, world.entity("bob"))) for name in BODY_QUANTITIES)
     assert {name for name, one in QUANTITIES.items() if one.of_body} == set(BODY_QUANTITIES)
     assert len({one.column for one in QUANTITIES.values()}) == len(QUANTITIES)

@@ -10,7 +10,9 @@ from desk import bits
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from physicslab import load_scene
 from physicslab.components import Drag, Held, Mass, Shape, Spring, Transform, Velocity
+from physicslab.diagnostics.account import measure_account
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
@@ -21,6 +23,7 @@ from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.lab import worlds
 from physicslab.lab.worlds import floor, place
 from physicslab.prefabs import box, circle
+from physicslab.stepping.contact import Contact
 from physicslab.world import World
 
 open_space = partial(worlds.open_space, contacts="soft")
@@ -242,3 +245,13 @@ def test_drag_that_grows_weak_is_the_same_after_a_file_was_read() -> None:
     again = read_scene(write_scene(first))
     again.run(steps=60)
     assert bits(again) == bits(whole)
+
+
+def test_dampers_of_what_is_sub_integrated_are_not_evaluated_again_for_their_work() -> None:
+    world = load_scene("spring_chain")
+    world.run(steps=3)
+    assert isinstance(world.stepper, Contact) and world.stepper._split is not None
+    assert not world.stepper._accounts.notes_forces, "their flow books it"
+    account = measure_account(world)
+    assert account.energy["damping"] < 0.0
+    assert abs(account.energy["numerical"]) < 1e-12

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 __all__ = [
-    "BODY_QUANTITIES", "ENERGY_CAUSES", "MOMENTUM_CAUSES", "QUANTITIES", "WORLD_QUANTITIES", "Quantity",
+    "BODY_QUANTITIES", "ENERGY_CAUSES", "MOMENTUM_CAUSES", "QUANTITIES", "UNMEASURED_MOMENTA",
+    "WORLD_QUANTITIES", "Quantity",
 ]  # fmt: skip
 
 
@@ -48,6 +49,8 @@ ENERGY_CAUSES = (
 """What can change the energy of a world; what each gave is an account."""
 MOMENTUM_CAUSES = (*ENERGY_CAUSES, "gravity", "springs")
 """What can change its momentum, from outside."""
+UNMEASURED_MOMENTA = ("friction",)
+"""The causes whose momentum is not measured by itself: that of friction is part of that of contacts."""
 
 
 def _accounts() -> Iterator[Quantity]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES
+from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
 from physicslab.diagnostics.energy import Energy, measure_kinetic
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels import accounts
@@ -18,7 +18,9 @@ __all__ = ["ENERGY_ACCOUNTS", "MOMENTUM_ACCOUNTS", "Accounts", "measure_account"
 
 ENERGY_ACCOUNTS: dict[str, int] = {name: getattr(accounts, name.upper()) for name in ENERGY_CAUSES}
 """The accounts of energy by name, each with its row; ``numerical`` is what they leave."""
-MOMENTUM_ACCOUNTS: dict[str, int] = {name: getattr(accounts, name.upper()) for name in MOMENTUM_CAUSES}
+MOMENTUM_ACCOUNTS: dict[str, int] = {
+    name: getattr(accounts, name.upper()) for name in MOMENTUM_CAUSES if name not in UNMEASURED_MOMENTA
+}
 """Those of momentum: gravity and springs store energy, but pull from outside."""
 
 

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES
+from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
 from physicslab.diagnostics.account import Accounts, measure_account
 from physicslab.diagnostics.energy import Energy, Momentum
 from physicslab.diagnostics.free_body import forces_on, net_force
@@ -89,6 +89,10 @@ class Reading:
         now = self.account.now
         return Momentum(Vector2(now.px, now.py), now.spin)
 
+    def impulse(self, cause: str) -> Vector2:
+        """Return the momentum that a cause brought from outside [N s]; NaN where that is not measured."""
+        return self.account.momentum.get(cause, Vector2(_NAN, _NAN))
+
     # ---- of a body -----------------------------------------------------------------------------------------
 
     def _transform(self, body: int) -> Transform:
@@ -158,7 +162,8 @@ def why_undefined(world: World, name: str, body: int | None) -> str:
 
 def _why_undefined(world: World, name: str, body: int | None) -> str:
     if body is None:
-        return ""
+        unmeasured = "impulse" in name and name.partition(": ")[2] in UNMEASURED_MOMENTA
+        return "not measured by itself: it is part of that of contacts" if unmeasured else ""
     if body not in world.entity_index.row_of:
         return "gone"
     if not world.has(body, Transform):
@@ -214,14 +219,14 @@ _OF_WORLD: dict[str, Callable[[Reading], float]] = {
     "total energy": lambda now: now.energy.total,
     **_readers("account", "error of energy", ENERGY_CAUSES, lambda now, name: now.account.energy[name]),
     **_readers(
-        "impulse x", "error of momentum x", MOMENTUM_CAUSES, lambda now, name: now.account.momentum[name].x
+        "impulse x", "error of momentum x", MOMENTUM_CAUSES, lambda now, name: now.impulse(name).x
     ),
     **_readers(
-        "impulse y", "error of momentum y", MOMENTUM_CAUSES, lambda now, name: now.account.momentum[name].y
+        "impulse y", "error of momentum y", MOMENTUM_CAUSES, lambda now, name: now.impulse(name).y
     ),
     **_readers(
         "angular impulse", "error of angular momentum", MOMENTUM_CAUSES,
-        lambda now, name: now.account.angular_momentum[name],
+        lambda now, name: now.account.angular_momentum.get(name, _NAN),
     ),
 }  # fmt: skip
 _OF_BODY: dict[str, Callable[[Reading, int], float]] = {

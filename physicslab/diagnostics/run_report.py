@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from physicslab.components import Transform, Velocity
+from physicslab.components.quantities import MOMENTUM_CAUSES
 from physicslab.contacts.report import list_contacts
 from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
 from physicslab.diagnostics.audit import Audit
@@ -19,6 +20,9 @@ from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
 __all__ = ["RunRecord", "body_names", "find_not_finite", "run_report", "run_summary"]
+
+_MOMENTA: dict[str, float | Vector2] = dict.fromkeys(MOMENTUM_CAUSES, math.nan)
+"""In the order of the document; a cause whose momentum is not measured by itself stays without a number."""
 
 
 @dataclass(slots=True)
@@ -110,8 +114,8 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         ],
         "energy": _energy(record.audit),
         "account": _account(record.audit.account.energy),
-        "momentum_account": _account(record.audit.account.momentum),
-        "angular_momentum_account": _account(record.audit.account.angular_momentum),
+        "momentum_account": _account({**_MOMENTA, **record.audit.account.momentum}),
+        "angular_momentum_account": _account({**_MOMENTA, **record.audit.account.angular_momentum}),
         "momentum": list(momentum.linear),
         "angular_momentum": momentum.angular,
         "candidate_pairs": int(world.contacts.candidate_pairs),
@@ -127,7 +131,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
 
 
 def _account(booked: Mapping[str, float | Vector2]) -> dict[str, Any]:
-    """Return what each cause gave; ``None`` where that is no number, after an energy that was none."""
+    """Return what each cause gave; ``None`` where that was not measured, or is no number."""
 
     def shown(value: float) -> float | None:
         return value if math.isfinite(value) else None

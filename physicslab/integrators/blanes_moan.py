@@ -29,7 +29,6 @@ BLANES_MOAN = Integrator(
         kicks=(*_KICKS, _KICK, _KICK, *reversed(_KICKS)),
     ),
     kernels=(split,),
-    kicks=True,
     positions_only=True,
     phase_share=8.08e-8,
     phase_order=6,

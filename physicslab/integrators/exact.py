@@ -1,7 +1,7 @@
 """The solution in closed form, where there is one.
 
-What each cause gives is measured in another way than beside other methods: no power is integrated. The
-motion is exact, so what dampers and drag take is what the energy loses
+What each cause gives is measured in another way than beside other methods: no power is integrated, but
+the solution has its own energy, of which dampers and drag take what is lost
 (:mod:`physicslab.ode.closed_form_account`).
 """
 
@@ -21,7 +21,7 @@ __all__ = ["EXACT"]
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     form = closed_form(state, ode.forces)
     position, velocity = form.advanced(state, steps * h)
-    for cause, given in given_in_closed_form(state, form, position, velocity, steps * h).items():
+    for cause, given in given_in_closed_form(state, form, steps * h).items():
         slot = ode.slots.get(cause)
         if slot is not None:
             ode.v[slot : slot + ACCOUNTS] = given

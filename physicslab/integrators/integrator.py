@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from physicslab.integrators.splitting import Splitting
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 from physicslab.systems.system import Stage
@@ -53,8 +54,6 @@ class Integrator:
         When the substep begins and ends, relative to the moment at which impacts are resolved, in substeps.
     positions_only : bool
         Whether the order holds only for forces that do not depend on velocities.
-    kicks : bool
-        Whether it changes velocities by forces at places that stay meanwhile.
     chooses_steps : bool
         Whether it chooses its own steps within the given time.
     phase_share, phase_order : float, int
@@ -74,7 +73,11 @@ class Integrator:
     substep: tuple[tuple[Stage, float], ...] = ()
     window: tuple[float, float] = (0.0, 1.0)
     positions_only: bool = False
-    kicks: bool = False
     chooses_steps: bool = False
     phase_share: float = 0.0
     phase_order: int = 2
+
+    @property
+    def kicks(self) -> bool:
+        """Whether it changes velocities by forces at places that stay meanwhile."""
+        return isinstance(self.flow, Splitting)

@@ -22,7 +22,6 @@ LEAPFROG = Integrator(
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, I.1.4",
     flow=splitting(drifts=(0.5, 0.5), kicks=(0.0, 1.0, 0.0)),
     kernels=(split,),
-    kicks=True,
     positions_only=True,
     substep=(
         (Stage.DRIFT, 0.5),

@@ -7,8 +7,6 @@ that hardly turn are nearly linear. The force at its end is that at the beginnin
 
 from __future__ import annotations
 
-import numpy as np
-
 from physicslab.integrators.integrator import Integrator
 from physicslab.integrators.splitting import splitting
 from physicslab.kernels.ode.splitting import split
@@ -21,7 +19,8 @@ _DRIFT, _KICK = 1.0 - 2.0 * (_FIRST_DRIFT + _SECOND_DRIFT), 0.5 - _FIRST_KICK - 
 
 _DRIFTS = (_FIRST_DRIFT, _SECOND_DRIFT, _DRIFT, _SECOND_DRIFT, _FIRST_DRIFT)
 _KICKS = (_FIRST_KICK, _SECOND_KICK, _KICK, _KICK, _SECOND_KICK, _FIRST_KICK)
-DRIFTS, KICKS = np.array(_DRIFTS), np.array(_KICKS)
+_FLOW = splitting(drifts=_DRIFTS, kicks=_KICKS)
+DRIFTS, KICKS = _FLOW.shares
 """Shares of the step (5,) and (6,): kick, drift, kick, ..., drift, kick."""
 
 SPRING_SPLITTING = Integrator(
@@ -32,9 +31,8 @@ SPRING_SPLITTING = Integrator(
     stability_limit=3.06,
     symplectic=True,
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, III.5.1",
-    flow=splitting(drifts=_DRIFTS, kicks=_KICKS),
+    flow=_FLOW,
     kernels=(split,),
-    kicks=True,
     positions_only=True,
     phase_share=1.18e-6,
     phase_order=6,

@@ -17,7 +17,6 @@ SYMPLECTIC_EULER = Integrator(
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, I.1.2",
     flow=splitting(drifts=(1.0,), kicks=(1.0, 0.0)),
     kernels=(split,),
-    kicks=True,
     substep=(
         (Stage.FORCE, 1.0),
         (Stage.KICK, 1.0),

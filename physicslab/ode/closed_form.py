@@ -110,7 +110,7 @@ def _uniform(state: State, forces: Sequence[ForceSystem]) -> tuple[float, float]
     for force in forces:
         if type(force) in _KNOWN:
             continue
-        uniform = force.uniform_acceleration(state) if type(force).packs() else None
+        uniform = force.uniform_alone(state)
         if uniform is None:
             attracts = force.attractors > 0
             why = "bodies attract each other" if attracts else f"the force of {force.name} has no closed form"

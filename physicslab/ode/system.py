@@ -99,7 +99,7 @@ class OdeSystem:
         self.layout = (
             StateLayout.of_rows(len(state.entity_index))
             if every_row
-            else StateLayout(state, part, all_turn=self.interpreted)
+            else StateLayout(state, part, None if self.interpreted else [f.turned(state) for f in forces])
         )
         entities, self._carries = state.entity_index.entities, part is None
         self._keys = coordinate_keys(entities[self.layout.moving], entities[self.layout.turning])
@@ -259,7 +259,7 @@ class OdeSystem:
 
     def _calls(self, state: State) -> None:
         packed = [
-            (system, system.packed(state, self.layout) if type(system).packs() else None)
+            (system, system.packed(state, system.seen(self.layout)) if type(system).packs() else None)
             for system in self.forces
         ]
         book = BookKeeper(state, self.layout, packed, self.damping, self._also, kicked=self._kicked)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,21 +66,31 @@ class StateLayout:
     First two coordinates for every row that moves, then an angle for every row that forces may turn, then the
     two coordinates of the rows that stay where they are, the world itself among them, and then the time.
 
+    Parameters
+    ----------
+    state : State
+        Whose rows.
+    part : bool array (rows,), optional
+        The rows that take part; all by default.
+    turned : iterable of int64 arrays, optional
+        The rows that forces may turn; ``None`` where they may turn any.
+
     Attributes
     ----------
     moving, turning, fixed : int64 arrays
         The rows in that order.
     steady : int64 array
         The rows that move and no force turns.
-    place, turn : int64 arrays (rows,)
-        Indices of x and of the angle of a row; -1 for a row that has none, or takes no part.
+    place : int64 array (rows,)
+        Index of x of a row; -1 for a row that has none, or takes no part.
     clock : int
         Index of the time [s] of the state: a packed force that depends on time reads it there.
     """
 
     place: NDArray[np.int64]
-    turn: NDArray[np.int64]
     clock: int
+    _turn: NDArray[np.int64]
+    _straight: str = ""
 
     @classmethod
     def of_rows(cls, rows: int) -> StateLayout:
@@ -86,31 +98,51 @@ class StateLayout:
         layout = cls.__new__(cls)
         layout.moving = layout.turning = np.arange(rows)
         layout.steady = layout.fixed = np.zeros(0, np.int64)
-        layout.place, layout.turn = 2 * np.arange(rows), 2 * rows + np.arange(rows)
+        layout.place, layout._turn = 2 * np.arange(rows), 2 * rows + np.arange(rows)
         layout.clock = 3 * rows
         return layout
 
-    def __init__(self, state: State, part: NDArray[np.bool_] | None, *, all_turn: bool) -> None:
+    def __init__(
+        self, state: State, part: NDArray[np.bool_] | None, turned: Iterable[NDArray[np.int64]] | None
+    ) -> None:
         transform, velocity = state.table(Transform).present, state.table(Velocity).present
         if part is not None:
             transform = transform & part
         self.moving = np.flatnonzero(transform & velocity)
-        turns = np.zeros(len(transform), np.bool_)
-        turns[self.moving] = all_turn
-        if not all_turn:
-            turns[_swung(state)] = True
-            turns &= transform & velocity
+        turns = np.full(len(transform), turned is None)
+        for rows in turned or ():
+            turns[rows] = True
+        turns &= transform & velocity
         self.turning = np.flatnonzero(turns)
         self.steady = np.setdiff1d(self.moving, self.turning, assume_unique=True)
         fixed = transform & ~velocity
         fixed[0] = True
         self.fixed = np.flatnonzero(fixed)
         n, m = len(self.moving), len(self.turning)
-        self.place, self.turn = np.full((2, len(transform)), -1, np.int64)
+        self.place, self._turn = np.full((2, len(transform)), -1, np.int64)
         self.place[self.moving] = 2 * np.arange(n)
-        self.turn[self.turning] = 2 * n + np.arange(m)
+        self._turn[self.turning] = 2 * n + np.arange(m)
         self.place[self.fixed] = 2 * n + m + 2 * np.arange(len(self.fixed))
         self.clock = 2 * n + m + 2 * len(self.fixed)
+
+    @property
+    def turn(self) -> NDArray[np.int64]:
+        """Index of the angle of each row (rows,); -1 for a row that no force turns, or that takes no part.
+
+        Raises
+        ------
+        TypeError
+            For a force that does not say that it turns bodies.
+        """
+        if self._straight:
+            raise TypeError(f"{self._straight} reads layout.turn: set turns = True there, as it turns bodies")
+        return self._turn
+
+    def without_angles(self, force: str) -> StateLayout:
+        """Return the layout as the force of that name sees it, which does not say that it turns bodies."""
+        seen = copy.copy(self)
+        seen._straight = force
+        return seen
 
     @property
     def moving_count(self) -> int:
@@ -132,11 +164,3 @@ def turned_anchors(
     angle, anchor = state.table(Transform)["angle"][end], state.table(Spring)[anchors][springs]
     c, s = np.cos(angle), np.sin(angle)
     return np.stack((c * anchor[:, 0] - s * anchor[:, 1], s * anchor[:, 0] + c * anchor[:, 1]), axis=1)
-
-
-def _swung(state: State) -> NDArray[np.int64]:
-    """Return the rows that springs hold away from their middle, and so can turn."""
-    rows, a, b = spring_ends(state)
-    spring = state.table(Spring)
-    off_a, off_b = spring["anchor_a"][rows].any(axis=1), spring["anchor_b"][rows].any(axis=1)
-    return np.concatenate((a[off_a], b[off_b]))

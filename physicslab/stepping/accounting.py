@@ -9,11 +9,17 @@ import numpy as np
 
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.kernels import digest, direct_entry, energy
+from physicslab.kernels.accounts import FIELDS
 from physicslab.state.account import Balance
 from physicslab.state.state import State
-from physicslab.systems.system import ForceSystem
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.spring import SpringSystem
+from physicslab.systems.system import ForceSystem, Stage, System
 
-__all__ = ["balance_of", "book_account", "close_account", "held_in", "motion_totals_of", "open_account"]
+__all__ = [
+    "acts_unbooked", "balance_of", "book_account", "close_account", "held_in", "motion_totals_of",
+    "open_account", "run_measured",
+]  # fmt: skip
 
 
 _MANY = 256
@@ -75,10 +81,12 @@ def _seen(state: State, forces: Sequence[ForceSystem]) -> object | None:
 
     ``None`` where a force may depend on more, and of so few bodies that a balance takes no longer.
     """
-    if len(state.entity_index) < _MANY or not all(force.is_engine for force in forces):
+    stores = [force for force in forces if force.potential is not None]
+    known = all(force.is_engine or type(force) is SpringSystem for force in stores)
+    if len(state.entity_index) < _MANY or not known:
         return None
     _, words = _columns(state)
-    settings = [force.settings(state) for force in forces]
+    settings = [force.settings(state) for force in stores]
     return direct_entry(digest.digest_sums)(*words), state.physics, settings, state.entity_index.revision
 
 
@@ -89,6 +97,24 @@ def open_account(state: State, forces: Sequence[ForceSystem]) -> None:
     now = account.last if unchanged else balance_of(state, forces)
     account.open(now, held_in(state), state.time)
     account.is_open = True
+
+
+def acts_unbooked(system: System) -> bool:
+    """Whether a system is called within a step and books nothing: neither a force nor one of the engine's."""
+    return system.acts_within_step() and not (system.engine or isinstance(system, ForceSystem))
+
+
+def run_measured(stage: Stage, schedule: Schedule, state: State, h: float) -> None:
+    """Run a stage; what a system that books nothing changes is measured, and booked as that of a field."""
+    for system in schedule.running:
+        method = type(system).marked().get(stage)
+        if method is None:
+            continue
+        measured = acts_unbooked(system)
+        before = balance_of(state, schedule.forces) if measured else None
+        schedule.call(system, getattr(system, method), state, h)
+        if before is not None:
+            state.account.sums[FIELDS] += np.subtract(balance_of(state, schedule.forces), before)
 
 
 def book_account(state: State, forces: Sequence[ForceSystem]) -> None:

@@ -70,8 +70,7 @@ def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
             return f"{needed.__name__} is not among the systems, which moves what rests"
     for system in schedule.running:
         if isinstance(system, ForceSystem):
-            uniform = system.uniform_acceleration(state) if type(system).packs() else None
-            if uniform is None:
+            if system.uniform_alone(state) is None:
                 attracts = system.attractors > 0
                 return (
                     "bodies attract each other"

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
+from physicslab.stepping.accounting import acts_unbooked, run_measured
 from physicslab.stepping.bounds import bring_back
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.split_forces import OF_SPLIT_FORCES, SplitForces
 from physicslab.stepping.stage_accounts import StageAccounts
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.contact import ContactSystem
+from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.system import Stage
@@ -39,6 +42,10 @@ class Contact:
         if plan.split_forces is not None:
             self._split = SplitForces(state, schedule.forces, plan.split_forces, plan.split_steps)
         self._accounts = StageAccounts(state, schedule.forces)
+        self._run: Callable[[Stage, State, float], None] = schedule.run
+        # Where a system of one's own moves the bodies itself, its error is that of the method.
+        if schedule.find(IntegrateSystem) is not None and any(map(acts_unbooked, schedule.running)):
+            self._run = lambda stage, state, h: run_measured(stage, schedule, state, h)
         self.kernels: tuple[Any, ...] = (*schedule.kernels(state), *self._accounts.kernels)
         self.reason = plan.reason
 
@@ -89,7 +96,7 @@ class Contact:
 
     def _go_through_one(self, state: State, start: float, h: float) -> None:
         """Go through the stages of a substep; the clock goes on as the positions do."""
-        run, split, drifted = self._schedule.run, self._split, 0.0
+        run, split, drifted = self._run, self._split, 0.0
         accounts = self._accounts
         accounts.begin_substep(state)
         for stage, share in self._stages:

@@ -359,7 +359,8 @@ def _why_singular(state: State, forces: Sequence[ForceSystem]) -> str | None:
 
 
 def _sees_velocity(state: State, forces: Sequence[ForceSystem]) -> bool:
-    return state.physics.linear_damping > 0.0 or any(system.sees_velocity(state) for system in forces)
+    turns = state.physics.angular_damping > 0.0 and any(len(force.turned(state)) for force in forces)
+    return state.physics.linear_damping > 0.0 or turns or any(force.sees_velocity(state) for force in forces)
 
 
 def _too_fast(rate: float) -> str:
@@ -380,7 +381,7 @@ def why_not_smooth(state: State, schedule: Schedule) -> str | None:
         stages = type(system).marked().keys() & _WITHIN
         if isinstance(system, ForceSystem):
             stages -= {Stage.FORCE}
-        if stages and not isinstance(system, AccelerateSystem | IntegrateSystem):
+        if stages and type(system) not in (AccelerateSystem, IntegrateSystem):  # a subclass may do other work
             return f"{system.name} acts within the step"
     if (state.table(Velocity).present & ~state.table(Transform).present).any():
         return "something moves that is nowhere"

@@ -112,14 +112,14 @@ class SpringFlow:
         a, b = (np.where(used, end[order], unused) for end in (ends_a, ends_b))
         self._links: LinksTuple = a, b, rest, stiffness, _SHORTEST * rest
         self._place, speed, pull = np.zeros((3, unused + 1, 2))
-        self._known, self._gravity = np.zeros(1, np.bool_), np.zeros(2 * m)
+        self._known, self._gravity, self._weight = np.zeros(1, np.bool_), np.zeros(2 * m), np.zeros(2 * m)
         gain = np.repeat(inverse[layout.moving], 2)
         self._places: PlacesTuple = (
-            layout.moving, self._place, speed, pull, self._known, gain, self._gravity
+            layout.moving, self._place, speed, pull, self._known, gain, self._gravity, self._weight
         )  # fmt: skip
         driven = np.flatnonzero(inverse[layout.moving] == 0.0)
         self._ends = np.concatenate((driven, np.arange(m, unused)))
-        self._given, self._weight = np.zeros(GIVEN), Vector2(0.0, 0.0)
+        self._given, self._weights = np.zeros(GIVEN), Vector2(0.0, 0.0)
         self._physics: object = None
 
     def begin(self, state: State) -> None:
@@ -128,8 +128,10 @@ class SpringFlow:
             uniform = (force.uniform_acceleration(state) for force in self._forces)
             gravity = sum((g for g in uniform if g is not None), start=Vector2(0.0, 0.0))
             pulled = state.bodies.inverse_mass[self._moving] > 0.0
+            mass = np.where(pulled, state.table(Mass)["mass"][self._moving], 0.0)
             self._gravity[:] = np.outer(pulled, (gravity.x, gravity.y)).ravel()
-            self._weight = gravity * float(state.table(Mass)["mass"][self._moving][pulled].sum())
+            self._weight[:] = np.outer(mass, (gravity.x, gravity.y)).ravel()
+            self._weights = gravity * float(mass.sum())
             self._physics = state.physics
         transform, first = state.table(Transform), len(self._moving)
         for end, springs, anchors in self._fixed:
@@ -152,7 +154,7 @@ class SpringFlow:
         if made >= 0:
             sums[SPRINGS, PX:] += given[BY_SPRINGS : BY_SPRINGS + 3]
             sums[HAND, ENERGY] += given[BY_HAND]
-            sums[GRAVITY, PX] += self._weight.x * h * steps
-            sums[GRAVITY, PY] += self._weight.y * h * steps
+            sums[GRAVITY, PX] += self._weights.x * h * steps
+            sums[GRAVITY, PY] += self._weights.y * h * steps
             sums[GRAVITY, SPIN] += given[BY_GRAVITY]
         return made

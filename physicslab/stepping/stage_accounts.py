@@ -48,6 +48,8 @@ class StageAccounts:
         self._dampers = np.zeros_like(state.bodies.pull)
         self._before: NDArray[np.float64]
         self._start: tuple[NDArray[np.float64], NDArray[np.float64]]
+        self._driven: NDArray[np.bool_] | None = None
+        self._generation = -1
         self._kicked = 0.0
 
     @property
@@ -56,9 +58,14 @@ class StageAccounts:
         return bool(self._pulls) or self._damps
 
     def begin_substep(self, state: State) -> None:
-        """Note where bodies are, if a force does work along their way."""
-        self._kicked = 0.0
-        if self._follows_way:
+        """Note where bodies are, if a force does work along their way that is booked."""
+        bodies, self._kicked = state.bodies, 0.0
+        if not self._follows_way:
+            return
+        if self._generation != state.generation:  # once a step
+            driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0) & ~bodies.sub_integrated
+            self._driven, self._generation = driven if driven.any() else None, state.generation
+        if self.notes_forces or self._driven is not None:
             transform = state.table(Transform)
             self._start = transform["position"].copy(), transform["angle"].copy()
 
@@ -120,7 +127,10 @@ class StageAccounts:
 
     def _book_way(self, state: State) -> None:
         """Book the work of forces along the way of the substep, and that of what drives against them."""
-        transform, bodies, sums = state.table(Transform), state.bodies, state.account.sums
+        driven, transform, bodies = self._driven, state.table(Transform), state.bodies
+        if driven is None and not self.notes_forces:
+            return
+        sums = state.account.sums
         way = np.concatenate(
             ((transform["position"] - self._start[0]).ravel(), transform["angle"] - self._start[1])
         )
@@ -130,16 +140,16 @@ class StageAccounts:
             sums[force.account, ENERGY] += float(pull[rows] @ way[rows])
         if self._damps:
             sums[DAMPING, ENERGY] += float(self._dampers[rows] @ way[rows])
-        driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0) & ~bodies.sub_integrated
-        if driven.any():
+        if driven is not None:
             rows = np.concatenate((np.repeat(driven, 2), driven))
             sums[HAND, ENERGY] -= float(bodies.pull[rows] @ way[rows])
 
 
 def _has_dampers(state: State) -> bool:
-    """Whether any spring has a damper."""
-    rows, _, _ = spring_ends(state)
-    return bool((state.table(Spring)["damping"][rows] > 0.0).any())
+    """Whether a spring has a damper that kicks: what is sub-integrated books its own."""
+    rows, a, b = spring_ends(state)
+    kicked = state.table(Velocity).present & ~state.bodies.sub_integrated
+    return bool(((state.table(Spring)["damping"][rows] > 0.0) & (kicked[a] | kicked[b])).any())
 
 
 def _pull_of_dampers(state: State) -> NDArray[np.float64]:

@@ -122,10 +122,6 @@ class Schedule:
         """Return the kernels that the running systems call at their stages."""
         return [needed for system in self.running for needed in system.kernels_for(state)]
 
-    def acts_at(self, stage: Stage) -> bool:
-        """Whether any running system has something to do at a stage."""
-        return bool(self._calls.get(stage))
-
     def run(self, stage: Stage, state: State, h: float) -> None:
         """Call every running system of ``stage``, in order, and note what each cost."""
         for call, timing in self._calls.get(stage, ()):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Name, Spring, Transform, Velocity
 from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import InvalidValue
-from physicslab.kernels import accounts
+from physicslab.kernels import accounts, direct_entry
 from physicslab.kernels.forces import bookings, packed_forces, springs
 from physicslab.kernels.forces.resistance import damper_resistance
 from physicslab.state.packed import PackedForce, StateLayout, spring_ends, turned_anchors
@@ -29,6 +29,7 @@ class SpringSystem(ForceSystem):
     needs = (Spring,)
     kernels = (packed_forces.springs,)
     potential = "spring"
+    turns = True
 
     def __init__(self) -> None:
         self._rows = self._a = self._b = np.zeros(0, np.int64)
@@ -59,6 +60,12 @@ class SpringSystem(ForceSystem):
             left: tuple[object, ...] = esper.components_for_entity(entity)
             if all(isinstance(component, Name) for component in left):
                 esper.delete_entity(entity, immediate=True)
+
+    def turned(self, state: State) -> NDArray[np.int64]:
+        """Return the rows that springs hold away from their middle."""
+        spring = state.table(Spring)
+        off_a, off_b = (spring[anchor][self._rows].any(axis=1) for anchor in ("anchor_a", "anchor_b"))
+        return np.concatenate((self._a[off_a], self._b[off_b]))
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the pull for compiled integrators."""
@@ -186,7 +193,8 @@ class SpringSystem(ForceSystem):
         """Return the sum of k (length - rest_length)^2 / 2 [J]."""
         spring, transform = state.table(Spring), state.table(Transform)
         state.compile((springs.spring_potential,))
-        return springs.spring_potential(
+        stored: float = direct_entry(springs.spring_potential)(
             transform["position"], transform["angle"], self._rows, self._a, self._b,
             spring["anchor_a"], spring["anchor_b"], spring["rest_length"], spring["stiffness"],
         )  # fmt: skip
+        return stored

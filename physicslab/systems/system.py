@@ -181,6 +181,8 @@ class ForceSystem(System):
     """Where the work of a force that stores no energy is booked (:mod:`physicslab.kernels.accounts`)."""
     potential: ClassVar[str | None] = None
     """The name under which the energy is reported; ``None`` for a force that stores none."""
+    turns: ClassVar[bool] = False
+    """Whether a compiled force adds torques, at ``layout.turn``; one in Python may add them in any case."""
 
     def potential_energy(self, state: State) -> float:
         """Return the energy stored [J]; zero for a force that stores none."""
@@ -221,6 +223,10 @@ class ForceSystem(System):
         """
         return None
 
+    def uniform_alone(self, state: State) -> Vector2 | None:
+        """Return :meth:`uniform_acceleration` of a force that is compiled and turns nothing besides."""
+        return self.uniform_acceleration(state) if type(self).packs() and not self.turns else None
+
     @property
     def attractors(self) -> int:
         """How many bodies attract each other by this force; 0 for one that is no attraction of pairs."""
@@ -237,13 +243,25 @@ class ForceSystem(System):
         """Return the pairs of rows (n, 2) whose motions the force couples; ``None``: any with any."""
         return None
 
+    def turned(self, state: State) -> NDArray[np.int64]:
+        """Return the rows of the bodies that a compiled force turns: their angles are then followed.
+
+        Those of all entities that it needs, where it says that it ``turns``; a force may return fewer.
+        """
+        return state.batch(*self.needs).rows if self.turns else np.zeros(0, np.int64)
+
     def packed(self, state: State, layout: StateLayout) -> PackedForce | None:
         """Return the force as compiled integrators call it, with the numbers of the scene as they are now.
 
         A row whose ``layout.place`` is -1 takes no part; there is none where :meth:`couples` is ``None``.
+        Where that of its angle, ``layout.turn``, is -1, no force turns it.
         ``None`` where there is no such kernel: the method at ``Stage.FORCE`` is called instead, from Python.
         """
         return None
+
+    def seen(self, layout: StateLayout) -> StateLayout:
+        """Return a layout as :meth:`packed` is given it: the angles are for a force that ``turns`` bodies."""
+        return layout if self.turns else layout.without_angles(self.name)
 
     def needs_origin(self, state: State) -> bool:
         """Whether the force is another where everything that moves is moved by the same distance."""
@@ -300,7 +318,7 @@ class ForceSystem(System):
         masses = bodies.inverse_mass.tobytes(), bodies.inverse_inertia.tobytes()
         made_of = (*structure, state.physics, numbers, *masses)
         if numbers is None or made_of != self._packed_of:
-            force = self.packed(state, self._layout)
+            force = self.packed(state, self.seen(self._layout))
             assert force is not None
             state.compile((force.kernel, add_forces))
             self._packed, self._calls, self._packed_of = force, np.array([force.call]), made_of

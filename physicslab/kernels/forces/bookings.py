@@ -69,6 +69,20 @@ def book_open_spring(
     ``moved`` tells which coordinates forces move.
     """
     a, turn_a, b, turn_b = indices[1 + 4 * s], indices[2 + 4 * s], indices[3 + 4 * s], indices[4 + 4 * s]
+    if turn_a < 0 and turn_b < 0 and hand < 0:  # most hang by one end that moves, and turn nothing
+        at, dx, dy, fx, fy = a, damper_x, damper_y, fx - damper_x, fy - damper_y
+        if moved & A_MOVES == 0:
+            at, dx, dy, fx, fy = b, -dx, -dy, -fx, -fy
+            if moved & B_MOVES == 0:
+                return
+        force[store + PX] += fx
+        force[store + PY] += fy
+        force[store + SPIN] += q[at] * fy - q[at + 1] * fx
+        if damp >= 0:
+            force[damp + PX] += dx
+            force[damp + PY] += dy
+            force[damp + SPIN] += q[at] * dy - q[at + 1] * dx
+        return
     torque_a, torque_b = ax * fy - ay * fx, bx * fy - by * fx
     slow_a, slow_b = ax * damper_y - ay * damper_x, bx * damper_y - by * damper_x
     px, py, spin, dx, dy, d_spin, work = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -192,7 +206,8 @@ def book_kick(
     if rate > 0.0 and inverse_mass > 0.0:
         _, first, second = fall_shares(rate * kick)
         along = kick * (v[i] * first + acceleration[i] * kick * second)
-        work = (change * (v[i] + 0.5 * change) - acceleration[i] * along) / inverse_mass
+        gained = kick * first * (acceleration[i] - rate * v[i])  # by the law, whatever the motion's change is
+        work = (gained * (v[i] + 0.5 * gained) - acceleration[i] * along) / inverse_mass
         book_damping(v, places, q, i, work, -rate * along / inverse_mass)
     for k in range(KEPT, len(places), 2):
         v[places[k]] += acceleration[places[k + 1] + i] * along

@@ -27,9 +27,21 @@ def uniform_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-
     ``indices``: how many, where x of each is, and the account of gravity.
     """
     n, gx, gy = indices[0], parameters[0], parameters[1]
-    account, mx, my = indices[1 + n], 0.0, 0.0
-    for p in range(n):
+    account, half = indices[1 + n], n // 2
+    mx, my, other_mx, other_my = 0.0, 0.0, 0.0, 0.0  # two sums: each waits for its own last addition alone
+    for p in range(half):
         i, mass = indices[1 + p], parameters[2 + p]
+        j, other = indices[1 + half + p], parameters[2 + half + p]
+        force[i] += mass * gx
+        force[i + 1] += mass * gy
+        force[j] += other * gx
+        force[j + 1] += other * gy
+        mx += mass * q[i]
+        my += mass * q[i + 1]
+        other_mx += other * q[j]
+        other_my += other * q[j + 1]
+    if n > 2 * half:
+        i, mass = indices[n], parameters[1 + n]
         force[i] += mass * gx
         force[i + 1] += mass * gy
         mx += mass * q[i]
@@ -38,7 +50,7 @@ def uniform_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-
         return
     force[account + PX] += parameters[2 + n] * gx
     force[account + PY] += parameters[2 + n] * gy
-    force[account + SPIN] += mx * gy - my * gx
+    force[account + SPIN] += (mx + other_mx) * gy - (my + other_my) * gx
 
 
 @allocating

@@ -78,8 +78,11 @@ def spring_potential(
     for s in range(len(springs)):
         k = springs[s]
         a, b = row_a[s], row_b[s]
-        ax, ay = turned(angle[a], anchor_a[k, 0], anchor_a[k, 1])
-        bx, by = turned(angle[b], anchor_b[k, 0], anchor_b[k, 1])
+        ax, ay, bx, by = anchor_a[k, 0], anchor_a[k, 1], anchor_b[k, 0], anchor_b[k, 1]
+        if ax != 0.0 or ay != 0.0:  # most springs hold a body by its middle
+            ax, ay = turned(angle[a], ax, ay)
+        if bx != 0.0 or by != 0.0:
+            bx, by = turned(angle[b], bx, by)
         dx = position[b, 0] + bx - position[a, 0] - ax
         dy = position[b, 1] + by - position[a, 1] - ay
         extension = math.sqrt(dx * dx + dy * dy) - rest_length[k]

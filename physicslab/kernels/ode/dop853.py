@@ -193,9 +193,13 @@ def _book(
 ) -> None:
     """Book what causes have given in a step; their torques were about ``origin``."""
     for i in range(booked):
-        given = 0.0
-        for stage in range(LAST):
-            given += WEIGHTS[LAST, stage] * pushes[n + i, stage]
+        # Stages 1 to 4 have no weight; in two sums, as each addition waits for the one before.
+        early = WEIGHTS[LAST, 0] * pushes[n + i, 0]
+        late = WEIGHTS[LAST, 8] * pushes[n + i, 8]
+        for stage in range(5, 8):
+            early += WEIGHTS[LAST, stage] * pushes[n + i, stage]
+            late += WEIGHTS[LAST, stage + 4] * pushes[n + i, stage + 4]
+        given = early + late
         v[clock + 1 + i] += taken * given
         pushes[n + i, 0] = pushes[n + i, LAST]
         if i % ACCOUNTS == PX:

@@ -34,7 +34,7 @@ class Places(NamedTuple):
     The rows of the world that move (m,); ``place`` and ``speed`` (m + f + 1, 2) of these, of f fixed ends,
     and of one for slots without a spring; ``pull`` of the same shape, which is [0] the force of the springs
     at ``place`` where ``known`` (1,) is true. Of each coordinate of what moves: ``gain`` (2 m,), the inverse
-    mass [1/kg], and ``gravity`` (2 m,) [m/s^2].
+    mass [1/kg], ``gravity`` (2 m,) [m/s^2] and ``weight`` (2 m,) [N].
     """
 
     moving: Rows
@@ -44,6 +44,7 @@ class Places(NamedTuple):
     known: Flags
     gain: Numbers
     gravity: Numbers
+    weight: Numbers
 
 
 class Links(NamedTuple):
@@ -59,7 +60,7 @@ class Links(NamedTuple):
     shortest: Numbers
 
 
-PlacesTuple = tuple[Rows, Vectors, Vectors, Vectors, Flags, Numbers, Numbers]
+PlacesTuple = tuple[Rows, Vectors, Vectors, Vectors, Flags, Numbers, Numbers, Numbers]
 LinksTuple = tuple[Rows, Rows, Numbers, Numbers, Numbers]
 """The same, without names."""
 
@@ -162,13 +163,19 @@ def _book(places: Places, ends: Rows, kick: float, given: Numbers) -> None:
 @inlined
 def _torque_of_gravity(places: Places) -> tuple[float, float]:
     """Return the torque of gravity about the origin [N m], and how fast it grows."""
-    torque, rate = 0.0, 0.0
-    for i in range(len(places.moving)):
-        gain, gx, gy = places.gain[2 * i], places.gravity[2 * i], places.gravity[2 * i + 1]
-        if gain > 0.0:
-            torque += (places.place[i, 0] * gy - places.place[i, 1] * gx) / gain
-            rate += (places.speed[i, 0] * gy - places.speed[i, 1] * gx) / gain
-    return torque, rate
+    place, speed, weight, half = places.place, places.speed, places.weight, len(places.moving) // 2
+    torque, rate, other_torque, other_rate = 0.0, 0.0, 0.0, 0.0  # two sums: each waits for itself alone
+    for i in range(half):
+        j = half + i
+        wx, wy, other_wx, other_wy = weight[2 * i], weight[2 * i + 1], weight[2 * j], weight[2 * j + 1]
+        torque += place[i, 0] * wy - place[i, 1] * wx
+        rate += speed[i, 0] * wy - speed[i, 1] * wx
+        other_torque += place[j, 0] * other_wy - place[j, 1] * other_wx
+        other_rate += speed[j, 0] * other_wy - speed[j, 1] * other_wx
+    for i in range(2 * half, len(places.moving)):
+        torque += place[i, 0] * weight[2 * i + 1] - place[i, 1] * weight[2 * i]
+        rate += speed[i, 0] * weight[2 * i + 1] - speed[i, 1] * weight[2 * i]
+    return torque + other_torque, rate + other_rate
 
 
 @inlined
