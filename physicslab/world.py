@@ -12,7 +12,6 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows
 from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
-from physicslab.kernels.accounts import CONTACT
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
 from physicslab.state.state import State
@@ -126,14 +125,13 @@ class World(State):
         The clock is the caller's. Where that fails or is broken off, the world goes back to before the step.
         """
         with Undoing(self, self._motion):
-            forces = self.schedule.forces
             if self.account.start is None:
-                open_account(self, forces)
+                open_account(self, self.schedule.forces)
             self.schedule.run(Stage.PREPARE, self, h)
-            open_account(self, forces)  # with what was written at PREPARE
+            self.account.is_open = False  # what was written at PREPARE is booked with what was before
             made = self._advance(h, steps)
-            rest = CONTACT if self.stepper is not None and self.stepper.contacts_take_the_rest else None
-            close_account(self, forces, rest)
+            if self.account.is_open:
+                close_account(self, self.schedule.forces)
             self.schedule.run(Stage.FINISH, self, h * steps)
         self.steps += made.steps
         self.step_divisions = made.divisions
@@ -157,6 +155,8 @@ class World(State):
         """Make steps with the best stepper for the coming one, with its kernels compiled."""
         self.stepper = self.stepper_for(h)
         self.compile(self.stepper.kernels)
+        if not (self.stepper.keeps_balance or self.account.is_open):
+            open_account(self, self.schedule.forces)
         return self.stepper.advance(self, h, self.steppers.at_once(self.stepper, steps))
 
     def stepper_for(self, h: float) -> Stepper:

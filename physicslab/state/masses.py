@@ -12,7 +12,6 @@ from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Tra
 from physicslab.components.shape import CIRCLE
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels import direct_entry, motion, ranges
-from physicslab.kernels.near_counts import DRIVEN
 from physicslab.kernels.solver import impulse
 from physicslab.state.state import State
 
@@ -47,14 +46,14 @@ def derive_masses(state: State) -> None:
         outside = direct_entry(ranges.find_outside)(*bodies.checked)
         if outside >= 0:
             _refuse_number(state, outside)
-        ratio, infinite, sizeless, driven, bodies.smallest = direct_entry(motion.derive_masses)(*columns)
+        ratio, infinite, sizeless, bodies.smallest = direct_entry(motion.derive_masses)(*columns)
     else:
         bodies.checked = _checked(state)
         outside = ranges.find_outside(*bodies.checked)
         if outside >= 0:
             _refuse_number(state, outside)
         columns = _columns(state)
-        ratio, infinite, sizeless, driven, bodies.smallest = motion.derive_masses(*columns)
+        ratio, infinite, sizeless, bodies.smallest = motion.derive_masses(*columns)
         bodies.columns = state.entity_index.revision, columns
     if sizeless >= 0:
         _refuse_size(state, sizeless)
@@ -63,7 +62,6 @@ def derive_masses(state: State) -> None:
         inertia, allowed = float(mass["inertia"][infinite]), f"{_INERTIA.allowed}, of mass and Shape too"
         raise InvalidValue(f"{state.label_of_row(infinite)}: Mass", "inertia", inertia, allowed)
     bodies.unequal = ratio > impulse.HEAVY_RATIO
-    state.contacts.counts[DRIVEN] = driven
 
 
 def _columns(state: State) -> tuple[NDArray[Any], ...]:

@@ -65,8 +65,8 @@ class EventDriven:
 
     name: ClassVar[str] = "event_driven"
     title: ClassVar[str] = "Impacts at their exact times"
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = False
-    contacts_take_the_rest: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:

@@ -58,8 +58,8 @@ class Rigid:
     name: ClassVar[str] = "rigid"
     title: ClassVar[str] = "Rigid contacts, events at their exact times"
     leaps: bool = False
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = False
-    contacts_take_the_rest: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (
         motion.touch, motion.collide, motion.advance_piece, motion.begin_motion,
         time_stepping.drift, time_stepping.kick, time_stepping.separate, time_stepping.take_work,

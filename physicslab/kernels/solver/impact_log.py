@@ -20,6 +20,7 @@ __all__ = [
     "Speeds",
     "Struck",
     "book_impact",
+    "book_outside",
     "in_order",
     "shares_of",
     "write_impact",
@@ -135,6 +136,19 @@ def book_impact(
     px, py = x1 + x2, y1 + y2
     turn_a = one.arm_ax * y1 - one.arm_ay * x1 + two.arm_ax * y2 - two.arm_ay * x2
     turn_b = one.arm_bx * y1 - one.arm_by * x1 + two.arm_bx * y2 - two.arm_by * x2
+    book_outside(account, row, masses, pose, mean, px, py, turn_a, turn_b)
+
+
+@inlined
+def book_outside(
+    account: Vectors, row: int, masses: Masses, pose: Pose, mean: Speeds, px: float, py: float, turn_a: float,
+    turn_b: float,
+) -> None:  # fmt: skip
+    """Book what comes from outside by the impulse (px, py) [N s] on B and its opposite on A.
+
+    ``turn_a`` and ``turn_b`` are its moments about both centres [N m s]. What drives a body takes the cause
+    HAND, and does the impulse times its ``mean`` velocity.
+    """
     # What cannot turn takes a torque from outside.
     if masses.a > 0.0 and masses.b > 0.0:
         account[row, SPIN] += (turn_a if masses.turn_a == 0.0 else 0.0) - (
