@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Sizes
 from physicslab.kernels.events.meeting import (
     Course,
@@ -96,7 +96,7 @@ def _time_open(gap: float, speed: float, pull: float) -> float:
     return meet_line(gap, speed, pull, 0.0) if gap > 0.0 else 0.0
 
 
-@fused
+@always_inlined
 def time_apart(
     manifold: Manifold, paths: Vectors, angle: Numbers, sizes: Sizes, walls: Numbers, now: float, error: float
 ) -> float:
