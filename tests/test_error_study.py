@@ -22,7 +22,7 @@ def run(asked: str, integrator: str, cpu_ms: float | None, error: float | None) 
     failure = "" if error is not None else "it fell over"
     return {
         "asked": asked, "integrator": integrator, "cpu_ms": cpu_ms, "error": error,
-        "step": "0.01 s", "substeps": 8, "tolerance": 1e-9, "failure": failure,
+        "step": "0.01 s", "substeps": 8, "tolerance": 1e-9, "failure": failure, "at_most": error == 1e-7,
     }  # fmt: skip
 
 
@@ -94,10 +94,12 @@ def test_the_key_measures_in_another_process_and_shows_the_plot(
     assert "leapfrog" not in words and "leapfrog" not in lines
     assert any("after 5 s" in shown and "Compared with the tightest method" in shown for shown in words)
     samples = desk.window.error_study.samples
-    assert {name: len(costs) for name, (costs, _) in lines.items()} == Counter(s.name for s in samples)
+    assert {"rk4, at most", "at most 1e-07 m", "0.001 m"} <= set(words)
+    names = Counter(f"{s.name}, at most" if s.at_most else s.name for s in samples)
+    assert {name: len(costs) for name, (costs, _) in lines.items()} == names
     for name, (costs, errors) in lines.items():
         assert costs == sorted(costs) and all(error > 0.0 for error in errors), "logarithms are drawn"
-        runs = {(s.cpu_ms, s.error) for s in samples if s.name == name}
+        runs = {(s.cpu_ms, s.error) for s in samples if s.name == name.removesuffix(", at most")}
         assert all((cost, error) in runs or error < 1e-16 for cost, error in zip(costs, errors, strict=True))
     desk.key("escape")
     desk.frames()
@@ -241,4 +243,18 @@ def test_the_table_is_saved_as_csv(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     (path,) = tmp_path.glob("*-errors-1.csv")
     head, *rows = path.read_text("utf-8").splitlines()
     assert head.startswith("chosen,method,") and len(rows) == 3
-    assert rows[0] == "rk4,rk4,0.01 s,8,1e-09,0.1,0.001"
+    assert rows[0] == "rk4,rk4,0.01 s,8,1e-09,0.1,0.001,"
+    assert rows[1] == "rk4,rk4,0.01 s,8,1e-09,10.0,1e-07,at most"
+
+
+def test_a_plot_without_any_growth_of_rounding_and_without_errors_is_shown(tmp_path: Path) -> None:
+    """Nothing grows, and the least error is 0: neither has a logarithm, and 0 is no chaos."""
+    nudged = {"twins": [{"name": "nudged", "spread": {"position": 0.0}}]}
+    for horizon in (None, 3.0):
+        found = FOUND | {"estimate": nudged, "horizon_s": horizon}
+        desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text({json.dumps({'scenes': [found]})!r})")
+        measured(desk)
+        desk.frames(SETTLED)
+        assert desk.window.error_study.shown and not desk.window.error_study.rounding_shows
+        assert desk.window.error_study.chaotic == (horizon is not None)
+        assert not any("One rounding at the start moves" in words for words in desk.ui.words)

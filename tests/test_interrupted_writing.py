@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pygame
@@ -12,7 +13,7 @@ from desk import Desk
 
 from physicslab.cli import main
 from physicslab.desktop.autosave import Autosave
-from physicslab.files.replace import remove_leftovers, replace_file
+from physicslab.files.replace import create_file, remove_leftovers, replace_file
 from physicslab.files.scene import load_scene, save_scene
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="signals and limits of POSIX")
@@ -21,6 +22,7 @@ CTRL = pygame.KMOD_LCTRL
 
 WRITER = """
 import os, signal, sys, threading
+
 from pathlib import Path
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.desktop.autosave import Autosave
@@ -99,6 +101,24 @@ def test_a_writer_killed_at_any_time_leaves_one_whole_file(tmp_path: Path) -> No
         assert len(content) == 3_000_000 and len(set(content)) == 1
     remove_leftovers(path)
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("write", [replace_file, create_file])
+def test_what_a_kill_left_is_removed_by_the_next_write_in_the_folder(
+    write: Callable[[Path, bytes], None], tmp_path: Path
+) -> None:
+    old, fresh = (tmp_path / f".film.gif.{digit * 16}.physicslab-tmp" for digit in "ab")
+    others = (
+        tmp_path / "film.gif",
+        tmp_path / ".film.gif.x.physicslab-tmp",
+        tmp_path / f"{'a' * 16}.physicslab-tmp",
+    )
+    for path in (old, fresh, *others):
+        path.touch()
+        os.utime(path, (0, 0))
+    os.utime(fresh)
+    write(tmp_path / "new.json", b"x")
+    assert set(tmp_path.iterdir()) == {fresh, *others, tmp_path / "new.json"}
 
 
 @pytest.mark.parametrize("way", ["save_scene", "json", "autosave", "ctrl+s"])

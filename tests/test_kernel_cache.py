@@ -244,6 +244,62 @@ def test_so_is_the_users_own_and_one_that_was_named(
 
 
 @posix
+@pytest.mark.parametrize("named", [False, True])
+@pytest.mark.parametrize("how", HOW[1:])
+def test_whoever_can_replace_a_folder_above_it_could_have_filled_it(
+    places: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, how: str, named: bool
+) -> None:
+    """They rename ours after it was checked and put another in its place."""
+    above = places / "physicslab"
+    spoil(above, how)
+    (above / "between" / "kernels" if named else above / "kernels").mkdir(mode=0o700, parents=True)
+    if named:
+        monkeypatch.setenv("PHYSICSLAB_KERNELS", str(above / "between" / "kernels"))
+    found = cache._first_private()
+    assert above not in found.parents and f"{above} " in caplog.text
+    above.chmod(0o1777)  # sticky: others can add to it, and neither rename nor remove what is ours
+    found = cache._first_private()
+    assert (above in found.parents) is (how == "open")
+
+
+@posix
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root gives links away")
+def test_a_link_of_another_user_on_the_way_is_not_followed(places: Path) -> None:
+    own = places / "unpacked" / "kernels"
+    own.mkdir(mode=0o700, parents=True)
+    link = places / "physicslab"
+    link.symlink_to(own.parent)
+    assert cache._first_private() == own, "a link of this user's is its own choice"
+    os.lchown(link, 12345, 12345)
+    assert own not in (found := cache._first_private(), *found.parents)
+
+
+@posix
+def test_a_group_is_others_unless_it_is_the_users_own(places: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    above = places / "physicslab"
+    above.mkdir()
+    above.chmod(0o775)
+    monkeypatch.setattr(cache, "_is_own_group", lambda group: True)
+    assert cache._first_private().parent == above
+    monkeypatch.setattr(cache, "_is_own_group", lambda group: False)
+    assert above not in cache._first_private().parents
+
+
+@posix
+def test_one_that_cannot_be_written_is_used_if_it_holds_every_kernel(
+    places: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As where an administrator has compiled them for a classroom, or a container was built as root."""
+    shared = places / "shared"
+    shared.mkdir(mode=0o755)
+    monkeypatch.setenv("PHYSICSLAB_KERNELS", str(shared))
+    monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != shared)
+    assert cache._first_private() != shared, "what is missing could not be kept there"
+    (shared / cache._mark_name()).write_text("")
+    assert cache._first_private() == shared
+
+
+@posix
 def test_a_temporary_folder_is_removed_at_the_end(places: Path) -> None:
     spoil(places / "named", "open")
     found = Path(run(WHERE, PHYSICSLAB_KERNELS=str(places / "named")).strip())

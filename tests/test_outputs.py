@@ -1,5 +1,6 @@
 """Where documents go: old ones stay until new ones are there, and none goes where another does."""
 
+import csv
 import json
 import os
 import signal
@@ -10,8 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from physicslab import cli
+from physicslab import World, cli
+from physicslab.components import Name, Velocity
 from physicslab.files.scene import load_scene, save_scene
+from physicslab.prefabs import circle
+from physicslab.systems.standard import standard_systems
 
 ROOT = Path(__file__).parent.parent
 LATIN = os.fsdecode(b"caf\xe9.json")
@@ -111,13 +115,15 @@ def test_a_file_name_that_is_not_utf_8_loses_no_result(
     monkeypatch.chdir(tmp_path)
     save_scene(load_scene("two_planets"), LATIN)
     text = Path(LATIN).read_text().replace('"name": "two_planets"', '"name": ""')
+    text = text.replace('"title": "', '"title": "\u202e\u2066\u200e')
     Path(LATIN).write_text(text)
     assert cli.main(["run", LATIN, "--steps", "2", "--json", "out.json"]) == 0
-    assert json.loads(Path("out.json").read_bytes())["scene"] == "caf\udce9"
+    assert json.loads(Path("out.json").read_bytes())["scene"] == "caf\\udce9"
     capsys.readouterr()
     assert cli.main(["run", LATIN, "--steps", "2"]) == 0
     out, err = capsys.readouterr()
-    assert out.startswith("caf\\udce9: ") and err == ""
+    assert out.startswith("caf\\udce9: \\u202e\\u2066\\u200e") and err == ""
+    assert out.replace("\n", "").isprintable(), "nothing turns the terminal's text round"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows allows no such file names")
@@ -132,3 +138,20 @@ def test_no_file_name_moves_the_cursor(
     assert cli.main(["bench", name]) == 0
     out, err = capsys.readouterr()
     assert "\x1b" not in out + err and "a\\x1b[2J\\nb" in out + err
+
+
+def test_a_spreadsheet_computes_no_id(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What begins with = + - or @ is a formula to a spreadsheet, in quotes too."""
+    monkeypatch.chdir(tmp_path)
+    world = World(*standard_systems())
+    ids = ("=HYPERLINK(1)", "+1", "-1", "@SUM(1)", "ball")
+    for n, name in enumerate(ids):
+        world.add(circle(world, (n * 0.5, 0.4)), Name(name))
+        world.component(world.entity(name), Velocity).linear = (-float(n), 0.0)
+    save_scene(world, "formula.json")
+    assert cli.main(["run", "formula.json", "--seconds", "1", "--csv", "a.csv", "--ledger", "b.csv"]) == 0
+    with open("a.csv", newline="") as table, open("b.csv", newline="") as impacts:
+        names = {row["entity"] for row in csv.DictReader(table)}
+        struck = {row[side] for row in csv.DictReader(impacts) for side in "AB"}
+    assert names == {"'=HYPERLINK(1)", "'+1", "'-1", "'@SUM(1)", "ball"}
+    assert struck and struck <= names

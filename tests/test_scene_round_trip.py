@@ -6,7 +6,7 @@ import json
 import math
 import os
 from collections.abc import Callable
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 import esper
@@ -185,7 +185,7 @@ def test_a_spring_of_a_removed_body_is_not_saved() -> None:
 
 def test_plain_esper_components_are_left_behind() -> None:
     world = World()
-    world.spawn(Transform(), "a plain component")
+    world.spawn(Transform(), PurePath("a plain component"))
     assert write_scene(world)["entities"] == [{"Transform": {}}]
 
 
@@ -194,7 +194,7 @@ SPOILT: list[tuple[Callable[[World], Any], str]] = [
         lambda w: w.table(Transform)["position"].__setitem__((1, 0), math.nan),
         'entity "bob": Transform.position',
     ),
-    (lambda w: w.table(Mass)["mass"].__setitem__(1, -1.0), 'entity "bob": Mass.mass = -1.0: must be'),
+    (lambda w: w.table(Mass)["mass"].__setitem__(1, -1.0), "bob: Mass.mass = -1.0: must be"),
     (
         lambda w: esper.create_entity(Transform(), Name("bob")),
         'entity 2: id = "bob": must be an id of its own',
@@ -203,7 +203,10 @@ SPOILT: list[tuple[Callable[[World], Any], str]] = [
         lambda w: esper.create_entity(Transform(), Name("")),
         'entity 2: id = "": must be a text that is not empty',
     ),
-    (lambda w: w.spawn(Transform(), Spring(1, 99)), "Spring.b = 99: must be an entity of this world"),
+    (
+        lambda w: w.spawn(Transform(), Spring(1, 99), entity=9),
+        "Spring.b = 99: must be an entity",
+    ),
     (lambda w: setattr(w, "time", math.nan), "time = NaN: must be a finite number >= 0 s"),
     (lambda w: setattr(w, "title", "\ud800"), 'title = "\\ud800": must be a text'),
 ]

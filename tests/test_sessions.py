@@ -118,7 +118,7 @@ def test_states_are_kept_where_no_other_user_writes(tmp_path: Path, monkeypatch:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends programs without a signal")
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
 def test_a_signal_keeps_the_state_as_it_is(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -164,6 +164,14 @@ def test_of_several_signals_the_first_counts() -> None:
         for number in (signal.SIGTERM, signal.SIGINT):
             termination._note(number, None)
     assert termination.status == 128 + signal.SIGTERM and len(closed) == 2
+
+
+def test_a_second_ctrl_c_interrupts_what_is_waited_for() -> None:
+    with Termination(lambda: None) as termination:
+        termination._note(signal.SIGINT, None)
+        with pytest.raises(KeyboardInterrupt):
+            termination._note(signal.SIGINT, None)
+    assert termination.status == 128 + signal.SIGINT
 
 
 def test_saving_at_once_drops_what_is_half_written(tmp_path: Path) -> None:

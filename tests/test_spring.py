@@ -1,6 +1,7 @@
 """SpringSystem: Hooke and damping, anchors and torques, and springs whose bodies go."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -208,8 +209,6 @@ def test_a_spring_goes_with_its_body_when_that_was_the_newest() -> None:
 @pytest.mark.parametrize(
     ("spring", "field", "value"),
     [
-        (Spring(99, None), "a", 99),
-        (Spring(1, 99), "b", 99),
         (Spring(1, 2), "b", 2),
         (Spring(None, 1), "a", 3),
     ],
@@ -226,6 +225,17 @@ def test_an_end_that_is_no_body_is_refused_by_name(spring: Spring, field: str, v
     world.remove(rope)
     world.step()
     assert world.has(ball, Transform)
+
+
+@pytest.mark.parametrize("make", [World, springs])
+def test_an_end_that_is_nothing_is_refused_when_the_spring_is_made(make: Callable[[], World]) -> None:
+    world = make()
+    ball = world.spawn(Transform())
+    for spring, field in ((Spring(99, None), "a"), (Spring(ball, 99), "b")):
+        for attempt in (lambda: world.spawn(spring), lambda: world.add(ball, spring)):  # noqa: B023
+            with pytest.raises(InvalidValue, match=f"Spring.{field} = 99: must be an entity of this world"):
+                attempt()
+    assert world.entities() == [ball]
 
 
 def test_ends_are_fixed() -> None:

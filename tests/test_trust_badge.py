@@ -30,7 +30,9 @@ with (place / "runs.txt").open("a") as runs:
 bodies = [entity for entity in scene["entities"] if "Velocity" in entity]
 def write(horizon=None, digits=lambda share: 12.5 - 6.0 * share, failure=""):
     looks = [dict(seconds=seconds * n / 10, digits=digits(n / 10), energy=13.2, momentum=0.4,
-                  bodies=[digits(n / 10) + k for k in range(len(bodies))]) for n in range(1, 11)]
+                  bodies=[digits(n / 10) + k for k in range(len(bodies))],
+                  velocities=[3.5 + k for k in range(len(bodies))], angles=[14.5] * len(bodies),
+                  spins=[2.5] * len(bodies), angular_momentum=1.4) for n in range(1, 11)]
     report.write_text(json.dumps({{"scenes": [dict(looks=looks, horizon_s=horizon, failure=failure)]}}))
 {deed}
 """
@@ -84,6 +86,9 @@ def test_nothing_is_checked_before_it_is_wanted_and_a_line_of_the_badge_wants_it
     click(desk, BADGE)
     assert desk.ui.rows["Positions"] == "11 digits" and desk.ui.rows["Energy"] == "13 digits"
     assert desk.ui.rows["Horizon"] == "none found"
+    assert [desk.ui.rows[name] for name in ("Velocities", "Angles", "Spins", "Turning")] == [
+        "3 digits", "14 digits", "2 digits", "1 digit"
+    ]  # fmt: skip
     click(desk, "Check digits")
     assert not desk.window.trust.wanted
     desk.frames(SETTLED)
@@ -218,6 +223,9 @@ def test_the_inspector_has_the_digits_of_the_selected_body_until_the_next_edit(t
     desk.window.selection.take(first)
     desk.frames(SETTLED)
     assert desk.ui.rows["Position"] == "good to 11 digits"
+    assert [desk.ui.rows[name] for name in ("Velocity", "Angle", "Spin")] == [
+        "good to 3 digits", "good to 14 digits", "good to 2 digits"
+    ]  # fmt: skip
     desk.window.edits.do(SetField(first, "Mass", "mass", 2.0))
     desk.frames(SETTLED)
     assert "Position" not in desk.ui.rows

@@ -45,12 +45,40 @@ def only(world: World, words: str) -> ModelWarning:
     return found
 
 
+CROWDS = ("sandbox", "pyramid", "pile", "dominoes", "gas")
+"""Built-in scenes of more bodies than rigid contacts take, under gravity."""
+
+
 @pytest.mark.parametrize("name", SCENES)
-def test_built_in_scenes_need_no_advice(name: str) -> None:
+def test_built_in_scenes_need_no_advice_but_on_the_model_of_contacts(name: str) -> None:
     world, worst = load_scene(name), WorstWarnings()
     for _ in world.stepping(seconds=3.0, stride=6):
         worst.add(find_warnings(world))
-    assert [str(advice) for advice in worst.all] == []
+    found = [str(advice) for advice in worst.all]
+    soft = [line for line in found if "contacts are soft" in line]
+    assert len(soft) == (name in CROWDS)
+    assert [line for line in found if line not in soft and "no law determines" not in line] == []
+
+
+def test_a_thirteenth_body_makes_contacts_soft_and_that_is_told_with_its_size() -> None:
+    def top(far: int, contacts: str) -> tuple[float, list[ModelWarning]]:
+        world = open_world(contacts=contacts)
+        floor(world)
+        boxes = [box(world, (0, y + 0.5), width=1, height=1) for y in range(10)]
+        for x in range(far):
+            circle(world, (5 + x, 0.5), radius=0.5)
+        world.run(seconds=1.0)
+        told = [advice for advice in find_warnings(world) if "contacts are soft" in advice.what]
+        return world.component(boxes[-1], Transform).position.y, told
+
+    exact, none = top(2, "auto")
+    assert exact == pytest.approx(9.5, abs=1e-12) and none == []
+    height, (told,) = top(3, "auto")
+    assert told.value is not None and 0.1 < told.value / (exact - height) < 10
+    assert told.unit == "m" and told.setting == 'simulation.contacts = "rigid"'
+    height, none = top(3, "rigid")
+    assert height == pytest.approx(exact, abs=1e-12) and none == []
+    assert top(3, "soft")[1] == [], "asked for"
 
 
 @pytest.mark.parametrize("method", ["leapfrog", "symplectic_euler", "rk4"])

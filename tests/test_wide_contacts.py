@@ -119,7 +119,8 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         points, touching = contacts.points.copy(), np.array(order, np.int64)
         near = (counts, near[1], points, near[3], touching, discs, boxes, *near[7:])
         motion = Motion(*motion_of(world))._replace(linear=linear, angular=angular)
-        inverse, acting = (bodies.inverse_mass, bodies.inverse_inertia), (bodies.force, bodies.torque, True)
+        inverse = (bodies.inverse_mass, bodies.inverse_inertia)
+        acting = (bodies.force, bodies.torque, True, bodies.unkicked)
         entries.solve_stage(
             near, cast(MotionTuple, tuple(motion)), inverse, acting,
             (0.17, 7.0, 1.5), h, h, 1,

@@ -19,10 +19,12 @@ from physicslab.lab.accuracy.contacts.engines import OWN
 from physicslab.lab.accuracy.contacts.study import ContactStudy, study_case
 from physicslab.lab.accuracy.contacts.tables import contact_summary, contact_text
 from physicslab.lab.accuracy.document import document, trust_document
+from physicslab.lab.accuracy.honesty.study import FAMILIES, HonestRow, assess_known
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import DEFAULT_S, SceneStudy, study_scene
 from physicslab.lab.accuracy.study import Study, study
 from physicslab.lab.accuracy.tables import (
+    honest_text,
     left_out_text,
     scene_text,
     study_text,
@@ -40,6 +42,8 @@ __all__ = ["add_arguments", "execute"]
 
 _CONTACTS = "contacts"
 """The name of the whole second page."""
+_DRAWN = 10
+"""How many random scenes of each family estimates are judged by."""
 _LOOKS = 24
 """How often digits are counted in a run of a scene."""
 
@@ -54,8 +58,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     seconds = f"how long scenes are run, in their time ({DEFAULT_S:g})"
     parser.add_argument("--seconds", metavar="T", type=positive_duration, default=DEFAULT_S, help=seconds)
     words = (
-        "print the estimate of the error of each problem, as run --trust makes it, beside its true error; of "
-        "a scene, how many digits can be relied on from its start to some moments"
+        "print the estimate of the error of each problem, as run --trust makes it, beside its true error, "
+        "and of random scenes how often it is honest; of a scene, how many digits can be relied on from its "
+        "start to some moments"
     )
     parser.add_argument("--trust", action="store_true", help=words)
     parser.epilog = (
@@ -77,7 +82,7 @@ def execute(arguments: Namespace) -> int:
         problems, contacts = list(PROBLEMS.values()), CONTACTS
     run = LabRun("accuracy", arguments, "accuracy")
     if arguments.trust:
-        _trust(run, problems, contacts.values(), scenes, arguments.seconds)
+        _trust(run, problems, contacts.values(), scenes, arguments.seconds, drawn=_DRAWN if sparse else 0)
         return 0
     jobs: list[tuple[float, Job[Study | ContactStudy | SceneStudy]]] = [
         *((1.0, study(problem, sparse=sparse)) for problem in problems),
@@ -120,9 +125,12 @@ def execute(arguments: Namespace) -> int:
 
 def _trust(
     run: LabRun, problems: Sequence[Problem], contacts: Iterable[ContactCase], scenes: Iterable[str],
-    seconds: float,
+    seconds: float, *, drawn: int,
 ) -> None:  # fmt: skip
-    """Write how good estimates of errors are where answers are known, and what to rely on in scenes."""
+    """Write how good estimates of errors are where answers are known, and what to rely on in scenes.
+
+    ``drawn`` is how many random scenes of each family are among the former.
+    """
     jobs: list[Job[TrustRow]] = [assess_problem(problem) for problem in problems if problem.search is None]
     jobs += [assess_contacts(case, engine) for case in contacts for engine in OWN]
     rows: list[TrustRow] = list(run.results([(1.0, job) for job in jobs]))
@@ -132,9 +140,13 @@ def _trust(
         moments = moments_of(seconds, load().simulation.dt, _LOOKS)
         (found[shown],) = run.results([(1.0, assess(load, seconds, moments))])
         run.show(trust_text(shown, found[shown]))
+    random = [assess_known(family, seed) for family in FAMILIES for seed in range(drawn)]
+    honest: list[HonestRow] = list(run.results([(1.0, job) for job in random]))
     if rows:
         run.show(trust_rows_text(rows))
-    run.write(trust_document(rows, found))
+    if honest:
+        run.show(honest_text(honest))
+    run.write(trust_document(rows, found, honest))
 
 
 def _other(scenes: dict[str, None], contacts: dict[str, ContactCase], name: str) -> Problem | None:

@@ -10,8 +10,8 @@ from typing import Any
 from physicslab.commands.command_error import CommandError
 from physicslab.ecs.component import COMPONENTS, Component, Field, InvalidValue
 from physicslab.ecs.quantity_text import InvalidText, evaluate
-from physicslab.ecs.text import unique_name
-from physicslab.files.checks import shown, suggestion
+from physicslab.ecs.text import suggestion, unique_name
+from physicslab.files.checks import shown
 from physicslab.files.entities import UNSAVED
 from physicslab.files.reader import check_scene
 from physicslab.files.writer import write_scene

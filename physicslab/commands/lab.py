@@ -11,7 +11,8 @@ from physicslab.commands.command_error import CommandError
 from physicslab.commands.output import Output
 from physicslab.commands.pictures import picture_directory
 from physicslab.commands.progress import Progress
-from physicslab.files.checks import shown, suggestion
+from physicslab.ecs.text import printable, suggestion
+from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
 from physicslab.lab.case import Case, Catalogue, Job, run_jobs
 from physicslab.lab.table import table
@@ -96,7 +97,7 @@ class LabRun:
     def show(self, text: str, stream: TextIO | None = None) -> None:
         """Print a text to stdout or another stream, unless stdout is for the document alone."""
         if not self._quiet:
-            print(text, file=stream, flush=True)
+            print("\n".join(map(printable, text.split("\n"))), file=stream, flush=True)
 
     def results[Result](self, jobs: Sequence[tuple[float, Job[Result]]]) -> Iterator[Result]:
         """Yield the result of each job, and show on the terminal how far all are."""

@@ -157,7 +157,7 @@ class MeasuredRun:
         for line in (self._watch.note(made, taken), self._watch.note_impacts()):
             if line and sys.stderr is not None:
                 progress.clear()
-                print(f"physicslab: {self._label}: {line}", file=sys.stderr, flush=True)
+                print(f"physicslab: {self._label}: {printable(line)}", file=sys.stderr, flush=True)
         record.steps = done
         return True
 

@@ -28,7 +28,8 @@ from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.desktop.rescue import save_last_good
 from physicslab.diagnostics.ledger import LedgerWriter
-from physicslab.diagnostics.run_report import find_not_finite, run_report, run_summary
+from physicslab.diagnostics.precision import find_imprecise, words_of_digits
+from physicslab.diagnostics.run_report import advice_of, find_not_finite, run_report, run_summary
 from physicslab.diagnostics.trajectory import TrajectoryWriter
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import CONTACTS, INTEGRATORS
@@ -66,7 +67,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--csv", metavar="FILE", help=table)
     spacing = "with --csv: rows at most so often, in the scene's time; those of the start and the end always"
     add("--every", metavar="S", type=positive_duration, help=spacing)
-    words = "compute the run in other ways too: how many digits of positions and energy agree, and until when"
+    words = "compute the run in other ways too: how many digits of motion and energy agree, and until when"
     add("--trust", action="store_true", help=words)
     impacts = "write every impact of the run: when, where, how fast before and after, what it took (-)"
     add("--ledger", metavar="FILE", help=impacts)
@@ -110,7 +111,10 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
     if stopped:
         report["stopped"] = stopped
     if arguments.trust:
-        report["trust"] = _trust(arguments, label, world.time - start)
+        report["trust"] = trust = _trust(arguments, label, world.time - start)
+        report["advice"] += advice_of(words_of_digits(trust))
+    else:
+        report["advice"] += advice_of(find_imprecise(world, run.record.audit))
     if "json" in outputs:
         outputs["json"].write(json_bytes(report))
     if "png" in outputs:

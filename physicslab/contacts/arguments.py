@@ -47,7 +47,8 @@ def inverse_in(state: State) -> InverseTuple:
 
 def acting_in(state: State) -> ActingTuple:
     """Return the forces of this substep."""
-    return (state.bodies.force, state.bodies.torque, state.has_forces)
+    bodies = state.bodies
+    return (bodies.force, bodies.torque, state.has_forces, bodies.unkicked)
 
 
 def bounds_of(state: State) -> BoundsTuple:
@@ -62,13 +63,15 @@ def near_in(state: State) -> NearTuple:
     contacts, rows = state.contacts, len(state.entity_index)
     if len(contacts.rotations) != rows:
         contacts.rotations = np.full((rows, 3), np.nan)
-    if len(contacts.slips) < len(contacts.points):
-        contacts.slips = np.zeros((len(contacts.points), 2))
+        contacts.linear_before, contacts.angular_before = np.zeros((rows, 2)), np.zeros(rows)
+    if len(contacts.noted) < len(contacts.points):
+        contacts.noted = np.zeros((len(contacts.points), 4))
     return (
         contacts.counts, contacts.manifolds, contacts.points, contacts.scalar, contacts.touching,
         contacts.wide.discs.slots, contacts.wide.boxes.slots,
         contacts.proximity, contacts.activation_distance, state.entity_index.entities,
-        contacts.rotations, state.account.sums, contacts.slips,
+        contacts.rotations, state.account.table, contacts.noted, contacts.linear_before,
+        contacts.angular_before,
     )  # fmt: skip
 
 

@@ -7,7 +7,11 @@ import os
 from pathlib import Path
 from typing import Any
 
+from physicslab.ecs.text import printable
+from physicslab.files.checks import SceneError
 from physicslab.files.replace import replace_file
+from physicslab.files.scene import read_bytes
+from physicslab.view.canvas.drawable_text import encodable
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.window.recent import RecentFiles
 from physicslab.view.window.window import LEVELS, Window
@@ -18,15 +22,26 @@ _MIN_SCALE, _MAX_SCALE = 0.5, 3.0
 """The sizes of text that are taken from a file, as shares of the usual."""
 _MAX_ARRANGEMENT = 100_000
 """Characters that are taken of where panels are."""
+_MAX_BYTES = 1_000_000
+_UNREADABLE = ".unreadable"
+"""What is added to the name of a file that could not be read, so that it does not stand in the way again."""
 
 
 def load_preferences(path: Path, window: Window) -> None:
-    """Set a window up as it was left; what is not there, or is nothing that can be chosen, stays as usual."""
+    """Set a window up as it was left; what is not there, or is nothing that can be chosen, stays as usual.
+
+    A file that cannot be read is put aside, and the window says so.
+    """
     try:
-        found: Any = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError):
+        found: Any = json.loads(
+            read_bytes(path, path.name, _MAX_BYTES, "a file of preferences").decode("utf-8")
+        )
+        if not isinstance(found, dict):
+            raise ValueError("it holds no object")
+    except FileNotFoundError:
         return
-    if not isinstance(found, dict):
+    except (OSError, SceneError, ValueError, RecursionError) as error:
+        _put_aside(path, window, error)
         return
     window.theme = next((theme for theme in THEMES if theme.name == found.get("colours")), window.theme)
     scale, level, arrangement = found.get("text"), found.get("level"), found.get("panels")
@@ -38,7 +53,19 @@ def load_preferences(path: Path, window: Window) -> None:
     if isinstance(recent, list):
         window.recent = RecentFiles(Path(path) for path in recent if isinstance(path, str) and path)
     if isinstance(arrangement, str) and len(arrangement) <= _MAX_ARRANGEMENT:
-        window.arrangement = arrangement
+        window.arrangement = encodable(arrangement)
+
+
+def _put_aside(path: Path, window: Window, error: Exception) -> None:
+    """Rename a file that cannot be read, and say so."""
+    kept = path.with_name(path.name + _UNREADABLE)
+    reason = "nested too deeply" if isinstance(error, RecursionError) else printable(str(error))
+    try:
+        os.replace(path, kept)
+        done = f"it is kept as {kept.name}, and the usual ones are taken"
+    except OSError:
+        done = "the usual ones are taken"
+    window.notify(f"Preferences could not be read ({reason}): {done}", 8.0, failed=True)
 
 
 def save_preferences(path: Path, window: Window) -> None:
@@ -55,4 +82,6 @@ def save_preferences(path: Path, window: Window) -> None:
         "panels": window.arrangement,
     }  # fmt: skip
     path.parent.mkdir(parents=True, exist_ok=True)
+    if os.path.exists(path) and not path.is_file():  # a pipe without a reader would wait for ever
+        raise OSError(f"{path} is no plain file")
     replace_file(path, (json.dumps(chosen, indent=1) + "\n").encode("utf-8"))

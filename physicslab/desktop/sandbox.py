@@ -19,7 +19,9 @@ from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
+from physicslab.view.window.handles import Handles
 from physicslab.view.window.measuring import Measuring
+from physicslab.view.window.pins import Pins
 from physicslab.view.window.window import Left, Window
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
@@ -110,7 +112,13 @@ class Sandbox:
         window.overlays.forget()
         window.sparks.clear()
         window.selection.clear()
-        window.naming, window.measuring = None, Measuring()
+        window.naming, window.picking, window.band, window.measuring = None, None, None, Measuring()
+        window.handles, window.pins = Handles(), Pins()
+        if not is_again:  # what was found of another scene is not for this one
+            window.error_study.abandon()
+            window.error_study.shown = False
+        window.impacts.clear()
+        self.interface.forget()
         window.microscope.forget()
         window.shows_stopwatch = bool(len(world.batch(Gate)))
         window.error, window.next_world = "", None
@@ -131,7 +139,7 @@ class Sandbox:
             self._go_on_to(self.window.next_world)
         self._advance()
         self.window.filming.advance(self.history)
-        self.window.selection.follow(self.world)  # in the past steps make and remove bodies
+        self._follow_entities()
         self._undrawn += elapsed
         drawn = not self._rests(elapsed) or self._undrawn > _REST_PERIOD
         if drawn:
@@ -143,6 +151,13 @@ class Sandbox:
         if self._autosave is not None:
             self._keep(self._autosave)
         return drawn
+
+    def _follow_entities(self) -> None:
+        """Let go of what is not there any more: in the past steps make and remove bodies."""
+        window, picking = self.window, self.window.picking
+        window.selection.follow(self.world)
+        if picking is not None and not self.world.has(picking.entity, picking.kind):
+            window.picking = None
 
     def _rests(self, elapsed: float) -> bool:
         """Whether only the clock changes in the picture: for a while nothing has moved or was done."""

@@ -10,15 +10,15 @@ from typing import Any
 
 __all__ = ["Termination"]
 
-_SIGNALS = ("SIGTERM", "SIGHUP")
-"""At a logout or a shutdown, by ``kill``, when the terminal is closed; Windows has the first alone."""
+_SIGNALS = ("SIGTERM", "SIGHUP", "SIGINT")
+"""At a logout or a shutdown, by ``kill``; when the terminal is closed, which Windows lacks; by Ctrl+C."""
 
 
 class Termination:
     """Notes the signals that end the program, within a ``with`` block, and has the window closed.
 
-    SDL would make of SIGTERM what a click on the window's cross is: the state would be removed as if the user
-    had left.
+    A second Ctrl+C interrupts what the window waits for. SDL would make of SIGTERM what a click on the
+    window's cross is: the state would be removed as if the user had left.
 
     Parameters
     ----------
@@ -56,5 +56,7 @@ class Termination:
         return 128 + self.signal if self.signal else 0
 
     def _note(self, number: int, frame: FrameType | None) -> None:
+        if number == self.signal == signal.SIGINT:
+            raise KeyboardInterrupt
         self.signal = self.signal or number
         self._close()

@@ -20,17 +20,22 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ecs.text import table_cell
+from physicslab.kernels.records import IMPACT
 from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON
 from physicslab.state.state import State
 
 __all__ = [
-    "LAWS", "WALLS", "ImpactColumns", "LedgerWriter", "ledger_csv", "names_of", "read_impacts", "speeds_at",
+    "LAWS", "NO_IMPACTS", "WALLS", "ImpactColumns", "LedgerWriter", "ledger_csv", "names_of", "read_impacts",
+    "speeds_at",
 ]  # fmt: skip
 
 WALLS = ("bounds left", "bounds bottom", "bounds right", "bounds top")
 """What the world's bounds are called, by the number of the wall."""
 LAWS = {NEWTON: "Newton", ENERGETIC: "Stronge", LOWERED: "Newton, restitution lowered"}
 """The laws of :mod:`physicslab.kernels.solver.blow` in words."""
+NO_IMPACTS = np.zeros(0, IMPACT)
+"""An empty log, with all its columns."""
 _STICKS = 1e-9
 """Share of the speeds before an impact up to which the sliding after it is none."""
 _GROWS_FROM = 0.25
@@ -157,9 +162,9 @@ def _since_last(records: NDArray[Any], last: LastTimes) -> Floats:
 
 
 def names_of(state: State, records: NDArray[Any]) -> tuple[list[str], list[str]]:
-    """Return what A and B of each impact are called; the bounds by their walls."""
+    """Return what A and B of each impact are called in a table; the bounds by their walls."""
     entities = np.unique(np.concatenate((records["entity_a"], records["entity_b"]))).tolist()
-    names = {entity: state.label(entity) for entity in entities if entity}
+    names = {entity: table_cell(state.label(entity)) for entity in entities if entity}
     pairs = zip(records["entity_a"].tolist(), records["wall"].tolist(), strict=True)
     first = [names[entity] if wall < 0 else WALLS[wall] for entity, wall in pairs]
     return first, [names[entity] for entity in records["entity_b"].tolist()]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,11 +15,11 @@ from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
 from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.energy import measure_momentum, summation
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
-from physicslab.ecs.text import unique_name
+from physicslab.ecs.text import printable, unique_name
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
-__all__ = ["RunRecord", "body_names", "find_not_finite", "run_report", "run_summary"]
+__all__ = ["RunRecord", "advice_of", "body_names", "find_not_finite", "run_report", "run_summary"]
 
 _MOMENTA: dict[str, float | Vector2] = dict.fromkeys(MOMENTUM_CAUSES, math.nan)
 """In the order of the document; a cause whose momentum is not measured by itself stays without a number."""
@@ -72,9 +72,10 @@ def body_names(world: World) -> dict[int, str]:
     return names
 
 
-def _advice(warning: ModelWarning) -> dict[str, Any]:
-    """Return a warning as a report has it; entities have names there, and no numbers."""
-    return {key: value for key, value in dataclasses.asdict(warning).items() if key != "number"}
+def advice_of(warnings: Iterable[ModelWarning]) -> list[dict[str, Any]]:
+    """Return warnings as a report has them; entities have names there, and no numbers."""
+    found = [dataclasses.asdict(warning) for warning in warnings]
+    return [{key: value for key, value in each.items() if key != "number"} for each in found]
 
 
 def run_report(world: World, record: RunRecord) -> dict[str, Any]:
@@ -125,7 +126,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "collisions": int(world.collisions),
         "max_penetration": record.max_penetration,
         "divided": record.divided,
-        "advice": [_advice(warning) for warning in record.warnings.all],
+        "advice": advice_of(record.warnings.all),
         "entities": _bodies(world),
     }
 
@@ -230,7 +231,7 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
     wall = report["wall_s"]
     systems = ", ".join(f"{system['name']} {system['ms']:.1f} ms" for system in report["systems"])
     lines = [
-        f"{report['scene']}: {title}" if title else str(report["scene"]),
+        f"{report['scene']}: {printable(title)}" if title else str(report["scene"]),
         f"  time        {report['time']:.9g} s in {report['steps']} steps of {report['dt']:.6g} s, "
         f"{report['substeps']} substeps each",
         f"  method      {report['integrator']}: {report['integrator_reason']}; "
@@ -268,10 +269,16 @@ def _trust_words(report: Mapping[str, Any]) -> str:
     """Return what can be relied on, on a line."""
     if report["digits"] is None:
         return f"cannot be measured: {report['failure']}"
+    fewest = [
+        f"{min(report[name].values()):.1f} of every {word}"
+        for name, word in (("velocities", "velocity"), ("angles", "angle"), ("spins", "spin"))
+    ]
     words = (
         f"{report['digits']:.1f} digits of every position at the end, fewest of {report['worst']}; "
-        f"{report['energy']:.1f} of the energy"
+        f"{', '.join(fewest)}; {report['energy']:.1f} of the energy"
     )
+    if report["left_out"]:
+        words += f"; left out: {', '.join(report['left_out'])}"
     if report["horizon_s"] is None:
-        return f"{words}; no rounding grows to another future"
+        return words if "horizon" in words else f"{words}; no rounding grows to another future"
     return f"{words}; one of many possible futures {report['horizon_s']:.3g} s after the start"

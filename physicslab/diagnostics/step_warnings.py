@@ -15,7 +15,8 @@ from physicslab.state.packed import spring_ends
 from physicslab.world import World
 
 __all__ = [
-    "EXPLICIT_RATE_LIMIT", "IMPLICIT_RATE_LIMIT", "PHASE_LIMIT", "SUBSTEPS_LIMIT", "step_warnings",
+    "EXPLICIT_RATE_LIMIT", "IMPLICIT_RATE_LIMIT", "PHASE_LIMIT", "SUBSTEPS_LIMIT", "lost_phase",
+    "step_warnings",
 ]  # fmt: skip
 
 EXPLICIT_RATE_LIMIT = 0.3
@@ -39,13 +40,10 @@ def step_warnings(world: World) -> Iterator[ModelWarning]:
     world : World
         In its present state; nothing is changed.
     """
-    method = world.plan
-    integrator = method.integrator if method.smooth else method.split_forces or method.stages
-    if not (method.collisions == "exact" or integrator.chooses_steps or math.isinf(integrator.order)):
-        parts = method.substeps * (2 * method.split_steps if method.split_forces else 1)
-        h = world.simulation.dt / parts
-        yield from _rates(world, integrator, h)
-        yield from _phase(world, integrator, h)
+    followed = _fixed_steps(world)
+    if followed is not None:
+        yield from _rates(world, *followed)
+        yield from _phase(world, followed[0])
     yield from _order(world)
 
 
@@ -72,14 +70,17 @@ def _rates(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarn
     yield ModelWarning.about(world, entity, source + what, value, "", limit, setting)
 
 
-def _phase(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarning]:
-    """Yield the spring whose oscillation has lost most phase, if that is too much.
+def lost_phase(world: World) -> tuple[int, float, float] | None:
+    """Return the spring whose oscillation has lost most phase by the method, how much [rad], and its omega h.
 
     A method loses a share of omega t that depends on omega h alone; what is damped counts while it lasts.
+    ``None`` where no method of fixed steps follows springs, or what it loses is not known.
     """
     rows, a, b = spring_ends(world)
-    if not (integrator.phase_share and len(rows) and math.isfinite(world.time)):
-        return
+    followed = _fixed_steps(world)
+    if followed is None or not (followed[0].phase_share and len(rows) and math.isfinite(world.time)):
+        return None
+    integrator, h = followed
     spring, inverse = world.table(Spring), world.bodies.inverse_mass
     give = inverse[a] + inverse[b]
     rate = np.sqrt(spring["stiffness"][rows] * give)
@@ -87,20 +88,36 @@ def _phase(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarn
     lasting = np.where(
         decay > 0.0, -np.expm1(-decay * world.time) / np.where(decay > 0.0, decay, 1.0), world.time
     )
-    power = integrator.phase_order
-    lost = integrator.phase_share * (rate * h) ** power * rate * lasting
+    lost = integrator.phase_share * (rate * h) ** integrator.phase_order * rate * lasting
     worst = int(np.argmax(lost))
-    if not PHASE_LIMIT < lost[worst] < math.inf:
+    late = int(world.entity_index.entities[rows[worst]])
+    return late, float(lost[worst]), float(rate[worst] * h)
+
+
+def _fixed_steps(world: World) -> tuple[Integrator, float] | None:
+    """Return what follows forces in steps of one length, and that length [s]; ``None`` where nothing does."""
+    method = world.plan
+    integrator = method.integrator if method.smooth else method.split_forces or method.stages
+    if method.collisions == "exact" or integrator.chooses_steps or math.isinf(integrator.order):
+        return None
+    parts = method.substeps * (2 * method.split_steps if method.split_forces else 1)
+    return integrator, world.simulation.dt / parts
+
+
+def _phase(world: World, integrator: Integrator) -> Iterator[ModelWarning]:
+    """Yield the spring whose oscillation has lost most phase, if that is too much."""
+    found = lost_phase(world)
+    if found is None or not PHASE_LIMIT < found[1] < math.inf:
         return
-    needed = math.ceil(world.simulation.substeps * (lost[worst] / PHASE_LIMIT) ** (1.0 / power))
+    late, lost, _ = found
+    needed = math.ceil(world.simulation.substeps * (lost / PHASE_LIMIT) ** (1.0 / integrator.phase_order))
     setting = (
         f"simulation.substeps = {needed}" if needed <= SUBSTEPS_LIMIT else 'simulation.integrator = "auto"'
     )
     if world.simulation.integrator == "auto":
         setting = ""  # it takes other steps of its own
     what = "oscillates out of phase by now, by the error of the method"
-    late = int(world.entity_index.entities[rows[worst]])
-    yield ModelWarning.about(world, late, what, float(lost[worst]), "rad", PHASE_LIMIT, setting)
+    yield ModelWarning.about(world, late, what, lost, "rad", PHASE_LIMIT, setting)
 
 
 def _order(world: World) -> Iterator[ModelWarning]:

@@ -10,6 +10,7 @@ from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES, QUANTITIES
 from physicslab.diagnostics.account import Accounts
 from physicslab.diagnostics.run_report import body_names
+from physicslab.ecs.text import table_cell
 from physicslab.world import World
 
 __all__ = ["BODY_HEADER", "TrajectoryWriter"]
@@ -34,7 +35,8 @@ class TrajectoryWriter:
     The columns after a body's own are sums over the world, alike in all rows of an instant: kinetic energy
     of translation and of rotation, what each force stores, and the total [J]; momentum [kg m/s]; angular
     momentum about the origin [kg m^2/s]; what each account of energy has since the start, and the error [J].
-    A number that is not finite is an empty cell. Numbers keep every bit; names are those of ``run --json``.
+    A number that is not finite is an empty cell. Numbers keep every bit; names are those of ``run --json``,
+    with an apostrophe before one that a spreadsheet would compute.
 
     Parameters
     ----------
@@ -59,7 +61,7 @@ class TrajectoryWriter:
         """Write a row for every entity that has a Transform, as it is now, with the accounts as they are."""
         batch = world.batch(Transform)
         if batch is not self._batch:
-            self._batch, self._names = batch, list(body_names(world).values())
+            self._batch, self._names = batch, [*map(table_cell, body_names(world).values())]
         transform, velocity = world.table(Transform), world.table(Velocity)
         sums = self._sums(account)
         bodies = zip(

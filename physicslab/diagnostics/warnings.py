@@ -8,17 +8,18 @@ and is done ten times a second or once a measurement.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
+from physicslab.diagnostics.contact_warnings import RIGID_LIMIT, contact_warnings, rigid_setting
+from physicslab.diagnostics.passage import passage
 from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, step_warnings
 from physicslab.diagnostics.warning_records import ModelWarning, WorstWarnings
 from physicslab.state.masses import quiet
-from physicslab.stepping.contact_model import why_not_rigid
 from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.stepper import MAX_FACTOR, MAX_FALL, falls_far
 from physicslab.world import World
@@ -42,11 +43,12 @@ MASS_RATIO_LIMIT = 3000.0
 """Mass of a body over that of a lighter one that it lies on. On top of ten boxes of 1 m a body a thousand
 times as heavy sinks by 2 cm in 10 s, three thousand times by 4 cm, ten thousand times by 38 cm: substeps,
 which are made shorter for such loads, are then as short as they may be."""
+PASSAGE_LIMIT = 1.0
+"""Way of a fall from rest in a step, in thicknesses of the body and of the thinnest other together: floors
+as thick as themselves let boxes through from 2.5, discs from 25."""
 _PEAK_MARGIN = 1.5
 """Between two looks at a run speeds are higher than those seen: so many more substeps are advised."""
-RIGID_LIMIT = 64
-"""Number of contacts up to which rigid ones are advised for what is pressed deep or carries too much."""
-_RIGID_MASS_RATIO = 3e4
+_RIGID_MASS_RATIO = 1e6
 """Mass ratio up to which rigid contacts were seen to hold to 1e-15 m without shorter steps."""
 DISTANCE_LIMIT = 1e9
 """Coordinate in sizes of a body: float64 keeps places there to 1e-7 of the body, and a tower to 1e-3."""
@@ -58,29 +60,60 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
 
     Nothing is changed; the figures are those of the last step.
     """
-    found = [*_refusals(world), *_division(world), *step_warnings(world), *_distance(world)]
-    rigid = next((stepper for stepper in world.steppers.usable if isinstance(stepper, Rigid)), None)
-    if rigid is not None and rigid.left_to_soft:
+    return tuple(warning for rule in RULES for warning in rule(world))
+
+
+def _rigid_stepper(world: World) -> Rigid | None:
+    return next((stepper for stepper in world.steppers.usable if isinstance(stepper, Rigid)), None)
+
+
+def _finished_otherwise(world: World) -> Iterator[ModelWarning]:
+    """Yield which rigid steps were made by soft contacts or by impulses, and what that cost."""
+    rigid = _rigid_stepper(world)
+    if rigid is None:
+        return
+    if rigid.left_to_soft:
         what = f"steps were left to soft contacts, at last because {rigid.why_soft}"
-        found.append(ModelWarning(None, what, float(rigid.left_to_soft), "", 0.0, ""))
-    if rigid is not None and rigid.by_impulses:
+        yield ModelWarning(None, what, float(rigid.left_to_soft), "", 0.0, "")
+    if rigid.by_impulses:
         what = f"steps were made by impulses in 32 parts, an error of order one: {rigid.why_impulses}"
-        found.append(ModelWarning(None, what, float(rigid.by_impulses), "", 0.0, ""))
-    if rigid is not None and rigid.energy_added:
+        yield ModelWarning(None, what, float(rigid.by_impulses), "", 0.0, "")
+    if rigid.energy_added:
         what = "was added by moving bodies apart that overlapped"
-        found.append(ModelWarning(None, what, rigid.energy_added, "J", 0.0, ""))
-    found += _laws(world, rigid)
+        yield ModelWarning(None, what, rigid.energy_added, "J", 0.0, "")
+
+
+def _contact_model(world: World) -> Iterator[ModelWarning]:
+    yield from contact_warnings(world, _rigid_stepper(world))
+
+
+def _soft_contacts(world: World) -> Iterator[ModelWarning]:
+    """Yield what is wrong where contacts are soft."""
+    rigid = _rigid_stepper(world)
     if world.plan.collisions == "step" and (rigid is None or rigid.left_to_soft):
         graph = contact_graph(world)
-        found += [
-            *_overlap(world, graph), *_mass_ratios(world, graph), *_speeds(world, graph),
-            *_spins(world, graph), *_falls(world),
-        ]  # fmt: skip
-    return tuple(found)
+        for rule in (_overlap, _mass_ratios, _speeds, _spins):
+            yield from rule(world, graph)
+        yield from _falls(world)
 
 
-def _laws(world: World, rigid: Rigid | None) -> Iterator[ModelWarning]:
+def _falls_through(world: World) -> Iterator[ModelWarning]:
+    """Yield the body that falls further in a step than it and the thinnest other body are thick."""
+    if world.plan.collisions == "none" or world.plan.contacts == "soft":
+        return  # soft contacts hold discs always, and boxes up to 25
+    graph = contact_graph(world)
+    found = passage(world, np.concatenate((graph.a[graph.touching], graph.b[graph.touching])))
+    if found is not None and found.sizes > PASSAGE_LIMIT:
+        through = world.label(found.through)
+        what = f"may fall through {through}: in a step it falls so many times as far as both are thick"
+        finer = world.simulation.dt / math.ceil(2.0 * math.sqrt(found.sizes))
+        setting = f"simulation.dt = {finer:.2g}"
+        yield ModelWarning.about(world, found.body, what, found.sizes, "", PASSAGE_LIMIT, setting)
+
+
+def _laws(world: World) -> Iterator[ModelWarning]:
     """Yield how many impacts obeyed another law than Newton's, and which."""
+    rigid = _rigid_stepper(world)
     energetic, lowered = world.contacts.energetic_impacts, world.contacts.restitutions_lowered
     if rigid is not None:
         energetic, lowered = energetic + rigid.energetic_impacts, lowered + rigid.restitutions_lowered
@@ -144,7 +177,9 @@ def _overlap(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
         size = float(graph.size[graph.touching[worst]])
         what = "is pressed into another body deeper than contacts can hold"
         depth, limit = float(graph.depth[worst]), OVERLAP_LIMIT * size
-        yield ModelWarning.about(world, lighter, what, depth, "m", limit, _rigid(world, graph))
+        yield ModelWarning.about(
+            world, lighter, what, depth, "m", limit, rigid_setting(world, len(graph.touching))
+        )
 
 
 def _mass_ratios(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
@@ -153,7 +188,7 @@ def _mass_ratios(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     if len(ratio) and ratio.max() > MASS_RATIO_LIMIT:
         lighter = graph.lighter(world, int(graph.touching[np.argmax(ratio)]))
         what = "carries a body so much heavier that contacts cannot hold it (mass ratio)"
-        setting = _rigid(world, graph) if ratio.max() <= _RIGID_MASS_RATIO else ""
+        setting = rigid_setting(world, len(graph.touching)) if ratio.max() <= _RIGID_MASS_RATIO else ""
         yield ModelWarning.about(world, lighter, what, float(ratio.max()), "", MASS_RATIO_LIMIT, setting)
 
 
@@ -196,12 +231,13 @@ def _falls(world: World) -> Iterator[ModelWarning]:
         yield ModelWarning(None, what, sizes, "", MAX_FALL, "a smaller simulation.dt")
 
 
-def _rigid(world: World, graph: ContactGraph) -> str:
-    """Return the setting that holds any load, where few bodies touch and contacts may be rigid."""
-    few = len(graph.touching) <= RIGID_LIMIT
-    return 'simulation.contacts = "rigid"' if few and why_not_rigid(world, world.schedule) is None else ""
-
-
 def _more_substeps(world: World, factor: float) -> str:
     needed = math.ceil(world.simulation.substeps * factor * _PEAK_MARGIN)
     return f"simulation.substeps = {needed}" if needed <= SUBSTEPS_LIMIT else "a smaller simulation.dt"
+
+
+RULES: tuple[Callable[[World], Iterator[ModelWarning]], ...] = (
+    _refusals, _division, step_warnings, _distance, _falls_through, _finished_otherwise, _laws,
+    _contact_model, _soft_contacts,
+)  # fmt: skip
+"""All of them, in the order in which they are shown. Another is added here, and nowhere else."""

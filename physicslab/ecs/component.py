@@ -7,9 +7,12 @@ each value. A component that no world has adopted yet owns a row of its own.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from inspect import Parameter, Signature
+from itertools import pairwise
 from typing import Any, ClassVar, cast, dataclass_transform, get_origin, get_type_hints
 
 from physicslab.ecs.accessors import ABSENT, Derived, Maker, Vector, accessor, maker
@@ -25,6 +28,7 @@ COMPONENTS: dict[str, type[Component]] = {}
 _local = False
 """Whether a component may have the name of another: within a block of :func:`local_components`."""
 _BUILT_IN = "physicslab.components."
+_empty = Parameter.empty
 
 
 class Component:
@@ -180,6 +184,7 @@ def component[T](cls: type[T]) -> type[T]:
         column += 2 if spec.derived else 1
     namespace |= {"__slots__": (), "FIELDS": specs, "__qualname__": cls.__qualname__}
     namespace["_makers"] = tuple((spec.name, maker(spec)) for spec in specs)
+    namespace["__signature__"], namespace["__doc__"] = _signature(specs), _documented(cls, specs)
     made: Any = type(cls.__name__, (Component,), namespace)
     COMPONENTS[cls.__name__] = made
     return cast(type[T], made)
@@ -238,6 +243,21 @@ def _described(cls: type) -> tuple[Field, ...]:
         if isinstance(value, Field) and name not in hints:
             raise TypeError(f"{cls.__name__}.{name}: annotate it with its type")
     return tuple(specs)
+
+
+def _signature(specs: tuple[Field, ...]) -> Signature:
+    """Return what ``help`` and notebooks show of the arguments."""
+    kind = Parameter.POSITIONAL_OR_KEYWORD
+    known = [Parameter(s.name, kind, default=_empty if s.default is REQUIRED else s.default) for s in specs]
+    required_last = any(a.default is not _empty and b.default is _empty for a, b in pairwise(known))
+    return Signature([one.replace(kind=Parameter.KEYWORD_ONLY) for one in known] if required_last else known)
+
+
+def _documented(cls: type, specs: tuple[Field, ...]) -> str:
+    """Return the description of a component, with its fields: their meaning and what they may hold."""
+    lines = [f"{s.name} : {s.meaning or s.name}; {s.allowed}" for s in specs]
+    words = inspect.cleandoc(cls.__doc__ or cls.__name__)
+    return "\n".join([words, "", "Parameters", "----------", *lines]) if lines else words
 
 
 def _kind_of(hint: Any, described: Field) -> Kind:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import FrozenInstanceError, dataclass, fields, replace
 from typing import Any, ClassVar, Literal
 
 from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue
@@ -97,6 +97,15 @@ class PhysicsConfig:
         _settle(self)
         if self.bounds is not None:
             object.__setattr__(self, "bounds", checked_box(self.section, "bounds", self.bounds))
+
+
+def _refuse(config: PhysicsConfig | SimulationConfig, name: str, value: object) -> None:
+    """Refuse to change a part: a world notes that its laws are others where a record is assigned."""
+    record = f"world.{config.section}"
+    raise FrozenInstanceError(
+        f"{config.section}.{name} cannot be changed by itself: "
+        f"{record} = dataclasses.replace({record}, {name}=...)"
+    )
 
 
 def checked_box(owner: str, name: str, value: Any) -> tuple[float, float, float, float]:
@@ -197,6 +206,10 @@ class WindowConfig:
     max_dt: float = 0.1
     throw_window: float = 0.15
     max_throw_speed: float = 30.0
+
+
+for _kind in (PhysicsConfig, SimulationConfig):
+    setattr(_kind, "__setattr__", _refuse)  # noqa: B010
 
 
 def field_names(config: type[PhysicsConfig] | type[SimulationConfig]) -> tuple[str, ...]:

@@ -161,7 +161,9 @@ class Field:
         """
         stored = _CONVERSIONS[self.kind](self, value)
         if stored is None:
-            raise InvalidValue(self.owner, self.name, value, self.allowed)
+            by_id = self.kind == "entity" and isinstance(value, str)
+            allowed = f"{self.allowed}: world.entity({value!r}) is that of an id" if by_id else self.allowed
+            raise InvalidValue(self.owner, self.name, value, allowed)
         return stored
 
 
@@ -197,6 +199,8 @@ def _finite(value: object) -> float | None:
     """Return any finite real number as a float."""
     if type(value) is float:
         return value if math.isfinite(value) else None
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
     if isinstance(value, bool) or not isinstance(value, Real):
         return None
     try:

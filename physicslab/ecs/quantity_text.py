@@ -10,6 +10,8 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from physicslab.ecs.text import printable, shortened
+
 __all__ = ["InvalidText", "evaluate"]
 
 type Dimension = tuple[int, int, int]
@@ -66,13 +68,21 @@ _SUPERSCRIPTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _SIGNS = {0x2212: "-", 0xD7: "*"}
 """The signs of print for minus and times."""
 _GLUED = re.compile(r"(?<![\w.])(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?|\))\s*(?=[A-Za-zµ°π(])")
+_UNCLEAR = (
+    (re.compile(r"(?<![\w.,])[1-9]\d{0,2}(?:,\d{3})+(?![\d,])"), "may be thousands or a decimal comma: "
+     "write it without the comma, or with a point"),
+    (re.compile(r"(?<![\w.])(?:\d+[.,]?\d*|[.,]\d+)[eE](?![\w+-])"), "has an exponent without digits; "
+     "2.718... times a number is 2*e"),
+)  # fmt: skip
+"""What some would read as one number and some as another."""
 _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
 
 
 def evaluate(text: str, unit: str = "1") -> float:
     """Return the number that a text stands for, in an SI unit.
 
-    A number without a unit is taken to be in ``unit``. A comma between digits is a decimal point.
+    A number without a unit is taken to be in ``unit``. A comma between digits is a decimal point; where it
+    could be one between thousands, as in ``1,000``, it is refused.
 
     Parameters
     ----------
@@ -97,11 +107,14 @@ def evaluate(text: str, unit: str = "1") -> float:
         ...
     physicslab.ecs.quantity_text.InvalidText: '3 kg' is in kg; this is in m
     """
-    shown = text.strip() if len(text.strip()) <= _SHOWN_LIMIT else f"{text.strip()[: _SHOWN_LIMIT - 3]}..."
+    shown = shortened(printable(text.strip()), _SHOWN_LIMIT)
     if not shown:
         raise InvalidText("a number is needed")
     if len(text) > _DEPTH_LIMIT:
         raise InvalidText(f"'{shown}' is too long")
+    for pattern, why in _UNCLEAR:
+        if pattern.search(text):
+            raise InvalidText(f"'{shown}' {why}")
     found = _evaluated(text, shown)
     wanted = _evaluated(unit, unit) if unit not in ("", "1") else _Quantity(1.0)
     if not found.has_unit:

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import difflib
+import itertools
 import re
 import unicodedata
-from collections.abc import Container
+from collections.abc import Container, Iterable
 
-__all__ = ["SHORT", "has_width", "in_words", "is_line", "printable", "shortened", "unique_name"]
+__all__ = [
+    "SHORT", "has_width", "in_words", "is_line", "printable", "shortened", "suggestion", "table_cell",
+    "unique_name",
+]  # fmt: skip
 
 SHORT = 60
 """Characters of a value, a key or a name that a message shows."""
+
+
+_SUGGESTED_FROM = 2_000
+"""Known words that a misspelt one is compared with."""
 
 
 def has_width(text: str) -> bool:
@@ -50,6 +59,26 @@ def shortened(text: str, length: int = SHORT) -> str:
     ('xxxxx...', 'drop')
     """
     return text if len(text) <= length else f"{text[: length - 3]}..."
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """Return ``"; did you mean ...?"`` with the likeliest of the ``known`` words, or nothing.
+
+    >>> suggestion("Velocty", ["Transform", "Velocity"])
+    '; did you mean "Velocity"?'
+    """
+    # Comparing takes time with the square of a word's length, and with the number of words.
+    likely = difflib.get_close_matches(word[:SHORT], list(itertools.islice(known, _SUGGESTED_FROM)), n=1)
+    return f'; did you mean "{shortened(printable(likely[0]))}"?' if likely else ""
+
+
+def table_cell(text: str) -> str:
+    """Return a text as a cell of a CSV file: an apostrophe is before one that spreadsheets would compute.
+
+    >>> table_cell("=1+1"), table_cell("ball")
+    ("'=1+1", 'ball')
+    """
+    return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r", "\n")) else text
 
 
 def unique_name(wanted: str, taken: Container[str]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import FrozenInstanceError, dataclass
 from numbers import Real
 from typing import ClassVar
 
@@ -185,6 +185,16 @@ class Vector2:
 
 # The slots' own setters: nothing else writes to a frozen dataclass as fast, and every read of a vector column
 # makes a vector.
+def _refuse(vector: Vector2, name: str, value: object) -> None:
+    if name not in ("x", "y"):
+        raise AttributeError(f"a Vector2 has x and y, and no {name}")
+    whole = f"({value!r}, {vector.y!r})" if name == "x" else f"({vector.x!r}, {value!r})"
+    raise FrozenInstanceError(
+        f"a vector's {name} cannot be changed by itself: assign a whole one, transform.position = {whole}"
+    )
+
+
+setattr(Vector2, "__setattr__", _refuse)  # noqa: B010
 _set_x = Vector2.__dict__["x"].__set__
 _set_y = Vector2.__dict__["y"].__set__
 

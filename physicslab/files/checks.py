@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from physicslab.ecs.text import SHORT, has_width, is_line, printable, shortened
+from physicslab.ecs.text import SHORT, has_width, is_line, printable, shortened, suggestion
 
 __all__ = [
     "JsonObject",
@@ -21,11 +20,8 @@ __all__ = [
     "is_number",
     "refusal",
     "shown",
-    "suggestion",
 ]  # fmt: skip
 
-_SUGGESTED_FROM = 2_000
-"""Known words that a misspelt one is compared with."""
 _BREAKS = dict.fromkeys(map(ord, "\n\t"), " ")
 
 
@@ -91,17 +87,6 @@ def _beginning(value: object) -> object:
             for key, item in itertools.islice(value.items(), SHORT)
         }
     return value
-
-
-def suggestion(word: str, known: Iterable[str]) -> str:
-    """Return ``"; did you mean ...?"`` with the likeliest of the ``known`` words, or nothing.
-
-    >>> suggestion("Velocty", ["Transform", "Velocity"])
-    '; did you mean "Velocity"?'
-    """
-    # Comparing takes time with the square of a word's length, and with the number of words.
-    likely = difflib.get_close_matches(word[:SHORT], list(itertools.islice(known, _SUGGESTED_FROM)), n=1)
-    return f"; did you mean {shown(likely[0])}?" if likely else ""
 
 
 def checked_object(value: object, where: str, allowed: str) -> Mapping[str, Any]:

@@ -14,6 +14,7 @@ from physicslab.components import Held, Mass, Material, Shape, Spring, Trail, Tr
 from physicslab.components.name import why_no_id
 from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
+from physicslab.ecs.text import suggestion
 from physicslab.files.checks import (
     SceneError,
     checked_keys,
@@ -21,7 +22,6 @@ from physicslab.files.checks import (
     is_number,
     refusal,
     shown,
-    suggestion,
 )
 from physicslab.state.attached import INSTRUMENTS
 

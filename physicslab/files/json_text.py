@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator, Mapping
 
 __all__ = ["json_bytes", "json_pieces", "json_text"]
@@ -33,8 +34,8 @@ def json_text(document: Mapping[str, object]) -> str:
 def json_bytes(document: Mapping[str, object]) -> bytes:
     r"""Return a document as JSON in UTF-8, as it is written to a file.
 
-    A file name that is not UTF-8 has bytes that Python keeps as half surrogate pairs. UTF-8 has no such
-    letters, and JSON has an escape for them: nothing is lost.
+    A file name that is not UTF-8 has bytes that Python keeps as half surrogate pairs, which strict readers of
+    JSON refuse, escaped or not. They are written out, as on a terminal: a backslash, ``u``, four digits.
 
     Raises
     ------
@@ -44,9 +45,14 @@ def json_bytes(document: Mapping[str, object]) -> bytes:
     Examples
     --------
     >>> json_bytes({"scene": "caf\udce9"})
-    b'{\n  "scene": "caf\\udce9"\n}\n'
+    b'{\n  "scene": "caf\\\\udce9"\n}\n'
     """
-    return json_text(document).encode("utf-8", "backslashreplace")
+    text = json_text(document)
+    try:
+        return text.encode("utf-8")
+    except UnicodeEncodeError:
+        halves = re.sub("[\ud800-\udfff]", lambda half: f"\\\\u{ord(half[0]):04x}", text)
+        return halves.encode("utf-8")
 
 
 def json_pieces(document: Mapping[str, object]) -> Iterator[str]:

@@ -43,8 +43,8 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[str | os.PathLike[str]]:
 
     The bytes go to a new file beside it and to the disk; then that takes the old one's place. Links are
     followed, and what is no ordinary file (a device, a pipe) is written to as it is. A process that is killed
-    meanwhile leaves the new file behind, ``.<name>.<16 digits>.physicslab-tmp``; the next that writes the
-    same file removes it once it is an hour old.
+    meanwhile leaves the new file behind, ``.<name>.<16 digits>.physicslab-tmp``; the next that writes a file
+    in the same folder removes it once it is an hour old.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[str | os.PathLike[str]]:
         yield path
         return
     target = Path(os.path.realpath(path))
-    remove_leftovers(target, _ABANDONED)
+    _remove(target.parent, ".*.", _ABANDONED)
     with _beside(target) as fresh:
         with open(fresh, "xb"):
             pass
@@ -80,6 +80,7 @@ def create_file(path: Path, content: bytes) -> None:
     """
     if os.path.lexists(path):
         raise FileExistsError(f"{path} exists")
+    _remove(path.parent, ".*.", _ABANDONED)
     with _beside(path) as fresh:
         with open(fresh, "xb") as file:
             file.write(content)
@@ -105,10 +106,14 @@ def _beside(target: Path) -> Iterator[Path]:
         fresh.unlink(missing_ok=True)
 
 
-def remove_leftovers(path: Path, age: float = 0.0) -> None:
-    """Remove what killed processes left behind that were writing this file, if it is ``age`` seconds old."""
-    beginning, digits = glob.escape(_beginning(path)), "[0-9a-f]" * 16
-    for left in path.parent.glob(f"{beginning}{digits}{_ENDING}"):
+def remove_leftovers(path: Path) -> None:
+    """Remove what killed processes left behind that were writing this file."""
+    _remove(path.parent, glob.escape(_beginning(path)), 0.0)
+
+
+def _remove(folder: Path, beginning: str, age: float) -> None:
+    """Remove what was being written in a folder, if its name begins so and it is ``age`` seconds old."""
+    for left in folder.glob(f"{beginning}{'[0-9a-f]' * 16}{_ENDING}"):
         with contextlib.suppress(OSError):
             if time.time() - left.stat().st_mtime >= age:
                 left.unlink()

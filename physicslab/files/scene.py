@@ -9,9 +9,11 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import BinaryIO
 
-from physicslab.ecs.text import printable
-from physicslab.files.checks import JsonObject, SceneError, suggestion
+from physicslab.ecs.fields import InvalidValue
+from physicslab.ecs.text import printable, shortened, suggestion
+from physicslab.files.checks import JsonObject, SceneError
 from physicslab.files.json_text import json_bytes
 from physicslab.files.reader import check_scene, read_scene
 from physicslab.files.replace import replace_file
@@ -20,8 +22,8 @@ from physicslab.scenes import SCENES
 from physicslab.world import World
 
 __all__ = [
-    "SceneError", "load_scene", "parse_json", "read_bytes", "read_scene", "save_scene", "scene_bytes",
-    "write_scene",
+    "SceneError", "load_scene", "open_plain", "parse_json", "read_bytes", "read_scene", "save_scene",
+    "scene_bytes", "write_scene",
 ]  # fmt: skip
 
 FILE_LIMIT = 100 * 2**20
@@ -32,13 +34,14 @@ VALUE_LIMIT = 8_000_000
 """Values that it may hold, counted by the brackets and commas before them, those within texts included."""
 
 
-def load_scene(name_or_path: str | os.PathLike[str]) -> World:
+def load_scene(name_or_path: str | bytes | os.PathLike[str]) -> World:
     """Return a new world: a built-in scene, or one from a file, with the systems that it needs.
 
     Parameters
     ----------
     name_or_path : str or path
-        A built-in scene's name, or a path. Where there is a file of that name too, ``./drop`` is the file.
+        A built-in scene's name, or a path, as text or bytes. Where there is a file of that name too,
+        ``./drop`` is the file.
 
     Returns
     -------
@@ -58,12 +61,13 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> World:
     """
     if isinstance(name_or_path, str) and name_or_path in SCENES:
         return SCENES[name_or_path].build()
-    source = printable(os.fspath(name_or_path))
+    path = _path(name_or_path)
+    source = printable(path)
     with _uncollected():
-        return read_scene(parse_json(_read_text(name_or_path, source), source), source)
+        return read_scene(parse_json(_read_text(path, source), source), source)
 
 
-def save_scene(world: World, path: str | os.PathLike[str]) -> None:
+def save_scene(world: World, path: str | bytes | os.PathLike[str]) -> None:
     """Write a world to a scene file, from which :func:`load_scene` makes the same world, bit for bit.
 
     A file that was there before is replaced only by one that is complete and can be read again.
@@ -75,7 +79,21 @@ def save_scene(world: World, path: str | os.PathLike[str]) -> None:
     OSError
         If the file cannot be written.
     """
-    replace_file(path, scene_bytes(world, os.fspath(path)))
+    path = _path(path)
+    replace_file(path, scene_bytes(world, path))
+
+
+def _path(given: object) -> str:
+    """Return a path as text; what is none is a TypeError that says what makes a world of a document."""
+    if isinstance(given, dict):
+        raise TypeError(
+            "a scene is opened by its name or its path; physicslab.files.scene.read_scene(document, source) "
+            "makes a world of a dict"
+        )
+    try:
+        return os.fsdecode(given)  # type: ignore[arg-type]
+    except TypeError:
+        raise TypeError(f"a scene has a name or a path; got {shortened(repr(given))}") from None
 
 
 def scene_bytes(world: World, source: str) -> bytes:
@@ -93,7 +111,10 @@ def scene_bytes(world: World, source: str) -> bytes:
     SceneError
         If the world holds what no scene may.
     """
-    document = write_scene(world)
+    try:
+        document = write_scene(world)
+    except InvalidValue as error:  # written to a column
+        raise SceneError(f"{printable(source)}: {error}") from error
     check_scene(document, printable(source))
     return json_bytes(document)
 
@@ -134,19 +155,37 @@ def _read_text(path: str | os.PathLike[str], source: str) -> str:
         raise SceneError(f"{source}: is no file name: {error}") from error
 
 
-def read_bytes(path: str | os.PathLike[str], source: str) -> bytes:
-    """Read a plain file, and never more of it than the limit: what is opened may grow, or have no end."""
-    # Without O_NONBLOCK, opening a pipe without a writer would wait for ever.
+def read_bytes(
+    path: str | os.PathLike[str], source: str, limit: int = FILE_LIMIT, what: str = "a scene file"
+) -> bytes:
+    """Read a plain file, and never more of it than ``limit``: what is opened may grow, or have no end.
+
+    ``source`` is what messages call it, and ``what`` what it should be.
+
+    Raises
+    ------
+    SceneError
+        If it is no plain file, or larger.
+    OSError
+        If it cannot be read.
+    """
+    with open_plain(path, source, what) as file:
+        content = file.read(limit + 1)
+    if len(content) > limit:
+        raise SceneError(f"{source}: is too large: {what} must have at most {limit:,} bytes")
+    return content
+
+
+def open_plain(path: str | os.PathLike[str], source: str, what: str = "a scene file") -> BinaryIO:
+    """Open a plain file to read: a pipe without a writer would wait for ever. Errors: :func:`read_bytes`."""
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     if os.path.isdir(path):  # Windows would say "permission denied"
-        raise SceneError(f"{source}: is a directory, not a scene file")
-    with open(os.open(path, flags), "rb") as file:
-        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise SceneError(f"{source}: is a pipe or a device; a scene must be a plain file")
-        content = file.read(FILE_LIMIT + 1)
-    if len(content) > FILE_LIMIT:
-        raise SceneError(f"{source}: is too large: a scene file must have at most {FILE_LIMIT:,} bytes")
-    return content
+        raise SceneError(f"{source}: is a directory, not {what}")
+    descriptor = os.open(path, flags)
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise SceneError(f"{source}: is a pipe or a device; {what} must be a plain file")
+    return os.fdopen(descriptor, "rb")
 
 
 def parse_json(text: str, source: str) -> object:

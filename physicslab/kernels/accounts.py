@@ -1,14 +1,12 @@
-"""Where the accounts of energy and momentum are, in the array (CAUSES, 4) that kernels add to.
+"""Where the accounts of energy and momentum are, in the array (BOOK, 4) that kernels add to.
 
 A row is a cause; its columns are the energy that it has given to the world [J], the momentum (x, y) [N s] and
 the angular momentum about the origin [N m s]. What a cause takes is negative.
 """
 
-from physicslab.kernels import Vectors, kernel
-
 __all__ = [
-    "CAUSES", "CONTACT", "DAMPING", "EDITS", "ENERGY", "FIELDS", "FRICTION", "GRAVITY", "HAND", "IMPACTS",
-    "JOINTS", "MOTORS", "OVERLAP", "PX", "PY", "SPIN", "SPRINGS", "THRUST", "book_rest",
+    "BALANCE", "BEFORE", "BOOK", "CAUSES", "CONTACT", "DAMPING", "EDITS", "ENERGY", "FIELDS", "FRICTION",
+    "GRAVITY", "HAND", "IMPACTS", "JOINTS", "MOTORS", "OVERLAP", "PX", "PY", "SPIN", "SPRINGS", "THRUST",
 ]  # fmt: skip
 
 CAUSES = 13
@@ -21,15 +19,6 @@ of what pulls from outside, as a planet below or a fixed end. The momentum of fr
 is that of ``CONTACT``."""
 ENERGY, PX, PY, SPIN = range(4)
 """The columns."""
-
-
-@kernel
-def book_rest(
-    sums: Vectors, before: Vectors, cause: int, energy: float, px: float, py: float, spin: float
-) -> None:
-    """Book to a cause what is left of a change of energy and momentum after all bookings since ``before``."""
-    for column in range(4):
-        left = (energy, px, py, spin)[column]
-        for row in range(CAUSES):
-            left -= sums[row, column] - before[row, column]
-        sums[cause, column] += left
+BALANCE, BEFORE, BOOK = CAUSES, CAUSES + 1, 2 * (CAUSES + 1)
+"""Behind the causes there is what the world had after the last step; from ``BEFORE`` on all of that as it was
+before the step at hand."""

@@ -51,11 +51,12 @@ class Inverse(NamedTuple):
 
 
 class Acting(NamedTuple):
-    """Forces (rows, 2) [N] and torques [N m], and whether there are any."""
+    """Forces (rows, 2) [N] and torques [N m], whether there are any, and the rows that they do not kick."""
 
     force: Vectors
     torque: Numbers
     any: bool
+    unkicked: Flags
 
 
 class Bounds(NamedTuple):
@@ -71,8 +72,9 @@ class Near(NamedTuple):
 
     Then the slots of discs and of boxes; the pairs without records, the distance at which each gets one [m],
     the entities of all rows, and the angle of each box when its cosine and sine were computed, and those; the
-    account that contacts and impacts add to (:mod:`physicslab.kernels.accounts`); room for what is noted of
-    the points of scalar pairs within a substep (:mod:`physicslab.kernels.solver.work`).
+    account that contacts and impacts add to (:mod:`physicslab.kernels.accounts`). For that, room for what is
+    noted of points (points, 4), and for the velocities (rows, 2) and angular velocities from before the
+    impulses of a substep (:mod:`physicslab.kernels.solver.work`).
     """
 
     counts: Rows
@@ -87,7 +89,9 @@ class Near(NamedTuple):
     entities: Rows
     rotations: Vectors
     account: Vectors
-    slips: Vectors
+    noted: Vectors
+    linear_before: Vectors
+    angular_before: Numbers
 
 
 class Contacts(NamedTuple):
@@ -135,10 +139,15 @@ class Plan(NamedTuple):
 
 
 class Gravity(NamedTuple):
-    """Masses [kg], inverse masses (of all) [1/kg], gravity [m/s^2], the speculative margin [m]."""
+    """Masses and moments of inertia, the inverse of both (of all bodies), gravity [m/s^2].
+
+    Then the speculative margin [m].
+    """
 
     mass: Numbers
+    inertia: Numbers
     inverse_mass: Numbers
+    inverse_inertia: Numbers
     gx: float
     gy: float
     margin: float
@@ -164,7 +173,7 @@ MotionTuple = tuple[Vectors, Numbers, Vectors, Numbers]
 SizesTuple = tuple[Rows, Numbers, Numbers, Numbers]
 MaterialsTuple = tuple[Numbers, Numbers]
 InverseTuple = tuple[Numbers, Numbers]
-ActingTuple = tuple[Vectors, Numbers, bool]
+ActingTuple = tuple[Vectors, Numbers, bool, Flags]
 BoundsTuple = tuple[Numbers, float, float]
 NearTuple = tuple[
     Rows,
@@ -180,10 +189,12 @@ NearTuple = tuple[
     Vectors,
     Vectors,
     Vectors,
+    Vectors,
+    Numbers,
 ]
 SoftnessTuple = tuple[float, float, float]
 PlanTuple = tuple[int, int, float, float, float]
-GravityTuple = tuple[Numbers, Numbers, float, float, float]
+GravityTuple = tuple[Numbers, Numbers, Numbers, Numbers, float, float, float]
 SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows]
 """The same, without names."""
 
@@ -193,9 +204,9 @@ def named_near(plain: NearTuple) -> Near:
     """Give names to a tuple, and to the slots within it."""
     (
         counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities,
-        rotations, account, slips,
+        rotations, account, noted, linear_before, angular_before,
     ) = plain  # fmt: skip
     return Near(
         counts, manifolds, points, scalar, touching, Slots(*discs), Slots(*boxes),
-        proximity, activation_distance, entities, rotations, account, slips,
+        proximity, activation_distance, entities, rotations, account, noted, linear_before, angular_before,
     )  # fmt: skip

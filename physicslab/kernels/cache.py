@@ -4,10 +4,14 @@ Each module's kernels are in a folder named after a hash of all that determines 
 (:mod:`physicslab.kernels.keys`). An edit leaves the folders of modules that do not depend on it as they are.
 
 numba unpickles the files there, so **a compiled kernel is a program that will be run**. The folder is used
-only if it is this user's, closed to all others (mode 0700), and no link. Its place is the environment
-variable ``PHYSICSLAB_KERNELS``, or ``physicslab/kernels`` in the user's cache folder, or, where there is no
-such folder, ``physicslab-<user>/kernels`` among the temporary files; else a new temporary one that is removed
-at the end of the process.
+only if none but this user and root can write in it, or put another in its place: it is no link, and it and
+every folder above it is root's or this user's, and closed to others for writing; or sticky, as that of
+temporary files is, above ours. Links above it are resolved once, before that is checked. One that cannot be
+written is used if it holds every kernel, as where a package or an administrator has installed them.
+
+Its place is the environment variable ``PHYSICSLAB_KERNELS``, or ``physicslab/kernels`` in the user's cache
+folder, or, where there is no such folder, ``physicslab-<user>/kernels`` among the temporary files; else a new
+temporary one that is removed at the end of the process.
 """
 
 from __future__ import annotations
@@ -36,6 +40,11 @@ from physicslab.kernels.keys import current_folders, folder_of, hash_of
 
 __all__ = ["VARIABLE", "cache_directory", "cached", "is_kept", "mark", "note_use", "prune", "use_directory"]
 
+if numba.core.config.DISABLE_JIT:  # type: ignore[attr-defined]
+    raise ImportError(
+        "physicslab cannot work while NUMBA_DISABLE_JIT is set: PHYSICSLAB_INTERPRET=1 has its kernels run "
+        "as plain Python, for a debugger"
+    )
 VARIABLE = "PHYSICSLAB_KERNELS"
 """The environment variable that says where compiled kernels are to be kept."""
 _DAY = 86400.0
@@ -52,7 +61,7 @@ _directory: Path | None = None
 
 
 def cache_directory() -> Path:
-    """Return where compiled kernels are kept: a folder that only this user can write or read."""
+    """Return where compiled kernels are kept: a folder in which only this user, or root, can write."""
     global _directory
     if _directory is None:
         _directory = _first_private()
@@ -72,8 +81,9 @@ def _first_private() -> Path:
     """Return the first of the folders that may be used, or a temporary one."""
     for place in _places():
         try:
-            if all(_is_private(folder) for folder in place):
-                return place[-1]
+            folder = _resolved(*place)
+            if folder is not None:
+                return folder
         except (OSError, RuntimeError, KeyError):  # no home, or one that cannot be written to
             continue
     directory = Path(tempfile.mkdtemp(prefix="physicslab-kernels-"))  # which makes it private
@@ -82,15 +92,16 @@ def _first_private() -> Path:
     return directory
 
 
-def _places() -> Iterator[tuple[Path, ...]]:
-    """Yield where kernels may be kept, best first: each the folders that must be private."""
+def _places() -> Iterator[tuple[Path, str]]:
+    """Yield where kernels may be kept, best first: a folder, and the path in it that is to have no links."""
     if os.environ.get(VARIABLE):
-        yield (Path(os.environ[VARIABLE]),)
+        named = Path(os.path.abspath(os.environ[VARIABLE]))
+        yield named.parent, named.name
         return
     with contextlib.suppress(RuntimeError, KeyError):
-        yield (_user_cache() / "physicslab" / "kernels",)
-    shared = Path(tempfile.gettempdir()) / f"physicslab-{os.getuid() if hasattr(os, 'getuid') else 0}"
-    yield shared, shared / "kernels"
+        yield _user_cache() / "physicslab", "kernels"
+    shared = f"physicslab-{os.getuid() if hasattr(os, 'getuid') else 0}"
+    yield Path(tempfile.gettempdir()), f"{shared}/kernels"
 
 
 def _user_cache() -> Path:
@@ -101,30 +112,68 @@ def _user_cache() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
 
 
-def _is_private(folder: Path) -> bool:
-    """Make a folder if it is not there; return whether it can be written, and by this user alone.
+def _resolved(place: Path, name: str) -> Path | None:
+    """Make a folder if it is not there; return its path without links, ``None`` where it may not be used.
 
     Raises
     ------
     OSError
-        If it cannot be made or written.
+        If it cannot be made.
     """
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with contextlib.suppress(FileExistsError):
-        folder.mkdir(mode=0o700)
-    status = os.lstat(folder)
-    if not stat.S_ISDIR(status.st_mode):
-        reason = "is a link" if stat.S_ISLNK(status.st_mode) else "is no folder"
-    elif hasattr(os, "geteuid") and status.st_uid != os.geteuid():
-        reason = "belongs to another user"
-    elif hasattr(os, "geteuid") and stat.S_IMODE(status.st_mode) & 0o077:
-        reason = f"is open to other users (mode {stat.S_IMODE(status.st_mode):o}, not 700)"
-    elif not os.access(folder, os.W_OK | os.X_OK):
+    folder = _without_links(place) / name
+    for path in (*reversed(folder.parents), folder):  # who owns the upper ones can replace the lower ones
+        with contextlib.suppress(FileExistsError):
+            if not os.path.lexists(path):
+                path.mkdir(mode=0o700)
+        reason = _why_unsafe(path, is_above=path != folder) if hasattr(os, "geteuid") else ""
+        if reason:
+            _log.warning("compiled kernels in %s are not used: %s %s", folder, path, reason)
+            return None
+    if not os.access(folder, os.W_OK | os.X_OK) and not (folder / _mark_name()).is_file():
         raise PermissionError(folder)
-    else:
-        return True
-    _log.warning("compiled kernels in %s are not used: it %s", folder, reason)
-    return False
+    return folder
+
+
+def _without_links(path: Path) -> Path:
+    """Return a path with its links followed, each once.
+
+    Raises
+    ------
+    PermissionError
+        If one is another user's: it may lead to what this user has unpacked from them.
+    """
+    path = Path(os.path.abspath(path))
+    found = Path(path.anchor)
+    for part in path.parts[1:]:
+        found /= part
+        if found.is_symlink():
+            if hasattr(os, "geteuid") and os.lstat(found).st_uid not in (0, os.geteuid()):
+                raise PermissionError(found)
+            found = _without_links(found.parent / os.readlink(found))
+    return found
+
+
+def _why_unsafe(folder: Path, *, is_above: bool) -> str:
+    """Return why others could put files into a folder, or others in the place of what is in it."""
+    status = os.lstat(folder)
+    mode, own = stat.S_IMODE(status.st_mode), os.geteuid()
+    if not stat.S_ISDIR(status.st_mode):
+        return "is a link" if stat.S_ISLNK(status.st_mode) else "is no folder"
+    if status.st_uid not in (0, own):
+        return "belongs to another user"
+    of_group = mode & stat.S_IWGRP and not (status.st_uid == own and _is_own_group(status.st_gid))
+    if (of_group or mode & stat.S_IWOTH) and not (is_above and mode & stat.S_ISVTX):
+        return f"is open to other users (mode {mode:o}: they may write in it)"
+    return ""
+
+
+def _is_own_group(group: int) -> bool:
+    """Whether a group is that of this user alone, as many systems give each user one."""
+    import grp  # which Windows has not
+    import pwd
+
+    user, found = pwd.getpwuid(os.geteuid()), grp.getgrgid(group)
+    return group == user.pw_gid and found.gr_name == user.pw_name and set(found.gr_mem) <= {user.pw_name}
 
 
 def _remove_own(directory: Path, process: int) -> None:
@@ -134,7 +183,11 @@ def _remove_own(directory: Path, process: int) -> None:
 
 def mark() -> Path:
     """Return the file whose existence means that every kernel of this package is kept."""
-    return cache_directory() / f"complete-{hash_of(*sorted(current_folders().values()))[:16]}"
+    return cache_directory() / _mark_name()
+
+
+def _mark_name() -> str:
+    return f"complete-{hash_of(*sorted(current_folders().values()))[:16]}"
 
 
 # ---- for numba ---------------------------------------------------------------------------------------------

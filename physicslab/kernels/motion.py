@@ -22,18 +22,18 @@ def derive_masses(
     kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
     awake_inverse_mass: Numbers, awake_inverse_inertia: Numbers, asleep: Flags,
-) -> tuple[float, int, int, int, float]:  # fmt: skip
+) -> tuple[float, int, int, float]:  # fmt: skip
     """Compute each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
 
     Returns the ratio of the greatest mass that can be moved to the least, of what has a shape, 1 if none has;
     and the first row of which the moment of inertia is not finite, or -1; and the first row of
-    which a size is not above 0, or -1; and how many rows have a velocity that nothing changes; and the
-    smallest diameter or side of all shapes [m], infinite if there are none.
+    which a size is not above 0, or -1; and the smallest diameter or side of all shapes [m], infinite if
+    there are none.
 
     A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. A body without velocity or mass, or one that is
     held, has infinite mass; one too small to have an inverse inertia does not turn.
     """
-    lightest, heaviest, infinite, sizeless, driven, smallest = 0.0, math.inf, -1, -1, 0, math.inf
+    lightest, heaviest, infinite, sizeless, smallest = 0.0, math.inf, -1, -1, math.inf
     for i in range(len(mass)):
         if kind[i] == 1:
             sized = 0.0 < radius[i] < math.inf
@@ -53,7 +53,6 @@ def derive_masses(
             else:
                 inertia[i] = 0.0
         moves_freely = has_velocity[i] and has_mass[i] and not held[i]
-        driven += 1 if has_velocity[i] and not moves_freely else 0
         inverse_mass[i] = 1.0 / mass[i] if moves_freely else 0.0
         turns_freely = moves_freely and inertia[i] > 0.0 and not fixed_rotation[i]
         inverse = 1.0 / inertia[i] if turns_freely else 0.0
@@ -66,7 +65,7 @@ def derive_masses(
             lightest, heaviest = max(lightest, inverse_mass[i]), min(heaviest, inverse_mass[i])
         if infinite < 0 and not math.isfinite(inertia[i]):
             infinite = i
-    return (lightest / heaviest if lightest > 0.0 else 1.0), infinite, sizeless, driven, smallest
+    return (lightest / heaviest if lightest > 0.0 else 1.0), infinite, sizeless, smallest
 
 
 @kernel

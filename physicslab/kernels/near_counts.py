@@ -1,17 +1,17 @@
 """Where the counts of near pairs are, in the array that kernels keep them in."""
 
 __all__ = [
-    "ACTIVE", "BOX_BLOCKS", "COUNTED", "DISC_BLOCKS", "DRIVEN", "ENERGETIC", "LEFT", "LOGGED", "LOWERED",
+    "ACTIVE", "BOX_BLOCKS", "COUNTED", "DISC_BLOCKS", "ENERGETIC", "LEFT", "LOGGED", "LOWERED",
     "OUTSIDE", "PROXIMITY", "RECORDED", "SCALAR", "SLEEPING", "UNORDERED", "WIDE_COUNT",
 ]  # fmt: skip
 
-COUNTED = 15
+COUNTED = 14
 (
     PROXIMITY, RECORDED, SCALAR, SLEEPING, ACTIVE, LEFT, WIDE_COUNT, DISC_BLOCKS, BOX_BLOCKS, UNORDERED,
-    LOGGED, LOWERED, ENERGETIC, OUTSIDE, DRIVEN,
+    LOGGED, LOWERED, ENERGETIC, OUTSIDE,
 ) = range(COUNTED)  # fmt: skip
 """Counts that kernels keep: near pairs without records; those with records; of these the scalar ones, those
 that sleep, those that touch, those that impacts have left to the solver; slots in use; blocks of discs and of
 boxes; whether scalar pairs are out of order; all impacts logged so far; and those whose
 restitution was lowered, or that obeyed Stronge's law, as friction would have made energy by Newton's; whether
-a body was beyond the bounds in the step at hand; how many bodies move and are moved by nothing."""
+a body was beyond the bounds in the step at hand."""

@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels import direct_entry
-from physicslab.kernels.accounts import CAUSES, EDITS, HAND, book_rest
+from physicslab.kernels.accounts import BALANCE, BEFORE, BOOK, CAUSES, EDITS, HAND
 
 __all__ = ["Account", "Balance", "KeptAccount"]
 
@@ -23,16 +22,12 @@ class Balance(NamedTuple):
     spin: float
 
 
-_NOTHING = Balance(0.0, 0.0, 0.0, 0.0)
-
-
 class KeptAccount(NamedTuple):
     """An account at one moment, to go back to."""
 
-    sums: NDArray[np.float64]
+    book: NDArray[np.float64]
     since: float
     start: Balance | None
-    last: Balance
     held: tuple[int, ...]
 
 
@@ -44,14 +39,17 @@ class Account:
 
     Attributes
     ----------
+    table : float64 array (BOOK, 4)
+        What each cause has given (:mod:`physicslab.kernels.accounts`), which kernels add to; what there was
+        after the last step; and all of it as it was before the step at hand.
     sums : float64 array (CAUSES, 4)
-        What each cause has given (:mod:`physicslab.kernels.accounts`); kernels add to it.
+        The first of these.
+    is_open : bool
+        Whether the balance is to be measured at the end of the step at hand.
     since : float
         The world's clock when it began [s].
     start : Balance, optional
         What there was then; ``None`` before the first step.
-    last : Balance
-        What there was after the last step.
     held : tuple of int
         The entities that a hand held then.
     columns : tuple, optional
@@ -61,13 +59,24 @@ class Account:
     """
 
     def __init__(self) -> None:
-        self.sums: NDArray[np.float64] = np.zeros((CAUSES, 4))
+        self.table: NDArray[np.float64] = np.zeros((BOOK, 4))
+        self.sums, self._now, self._before = self.table[:CAUSES], self.table[:BEFORE], self.table[BEFORE:]
+        self.is_open = False
         self.since = 0.0
         self.held: tuple[int, ...] = ()
         self.columns: tuple[int, tuple[Any, ...], tuple[Any, ...]] | None = None
         self.seen: object | None = None
         self.start: Balance | None = None
-        self.last = _NOTHING
+        self._begun: tuple[float, Balance | None, tuple[int, ...]] = self.since, self.start, self.held
+
+    @property
+    def last(self) -> Balance:
+        """What there was after the last step."""
+        return Balance(*self.table[BALANCE].tolist())
+
+    @last.setter
+    def last(self, balance: Balance) -> None:
+        self.table[BALANCE] = balance
 
     def restart(self) -> None:
         """Begin again with the next step."""
@@ -80,7 +89,22 @@ class Account:
         ``held`` tells which bodies are held: where these are others than before, it was a hand.
         """
         change = Balance(*(new - old for new, old in zip(now, self.last, strict=True)))
-        return HAND if held != self.held else EDITS, change
+        return self.cause_of_edits(held), change
+
+    def cause_of_edits(self, held: tuple[int, ...]) -> int:
+        """Return by which cause something has changed between steps."""
+        return HAND if held != self.held else EDITS
+
+    def begin_step(self) -> None:
+        """Keep what there is, for :meth:`go_back`."""
+        self._before[...] = self._now
+        self._begun, self.is_open = (self.since, self.start, self.held), False
+
+    def go_back(self) -> None:
+        """Return to what there was before a step that has failed."""
+        self._now[...] = self._before
+        self.since, self.start, self.held = self._begun
+        self.seen = None
 
     def open(self, now: Balance, held: tuple[int, ...], time: float) -> None:
         """Begin a step at a balance; what has changed since the last one is booked."""
@@ -98,23 +122,12 @@ class Account:
             self.last = now
         self.held = held
 
-    def close(self, now: Balance, rest: int | None, before: KeptAccount) -> None:
-        """End a step at a balance; all that is not booked goes to the cause ``rest``, if one is given.
-
-        ``before`` is what there was when the step began; an edit since then is booked, and no rest.
-        """
-        if rest is not None and math.isfinite(before.last.energy):
-            old = self.last if before.start is None else before.last
-            energy, px, py, spin = now[0] - old[0], now[1] - old[1], now[2] - old[2], now[3] - old[3]
-            direct_entry(book_rest)(self.sums, before.sums, rest, energy, px, py, spin)
-        self.last = now
-
     def keep(self) -> KeptAccount:
         """Return what there is, to go back to."""
-        return KeptAccount(self.sums.copy(), self.since, self.start, self.last, self.held)
+        return KeptAccount(self._now.copy(), self.since, self.start, self.held)
 
     def bring_back(self, kept: KeptAccount) -> None:
         """Go back."""
-        np.copyto(self.sums, kept.sums)
-        _, self.since, self.start, self.last, self.held = kept
+        np.copyto(self._now, kept.book)
+        _, self.since, self.start, self.held = kept
         self.seen = None

@@ -33,6 +33,8 @@ class Bodies:
         The smallest diameter or side of all shapes [m]; infinite where there are none.
     columns : tuple of an object and arrays
         What :func:`physicslab.state.masses.derive_masses` takes, and for which rows.
+    checked : tuple of arrays
+        The columns of numbers that are checked before each step.
     sub_integrated : bool array (rows,)
         The rows with a method of their own between contacts (:class:`physicslab.stepping.split_forces`).
     unkicked : bool array (rows,)
@@ -42,6 +44,7 @@ class Bodies:
     def __init__(self) -> None:
         self.unequal, self.smallest = False, math.inf
         self.columns: tuple[object, tuple[NDArray[Any], ...]]
+        self.checked: tuple[NDArray[Any], ...] = ()
         self.resize(0)
 
     def resize(self, rows: int) -> None:

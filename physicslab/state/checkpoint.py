@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.state.account import Account, KeptAccount
 from physicslab.state.remainders import NO_REMAINDERS, Remainders
 
 __all__ = ["Checkpoint"]
@@ -30,8 +29,6 @@ class Checkpoint:
         Force evaluations, impacts, and impacts logged until then.
     time : float
         The clock of then [s].
-    account : KeptAccount
-        What was booked until then.
     remainders : Remainders
         What rounding had left out of positions and velocities; replaced by a step, never changed in place.
     """
@@ -41,7 +38,6 @@ class Checkpoint:
         self.counts = 0, 0, 0
         self.time = 0.0
         self.remainders: Remainders = NO_REMAINDERS
-        self.account: KeptAccount = Account().keep()
 
     def make_room(self, columns: _Columns, counts: tuple[int, int, int]) -> None:
         """Keep the counts, with room for columns like these."""

@@ -148,7 +148,9 @@ class Contacts:
         self.proximity: NDArray[np.uint32] = np.zeros(2 * capacity, np.uint32)
         self.activation_distance: NDArray[np.float64] = np.zeros(capacity)
         self.rotations: NDArray[np.float64] = np.zeros((0, 3))
-        self.slips: NDArray[np.float64] = np.zeros((0, 2))
+        self.noted: NDArray[np.float64] = np.zeros((0, 4))
+        self.linear_before: NDArray[np.float64] = np.zeros((0, 2))
+        self.angular_before: NDArray[np.float64] = np.zeros(0)
         self.table: NDArray[np.int64] = np.zeros(16, np.int64)
         self.sleeping: NDArray[np.int64] = np.zeros(capacity, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Held, Mass, Shape, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
 from physicslab.components.shape import CIRCLE
 from physicslab.ecs.component import InvalidValue
-from physicslab.kernels import direct_entry, motion
-from physicslab.kernels.near_counts import DRIVEN
+from physicslab.kernels import direct_entry, motion, ranges
 from physicslab.kernels.solver import impulse
 from physicslab.state.state import State
 
@@ -35,18 +34,26 @@ def derive_masses(state: State) -> None:
     Raises
     ------
     InvalidValue
-        If a body is so large and heavy that its moment of inertia is not finite, or a size is not above 0.
+        If a body is so large and heavy that its moment of inertia is not finite, a size is not above 0, or a
+        number that was written to a column is none that its field can hold.
     """
     bodies = state.bodies
     if len(bodies.torque) != len(state.entity_index):
         bodies.resize(len(state.entity_index))
-        state.compile((motion.derive_masses,))
+        state.compile((motion.derive_masses, ranges.find_outside))
     revision, columns = bodies.columns
     if revision == state.entity_index.revision and columns[-1] is state.sleep.asleep:
-        ratio, infinite, sizeless, driven, bodies.smallest = direct_entry(motion.derive_masses)(*columns)
+        outside = direct_entry(ranges.find_outside)(*bodies.checked)
+        if outside >= 0:
+            _refuse_number(state, outside)
+        ratio, infinite, sizeless, bodies.smallest = direct_entry(motion.derive_masses)(*columns)
     else:
+        bodies.checked = _checked(state)
+        outside = ranges.find_outside(*bodies.checked)
+        if outside >= 0:
+            _refuse_number(state, outside)
         columns = _columns(state)
-        ratio, infinite, sizeless, driven, bodies.smallest = motion.derive_masses(*columns)
+        ratio, infinite, sizeless, bodies.smallest = motion.derive_masses(*columns)
         bodies.columns = state.entity_index.revision, columns
     if sizeless >= 0:
         _refuse_size(state, sizeless)
@@ -55,7 +62,6 @@ def derive_masses(state: State) -> None:
         inertia, allowed = float(mass["inertia"][infinite]), f"{_INERTIA.allowed}, of mass and Shape too"
         raise InvalidValue(f"{state.label_of_row(infinite)}: Mass", "inertia", inertia, allowed)
     bodies.unequal = ratio > impulse.HEAVY_RATIO
-    state.contacts.counts[DRIVEN] = driven
 
 
 def _columns(state: State) -> tuple[NDArray[Any], ...]:
@@ -68,6 +74,32 @@ def _columns(state: State) -> tuple[NDArray[Any], ...]:
         bodies.inverse_mass, bodies.inverse_inertia,
         bodies.awake_inverse_mass, bodies.awake_inverse_inertia, state.sleep.asleep,
     )  # fmt: skip
+
+
+def _checked(state: State) -> tuple[NDArray[Any], ...]:
+    """Return the columns of numbers that no step can take where they are outside their ranges."""
+    mass, material, spring, drag = (state.table(kind) for kind in (Mass, Material, Spring, Drag))
+    return (
+        mass.present, mass["mass"], mass["inertia"], material["restitution"], material["friction"],
+        spring["stiffness"], spring["damping"], spring["rest_length"], drag["linear"], drag["quadratic"],
+    )  # fmt: skip
+
+
+def _refuse_number(state: State, row: int) -> None:
+    """Refuse a number that was written to a column, as its handle would have; entities that have it first."""
+    for kind in (Mass, Material, Spring, Drag):
+        table = state.table(kind)
+        numbers = [spec for spec in kind.FIELDS if spec.kind == "number"]
+        for spec in numbers:
+            for one in (*np.flatnonzero(table.present).tolist(), *([] if kind is Mass else [row])):
+                value = float(table[spec.name][one])
+                if spec.derived and value >= 0.0:  # of a point it is 0
+                    continue
+                try:
+                    spec.check(value)
+                except InvalidValue as error:
+                    owner = f"{state.label_of_row(one)}: {kind.__name__}"
+                    raise InvalidValue(owner, spec.name, value, error.allowed) from None
 
 
 def _refuse_size(state: State, row: int) -> None:

@@ -13,11 +13,12 @@ from physicslab.components import Name
 from physicslab.components.name import why_no_id
 from physicslab.components.naming import plain_name
 from physicslab.ecs.batch import Batch
-from physicslab.ecs.component import InvalidValue
-from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.component import Component, InvalidValue
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.context import Active, create_numbered, next_number, switch
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Table
+from physicslab.ecs.text import printable, shortened, suggestion
 from physicslab.kernels import compile_kernels, seconds_waited
 from physicslab.state.account import Account
 from physicslab.state.bodies import Bodies
@@ -32,6 +33,8 @@ type View = tuple[float, float, float, float]
 """What a window shows of a world at first: xmin, ymin, xmax, ymax [m]."""
 
 _numbers = itertools.count(1)
+_NO_COMPONENTS = ("builtins", "numpy")
+"""Where types come from that hold values, and say nothing of an entity."""
 
 
 class State:
@@ -95,12 +98,23 @@ class State:
         What changed the energy and the momentum, by cause.
     """
 
+    # An attribute that is misspelt, or belongs elsewhere, would be kept and do nothing.
+    __slots__ = (
+        "__weakref__", "_names", "_physics", "_simulation", "_waited_before", "account", "bodies",
+        "brought_back", "checkpoint", "collisions", "contacts", "context", "description", "entity_index",
+        "event_driven", "fastest_rates", "force_evaluations", "generation", "has_forces", "in_step",
+        "kick_before_contacts", "moment", "motion_edits", "name", "remainders", "revision", "rigid_contacts",
+        "sleep", "stale", "step_divisions", "steps", "substeps", "time", "title", "view", "window",
+    )  # fmt: skip
+
     def __init__(
         self, physics: PhysicsConfig | None = None, simulation: SimulationConfig | None = None
     ) -> None:
         self._physics = physics or PhysicsConfig()
         self._simulation = simulation or SimulationConfig()
-        self.name, self.title, self.description = "", "", ""
+        self.name: str = ""
+        self.title: str = ""
+        self.description: str = ""
         self.view: View | None = None
         self.time, self.steps, self.revision, self.motion_edits = 0.0, 0, 0, 0
         self.substeps, self.step_divisions = self._simulation.substeps, 1
@@ -156,6 +170,11 @@ class State:
         ------
         ValueError
             If an entity has the number, or it is below 1.
+        TypeError
+            If something is no component.
+        InvalidValue
+            If a body that one refers to, as a spring to its ends, is not there; where ``entity`` is given, it
+            may still come.
         """
         if name is not None:
             components = (*components, Name(name))
@@ -168,6 +187,8 @@ class State:
                 self._check_name(component)
             if entity is not None:
                 return create_numbered(entity, components)
+            for component in components:
+                _check_ends(component)
             return esper.create_entity(*components)
 
     @property
@@ -176,10 +197,10 @@ class State:
         with self.active():
             return next_number()
 
-    def remove(self, entity: int) -> None:
+    def remove(self, entity: int | str) -> None:
         """Remove an entity with all its components; handles on them keep their last values."""
         with self.active():
-            self._require(entity)
+            entity = self._found(entity)
             esper.delete_entity(entity, immediate=True)
 
     def clear(self) -> None:
@@ -189,22 +210,29 @@ class State:
                 esper.delete_entity(entity)
             self.entity_index.flush_deleted()
 
-    def add(self, entity: int, component: Any) -> None:
-        """Add a component to an entity, in place of the one of that type if it has one."""
+    def add(self, entity: int | str, component: Any) -> None:
+        """Add a component to an entity, in place of the one of that type if it has one.
+
+        Raises
+        ------
+        TypeError, InvalidValue
+            As :meth:`spawn` does.
+        """
         with self.active():
-            self._require(entity)
+            entity = self._found(entity)
             _kind(component)
             self._check_name(component, entity)
+            _check_ends(component, entity)
             esper.add_component(entity, component)
 
-    def discard[C](self, entity: int, component: type[C]) -> C | None:
+    def discard[C](self, entity: int | str, component: type[C]) -> C | None:
         """Take a component from an entity and return it, or ``None`` if it had none."""
         with self.active():
-            self._require(entity)
-            return esper.try_remove_component(entity, component)
+            taken: C | None = esper.try_remove_component(self._found(entity), _checked(component))
+            return taken
 
-    def component[C](self, entity: int, component: type[C]) -> C:
-        """Return an entity's component.
+    def component[C](self, entity: int | str, component: type[C]) -> C:
+        """Return a component of an entity, which is given by its number or its id.
 
         Raises
         ------
@@ -212,22 +240,25 @@ class State:
             If there is no such entity, or it has no such component.
         """
         with self.active():
-            self._require(entity)
+            entity = self._found(entity)
             self._follow()
-            found = esper.try_component(entity, component)
+            found: C | None = esper.try_component(entity, _checked(component))
             if found is None:
                 raise KeyError(f"{self.label(entity)} has no {component.__name__}")
             return found
 
-    def has(self, entity: int, component: type[Any]) -> bool:
+    def has(self, entity: int | str, component: type[Any]) -> bool:
         """Whether an entity exists and has a component."""
         with self.active():
-            return esper.entity_exists(entity) and esper.has_component(entity, component)
+            number = self._holder(entity) if isinstance(entity, str) else entity
+            if number is None or not esper.entity_exists(number):
+                return False
+            return esper.has_component(number, _checked(component))
 
-    def components(self, entity: int) -> tuple[Any, ...]:
+    def components(self, entity: int | str) -> tuple[Any, ...]:
         """Return all components of an entity."""
         with self.active():
-            self._require(entity)
+            entity = self._found(entity)
             self._follow()
             return esper.components_for_entity(entity)
 
@@ -242,11 +273,14 @@ class State:
             entity = self._holder(name)
         if entity is not None:
             return entity
-        raise KeyError(f"no entity has the id {name!r}")
+        with self.active():
+            known = [named.id for one, named in esper.get_component(Name) if esper.entity_exists(one)]
+        raise KeyError(f"no entity has the id {name!r}{suggestion(str(name), known)}")
 
-    def label(self, entity: int) -> str:
+    def label(self, entity: int | str) -> str:
         """Return the entity's id if it has one, else what it is and its number: ``circle 3``."""
         with self.active():
+            entity = self.entity(entity) if isinstance(entity, str) else entity
             if not esper.entity_exists(entity):
                 return f"entity {entity}"
             named = esper.try_component(entity, Name)
@@ -275,9 +309,13 @@ class State:
                 return entity
         return None
 
-    def _require(self, entity: int) -> None:
+    def _found(self, entity: int | str) -> int:
+        """Return the number of an entity that is given by it, or by its id."""
+        if isinstance(entity, str):
+            return self.entity(entity)
         if not esper.entity_exists(entity):
             raise KeyError(f"there is no entity {entity} in this world")
+        return entity
 
     def _follow(self) -> None:
         """Follow the present entities and components."""
@@ -337,10 +375,56 @@ class State:
 
 
 def _kind(component: Any) -> type[Any]:
-    """Return a component's type; refuse a type given in its place."""
+    """Return a component's type; refuse a type given in its place, and what only holds values."""
     if isinstance(component, type):
         raise TypeError(f"an entity has components, not their types: write {component.__name__}(...)")
+    if type(component).__module__ in _NO_COMPONENTS:
+        words = shortened(printable(repr(component)))
+        raise TypeError(f"an entity has components, as Mass(2.0) is one; {words} is none")
     return type(component)
+
+
+def _checked(component: Any) -> Any:
+    """Return the type of a component; refuse its name, or a component, given in its place."""
+    if not isinstance(component, type):
+        words = shortened(printable(repr(component)))
+        raise TypeError(f"a component is asked for by its type, as Mass is one; {words} is none")
+    return component
+
+
+def _check_ends(component: Any, own: int | None = None) -> None:
+    """Refuse a component of the motion that refers to an entity that is not there, nor its own (the next)."""
+    if not isinstance(component, Component) or not component.physical:
+        return
+    for spec in component.FIELDS:
+        end = getattr(component, spec.name) if spec.kind == "entity" else None
+        if end is not None and not esper.entity_exists(end) and end != (own or next_number()):
+            raise InvalidValue(spec.owner, spec.name, end, "an entity of this world or null")
+
+
+class _Elsewhere:
+    """Refuses what is a part of the laws or of the settings where it is written to the world itself."""
+
+    def __init__(self, record: str, name: str) -> None:
+        self._words = (
+            f"is in world.{record}: "
+            f"world.{record} = dataclasses.replace(world.{record}, {name}=...) changes it"
+        )
+        self._name = name
+
+    def __get__(self, state: State | None, owner: type[State]) -> object:
+        if state is None:
+            return self
+        raise AttributeError(f"world.{self._name} {self._words}")
+
+    def __set__(self, state: State, value: object) -> None:
+        raise AttributeError(f"world.{self._name} {self._words}")
+
+
+for _config in (PhysicsConfig, SimulationConfig):
+    for _field in field_names(_config):
+        if not hasattr(State, _field):
+            setattr(State, _field, _Elsewhere(_config.section, _field))
 
 
 def _forget(context: str) -> None:

@@ -29,6 +29,8 @@ class WideConstraints:
         The colour of each block: no body has two contacts of one colour.
     order : int64 array (capacity,)
         The blocks, those of one colour together: as they are solved.
+    outside : bool array (capacity,)
+        Which blocks may have something that no impulse moves, or turns.
     used : uint64 array (rows of the world,)
         The colours that each body has been given, bit by bit.
     """
@@ -39,6 +41,7 @@ class WideConstraints:
         self.kind, self.rows = kind, DISC_ROWS if kind == DISC else BOX_ROWS
         self.data: NDArray[np.float64] = np.zeros(0)
         self.a, self.b, self.pair, self.colour, self.order = (np.zeros(0, np.int64) for _ in range(5))
+        self.outside: NDArray[np.bool_] = np.zeros(0, np.bool_)
         self.reset(1)
 
     @property
@@ -60,11 +63,13 @@ class WideConstraints:
         if len(self.colour) < blocks:
             room = 2 * blocks
             data, (colour, order) = _in_lines(room * self.rows), np.zeros((2, room), np.int64)
+            outside = np.zeros(room, np.bool_)
             data[: len(self.data)], colour[: len(self.colour)] = self.data, self.colour
+            outside[: len(self.outside)] = self.outside
             order[: len(self.order)] = self.order
             constraints = np.zeros((3, room * WIDE), np.int64)
             constraints[:, : len(self.pair)] = self.a, self.b, self.pair
-            self.data, self.colour, self.order = data, colour, order
+            self.data, self.colour, self.order, self.outside = data, colour, order, outside
             self.a, self.b, self.pair = (np.ascontiguousarray(slot) for slot in constraints)
 
     def sort(self) -> None:
@@ -74,7 +79,9 @@ class WideConstraints:
     @property
     def slots(self) -> SlotsTuple:
         """The arguments of kernels."""
-        return self.kind, self.data, self.a, self.b, self.pair, self.colour, self.used, self.order
+        return (
+            self.kind, self.data, self.a, self.b, self.pair, self.colour, self.used, self.order, self.outside,
+        )  # fmt: skip
 
 
 class WideContacts:

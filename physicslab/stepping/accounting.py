@@ -96,6 +96,7 @@ def open_account(state: State, forces: Sequence[ForceSystem]) -> None:
     unchanged = seen is not None and seen == account.seen and account.start is not None
     now = account.last if unchanged else balance_of(state, forces)
     account.open(now, held_in(state), state.time)
+    account.is_open = True
 
 
 def acts_unbooked(system: System) -> bool:
@@ -122,7 +123,7 @@ def book_account(state: State, forces: Sequence[ForceSystem]) -> None:
     state.account.seen = None  # what was seen belongs to the balance before
 
 
-def close_account(state: State, forces: Sequence[ForceSystem], rest: int | None) -> None:
-    """End a step; all that is not booked goes to the cause ``rest``, if one is given."""
-    state.account.close(balance_of(state, forces), rest, state.checkpoint.account)
+def close_account(state: State, forces: Sequence[ForceSystem]) -> None:
+    """End a step: what is not booked of what it changed is an error."""
+    state.account.last, state.account.is_open = balance_of(state, forces), False
     state.account.seen = _seen(state, forces)

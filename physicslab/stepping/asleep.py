@@ -19,8 +19,8 @@ class Asleep:
     name: ClassVar[str] = "asleep"
     title: ClassVar[str] = "Everything sleeps: only time passes"
     leaps: bool = False
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = True
-    contacts_take_the_rest: ClassVar[bool] = False
     kernels: tuple[Any, ...] = ()
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:

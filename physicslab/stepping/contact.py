@@ -32,8 +32,8 @@ class Contact:
     name: ClassVar[str] = "contact"
     title: ClassVar[str] = "Steps stage by stage, contacts within them"
     leaps: bool = False
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = True
-    contacts_take_the_rest: ClassVar[bool] = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._stages = schedule, plan.stages.substep
@@ -109,6 +109,6 @@ class Contact:
                 run(stage, state, share * h)
             if split is not None and stage in OF_SPLIT_FORCES:
                 split.take_part(stage, state, share * h)
-            accounts.end(stage, state, h)
+            accounts.end(stage, state)
             if stage is Stage.DRIFT:
                 drifted += share

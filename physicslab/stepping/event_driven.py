@@ -29,6 +29,7 @@ from physicslab.stepping.resting_bodies import (
     list_touching,
     set_motion,
 )
+from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.integrate import IntegrateSystem
@@ -64,12 +65,14 @@ class EventDriven:
 
     name: ClassVar[str] = "event_driven"
     title: ClassVar[str] = "Impacts at their exact times"
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = False
-    contacts_take_the_rest: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._resting = schedule, RestingBodies(state, schedule, plan)
+        self._plan: StepPlan = plan
+        self._together: Rigid | None = None
         self.reason = plan.collision_reason
         self._leaves_rest = plan.contacts == "rigid"
         self._left = -1
@@ -216,7 +219,7 @@ class EventDriven:
 
     def _advance(self, state: State, span: float, dt: float, offset: float) -> None:
         """Advance by a step, or by what is left of it."""
-        left, parts = span, 0
+        left, parts, ordered = span, 0, False
         while left > 0.0:
             parts += 1
             if parts > _MAX_PARTS:
@@ -224,8 +227,10 @@ class EventDriven:
             if (self._mode == events.IN_CONTACT).any():
                 elapsed = self._advance_both(state, left, dt, offset + (span - left))
             else:
-                made, elapsed, why = self._run_events(state, left, 1, dt, offset + (span - left))
-                elapsed = left if made else elapsed
+                made, elapsed, why = self._run_events(state, left, 1, dt, offset + (span - left), ordered)
+                elapsed, ordered = left if made else elapsed, False
+                if why == events.TOGETHER:
+                    ordered = not self._collide(state, offset + (span - left) + elapsed)
                 self._give_up(why)
             left = left - elapsed if elapsed < left else 0.0
 
@@ -243,7 +248,7 @@ class EventDriven:
             self._lead_resting(in_contact, start.motion, end, span, dt)
             set_motion(state, start.motion)
             resting = state.account.sums.copy()
-            made, elapsed, _ = self._run_events(state, span, 1, dt, offset)
+            made, elapsed, _ = self._run_events(state, span, 1, dt, offset, ordered=True)
             elapsed = span if made else elapsed
             motion = copy_motion(state)
             if elapsed < span:
@@ -293,8 +298,19 @@ class EventDriven:
         left: NDArray[np.bool_] = in_contact & (one != events.BALLISTIC) & (other != events.BALLISTIC)
         return left
 
+    def _collide(self, state: State, offset: float) -> bool:
+        """Resolve impacts that a body has with several others by the laws of rigid contacts, all at once.
+
+        Returns whether there were any: what is not resolved so is resolved in order.
+        """
+        self._together = self._together or Rigid(state, self._schedule, self._plan)
+        impacts = self._together.collide(state, state.time + offset)
+        state.collisions += impacts
+        self._paths[self._lows] = 0.0
+        return impacts > 0
+
     def _run_events(
-        self, state: State, span: float, steps: int, dt: float, offset: float
+        self, state: State, span: float, steps: int, dt: float, offset: float, ordered: bool = False
     ) -> tuple[int, float, int]:
         """Move bodies from impact to impact for ``steps`` times ``span`` s, or until an event.
 
@@ -315,7 +331,7 @@ class EventDriven:
             self._impact_positions, motion_of(state), sizes_of(state), materials_of(state),
             (bodies.inverse_mass, bodies.inverse_inertia), self._bounds,
             state.account.sums, contacts.log, contacts.logged, state.time + offset, span, steps, dt,
-            self._urgent,
+            self._urgent, ordered,
         )  # fmt: skip
         # The impact of a woken body is resolved first, or the body would come to rest again at once.
         self._urgent = pair if why == events.WOKEN else -1

@@ -29,8 +29,8 @@ class Flow:
     name: ClassVar[str] = "flow"
     title: ClassVar[str] = "Steps as one compiled flow"
     leaps: bool = True
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = False
-    contacts_take_the_rest: ClassVar[bool] = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from math import isfinite
 from typing import Any, ClassVar
 
 import numpy as np
@@ -30,6 +31,7 @@ from physicslab.kernels.solver import fused_contact as fused
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
+from physicslab.stepping.accounting import held_in, open_account
 from physicslab.stepping.bounds import bring_back
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.stepper import Advance, divisions, falls_far
@@ -62,8 +64,8 @@ class FusedContact:
     name: ClassVar[str] = "fused_contact"
     title: ClassVar[str] = "Compiled steps, contacts within them"
     leaps: bool = False
+    keeps_balance: ClassVar[bool] = True
     leaves_forces: ClassVar[bool] = True
-    contacts_take_the_rest: ClassVar[bool] = True
     kernels: tuple[Any, ...] = (
         fused.advance, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs,
         near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
@@ -81,6 +83,8 @@ class FusedContact:
         self._contact = _found(schedule, ContactSystem)
         self._resolve = _found(schedule, ResolveSystem)
         self._sleep = schedule.find(SleepSystem)
+        # Of one force the loop measures the same energy, bit for bit, as is measured between steps.
+        self._measures = len(schedule.forces) < 2
         uniform = [force.uniform_acceleration(state) for force in schedule.forces]
         self._gravity = sum((g for g in uniform if g is not None), start=Vector2(0.0, 0.0))
         self._cost = np.zeros(fused.COSTS, np.int64)
@@ -128,11 +132,12 @@ class FusedContact:
         refill(state)
         self._broad_phase.follow_rows(state)
         self._contact.begin_step(state)
-        made, substep, stage, wanted = 0, 0, fused.BEGIN, steps
+        made, substep, stage, wanted, cause = 0, 0, fused.BEGIN, steps, self._open(state)
         steps, began = min(steps, self._max_steps), working_ns() if steps > 1 else 0
         try:
             while made < steps:
-                why, done, substep = self._advance(state, made, steps - made, substep, stage, h)
+                why, done, substep = self._advance(state, made, steps - made, substep, stage, h, cause)
+                cause = -1
                 made += done
                 if why == fused.DIVERGED:
                     check_finite(state, state.time + (made + 1) * h)
@@ -147,6 +152,7 @@ class FusedContact:
                     stage = fused.IMPACTS
                 elif why in (fused.SLEEP_PENDING, fused.WALL_PENDING):
                     state.checkpoint.take(motion_of(state), state.counts)
+                    state.account.is_open = True  # the loop has not seen what is done here
                     if why == fused.SLEEP_PENDING and self._sleep is not None:
                         self._timed(self._sleep, self._sleep.put_islands_to_sleep, state, h)
                     if state.contacts.outside:
@@ -162,8 +168,20 @@ class FusedContact:
             self._max_steps = max(1, min(_MAX_STEPS, made * _CALL_NS // max(working_ns() - began, 1)))
         return Advance(made)
 
+    def _open(self, state: State) -> int:
+        """Return by which cause anything was changed since the last step, or -1 where that is booked."""
+        account = state.account
+        known = account.start is not None and isfinite(account.last.energy)
+        if not (account.is_open or (known and self._measures)):
+            open_account(state, self._schedule.forces)
+        if account.is_open:
+            return -1
+        held, account.seen = held_in(state), None
+        cause, account.held = account.cause_of_edits(held), held
+        return cause
+
     def _advance(
-        self, state: State, made: int, steps: int, substep: int, stage: int, h: float
+        self, state: State, made: int, steps: int, substep: int, stage: int, h: float, cause: int
     ) -> tuple[int, int, int]:
         """Run the loop as far as it goes; return why it ended, after how many steps, and where."""
         began = time.perf_counter_ns()
@@ -171,7 +189,7 @@ class FusedContact:
         plan = (substeps, state.simulation.iterations or 0, h / substeps, h, state.time + made * h)
         arguments = self._arguments(state, h / substeps)
         why, done, substep, finished_impacts, impacts, contacts.impulse_dt = self._entry(
-            steps, substep, stage, plan, *arguments
+            steps, substep, stage, plan, cause, *arguments
         )
         contacts.changed()
         state.collisions += finished_impacts
@@ -206,9 +224,10 @@ class FusedContact:
     def _fixed_arguments(self, state: State, h: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:
         """Return the columns in order, the laws, and room for marks."""
         bodies, physics = state.bodies, state.physics
+        mass = state.table(Mass)
         gravity = (
-            state.table(Mass)["mass"], bodies.inverse_mass, self._gravity.x, self._gravity.y,
-            speculative_margin(state, h),
+            mass["mass"], mass["inertia"], bodies.inverse_mass, bodies.inverse_inertia, self._gravity.x,
+            self._gravity.y, speculative_margin(state, h),
         )  # fmt: skip
         columns = (
             motion_of(state), tuple(state.checkpoint.columns), sizes_of(state), materials_of(state),

@@ -161,7 +161,7 @@ class RestingBodies:
             for stage, share in self._stages:
                 self._accounts.begin(stage, state, share, span / substeps)
                 self._schedule.run(stage, state, share * span / substeps)
-                self._accounts.end(stage, state, span / substeps)
+                self._accounts.end(stage, state)
         near["count"][others] = 0
         # The contact stage has cleared the records of impacts; those of the ballistic part are added again.
         new = impact_count > near["impact_count"]

@@ -58,8 +58,8 @@ class Rigid:
     name: ClassVar[str] = "rigid"
     title: ClassVar[str] = "Rigid contacts, events at their exact times"
     leaps: bool = False
+    keeps_balance: ClassVar[bool] = False
     leaves_forces: ClassVar[bool] = False
-    contacts_take_the_rest: ClassVar[bool] = False
     kernels: tuple[Any, ...] = (
         motion.touch, motion.collide, motion.advance_piece, motion.begin_motion,
         time_stepping.drift, time_stepping.kick, time_stepping.separate, time_stepping.take_work,
@@ -114,6 +114,14 @@ class Rigid:
             state.substeps = state.simulation.substeps
             self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
         return Advance(made, parts)
+
+    def collide(self, state: State, at: float) -> int:
+        """Let all that approaches in a state bounce, at time ``at`` [s]; return how many impacts that is."""
+        self._ode.gather(state)
+        impacts = self._motion.collide(self._scene(state), state, at)
+        if impacts:
+            self._ode.scatter(state, 0.0)
+        return impacts
 
     def _step(self, scene: tuple[Any, ...], state: State, at: float, h: float, parts: int) -> MadeStep:
         """Make a step from time ``at`` in parts; where one cannot be made, all is as before the step."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.contacts.arguments import inverse_in
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels.accounts import DAMPING, ENERGY, FRICTION, GRAVITY, HAND, OVERLAP, SPRINGS
+from physicslab.kernels.accounts import DAMPING, ENERGY, GRAVITY, HAND, OVERLAP, SPRINGS
 from physicslab.kernels.solver import work
 from physicslab.state.packed import spring_ends, turned_anchors
 from physicslab.state.state import State
@@ -20,15 +20,12 @@ from physicslab.systems.system import ForceSystem, Stage, System
 
 __all__ = ["StageAccounts"]
 
-_OF_CONTACTS = (Stage.SOLVE, Stage.RELAX)
-"""Stages in which impulses act that are booked as changes of kinetic energy."""
-
 
 class StageAccounts:
-    """Books what stages of a substep do to energy and momentum, from the state before and after each.
+    """Books what the forces of a substep do to energy and momentum, from the state before and after stages.
 
-    Impacts, friction and driven bodies are booked within the kernels, sub-integrated bodies within their
-    flow. A force that kicks bodies and stores no energy does its work along the way of the substep.
+    What impulses do is booked within the kernels, what moves sub-integrated bodies within their flow. A force
+    that kicks bodies and stores no energy does its work along the way of the substep.
 
     Parameters
     ----------
@@ -36,7 +33,7 @@ class StageAccounts:
         What acts.
     """
 
-    kernels: tuple[Any, ...] = (work.book_kick, work.book_damping, work.book_contacts)
+    kernels: tuple[Any, ...] = (work.book_kick, work.book_damping)
 
     def __init__(self, state: State, forces: Sequence[ForceSystem]) -> None:
         uniform = [force.uniform_acceleration(state) if force.is_engine else None for force in forces]
@@ -49,11 +46,11 @@ class StageAccounts:
         self._storing = [force for force in others if force.potential is not None]
         self._follows_way, self._damps = bool(others), springs and _has_dampers(state)
         self._dampers = np.zeros_like(state.bodies.pull)
-        self._before: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+        self._before: NDArray[np.float64]
         self._start: tuple[NDArray[np.float64], NDArray[np.float64]]
         self._driven: NDArray[np.bool_] | None = None
         self._generation = -1
-        self._booked = self._kicked = 0.0
+        self._kicked = 0.0
 
     @property
     def notes_forces(self) -> bool:
@@ -83,12 +80,9 @@ class StageAccounts:
         """Note what a stage is about to change, of a ``share`` of the substep of ``h`` seconds."""
         if stage is Stage.KICK:
             self._book_kick(state, share, h)
-        elif stage in _OF_CONTACTS:
-            velocity, position = state.table(Velocity), state.table(Transform)["position"]
-            self._before = position.copy(), velocity["linear"].copy(), velocity["angular"].copy()
-            self._booked = _booked_within(state)
-            if stage is Stage.RELAX and self._follows_way:
-                self._book_way(state)
+        elif stage is Stage.RELAX and self._follows_way:
+            self._book_way(state)
+            self._before = state.table(Transform)["position"].copy()
 
     def _book_kick(self, state: State, share: float, h: float) -> None:
         """Book the impulses of forces, and those of damping."""
@@ -108,17 +102,8 @@ class StageAccounts:
             )  # fmt: skip
         self._kicked += share
 
-    def end(self, stage: Stage, state: State, h: float) -> None:
-        """Book what a stage of the substep of ``h`` seconds has changed."""
-        if stage not in _OF_CONTACTS:
-            return
-        velocity, mass, bodies = state.table(Velocity), state.table(Mass), state.bodies
-        work.book_contacts(
-            velocity["linear"], velocity["angular"], *self._before,
-            bodies.force, bodies.torque, mass["mass"], mass["inertia"], *inverse_in(state), bodies.unkicked,
-            h if stage is Stage.SOLVE and state.has_forces else 0.0,
-            _booked_within(state) - self._booked, state.account.sums,
-        )  # fmt: skip
+    def end(self, stage: Stage, state: State) -> None:
+        """Book what a stage of a substep has changed."""
         if stage is Stage.RELAX and self._storing:
             self._book_overlap(state)
 
@@ -128,12 +113,12 @@ class StageAccounts:
         The kernel has booked their work as if they stayed as they are along that way.
         """
         position, bodies = state.table(Transform)["position"], state.bodies
-        way = position - self._before[0]
+        way = position - self._before
         if not way.any():
             return
         now = position.copy()
         stored = sum(force.potential_energy(state) for force in self._storing)
-        position[:] = self._before[0]
+        position[:] = self._before
         stored -= sum(force.potential_energy(state) for force in self._storing)
         position[:] = now
         weight = state.table(Mass)["mass"][:, None] * np.array((self._gravity.x, self._gravity.y))
@@ -188,8 +173,3 @@ def _pull_of_dampers(state: State) -> NDArray[np.float64]:
         np.add.at(pull[: 2 * n].reshape(n, 2), end, -sign * force)
         np.add.at(pull[2 * n :], end, -sign * (arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]))
     return pull
-
-
-def _booked_within(state: State) -> float:
-    """Return the work that kernels of contacts have booked."""
-    return float(state.account.sums[FRICTION, ENERGY] + state.account.sums[HAND, ENERGY])

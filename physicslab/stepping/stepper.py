@@ -49,18 +49,16 @@ class Stepper(Protocol):
         What it calls; compiled before it first advances, and not before.
     leaps : bool
         Whether several steps are one advance, made as a whole or not at all.
+    keeps_balance : bool
+        Whether it measures energy and momentum before its steps and after them.
     leaves_forces : bool
         Whether ``bodies.force`` holds the forces after a step.
-    contacts_take_the_rest : bool
-        Whether it books all work but that of resting contacts, which is then what is left of the change of
-        energy: where all forces are uniform its motion between contacts is exact, without an error that could
-        be mistaken for work.
     """
 
     name: ClassVar[str]
     title: ClassVar[str]
+    keeps_balance: ClassVar[bool]
     leaves_forces: ClassVar[bool]
-    contacts_take_the_rest: ClassVar[bool]
     reason: str
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...

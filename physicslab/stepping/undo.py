@@ -34,7 +34,8 @@ class Undoing:
         if state.in_step:
             raise RuntimeError("a system cannot step the world that is calling it")
         state.checkpoint.take(self._motion, state.counts)
-        state.checkpoint.account, state.checkpoint.time = state.account.keep(), state.time
+        state.account.begin_step()
+        state.checkpoint.time = state.time
         state.in_step, state.checkpoint.remainders = True, state.remainders
 
     def __exit__(
@@ -55,6 +56,6 @@ def go_back(state: State) -> None:
     state.checkpoint.restore(motion_of(state))
     state.force_evaluations, state.collisions, state.contacts.logged = state.checkpoint.counts
     state.remainders = state.checkpoint.remainders
-    state.account.bring_back(state.checkpoint.account)
+    state.account.go_back()
     state.contacts.clear()  # what a failed step left there may not be finite either
     wake_all(state)  # no contact supports any body now

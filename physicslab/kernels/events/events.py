@@ -3,7 +3,8 @@
 Between impacts every body moves under a constant acceleration. The next impact is that of the pair that meets
 first; at equal times, of the one whose last impact is longest ago, or of the first in order. Its impulse is
 that of all impacts here; afterwards only the pairs of its two bodies are predicted again. Impacts at one time
-are resolved one after the other until no pair approaches: a row of touching discs passes an impulse on.
+are resolved one after the other until no pair approaches: a row of touching discs passes an impulse on. Where
+two pairs with one body meet at one time the order would decide: the motion ends there for others to resolve.
 """
 
 import math
@@ -45,14 +46,14 @@ from physicslab.kernels.twins import endless
 
 __all__ = [
     "BALLISTIC", "CAME_TO_REST", "DEEP", "DONE", "FIXED", "IN_CONTACT", "KINEMATIC", "OVERLAP", "REST",
-    "TOO_MANY_IMPACTS", "WOKEN", "run_events",
+    "TOGETHER", "TOO_MANY_IMPACTS", "WOKEN", "run_events",
 ]  # fmt: skip
 
 FIXED, BALLISTIC, IN_CONTACT, KINEMATIC = 0, 1, 2, 3
 """Modes of a row: fixed; moving freely; resting on others (and not moved here); moving and not deflected."""
-DONE, CAME_TO_REST, WOKEN, OVERLAP, TOO_MANY_IMPACTS = 0, 1, 2, 3, 4
+DONE, CAME_TO_REST, WOKEN, OVERLAP, TOO_MANY_IMPACTS, TOGETHER = 0, 1, 2, 3, 4, 5
 """Why the motion ended: the time was over; a body came to rest; a resting one was hit; bodies overlap deeply;
-there were too many impacts within one step."""
+there were too many impacts within one step; a body meets two others at once."""
 REST = 1e-3
 """Share of a step: a bounce against a pressing force is rest if the force causes its speed in that time."""
 DEEP = 0.01
@@ -178,14 +179,9 @@ def _first_step(
     """Return the first of the ``left`` steps from ``step`` on in which a pair may meet, seen from ``now``."""
     steps = min(float(left), _AHEAD)
     time = now + time_apart(
-        flight.manifolds[p],
-        flight.paths,
-        flight.motion.angle,
-        flight.sizes,
-        flight.bounds.walls,
-        now,
+        flight.manifolds[p], flight.paths, flight.motion.angle, flight.sizes, flight.bounds.walls, now,
         rounding,
-    )
+    )  # fmt: skip
     return step + int(min(time / span, steps))
 
 
@@ -225,19 +221,29 @@ def _bounce(flight: Flight, p: int, log: Impacts, number: int, time: float, appr
         write_impact(log, number, pair, time, approach, struck, pose, before, after, masses, NEWTON, True)
 
 
+@inlined
+def _meets_two(flight: Flight, p: int, within: float) -> bool:
+    """Whether a body of pair p that moves freely meets another one at the same time."""
+    mode, due, mine = flight.mode, flight.due, flight.manifolds[p]
+    for k in range(flight.pairs):
+        if k == p or not due[k, 0] - due[p, 0] <= within:
+            continue
+        a, b = flight.manifolds[k].a, flight.manifolds[k].b
+        for i in (mine.a, mine.b):
+            if mode[i] == BALLISTIC and i in (a, b) and mode[a + b - i] != IN_CONTACT:
+                return True
+    return False
+
+
 @fused
 def _meet(
-    flight: Flight,
-    p: int,
-    materials: Materials,
-    log: Impacts,
-    number: int,
-    start: float,
-    now: float,
-    low: float,
-    dt: float,
-) -> tuple[int, int]:
-    """Resolve a meeting; return why the motion ends, DONE if it goes on, and how many impacts it was."""
+    flight: Flight, p: int, materials: Materials, log: Impacts, number: int, start: float, now: float,
+    low: float, dt: float, ordered: bool,
+) -> tuple[int, int]:  # fmt: skip
+    """Resolve a meeting; return why the motion ends, DONE if it goes on, and how many impacts it was.
+
+    Unless impacts are ``ordered``, one that is at the same time as another of the same body is left.
+    """
     manifold, one, two = flight.manifolds[p], flight.points[2 * p], flight.points[2 * p + 1]
     paths, mode, due, angle, angular = (
         flight.paths, flight.mode, flight.due, flight.motion.angle, flight.motion.angular,
@@ -252,9 +258,10 @@ def _meet(
     approach = -(ux * nx + uy * ny)
     was_resting = mode[a] == IN_CONTACT or mode[b] == IN_CONTACT
     why = _outcome(manifold, mode, approach, wx * nx + wy * ny, REST * dt)
-    if was_resting:
+    together = why == DONE and not ordered and _meets_two(flight, p, _SAME_TIME * dt)
+    if was_resting or together:
         manifold.count = 0
-        return why, 0
+        return (TOGETHER if together else why), 0
     if mode[a] != FIXED:
         advance_to(paths, a, angle, angular, now, low, flight.account)
     if mode[b] != FIXED:
@@ -299,9 +306,12 @@ def run_events(
     due: Vectors, impact_position: Vectors, motion: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, bounds: BoundsTuple,
     account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int, dt: float,
-    urgent: int,
+    urgent: int, ordered: bool,
 ) -> tuple[int, float, int, int, int]:  # fmt: skip
     """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one rests or is woken.
+
+    So does one that meets two others at once, unless impacts are ``ordered``: then it meets one after the
+    other.
 
     ``paths`` (rows, 13) holds the remainders of places and velocities, which are carried on, the
     accelerations [m/s^2] in columns 8 and 9 and in column 12 the mass [kg] of what gravity pulls, ``mode``
@@ -348,7 +358,9 @@ def run_events(
                 why = TOO_MANY_IMPACTS
                 break
             first, second = manifolds[p].a, manifolds[p].b
-            why, new = _meet(flight, p, mixed, log, logged + impacts, start + made * span, now, low, dt)
+            why, new = _meet(
+                flight, p, mixed, log, logged + impacts, start + made * span, now, low, dt, ordered
+            )
             impacts += new
         _end_all(flight, now, low)
         if why != DONE:

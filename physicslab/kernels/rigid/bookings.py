@@ -2,7 +2,7 @@
 
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
-from physicslab.kernels.rigid.equations import UNKNOWN, Equations
+from physicslab.kernels.rigid.equations import STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     CONTACTS,
     DRIVEN,
@@ -11,6 +11,7 @@ from physicslab.kernels.rigid.features import (
     NY,
     ONE,
     RUBBING,
+    STATUS,
     TA,
     VT,
     Scene,
@@ -39,7 +40,7 @@ def book_contacts(
         along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
         nx, ny = measures[i, NX], measures[i, NY]
         fx, fy = along * nx - across * ny, along * ny + across * nx
-        rubbed += across * measures[i, VT]
+        rubbed += across * measures[i, VT] if points[i, STATUS] != STICKS else 0.0
         for side in range(2):
             body = points[i, ONE + side]
             sign = 1.0 if side == 1 else -1.0

@@ -16,6 +16,7 @@ import math
 from physicslab.kernels import fused, inlined
 from physicslab.kernels.rigid.equations import (
     CAUSED,
+    CHANGE,
     FREE,
     OPEN,
     RIGHT,
@@ -29,7 +30,10 @@ from physicslab.kernels.rigid.equations import (
 from physicslab.kernels.rigid.features import GIVEN, MU, STATUS
 from physicslab.kernels.rigid.lemke import find_by_pivots
 
-__all__ = ["FITTING", "NOT_FOUND", "SETTLED", "solve_complementarity", "solve_equations"]
+__all__ = [
+    "FITTING", "NOT_FOUND", "REFINEMENTS", "SETTLED", "begin_equations", "refine", "solve_complementarity",
+    "solve_equations",
+]  # fmt: skip
 
 _ROUNDING = 1e-4
 """Share of the motion of points that slide in any case, whose rounding is in all that they touch."""
@@ -39,6 +43,8 @@ _DAMPED = 1e-13
 """Share of the diagonal that is added to a matrix that may be singular; refinement removes its effect."""
 NOT_FOUND, FITTING, SETTLED = 0, 1, 2
 """Whether forces were found."""
+_OF_SUMS = 4e-16
+"""Share of the sum of magnitudes by which a sum may be rounded."""
 _FEW_CHANGES = 4
 """Number of changes that are tried before the pivots where they are good enough."""
 _SLACKS = (1e-10, 1e-12, 1e-8, 1e-9, 1e-7)
@@ -48,7 +54,13 @@ _AT_REST = 1e-7
 _INSIDE = 1e-6
 """Share of a friction cone within which pivots leave the force on its edge: they are found with raised
 sides."""
-_REFINEMENTS = 40
+_STALLED = 1e-11
+"""Share of the free rates that equations of forces may leave where M M^T serves."""
+_DEPENDENT = 1e-13
+"""Share of the longest row of M below which what is left of another one is rounding."""
+_CONTRADICTS = 1e-6
+"""Share of the right sides up to which dependent equations agree."""
+REFINEMENTS = 40
 """Largest number of refinements of a solution."""
 
 
@@ -114,56 +126,165 @@ def _substitute(equations: Equations, n: int) -> None:
             vectors[RIGHT, i] -= factor[k, i] * vectors[RIGHT, k]
         vectors[RIGHT, i] /= factor[i, i]
     for j in range(n):
-        vectors[CAUSED, j] = 0.0
+        vectors[CHANGE, j] = 0.0
         for k in range(n):
-            vectors[CAUSED, j] += equations.matrix[k, j] * vectors[RIGHT, k]
+            vectors[CHANGE, j] += equations.matrix[k, j] * vectors[RIGHT, k]
     for j in range(n):
-        vectors[RIGHT, j] = vectors[CAUSED, j]
+        vectors[RIGHT, j] = vectors[CHANGE, j]
+
+
+@inlined
+def _factorise_orthogonally(equations: Equations, n: int) -> int:
+    """Write the triangle and the reflections of M^T = Q R P into the tableau; return the rank of M.
+
+    M itself loses half as many digits as M M^T: what is light between heavy bodies costs more than there are.
+    Row i of the tableau has row P_i of R^T, then the direction of reflection i; behind them are 2 / v^2 and
+    the diagonal of R.
+    """
+    factor, order, first = equations.tableau, equations.order, 0.0
+    for i in range(n):
+        order[0, i] = i
+        for k in range(n):
+            factor[i, k] = equations.matrix[i, k]
+    for k in range(n):
+        longest, square = k, -1.0
+        for i in range(k, n):
+            norm = 0.0
+            for j in range(k, n):
+                norm += factor[i, j] * factor[i, j]
+            if norm > square:
+                longest, square = i, norm
+        first = math.sqrt(square) if k == 0 else first
+        if math.sqrt(square) <= _DEPENDENT * first:
+            return k
+        order[0, k], order[0, longest] = order[0, longest], order[0, k]
+        for j in range(n):
+            factor[k, j], factor[longest, j] = factor[longest, j], factor[k, j]
+        diagonal = -math.copysign(math.sqrt(square), factor[k, k])
+        factor[k, k] -= diagonal
+        factor[k, n] = -1.0 / (diagonal * factor[k, k])
+        factor[k, n + 1] = diagonal
+        for i in range(k + 1, n):
+            share = 0.0
+            for j in range(k, n):
+                share += factor[k, j] * factor[i, j]
+            share *= factor[k, n]
+            for j in range(k, n):
+                factor[i, j] -= share * factor[k, j]
+    return n
+
+
+@inlined
+def _substitute_orthogonally(equations: Equations, n: int, rank: int) -> bool:
+    """Replace the right side r by the shortest x with M x = r; return whether there is any."""
+    factor, order, vectors, largest = equations.tableau, equations.order, equations.vectors, 0.0
+    for i in range(n):
+        largest = max(largest, abs(vectors[RIGHT, i]))
+    for i in range(n):
+        left = vectors[RIGHT, order[0, i]]
+        for k in range(min(i, rank)):
+            left -= factor[i, k] * vectors[CHANGE, k]
+        if i >= rank and abs(left) > _CONTRADICTS * largest:
+            return False
+        vectors[CHANGE, i] = left / factor[i, n + 1] if i < rank else 0.0
+    for k in range(rank - 1, -1, -1):
+        share = 0.0
+        for j in range(k, n):
+            share += factor[k, j] * vectors[CHANGE, j]
+        share *= factor[k, n]
+        for j in range(k, n):
+            vectors[CHANGE, j] -= share * factor[k, j]
+    for i in range(n):
+        vectors[RIGHT, i] = vectors[CHANGE, i]
+    return True
+
+
+@inlined
+def begin_equations(equations: Equations, count: int, friction: float) -> int:
+    """Factorise the equations of the points that are not open, of forces 0; return how many there are.
+
+    Points that slide have ``friction`` (0 or 1) times their friction.
+    """
+    for i in range(2 * count):
+        equations.vectors[UNKNOWN, i] = 0.0
+    n = _take_equations(equations, count, friction)
+    _factorise(equations, n)
+    return n
+
+
+@inlined
+def refine(
+    equations: Equations, count: int, n: int, friction: float, caused: int, largest: float, previous: float,
+    rank: int,
+) -> tuple[float, int]:  # fmt: skip
+    """Change the forces so that what they cause, row ``caused`` of the vectors, vanishes.
+
+    Returns the largest of it, or -1 where it is rounding of ``largest``, or not half of the ``previous`` one:
+    then forces stay. The change is of the form M^T u, so that forces are of least norm where the equations
+    are singular. ``rank`` is 0 while M M^T serves; where that does not suffice M takes over, and its rank is
+    returned.
+    """
+    vectors, order, a, residual = equations.vectors, equations.order, equations.a, 0.0
+    for k in range(n):
+        row = order[1, k]
+        vectors[RIGHT, k] = -vectors[caused, row] / math.sqrt(a[row, row])
+        residual = max(residual, abs(vectors[caused, row]))
+    if residual <= 2e-16 * largest or not residual < math.inf:
+        return -1.0, rank
+    if residual >= 0.5 * previous:
+        if rank > 0 or friction == 0.0 or residual <= _STALLED * largest:
+            return -1.0, rank
+        rank = _factorise_orthogonally(equations, n)
+    if rank == 0:
+        _substitute(equations, n)
+    elif not _substitute_orthogonally(equations, n, rank):
+        return -1.0, rank
+    for i in range(2 * count):
+        vectors[CHANGE, i] = 0.0
+    for k in range(n):
+        row = order[1, k]
+        change, status = vectors[RIGHT, k] / math.sqrt(a[row, row]), equations.points[row // 2, STATUS]
+        vectors[CHANGE, row] += change
+        if row % 2 == 0 and status != STICKS:
+            edge = friction * edge_of(status, equations.measures[row // 2, MU])
+            vectors[CHANGE, row + 1] += edge * change
+    for i in range(2 * count):
+        vectors[UNKNOWN, i] += vectors[CHANGE, i]
+    return residual, rank
 
 
 @inlined
 def solve_equations(equations: Equations, count: int, friction: float) -> None:
     """Solve w = 0 for the points that are not open, along the tangent for those that stick.
 
-    Those that slide have ``friction`` (0 or 1) times their friction. Where the equations are singular the
-    solution is that of least norm: it is of the form M^T u, and refined until rounding is left.
+    Those that slide have ``friction`` (0 or 1) times their friction.
     """
-    vectors, order, a = equations.vectors, equations.order, equations.a
-    largest, previous = 0.0, math.inf
+    vectors, largest, residual, rank = equations.vectors, 0.0, math.inf, 0
     for i in range(2 * count):
-        vectors[UNKNOWN, i] = 0.0
         largest = max(largest, abs(vectors[FREE, i]))
-    n = _take_equations(equations, count, friction)
-    _factorise(equations, n)
-    for _ in range(_REFINEMENTS):
-        residual = 0.0
+    n = begin_equations(equations, count, friction)
+    for _ in range(REFINEMENTS):
         for k in range(n):
-            row = order[1, k]
+            row = equations.order[1, k]
             w = vectors[FREE, row]
             for j in range(2 * count):
-                w += a[row, j] * vectors[UNKNOWN, j]
-            vectors[RIGHT, k] = -w / math.sqrt(a[row, row])
-            residual = max(residual, abs(w))
-        if residual <= 2e-16 * largest or residual >= 0.5 * previous:
+                w += equations.a[row, j] * vectors[UNKNOWN, j]
+            vectors[CAUSED, row] = w
+        residual, rank = refine(equations, count, n, friction, CAUSED, largest, residual, rank)
+        if residual < 0.0:
             break
-        previous = residual
-        _substitute(equations, n)
-        for k in range(n):
-            row = order[1, k]
-            change, status = vectors[RIGHT, k] / math.sqrt(a[row, row]), equations.points[row // 2, STATUS]
-            vectors[UNKNOWN, row] += change
-            if row % 2 == 0 and status != STICKS:
-                edge = friction * edge_of(status, equations.measures[row // 2, MU])
-                vectors[UNKNOWN, row + 1] += edge * change
 
 
 @inlined
 def _find_caused(equations: Equations, count: int) -> None:
+    """Find what the unknowns cause, and in the row CHANGE how much of that may be rounding."""
     for i in range(2 * count):
-        caused = equations.vectors[FREE, i]
+        caused, parts = equations.vectors[FREE, i], abs(equations.vectors[FREE, i])
         for j in range(2 * count):
-            caused += equations.a[i, j] * equations.vectors[UNKNOWN, j]
-        equations.vectors[CAUSED, i] = caused
+            part = equations.a[i, j] * equations.vectors[UNKNOWN, j]
+            caused += part
+            parts += abs(part)
+        equations.vectors[CAUSED, i], equations.vectors[CHANGE, i] = caused, _OF_SUMS * parts
 
 
 @inlined
@@ -189,7 +310,7 @@ def _change_most_violated(equations: Equations, count: int, w_scale: float, z_sc
         pressed, rubbed = vectors[UNKNOWN, 2 * i] / z_scale, vectors[UNKNOWN, 2 * i + 1] / z_scale
         opening, along = vectors[CAUSED, 2 * i] / w_scale, vectors[CAUSED, 2 * i + 1] / w_scale
         if status == OPEN:
-            if -opening > amount:
+            if -opening - vectors[CHANGE, 2 * i] / w_scale > amount:
                 worst, change, amount = i, _closed_status(equations, i, opening, along), -opening
         elif -pressed > amount:
             worst, change, amount = i, OPEN, -pressed
@@ -200,7 +321,7 @@ def _change_most_violated(equations: Equations, count: int, w_scale: float, z_sc
                     change = SLIDES_ON if rubbed < 0.0 else SLIDES_BACK
             else:  # friction must not drive the sliding
                 driven = -along if status == SLIDES_ON else along
-                if driven > amount:
+                if driven - vectors[CHANGE, 2 * i + 1] / w_scale > amount:
                     worst, change, amount = i, STICKS, driven
     if worst >= 0:
         equations.points[worst, STATUS] = change
@@ -281,6 +402,11 @@ def solve_complementarity(equations: Equations, count: int, scale: float, exactl
         return SETTLED
     if _settle_by_changes(equations, count, 4 + 2 * count if exactly else _FEW_CHANGES, w_scale, z_scale):
         return SETTLED
+    if exactly:  # what holds each other may rest where each of them alone would slide
+        for i in range(count):
+            points[i, STATUS] = points[i, GIVEN]
+        if _settle_by_changes(equations, count, 2 + count, w_scale, z_scale):
+            return SETTLED
     # Of what the pivots leave open or sliding, some may rest with the others: forces are of least norm then.
     for attempt in range(len(_SLACKS)):
         if not find_by_pivots(equations, count, _SLACKS[attempt]):

@@ -1,10 +1,17 @@
 """The equations of bodies that touch: how contact forces act on what the points measure."""
 
+import math
+
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
-from physicslab.kernels.rigid.complementarity import solve_equations
-from physicslab.kernels.rigid.equations import FREE, UNKNOWN, Equations
+from physicslab.kernels.rigid.complementarity import (
+    REFINEMENTS,
+    begin_equations,
+    refine,
+    solve_equations,
+)
+from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     BIAS_N,
     BIAS_T,
@@ -15,6 +22,7 @@ from physicslab.kernels.rigid.features import (
     NY,
     ONE,
     OTHER,
+    REACH,
     TA,
     TB,
     VN,
@@ -24,8 +32,8 @@ from physicslab.kernels.rigid.features import (
 )
 
 __all__ = [
-    "apply", "assemble", "constrained_acceleration", "find_free_rates", "measure_all", "project",
-    "rates_without_forces",
+    "apply", "assemble", "constrained_acceleration", "find_free_rates", "find_loads", "measure_all",
+    "project", "rates_without_forces",
 ]  # fmt: skip
 
 
@@ -85,11 +93,14 @@ def assemble(scene: Scene, equations: Equations, count: int) -> None:
 
 
 @inlined
-def apply(scene: Scene, equations: Equations, count: int, target: Numbers) -> None:
-    """Add to velocities what the impulses found cause, or to accelerations what forces do."""
+def apply(scene: Scene, equations: Equations, count: int, target: Numbers, which: int = UNKNOWN) -> None:
+    """Add to velocities what the impulses found cause, or to accelerations what forces do.
+
+    ``which`` is their row of the vectors.
+    """
     rows, measures, points = scene.rows, equations.measures, equations.points
     for i in range(count):
-        along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
+        along, across = equations.vectors[which, 2 * i], equations.vectors[which, 2 * i + 1]
         nx, ny = measures[i, NX], measures[i, NY]
         fx, fy = along * nx - across * ny, along * ny + across * nx
         for side in range(2):
@@ -99,6 +110,20 @@ def apply(scene: Scene, equations: Equations, count: int, target: Numbers) -> No
             target[2 * body] += sign * scene.inverse_mass[2 * body] * fx
             target[2 * body + 1] += sign * scene.inverse_mass[2 * body + 1] * fy
             target[2 * rows + body] += sign * scene.inverse_mass[2 * rows + body] * turn
+
+
+@inlined
+def find_loads(scene: Scene, equations: Equations, count: int, loads: Numbers) -> None:
+    """Add by how much the forces found would accelerate what they press, if each of them acted alone."""
+    for i in range(count):
+        along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
+        force = math.sqrt(along * along + across * across)
+        for side in range(2):
+            body = equations.points[i, ONE + side]
+            turning, reach = 2 * scene.rows + body, scene.outlines[body, REACH]
+            loads[2 * body] += scene.inverse_mass[2 * body] * force
+            loads[2 * body + 1] += scene.inverse_mass[2 * body + 1] * force
+            loads[turning] += scene.inverse_mass[turning] * force * reach
 
 
 @inlined
@@ -132,14 +157,23 @@ def constrained_acceleration(
     """Compute v' of a state in which each point goes on with what it does, and the forces of the points.
 
     Behind the clock, ``acceleration`` takes what causes give in a second.
+
+    What is light between heavy bodies is accelerated by the difference of large forces. So these are refined
+    by what the accelerations still leave of the laws, and their changes are added to the accelerations.
     """
     accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
     if count > 0:
         measure_all(scene, equations, count, q, v)
         assemble(scene, equations, count)
-        find_free_rates(scene, equations, count, acceleration)
-        solve_equations(equations, count, 1.0)
-        apply(scene, equations, count, acceleration)
+        n, largest, residual, rank = begin_equations(equations, count, 1.0), 0.0, math.inf, 0
+        for _ in range(REFINEMENTS):
+            find_free_rates(scene, equations, count, acceleration)
+            for i in range(2 * count if residual == math.inf else 0):
+                largest = max(largest, abs(equations.vectors[FREE, i]))
+            residual, rank = refine(equations, count, n, 1.0, FREE, largest, residual, rank)
+            if residual < 0.0:
+                break
+            apply(scene, equations, count, acceleration, CHANGE)
         book_contacts(scene, equations, count, q, v, acceleration)
 
 

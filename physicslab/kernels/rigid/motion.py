@@ -14,8 +14,9 @@ from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.blows import approaches, resolve_blows
-from physicslab.kernels.rigid.bookings import book_speeds
-from physicslab.kernels.rigid.constraints import measure_all, project
+from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
+from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED
+from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
 from physicslab.kernels.rigid.equations import (
     OPEN,
     SLIDES_BACK,
@@ -50,7 +51,15 @@ from physicslab.kernels.rigid.pieces import (
     make_stages,
     named_stages,
 )
-from physicslab.kernels.rigid.touching import SLOW, find_touching, hold_closed, rest_limits
+from physicslab.kernels.rigid.touching import (
+    SLOW,
+    find_touching,
+    hold_closed,
+    hold_evenly,
+    keep_pressing,
+    rest_limits,
+    take_closed,
+)
 
 __all__ = [
     "DONE",
@@ -68,6 +77,8 @@ DONE, NO_FORCES, UNRESOLVED, TOO_MANY = 0, 1, 2, 3
 points touch than there is room for."""
 _SAME_MOMENT = 1e-9
 """Share of its load within which a point that sticks reaches the limit of friction with another one."""
+_BALANCED, _FITTED = 1e-11, 1e-8
+"""Share of the loads of a body that forces which hold it may leave: of equations, and of pivots."""
 _SHORTENINGS = 60
 """How often a piece is shortened for its error."""
 _SHORTEST = 1e-9
@@ -109,18 +120,34 @@ def _note_changes(
 
 
 @inlined
-def _at_rest(scene: Scene, acceleration: Numbers, v: Numbers, rest: float, least: float) -> bool:
-    """Whether nothing moves, and nothing accelerates."""
-    still = True
+def _is_slow(scene: Scene, v: Numbers, rest: float) -> bool:
+    """Whether nothing moves."""
+    slow = True
     for i in range(3 * scene.rows):
-        free, way = scene.inverse_mass[i] > 0.0, 1.0
-        if i >= 2 * scene.rows:  # what turns is measured by how its outline moves
-            way = scene.outlines[i - 2 * scene.rows, REACH]
-        if way * abs(v[i]) > (SLOW * rest if free else 0.0) or (
-            free and way * abs(acceleration[i]) > 10.0 * least
-        ):
-            still = False
-    return still
+        way = scene.outlines[i - 2 * scene.rows, REACH] if i >= 2 * scene.rows else 1.0
+        slow = slow and way * abs(v[i]) <= (SLOW * rest if scene.inverse_mass[i] > 0.0 else 0.0)
+    return slow
+
+
+@inlined
+def _is_balanced(
+    scene: Scene, equations: Equations, closed: int, share: float, acceleration: Numbers, least: float,
+    loads: Numbers,
+) -> bool:  # fmt: skip
+    """Whether the forces found leave no acceleration, but for a ``share`` of what each alone would cause.
+
+    Forces that cancel leave their rounding, which is much for what is light between heavy bodies. ``loads``
+    is room.
+    """
+    for i in range(3 * scene.rows):
+        loads[i] = abs(acceleration[i])
+    find_loads(scene, equations, closed, loads)
+    apply(scene, equations, closed, acceleration)
+    for i in range(3 * scene.rows):
+        way = scene.outlines[i - 2 * scene.rows, REACH] if i >= 2 * scene.rows else 1.0
+        if scene.inverse_mass[i] > 0.0 and way * abs(acceleration[i]) > 10.0 * least + share * way * loads[i]:
+            return False
+    return True
 
 
 @kernel
@@ -247,15 +274,26 @@ def begin_motion(
     of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
     accelerate(q, v, at.acceleration, of.inverse_mass, of.damping, of.calls)
     rest, least = rest_limits(of, at.acceleration, v)
-    closed, solved = hold_closed(of, points, count, changed, q, v, at.acceleration, rest, least)
-    if not solved:
-        return NO_FORCES, 0, rest, False
-    if closed > 0:
-        project(of, points, closed, q, v)
-    begin_piece(of, points, closed, q, v, at)
-    still = steady and _at_rest(of, at.acceleration, v, rest, least)
-    if still:
+    count = take_closed(of, points, count, changed, q, v, rest)
+    slow, held = steady and _is_slow(of, v, rest), False
+    if slow:
+        found = hold_evenly(of, points, count, changed, at.acceleration, rest, least, at.v, at.q)
+        share = _BALANCED if found == SETTLED else _FITTED
+        held = found != NOT_FOUND and _is_balanced(of, points, count, share, at.acceleration, least, at.q)
+    if not held:
+        count, solved = hold_closed(of, points, count, changed, q, v, at.acceleration, rest, least)
+        if not solved:
+            return NO_FORCES, 0, rest, False
+        # What is light on top of what is heavy is held to more digits by its own mass.
+        held = slow and _is_balanced(of, points, count, _BALANCED, at.acceleration, least, at.q)
+    closed = keep_pressing(points, count, least)
+    if held:
         book_speeds(of, q, v, -1.0)
         for i in range(3 * of.rows):
             v[i] = 0.0
-    return DONE, closed, rest, still
+        book_contacts(of, points, closed, q, v, at.acceleration)
+        return DONE, closed, rest, True
+    if closed > 0:
+        project(of, points, closed, q, v)
+    begin_piece(of, points, closed, q, v, at)
+    return DONE, closed, rest, False

@@ -39,9 +39,12 @@ __all__ = [
     "find_open",
     "find_touching",
     "hold_closed",
+    "hold_evenly",
+    "keep_pressing",
     "length_of",
     "moved_closer",
     "rest_limits",
+    "take_closed",
 ]
 
 _TOUCH = 1e-10
@@ -227,11 +230,10 @@ def _stop_across(scene: Scene, equations: Equations, count: int, q: Numbers, v: 
 
 
 @fused
-def hold_closed(
-    scene: Scene, equations: Equations, count: int, changed: Points,
-    q: Numbers, v: Numbers, acceleration: Numbers, rest: float, least: float,
-) -> tuple[int, bool]:  # fmt: skip
-    """Keep the points that stay closed and find what they do; return how many, and whether all laws are kept.
+def take_closed(
+    scene: Scene, equations: Equations, count: int, changed: Points, q: Numbers, v: Numbers, rest: float
+) -> int:
+    """Keep the points that do not part; return how many.
 
     ``changed`` has the points that ended the piece before and what they do from now on, where the laws alone
     would leave that to rounding.
@@ -241,7 +243,31 @@ def hold_closed(
     for i in range(count):
         if equations.measures[i, VN] <= rest and _changed_status(equations, i, changed) != OPEN:
             n = _keep(equations, i, n)
-    count, n, solved = n, 0, True
+    return n
+
+
+@inlined
+def _note_given(equations: Equations, count: int, changed: Points, rest: float) -> None:
+    """Note what points may do by how they move: those of ``changed`` go on with what they began."""
+    for i in range(count):
+        sliding, given = equations.measures[i, VT], STICKS
+        changed_to = _changed_status(equations, i, changed)
+        if equations.measures[i, MU] == 0.0 or sliding > SLOW * rest:
+            given = SLIDES_ON
+        elif sliding < -SLOW * rest:
+            given = SLIDES_BACK
+        elif changed_to > STICKS:
+            given = changed_to
+        equations.points[i, GIVEN] = given
+
+
+@inlined
+def hold_closed(
+    scene: Scene, equations: Equations, count: int, changed: Points,
+    q: Numbers, v: Numbers, acceleration: Numbers, rest: float, least: float,
+) -> tuple[int, bool]:  # fmt: skip
+    """Find what ``count`` points do, and with what forces; return how many they are, and if laws are kept."""
+    n, solved = 0, True
     for attempt in range(2):
         if count == 0:
             return 0, True
@@ -254,16 +280,7 @@ def hold_closed(
             _stop_across(scene, equations, count, q, v)
         accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
         find_free_rates(scene, equations, count, acceleration)
-        for i in range(count):
-            sliding, given = equations.measures[i, VT], STICKS
-            changed_to = _changed_status(equations, i, changed)
-            if equations.measures[i, MU] == 0.0 or sliding > SLOW * rest:
-                given = SLIDES_ON
-            elif sliding < -SLOW * rest:
-                given = SLIDES_BACK
-            elif changed_to > STICKS:
-                given = changed_to
-            equations.points[i, GIVEN] = given
+        _note_given(equations, count, changed, rest)
         solved = solve_complementarity(equations, count, least, True) == SETTLED
         if not leaves:
             break
@@ -272,8 +289,47 @@ def hold_closed(
             if not (solved and opens):
                 n = _keep(equations, i, n)
         count, n = n, 0
+    return count, solved
+
+
+@inlined
+def hold_evenly(
+    scene: Scene, equations: Equations, count: int, changed: Points, acceleration: Numbers, rest: float,
+    least: float, inverse_mass: Numbers, pulled: Numbers,
+) -> int:  # fmt: skip
+    """Find the forces that would hold ``count`` points of equal bodies that are pulled as these are.
+
+    What holds bodies at rest depends on what pulls at them and not on their masses. So all are given the
+    largest mass there is, and what is light between heavy bodies costs no digits. ``inverse_mass`` and
+    ``pulled`` are room.
+    """
+    lightest = math.inf
+    for row in range(scene.rows):
+        if scene.inverse_mass[2 * row] > 0.0:
+            lightest = min(lightest, scene.inverse_mass[2 * row])
+    for i in range(3 * scene.rows):
+        own = scene.inverse_mass[i if i < 2 * scene.rows else 2 * (i - 2 * scene.rows)]
+        share = lightest / own if own > 0.0 else 1.0
+        inverse_mass[i], pulled[i] = share * scene.inverse_mass[i], share * acceleration[i]
+    even = Scene(
+        scene.rows, inverse_mass, scene.damping, scene.calls, scene.outlines, scene.walls, scene.pairs,
+        scene.coefficients, scene.accounts,
+    )  # fmt: skip
+    _note_given(equations, count, changed, rest)
+    assemble(even, equations, count)
+    find_free_rates(even, equations, count, pulled)
+    found: int = solve_complementarity(equations, count, least, True)
+    return found
+
+
+@inlined
+def keep_pressing(equations: Equations, count: int, least: float) -> int:
+    """Keep the points that press, with their forces; return how many."""
+    n, forces = 0, equations.vectors
     for i in range(count):
-        pressing = equations.vectors[UNKNOWN, 2 * i] * equations.a[2 * i, 2 * i]
+        pressing = forces[UNKNOWN, 2 * i] * equations.a[2 * i, 2 * i]
         if equations.points[i, STATUS] != OPEN and pressing > least:
+            forces[UNKNOWN, 2 * n] = forces[UNKNOWN, 2 * i]
+            forces[UNKNOWN, 2 * n + 1] = forces[UNKNOWN, 2 * i + 1]
             n = _keep(equations, i, n)
-    return n, solved
+    return n

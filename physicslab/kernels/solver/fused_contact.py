@@ -1,6 +1,7 @@
 """Whole steps of a world whose bodies touch, in one compiled loop: the stages of leapfrog, in their order."""
 
 from physicslab.kernels import Flags, Rows, Vectors, inlined, kernel
+from physicslab.kernels.accounts import BALANCE, BEFORE, ENERGY, PX, PY, SPIN
 from physicslab.kernels.arguments import (
     Acting,
     ActingTuple,
@@ -28,7 +29,7 @@ from physicslab.kernels.arguments import (
     named_near,
 )
 from physicslab.kernels.broad.fat_boxes import still_holds
-from physicslab.kernels.energy import moments_of_mass
+from physicslab.kernels.energy import moments_of_mass, motion_totals
 from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick
 from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
@@ -67,6 +68,32 @@ def _keep(motion: Motion, kept: Motion) -> None:
         kept.angle[i] = motion.angle[i]
         kept.linear[i, 0], kept.linear[i, 1] = motion.linear[i, 0], motion.linear[i, 1]
         kept.angular[i] = motion.angular[i]
+
+
+@inlined
+def _keep_book(account: Vectors) -> None:
+    """Copy the accounts, to return to where a step fails."""
+    for row in range(BEFORE):
+        for column in range(4):
+            account[BEFORE + row, column] = account[row, column]
+
+
+@inlined
+def _balance(account: Vectors, motion: Motion, gravity: Gravity, cause: int) -> None:
+    """Measure energy and momentum, and book what they have changed by to a cause, unless that is negative."""
+    translation, rotation, px, py, spin, mx, my = motion_totals(
+        motion.position, motion.linear, motion.angular, gravity.mass, gravity.inertia, gravity.inverse_mass,
+        gravity.inverse_inertia,
+    )  # fmt: skip
+    energy = translation + rotation
+    energy += -(gravity.gx * mx + gravity.gy * my)
+    if cause >= 0:
+        account[cause, ENERGY] += energy - account[BALANCE, ENERGY]
+        account[cause, PX] += px - account[BALANCE, PX]
+        account[cause, PY] += py - account[BALANCE, PY]
+        account[cause, SPIN] += spin - account[BALANCE, SPIN]
+    account[BALANCE, ENERGY], account[BALANCE, PX] = energy, px
+    account[BALANCE, PY], account[BALANCE, SPIN] = py, spin
 
 
 @inlined
@@ -124,7 +151,7 @@ def _made_wide(
 
 @inlined
 def _advance(
-    steps: int, substep: int, stage: int, plan: Plan,
+    steps: int, substep: int, stage: int, plan: Plan, cause: int,
     motion: Motion, kept: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sub_integrated: Flags,
     acting: Acting, gravity: Gravity, sleepers: Sleepers, damping: tuple[float, float], fat: Vectors,
     bounds: Bounds, near: Near, opened: Rows, softness: Softness, impulse_dt: float, impacts: Impacts,
@@ -142,6 +169,8 @@ def _advance(
                 now = ticks() if cost[STEPS] % _TIMED == 0 else -1
                 cost[STEPS] += 1
                 _keep(motion, kept)
+                if cause < 0 or done > 0:  # else it was kept before what was changed between steps was booked
+                    _keep_book(near.account)
                 now = charge(cost, ACCELERATE, now)
             drift(position, angle, linear, angular, sub_integrated, 0.5 * h)
             now = _pull(acting, gravity, cost, charge(cost, INTEGRATE, now))
@@ -223,7 +252,7 @@ def _advance(
 
 @kernel
 def advance(
-    steps: int, substep: int, stage: int, plan: PlanTuple,
+    steps: int, substep: int, stage: int, plan: PlanTuple, cause: int,
     motion: MotionTuple, kept: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, sub_integrated: Flags, acting: ActingTuple, gravity: GravityTuple,
     sleepers: SleepersTuple, damping: tuple[float, float], fat: Vectors, bounds: BoundsTuple,
@@ -233,14 +262,20 @@ def advance(
 
     The stages are those of :data:`physicslab.integrators.leapfrog.LEAPFROG`, and each does what the systems
     do there. ``kept`` has the state now, and receives that in which the last step began. ``impacts`` is the
-    log, and ``cost`` (COSTS,) gets ticks added for each system, and the number of steps.
+    log, and ``cost`` (COSTS,) gets ticks added for each system, and the number of steps. What was changed
+    since the last step is booked to a ``cause``, unless that is negative.
 
     Returns why it ended, how many steps are done, the substep that it was in, the impacts in the steps that
     are done and all impacts, and the time [s] over which the points' impulses act.
     """
-    return _advance(
-        steps, substep, stage, Plan(*plan), Motion(*motion), Motion(*kept),
+    of, moved, masses = named_near(near), Motion(*motion), Gravity(*gravity)
+    if cause >= 0:
+        _balance(of.account, moved, masses, cause)
+    ended = _advance(
+        steps, substep, stage, Plan(*plan), cause, moved, Motion(*kept),
         Sizes(*sizes), Materials(*materials), Inverse(*inverse), sub_integrated,
-        Acting(*acting), Gravity(*gravity), Sleepers(*sleepers), damping, fat,
-        Bounds(*bounds), named_near(near), opened, Softness(*softness), impulse_dt, impacts, cost,
+        Acting(*acting), masses, Sleepers(*sleepers), damping, fat,
+        Bounds(*bounds), of, opened, Softness(*softness), impulse_dt, impacts, cost,
     )  # fmt: skip
+    _balance(of.account, moved, masses, -1)
+    return ended

@@ -8,7 +8,7 @@ over all points is the change of the kinetic energy, exactly.
 from typing import NamedTuple
 
 from physicslab.kernels import Vectors, always_inlined, inlined
-from physicslab.kernels.accounts import ENERGY, FRICTION, HAND, PX, PY, SPIN
+from physicslab.kernels.accounts import ENERGY, FRICTION, HAND, IMPACTS, PX, PY, SPIN
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.solver.blow import Blow
 from physicslab.kernels.solver.impact_pose import Meeting
@@ -20,6 +20,7 @@ __all__ = [
     "Speeds",
     "Struck",
     "book_impact",
+    "book_outside",
     "in_order",
     "shares_of",
     "write_impact",
@@ -111,9 +112,9 @@ def book_impact(
 ) -> None:
     """Add the work of the impulses of an impact to the accounts, and the momentum that comes from outside.
 
-    That of normal impulses goes to the cause ``row``, IMPACTS as a rule. A body without an inverse mass is
-    outside: fixed, or moved by a hand or of itself. What moves so works as well, by the impulse times its
-    velocity.
+    All of it goes to the cause ``row`` where that is IMPACTS; friction of what rests has its own. A body
+    without an inverse mass is outside: fixed, or moved by a hand or of itself. What moves so works as well,
+    by the impulse times its velocity.
     """
     one, two, blow = struck
     mean = Speeds(
@@ -122,11 +123,12 @@ def book_impact(
     )  # fmt: skip
     v1, s1 = _relative(one, mean)
     v2, s2 = _relative(two, mean)
-    bounced, rubbed = shares_of(
-        blow.normal1 * v1 + blow.normal2 * v2, blow.tangent1 * s1 + blow.tangent2 * s2
-    )
-    account[row, ENERGY] += bounced
-    account[FRICTION, ENERGY] += rubbed
+    bounced, rubbed = blow.normal1 * v1 + blow.normal2 * v2, blow.tangent1 * s1 + blow.tangent2 * s2
+    if row != IMPACTS:
+        bounced, rubbed = shares_of(bounced, rubbed)
+        account[FRICTION, ENERGY] += rubbed
+        rubbed = 0.0
+    account[row, ENERGY] += bounced + rubbed
     if masses.a > 0.0 and masses.b > 0.0 and masses.turn_a > 0.0 and masses.turn_b > 0.0:
         return
     x1, y1 = blow.normal1 * one.nx - blow.tangent1 * one.ny, blow.normal1 * one.ny + blow.tangent1 * one.nx
@@ -134,6 +136,19 @@ def book_impact(
     px, py = x1 + x2, y1 + y2
     turn_a = one.arm_ax * y1 - one.arm_ay * x1 + two.arm_ax * y2 - two.arm_ay * x2
     turn_b = one.arm_bx * y1 - one.arm_by * x1 + two.arm_bx * y2 - two.arm_by * x2
+    book_outside(account, row, masses, pose, mean, px, py, turn_a, turn_b)
+
+
+@inlined
+def book_outside(
+    account: Vectors, row: int, masses: Masses, pose: Pose, mean: Speeds, px: float, py: float, turn_a: float,
+    turn_b: float,
+) -> None:  # fmt: skip
+    """Book what comes from outside by the impulse (px, py) [N s] on B and its opposite on A.
+
+    ``turn_a`` and ``turn_b`` are its moments about both centres [N m s]. What drives a body takes the cause
+    HAND, and does the impulse times its ``mean`` velocity.
+    """
     # What cannot turn takes a torque from outside.
     if masses.a > 0.0 and masses.b > 0.0:
         account[row, SPIN] += (turn_a if masses.turn_a == 0.0 else 0.0) - (

@@ -3,11 +3,12 @@
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, fused, inlined, kernel
-from physicslab.kernels.accounts import ENERGY, FRICTION
+from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
 from physicslab.kernels.records import Manifolds, Point, Points
 from physicslab.kernels.solver.sweep import sweep
+from physicslab.kernels.solver.work import book_relaxed, book_solved, take_means
 from physicslab.kernels.wide.solve import SoftConstraint, sweep_wide, warm_start_wide
 
 __all__ = [
@@ -107,27 +108,23 @@ def solve(
     """Start from the last substep's impulses, then go through all contacts, correcting overlap.
 
     ``warm_start_scale`` is the ratio of this substep to the last one: the impulses of resting contacts grow
-    by that factor.
+    by that factor. What they do is booked by :func:`relax`, where the points are looked at again.
     """
     _warm_start(contacts, motion, inverse, warm_start_scale)
     if near.counts[WIDE_COUNT] > 0:
         warm_start_wide(near, motion, warm_start_scale)
     soft = _soft_constraint(softness, acting, h, sweeps)
     for n in range(sweeps):
-        unsettled = sweep(contacts, motion, inverse, soft, n % 2 == 1)
+        unsettled, _, _ = sweep(contacts, motion, inverse, soft, n % 2 == 1, False)
         if near.counts[WIDE_COUNT] > 0:
-            sweep_wide(near, motion, 0.0, soft)
+            sweep_wide(near, motion, 0.0, soft, False)
         elif not unsettled:
             break
 
 
 @always_inlined
-def follow_drift(contacts: Contacts, motion: Motion, h: float) -> float:
-    """Bring separations up to date for a drift of h at the present velocities.
-
-    Returns the tangential impulses times the present speeds of sliding [J].
-    """
-    rubbed = 0.0
+def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
+    """Bring separations up to date for a drift of h at the present velocities."""
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
@@ -135,28 +132,32 @@ def follow_drift(contacts: Contacts, motion: Motion, h: float) -> float:
             point = contacts.points[j]
             vx, vy = relative_velocity(point, manifold.a, manifold.b, motion)
             point.separation += h * (vx * manifold.normal_x + vy * manifold.normal_y)
-            rubbed += point.tangent_impulse * (vy * manifold.normal_x - vx * manifold.normal_y)
-    return rubbed
 
 
 @fused
 def relax(contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: float, sweeps: int) -> None:
     """Go through all contacts without correction, so that pushing bodies apart leaves no velocity behind.
 
-    ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call. What
-    friction takes in a crowd, which has wide contacts, is booked by the impulses of :func:`solve` and the
-    speeds now and a substep ago (at scalar ones, by those now): there are too many points to look at twice.
+    ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call. The work
+    of the impulses of that is booked, and of those found here: each by the mean velocity of before and after
+    all of them, or in a crowd, which has too many points to look at again, of before and after itself.
     """
-    rubbed = follow_drift(contacts, motion, h)
+    pressed, rubbed = book_solved(contacts, near, motion, inverse, h)
+    crowd = near.counts[WIDE_COUNT] > 0
+    if crowd:
+        take_means(near, motion)
     rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0), h
     for n in range(sweeps):
-        unsettled = sweep(contacts, motion, inverse, rigid, n % 2 == 1)
-        if near.counts[WIDE_COUNT] > 0:
-            rubbed += sweep_wide(near, motion, drift, rigid)
-            near.account[FRICTION, ENERGY] += rubbed if n == 0 else 0.0
-            drift = 0.0
+        unsettled, push, rub = sweep(contacts, motion, inverse, rigid, n % 2 == 1, crowd)
+        pressed, rubbed = pressed + push, rubbed + rub
+        if crowd:
+            push, rub = sweep_wide(near, motion, drift, rigid, True)
+            pressed, rubbed, drift = pressed + push, rubbed + rub, 0.0
         elif not unsettled:
             break
+    push, rub = book_relaxed(contacts, near, motion, inverse)
+    near.account[CONTACT, ENERGY] += pressed if crowd else pressed + push
+    near.account[FRICTION, ENERGY] += rubbed if crowd else rubbed + rub
 
 
 @kernel

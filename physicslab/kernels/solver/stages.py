@@ -20,7 +20,6 @@ from physicslab.kernels.broad.near_pairs import activate, sort_scalar
 from physicslab.kernels.narrow.contact import find_contacts
 from physicslab.kernels.near_counts import (
     ACTIVE,
-    DRIVEN,
     ENERGETIC,
     LEFT,
     LOGGED,
@@ -35,7 +34,7 @@ from physicslab.kernels.solver import impulse
 from physicslab.kernels.solver.impact import resolve_impacts
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.kernels.solver.separate import separate
-from physicslab.kernels.solver.work import book_drivers, book_sliding, note_sliding
+from physicslab.kernels.solver.work import book_slots, note_velocities
 from physicslab.kernels.wide.refresh import refresh
 from physicslab.kernels.wide.slots import wake
 
@@ -132,11 +131,10 @@ def press(
     scale = _warm_start_scale(h, impulse_dt)
     sweeps = impulse.sweeps_of(near, iterations)
     contacts = _contacts(near)
-    if near.counts[WIDE_COUNT] == 0:
-        note_sliding(contacts, near.slips, motion, inverse, acting, h)
+    note_velocities(contacts, near, motion, inverse, acting, h)
     impulse.solve(contacts, near, motion, inverse, acting, softness, h, scale, sweeps)
-    if near.counts[WIDE_COUNT] == 0:
-        book_sliding(contacts, near.slips, motion, near.account)
+    if near.counts[WIDE_COUNT] > 0:
+        book_slots(near, motion, inverse, 1.0)
     return h
 
 
@@ -153,10 +151,10 @@ def relax(
     """Remove the velocity that came from correcting overlap, ``h`` seconds after :func:`press`."""
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return
-    contacts = _contacts(near)
+    contacts, wide = _contacts(near), near.counts[WIDE_COUNT] > 0
+    if wide:  # booked again where bodies are now, as what the sweeps add is
+        book_slots(near, motion, inverse, -1.0)
     impulse.relax(contacts, near, motion, inverse, h, impulse.sweeps_of(near, iterations))
-    if near.counts[WIDE_COUNT] == 0:
-        book_sliding(contacts, near.slips, motion, near.account)
-    if near.counts[DRIVEN] > 0:
-        book_drivers(contacts, near, motion, inverse)
+    if wide:
+        book_slots(near, motion, inverse, 1.0)
     separate(contacts, near, motion, inverse.mass, acting, softness.max_push * h)

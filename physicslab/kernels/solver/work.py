@@ -1,18 +1,18 @@
-"""The work of resting contacts: friction, driven bodies, and the rest of what impulses do.
+"""What contacts do to energy and momentum, and what kicks do.
 
-An impulse J that acts within a substep does the work J (v + v') / 2, where v and v' are the velocities of its
-point before and after all impulses of the stage. Half of what the forces of the substep give to the point's
-velocity is not there yet, or not any more: with a the acceleration of the point by forces, the mean velocity
-within the substep is (v + v' - a h) / 2. A body at rest then does no work: its velocity is a h before, and 0
-after.
+Impulses J that act at one moment do the work J (v + v') / 2 each, with the velocities v and v' of its point
+before and after all of them. Half of what the forces of a substep give to the point's velocity is not there
+yet, or not any more: with a the acceleration of the point by forces, the mean velocity within the substep is
+(v + v' - a h) / 2. A body at rest then does no work: its velocity is a h before, and 0 after.
 """
 
-from physicslab.kernels import Flags, Numbers, Vectors, inlined, kernel
-from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, PX, PY, SPIN
+from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
+from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, GRAVITY, HAND, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
 from physicslab.kernels.motion import damped
-from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
+from physicslab.kernels.near_counts import DISC_BLOCKS, WIDE_COUNT
 from physicslab.kernels.records import Point
+from physicslab.kernels.solver.impact_log import Masses, Pose, Speeds, book_outside
 from physicslab.kernels.wide.layout import (
     ARM_AX,
     ARM_AY,
@@ -32,113 +32,183 @@ from physicslab.kernels.wide.layout import (
 )
 
 __all__ = [
-    "book_contacts", "book_damping", "book_drivers", "book_gravity", "book_kick", "book_sliding",
-    "note_sliding",
+    "book_damping", "book_gravity", "book_kick", "book_relaxed", "book_slots", "book_solved",
+    "note_velocities", "take_means",
 ]  # fmt: skip
 
-_SLIDING, _RUBBING = 0, 1
-"""What is noted of a point: how fast it slides [m/s], and its tangential impulse [N s]."""
+
+@inlined
+def _note(near: Near, row: int, motion: Motion, inverse: Inverse, acting: Acting, h: float) -> None:
+    """Note the velocity of a body, without what ``h`` seconds of forces have given to it."""
+    x, y, spin = motion.linear[row, 0], motion.linear[row, 1], motion.angular[row]
+    if acting.any and not acting.unkicked[row]:
+        share = h * inverse.mass[row]
+        x -= share * acting.force[row, 0]
+        y -= share * acting.force[row, 1]
+        spin -= h * inverse.inertia[row] * acting.torque[row]
+    near.linear_before[row, 0], near.linear_before[row, 1] = x, y
+    near.angular_before[row] = spin
 
 
 @inlined
-def _sliding(point: Point, nx: float, ny: float, a: int, b: int, motion: Motion) -> float:
-    """Return how fast B's point slides against A's, along the normal turned counter-clockwise [m/s]."""
-    linear, angular = motion.linear, motion.angular
+def _note_all(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float) -> None:
+    """Note all velocities, in loops that are vectorised."""
+    size = motion.linear.size
+    before, now, force = (
+        near.linear_before.reshape(size),
+        motion.linear.reshape(size),
+        acting.force.reshape(size),
+    )
+    for i in range(size):
+        before[i] = now[i]
+    for row in range(len(motion.angular)):
+        near.angular_before[row] = motion.angular[row]
+    if acting.any:
+        for row in range(len(motion.angular)):
+            span = 0.0 if acting.unkicked[row] else h
+            before[2 * row] -= span * inverse.mass[row] * force[2 * row]
+            before[2 * row + 1] -= span * inverse.mass[row] * force[2 * row + 1]
+            near.angular_before[row] -= span * inverse.inertia[row] * acting.torque[row]
+
+
+@always_inlined
+def note_velocities(
+    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float
+) -> None:
+    """Note the velocities of bodies in contact before the impulses of a substep of ``h`` seconds."""
+    if near.counts[WIDE_COUNT] > 0:
+        _note_all(near, motion, inverse, acting, h)
+        return
+    for k in range(contacts.number):
+        manifold = contacts.manifolds[contacts.touching[k]]
+        _note(near, manifold.a, motion, inverse, acting, h)
+        _note(near, manifold.b, motion, inverse, acting, h)
+
+
+@inlined
+def take_means(near: Near, motion: Motion) -> None:
+    """Put in place of the velocities noted their mean with those of now."""
+    size = motion.linear.size
+    before, now = near.linear_before.reshape(size), motion.linear.reshape(size)
+    for i in range(size):
+        before[i] = 0.5 * (before[i] + now[i])
+    for row in range(len(motion.angular)):
+        near.angular_before[row] = 0.5 * (near.angular_before[row] + motion.angular[row])
+
+
+@inlined
+def _relative(point: Point, a: int, b: int, linear: Vectors, angular: Numbers) -> tuple[float, float]:
+    """Return the velocity of B's point against A's [m/s]."""
     vx = linear[b, 0] - angular[b] * point.arm_by - linear[a, 0] + angular[a] * point.arm_ay
     vy = linear[b, 1] + angular[b] * point.arm_bx - linear[a, 1] - angular[a] * point.arm_ax
-    speed: float = nx * vy - ny * vx
-    return speed
+    return vx, vy
 
 
-@inlined
-def _forced(row: int, arm_x: float, arm_y: float, inverse: Inverse, acting: Acting) -> tuple[float, float]:
-    """Return the acceleration that forces give to a point of a body [m/s^2]."""
-    turn = acting.torque[row] * inverse.inertia[row]
-    mass = inverse.mass[row]
-    return acting.force[row, 0] * mass - turn * arm_y, acting.force[row, 1] * mass + turn * arm_x
+@always_inlined
+def book_solved(
+    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: float
+) -> tuple[float, float]:
+    """Return the work of normal and tangential impulses of scalar contacts [J] since velocities were noted.
 
-
-@inlined
-def note_sliding(
-    contacts: Contacts, slips: Vectors, motion: Motion, inverse: Inverse, acting: Acting, h: float
-) -> None:
-    """Note how fast the points of scalar contacts slide before the impulses of a substep of ``h`` seconds.
-
-    Without what forces have given to that in the substep.
+    Bodies have moved for ``h`` seconds since, which separations follow. What comes from outside is booked by
+    :func:`book_relaxed`, at the places that bodies have now; that these impulses acted before is booked here.
     """
+    pressed, rubbed = 0.0, 0.0
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
-        if manifold.friction == 0.0:
-            continue
-        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        a, b, nx, ny, px, py = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y, 0.0, 0.0
         for j in range(2 * p, 2 * p + manifold.count):
             point = contacts.points[j]
-            sliding = _sliding(point, nx, ny, a, b, motion)
-            if acting.any:
-                ax, ay = _forced(a, point.arm_ax, point.arm_ay, inverse, acting)
-                bx, by = _forced(b, point.arm_bx, point.arm_by, inverse, acting)
-                sliding -= h * (nx * (by - ay) - ny * (bx - ax))
-            slips[j, _SLIDING], slips[j, _RUBBING] = sliding, 0.0
+            vx, vy = _relative(point, a, b, motion.linear, motion.angular)
+            push, rub, along, across = (
+                point.normal_impulse,
+                point.tangent_impulse,
+                nx * vx + ny * vy,
+                nx * vy - ny * vx,
+            )
+            if push != 0.0 or rub != 0.0:  # most that do not touch yet have none
+                ux, uy = _relative(point, a, b, near.linear_before, near.angular_before)
+                pressed += 0.5 * push * (nx * ux + ny * uy + along)
+                rubbed += 0.5 * rub * (nx * uy - ny * ux + across)
+            point.separation += h * along
+            near.noted[j, 0], near.noted[j, 1], near.noted[j, 2], near.noted[j, 3] = push, rub, along, across
+            px += push * nx - rub * ny
+            py += push * ny + rub * nx
+        if inverse.mass[a] == 0.0 or inverse.mass[b] == 0.0:
+            still, body = (a, b) if inverse.mass[a] == 0.0 else (b, a)
+            position, linear, sign = motion.position, motion.linear, 1.0 if body == b else -1.0
+            x = position[b, 0] - position[a, 0] - manifold.offset_x + sign * h * linear[still, 0]
+            y = position[b, 1] - position[a, 1] - manifold.offset_y + sign * h * linear[still, 1]
+            driven = linear[still, 0] != 0.0 or linear[still, 1] != 0.0 or motion.angular[still] != 0.0
+            near.account[HAND if driven else CONTACT, SPIN] -= x * py - y * px
+    return pressed, rubbed
 
 
 @inlined
-def book_sliding(contacts: Contacts, slips: Vectors, motion: Motion, account: Vectors) -> None:
-    """Book what friction of scalar contacts takes by the impulses since the last call, or since the note.
+def _masses(a: int, b: int, inverse: Inverse) -> Masses:
+    return Masses(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
 
-    That is the change of each tangential impulse times the mean speed of sliding. What is now is noted.
+
+@inlined
+def _pose(a: int, b: int, motion: Motion) -> Pose:
+    position, angle = motion.position, motion.angle
+    return Pose(position[a, 0], position[a, 1], angle[a], position[b, 0], position[b, 1], angle[b])
+
+
+@inlined
+def _speeds(a: int, b: int, motion: Motion) -> Speeds:
+    linear, angular = motion.linear, motion.angular
+    return Speeds(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
+
+
+@always_inlined
+def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Inverse) -> tuple[float, float]:
+    """Return the work of what impulses of scalar contacts have changed by since :func:`book_solved` [J].
+
+    Book what comes from outside by the whole of them: momentum, and the work of drivers. Outside is what no
+    impulse moves: fixed, held and driven bodies, and what keeps a body from turning.
     """
-    taken = 0.0
+    pressed, rubbed = 0.0, 0.0
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
-        if manifold.friction == 0.0:
-            continue
         a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        px, py, turn_a, turn_b = 0.0, 0.0, 0.0, 0.0
         for j in range(2 * p, 2 * p + manifold.count):
-            point = contacts.points[j]
-            sliding = _sliding(point, nx, ny, a, b, motion)
-            taken += 0.5 * (point.tangent_impulse - slips[j, _RUBBING]) * (slips[j, _SLIDING] + sliding)
-            slips[j, _SLIDING], slips[j, _RUBBING] = sliding, point.tangent_impulse
-    account[FRICTION, ENERGY] += taken
+            point, noted = contacts.points[j], near.noted
+            push, rub = point.normal_impulse, point.tangent_impulse
+            more, also = push - noted[j, 0], rub - noted[j, 1]
+            if more != 0.0 or also != 0.0:
+                vx, vy = _relative(point, a, b, motion.linear, motion.angular)
+                pressed += 0.5 * more * (noted[j, 2] + nx * vx + ny * vy)
+                rubbed += 0.5 * also * (noted[j, 3] + nx * vy - ny * vx)
+            x, y = push * nx - rub * ny, push * ny + rub * nx
+            px, py = px + x, py + y
+            turn_a += point.arm_ax * y - point.arm_ay * x
+            turn_b += point.arm_bx * y - point.arm_by * x
+        if inverse.inertia[a] == 0.0 or inverse.inertia[b] == 0.0:
+            book_outside(
+                near.account, CONTACT, _masses(a, b, inverse), _pose(a, b, motion), _speeds(a, b, motion),
+                px, py, turn_a, turn_b,
+            )  # fmt: skip
+    return pressed, rubbed
 
 
 @inlined
-def _book_driver(
-    near: Near, motion: Motion, row: int, px: float, py: float, arm_x: float, arm_y: float
-) -> None:
-    """Book what a body that is not moved by impulses gives by the impulse (px, py) [N s] on the other one."""
-    linear, angular, position = motion.linear, motion.angular, motion.position
-    vx, vy = linear[row, 0] - angular[row] * arm_y, linear[row, 1] + angular[row] * arm_x
-    if vx == 0.0 and vy == 0.0 and angular[row] == 0.0:
-        return
-    x, y = position[row, 0] + arm_x, position[row, 1] + arm_y
-    spin = x * py - y * px
-    near.account[HAND, ENERGY] += px * vx + py * vy
-    near.account[HAND, PX] += px
-    near.account[HAND, PY] += py
-    near.account[HAND, SPIN] += spin
-    # All impulses from outside are booked as those of contacts: these were a hand's.
-    near.account[CONTACT, PX] -= px
-    near.account[CONTACT, PY] -= py
-    near.account[CONTACT, SPIN] -= spin
-
-
-@inlined
-def _book_drivers_wide(near: Near, motion: Motion, inverse: Inverse) -> None:
-    """Book the work of driven bodies at wide contacts."""
+def book_slots(near: Near, motion: Motion, inverse: Inverse, sign: float) -> None:
+    """Book what comes from outside by wide contacts, where bodies are now, with a ``sign``."""
     for slots in (near.discs, near.boxes):
-        data = slots.data
+        data, rows = slots.data, rows_of(slots.kind)
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
-            for place in range(WIDE):
-                a, b, at = (
-                    slots.a[k * WIDE + place],
-                    slots.b[k * WIDE + place],
-                    k * rows_of(slots.kind) + place,
-                )
-                if inverse.mass[a] > 0.0 and inverse.mass[b] > 0.0:
+            if not slots.outside[k]:
+                continue
+            for slot in range(k * WIDE, (k + 1) * WIDE):
+                a, b, at = slots.a[slot], slots.b[slot], k * rows + slot - k * WIDE
+                if slots.pair[slot] < 0 or (inverse.inertia[a] > 0.0 and inverse.inertia[b] > 0.0):
                     continue
                 nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
+                px, py, turn_a, turn_b = 0.0, 0.0, 0.0, 0.0
                 for of in (ONE, TWO):
                     if slots.kind == DISC and of == TWO:
                         continue
@@ -148,33 +218,15 @@ def _book_drivers_wide(near: Near, motion: Motion, inverse: Inverse) -> None:
                     else:
                         ax, ay = data[at + of + ARM_AX], data[at + of + ARM_AY]
                         bx, by = data[at + of + ARM_BX], data[at + of + ARM_BY]
-                    push, rub = data[at + of + IMPULSE], data[at + of + TANGENT_IMPULSE]
-                    px, py = push * nx - rub * ny, push * ny + rub * nx
-                    if inverse.mass[a] == 0.0:
-                        _book_driver(near, motion, a, px, py, ax, ay)
-                    else:
-                        _book_driver(near, motion, b, -px, -py, bx, by)
-
-
-@inlined
-def book_drivers(contacts: Contacts, near: Near, motion: Motion, inverse: Inverse) -> None:
-    """Book the work of bodies that move and are not moved, by the impulses of a substep."""
-    for k in range(contacts.number):
-        p = contacts.touching[k]
-        manifold = contacts.manifolds[p]
-        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-        if inverse.mass[a] > 0.0 and inverse.mass[b] > 0.0:
-            continue
-        for j in range(2 * p, 2 * p + manifold.count):
-            point = contacts.points[j]
-            px = point.normal_impulse * nx - point.tangent_impulse * ny
-            py = point.normal_impulse * ny + point.tangent_impulse * nx
-            if inverse.mass[a] == 0.0:
-                _book_driver(near, motion, a, px, py, point.arm_ax, point.arm_ay)
-            else:
-                _book_driver(near, motion, b, -px, -py, point.arm_bx, point.arm_by)
-    if near.counts[DISC_BLOCKS] + near.counts[BOX_BLOCKS] > 0:
-        _book_drivers_wide(near, motion, inverse)
+                    push, rub = sign * data[at + of + IMPULSE], sign * data[at + of + TANGENT_IMPULSE]
+                    x, y = push * nx - rub * ny, push * ny + rub * nx
+                    px, py = px + x, py + y
+                    turn_a += ax * y - ay * x
+                    turn_b += bx * y - by * x
+                book_outside(
+                    near.account, CONTACT, _masses(a, b, inverse), _pose(a, b, motion), _speeds(a, b, motion),
+                    px, py, turn_a, turn_b,
+                )  # fmt: skip
 
 
 @inlined
@@ -253,38 +305,3 @@ def book_damping(
         account[DAMPING, PX] += px
         account[DAMPING, PY] += py
         account[DAMPING, SPIN] += x * py - y * px + turned
-
-
-@kernel
-def book_contacts(
-    linear: Vectors, angular: Numbers, position: Vectors, before: Vectors, before_angular: Numbers,
-    force: Vectors, torque: Numbers, mass: Numbers, inertia: Numbers, inverse_mass: Numbers,
-    inverse_inertia: Numbers, unkicked: Flags, h: float, booked: float, account: Vectors,
-) -> None:  # fmt: skip
-    """Book the work and the impulses of a stage that has changed velocities, from ``before`` to those of now.
-
-    ``position`` is that of before, as what is moved apart is booked by itself.
-    ``h`` is the time [s] for which forces act in the substep, except on rows that are ``unkicked``: 0 where
-    they have no part in it. ``booked`` is the work [J] of these impulses that is in an account already.
-    """
-    work, px, py, spin = 0.0, 0.0, 0.0, 0.0
-    for i in range(len(mass)):
-        if inverse_mass[i] == 0.0:
-            continue
-        forced = 0.0 if unkicked[i] else h
-        ax, ay = linear[i, 0] - before[i, 0], linear[i, 1] - before[i, 1]
-        mx = linear[i, 0] + before[i, 0] - forced * force[i, 0] * inverse_mass[i]
-        my = linear[i, 1] + before[i, 1] - forced * force[i, 1] * inverse_mass[i]
-        work += 0.5 * mass[i] * (ax * mx + ay * my)
-        px += mass[i] * ax
-        py += mass[i] * ay
-        spin += mass[i] * (position[i, 0] * ay - position[i, 1] * ax)
-        if inverse_inertia[i] > 0.0:
-            turned = angular[i] - before_angular[i]
-            mean = angular[i] + before_angular[i] - forced * torque[i] * inverse_inertia[i]
-            work += 0.5 * inertia[i] * turned * mean
-            spin += inertia[i] * turned
-    account[CONTACT, ENERGY] += work - booked
-    account[CONTACT, PX] += px
-    account[CONTACT, PY] += py
-    account[CONTACT, SPIN] += spin

@@ -11,13 +11,13 @@ import numpy as np
 from numba import uint64
 from numpy.typing import NDArray
 
-from physicslab.kernels import Numbers, Rows, fused
+from physicslab.kernels import Flags, Numbers, Rows, fused
 
 __all__ = [
     "ANGLE_A", "ANGLE_B", "ARM_AX", "ARM_AY", "ARM_BX", "ARM_BY", "BASE_X", "BASE_Y", "BOX", "BOX_ROWS",
-    "DISC", "DISC_ROWS", "DISC_SLIDING", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS",
+    "DISC", "DISC_ROWS", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS",
     "MASS_A", "MASS_B", "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "RESTITUTION", "SEPARATION",
-    "SIZE", "SLIDING", "TANGENT_IMPULSE", "TANGENT_MASS", "TURNS_A", "TURNS_B", "TWO", "WIDE", "Masks",
+    "SIZE", "TANGENT_IMPULSE", "TANGENT_MASS", "TURNS_A", "TURNS_B", "TWO", "WIDE", "Masks",
     "Slots", "SlotsTuple", "rows_of",
 ]  # fmt: skip
 
@@ -30,24 +30,23 @@ DISC, BOX = 0, 1
 # size of the smaller body.
 NORMAL_X, NORMAL_Y, FRICTION, MASS_A, MASS_B, INERTIA_A, INERTIA_B, SIZE = (WIDE * i for i in range(8))
 
-# Of a point: impulses along the normal and across, effective masses, the separation; its arms; how fast it
-# slid in the last substep, for the account of friction.
+# Of a point: impulses along the normal and across, effective masses, the separation; its arms.
 IMPULSE, TANGENT_IMPULSE, MASS, TANGENT_MASS, SEPARATION = (WIDE * i for i in range(5))
-ARM_AX, ARM_AY, ARM_BX, ARM_BY, FOUND, SLIDING = (WIDE * i for i in range(5, 11))
+ARM_AX, ARM_AY, ARM_BX, ARM_BY, FOUND = (WIDE * i for i in range(5, 10))
 ONE = 8 * WIDE
 """Offset of the first point."""
 
 # The arms of discs are along the normal.
-RADIUS_A, RADIUS_B, RESTITUTION, DISC_SLIDING = (ONE + WIDE * i for i in range(5, 9))
-DISC_ROWS = ONE + 9 * WIDE
+RADIUS_A, RADIUS_B, RESTITUTION = (ONE + WIDE * i for i in range(5, 8))
+DISC_ROWS = ONE + 8 * WIDE
 """Numbers in a block of discs."""
 
-TWO = ONE + 11 * WIDE
+TWO = ONE + 10 * WIDE
 """Offset of the second point of pairs with a box."""
-BASE_X, BASE_Y, ANGLE_A, ANGLE_B = (TWO + WIDE * i for i in range(11, 15))
+BASE_X, BASE_Y, ANGLE_A, ANGLE_B = (TWO + WIDE * i for i in range(10, 14))
 # 1 where a body's points turn with it, 0 for a disc.
-TURNS_A, TURNS_B = TWO + 15 * WIDE, TWO + 16 * WIDE
-BOX_ROWS = TWO + 17 * WIDE
+TURNS_A, TURNS_B = TWO + 14 * WIDE, TWO + 15 * WIDE
+BOX_ROWS = TWO + 16 * WIDE
 """Numbers in a block of pairs with a box."""
 
 Masks = Annotated[NDArray[np.uint64], uint64[::1]]
@@ -57,7 +56,8 @@ Masks = Annotated[NDArray[np.uint64], uint64[::1]]
 class Slots(NamedTuple):
     """The blocks of a kind: what they hold, rows of A and B and the pair of each slot, the blocks' colours.
 
-    Then the colours that each body has been given, and the order in which the blocks are solved.
+    Then the colours that each body has been given, the order in which the blocks are solved, and which blocks
+    may have a body that no impulse moves, or turns.
     """
 
     kind: int
@@ -68,9 +68,10 @@ class Slots(NamedTuple):
     colour: Rows
     used: Masks
     order: Rows
+    outside: Flags
 
 
-SlotsTuple = tuple[int, Numbers, Rows, Rows, Rows, Rows, Masks, Rows]
+SlotsTuple = tuple[int, Numbers, Rows, Rows, Rows, Rows, Masks, Rows, Flags]
 """The same, without names."""
 
 

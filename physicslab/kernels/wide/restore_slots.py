@@ -25,7 +25,6 @@ from physicslab.kernels.wide.layout import (
     BASE_X,
     BASE_Y,
     DISC,
-    DISC_SLIDING,
     FOUND,
     FRICTION,
     IMPULSE,
@@ -42,7 +41,6 @@ from physicslab.kernels.wide.layout import (
     RESTITUTION,
     SEPARATION,
     SIZE,
-    SLIDING,
     TANGENT_IMPULSE,
     TANGENT_MASS,
     TURNS_A,
@@ -103,7 +101,6 @@ def fill_slot(
     if slots.kind == DISC:
         ra, rb, linear = radius[i], radius[j], inverse.mass[i] + inverse.mass[j]
         data[at + RADIUS_A], data[at + RADIUS_B], data[at + RESTITUTION] = ra, rb, manifold.restitution
-        data[at + DISC_SLIDING] = math.inf  # not known yet
         data[at + ONE + MASS] = 1.0 / linear
         data[at + ONE + TANGENT_MASS] = 1.0 / (
             linear + inverse.inertia[i] * ra * ra + inverse.inertia[j] * rb * rb
@@ -111,7 +108,6 @@ def fill_slot(
     else:
         data[at + BASE_X], data[at + BASE_Y] = manifold.base_x, manifold.base_y
         data[at + ANGLE_A], data[at + ANGLE_B] = manifold.base_angle_a, manifold.base_angle_b
-        data[at + ONE + SLIDING] = data[at + TWO + SLIDING] = math.inf  # not known yet
         data[at + TURNS_A] = 1.0 if sizes.kind[i] == 2 else 0.0
         data[at + TURNS_B] = 1.0 if sizes.kind[j] == 2 else 0.0
         _fill_arms(data, at + ONE, one)
@@ -119,6 +115,8 @@ def fill_slot(
             _fill_point(data, at + TWO, two)
             _fill_arms(data, at + TWO, two)
     slots.a[slot], slots.b[slot], slots.pair[slot] = i, j, p
+    if inverse.inertia[i] == 0.0 or inverse.inertia[j] == 0.0:
+        slots.outside[slot // WIDE] = True
     bit = np.uint64(1) << np.uint64(colour)
     slots.used[i] |= bit
     slots.used[j] |= bit

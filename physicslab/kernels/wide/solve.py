@@ -1,9 +1,8 @@
 """Impulses at wide contacts, eight at a time, by the formulas of ``kernels/solver/impulse.py``."""
 
-import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels import Numbers, Vectors, fused, inlined
 from physicslab.kernels.arguments import Motion, Near
 from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
 from physicslab.kernels.wide.float64x8 import (
@@ -27,7 +26,6 @@ from physicslab.kernels.wide.layout import (
     ARM_BY,
     BOX_ROWS,
     DISC_ROWS,
-    DISC_SLIDING,
     FRICTION,
     IMPULSE,
     INERTIA_A,
@@ -42,7 +40,6 @@ from physicslab.kernels.wide.layout import (
     RADIUS_B,
     SEPARATION,
     SIZE,
-    SLIDING,
     TANGENT_IMPULSE,
     TANGENT_MASS,
     TWO,
@@ -51,8 +48,8 @@ from physicslab.kernels.wide.layout import (
 )  # fmt: skip
 
 __all__ = [
-    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "one_normal", "sweep_wide",
-    "two_frictions", "two_normals", "warm_start_wide",
+    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "one_normal", "relative",
+    "sweep_wide", "two_frictions", "two_normals", "warm_start_wide", "work_of",
 ]  # fmt: skip
 
 SOFT = 0.02
@@ -76,6 +73,17 @@ class SoftConstraint(NamedTuple):
     mass_scale: float
     impulse_scale: float
     force_cap: float
+
+
+class Mean(NamedTuple):
+    """Velocities (rows, 2) [m/s] and angular velocities [rad/s], the mean of before and after impulses."""
+
+    linear: Vectors
+    angular: Numbers
+
+
+type Work = tuple[Wide, Wide]
+"""Of normal and of tangential impulses [J], slot by slot."""
 
 
 @fused
@@ -152,6 +160,19 @@ def two_frictions[N: (float, Wide)](
 
 
 @fused
+def work_of[N: (float, Wide)](
+    along: N, impulse: N, turn_a: N, turn_b: N, mass: N, inertia_a: N, inertia_b: N
+) -> N:
+    """Return the work of impulses on a pair along one direction [J]: each at its point's mean velocity.
+
+    ``along`` is that at the velocities before. ``impulse`` and the moments ``turn_a`` and ``turn_b``, of all
+    of them together, change the velocities; ``mass`` is the sum of both inverse masses [1/kg].
+    """
+    changed: N = mass * (impulse * impulse) + inertia_a * (turn_a * turn_a) + inertia_b * (turn_b * turn_b)
+    return along + 0.5 * changed
+
+
+@fused
 def _free_change(
     data: Numbers, point: int, size: Wide, v: Wide, drift: float, soft: SoftConstraint
 ) -> tuple[Wide, Wide]:
@@ -173,53 +194,62 @@ def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide
 
 
 @fused
-def _rubbed(data: Numbers, sliding: int, impulse: Wide, v: Wide) -> Wide:
-    """Return the work of tangential impulses [J] at the mean of the speeds of sliding, now and a substep ago.
-
-    The latter are in the row ``sliding``, and are set to the present ones.
-    """
-    before = take(data, sliding)
-    put(data, sliding, v)
-    mean: Wide = choose(before < math.inf, 0.5 * (before + v), v)
-    return impulse * mean
-
-
-@fused
-def _velocities(slots: Slots, k: int, motion: Motion) -> tuple[Wide, Wide, Wide, Wide, Wide, Wide]:
+def _velocities(
+    slots: Slots, k: int, linear: Vectors, angular: Numbers
+) -> tuple[Wide, Wide, Wide, Wide, Wide, Wide]:
     """Return the velocities and angular velocities of A and of B in a block."""
-    vax, vay = take_vectors(motion.linear, slots.a, k * WIDE)
-    vbx, vby = take_vectors(motion.linear, slots.b, k * WIDE)
-    wa, wb = take_numbers(motion.angular, slots.a, k * WIDE), take_numbers(motion.angular, slots.b, k * WIDE)
+    vax, vay = take_vectors(linear, slots.a, k * WIDE)
+    vbx, vby = take_vectors(linear, slots.b, k * WIDE)
+    wa, wb = take_numbers(angular, slots.a, k * WIDE), take_numbers(angular, slots.b, k * WIDE)
     return vax, vay, wa, vbx, vby, wb
 
 
 @fused
-def _sweep_discs(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> Wide:
+def relative(slots: Slots, k: int, mean: Mean) -> tuple[Wide, Wide, Wide, Wide]:
+    """Return the mean velocity of B against A in a block, and the mean angular velocities of A and of B."""
+    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, mean.linear, mean.angular)
+    return vbx - vax, vby - vay, wa, wb
+
+
+@fused
+def _sweep_discs(
+    slots: Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint, booked: bool
+) -> Work:
     """Solve a block of discs; normal impulses turn no disc, so friction does not depend on them.
 
-    Returns the work of friction [J] where there is a ``drift``, as in the first sweep after the impulses.
+    Where it is ``booked`` this returns the work of the sweep's impulses; where there is a ``drift`` also that
+    of those so far, at the ``mean`` velocities.
     """
     data, at = slots.data, k * DISC_ROWS
-    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
+    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion.linear, motion.angular)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     ra, rb = take(data, at + RADIUS_A), take(data, at + RADIUS_B)
     vx, vy = vbx - vax, vby - vay
-    impulse = take(data, at + ONE + IMPULSE)
-    change, _ = _free_change(data, at + ONE, take(data, at + SIZE), nx * vx + ny * vy, drift, soft)
+    impulse, tangent = take(data, at + ONE + IMPULSE), take(data, at + ONE + TANGENT_IMPULSE)
+    approach, across = nx * vx + ny * vy, nx * vy - ny * vx - rb * wb - ra * wa
+    change, _ = _free_change(data, at + ONE, take(data, at + SIZE), approach, drift, soft)
     push = one_normal(impulse, change)
     put(data, at + ONE + IMPULSE, impulse + push)
-    across = nx * vy - ny * vx - rb * wb - ra * wa
-    rubbed = everywhere(0.0)
-    if drift != 0.0:
-        rubbed = _rubbed(data, at + DISC_SLIDING, take(data, at + ONE + TANGENT_IMPULSE), across)
     friction_impulse = _update_friction(data, at + ONE, take(data, at + FRICTION), across)
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
+    ia, ib = take(data, at + INERTIA_A), take(data, at + INERTIA_B)
     put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
     put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
-    put_numbers(motion.angular, slots.a, k * WIDE, wa - take(data, at + INERTIA_A) * ra * friction_impulse)
-    put_numbers(motion.angular, slots.b, k * WIDE, wb - take(data, at + INERTIA_B) * rb * friction_impulse)
-    return rubbed
+    put_numbers(motion.angular, slots.a, k * WIDE, wa - ia * ra * friction_impulse)
+    put_numbers(motion.angular, slots.b, k * WIDE, wb - ib * rb * friction_impulse)
+    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    if booked:
+        pressed = push * (approach + 0.5 * (ma + mb) * push)
+        rubbed = work_of(
+            friction_impulse * across, friction_impulse, ra * friction_impulse, rb * friction_impulse,
+            ma + mb, ia, ib,
+        )  # fmt: skip
+    if drift != 0.0:
+        ux, uy, wa, wb = relative(slots, k, mean)
+        pressed = pressed + impulse * (nx * ux + ny * uy)
+        rubbed = rubbed + tangent * (nx * uy - ny * ux - rb * wb - ra * wa)
+    return pressed, rubbed
 
 
 @fused
@@ -231,7 +261,9 @@ def _levers(data: Numbers, point: int, nx: Wide, ny: Wide) -> tuple[Wide, Wide, 
 
 
 @fused
-def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftConstraint) -> Wide:
+def _sweep_boxes(
+    slots: Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint, booked: bool
+) -> Work:
     """Solve a block of boxes: both normal impulses, then both points' friction.
 
     Velocities at the points are computed once; the effect of one point's impulse on the other's velocity is
@@ -239,7 +271,7 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     Returns what :func:`_sweep_discs` does.
     """
     data, at = slots.data, k * BOX_ROWS
-    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
+    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion.linear, motion.angular)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
     ia, ib = take(data, at + INERTIA_A), take(data, at + INERTIA_B)
@@ -248,20 +280,23 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     n2a, n2b, t2a, t2b = _levers(data, at + TWO, nx, ny)
     vx, vy = vbx - vax, vby - vay
     along, across = nx * vx + ny * vy, nx * vy - ny * vx
-    change1, mass1 = _free_change(data, at + ONE, size, along + wb * n1b - wa * n1a, drift, soft)
-    change2, mass2 = _free_change(data, at + TWO, size, along + wb * n2b - wa * n2a, drift, soft)
+    approach1, approach2 = along + wb * n1b - wa * n1a, along + wb * n2b - wa * n2a
+    change1, mass1 = _free_change(data, at + ONE, size, approach1, drift, soft)
+    change2, mass2 = _free_change(data, at + TWO, size, approach2, drift, soft)
     impulse1, impulse2 = take(data, at + ONE + IMPULSE), take(data, at + TWO + IMPULSE)
     between = ma + mb + ia * n1a * n2a + ib * n1b * n2b
     push1, push2 = two_normals(impulse1, impulse2, change1, change2, mass1, mass2, between)
     put(data, at + ONE + IMPULSE, impulse1 + push1)
     put(data, at + TWO + IMPULSE, impulse2 + push2)
-    wa, wb = wa - ia * (n1a * push1 + n2a * push2), wb + ib * (n1b * push1 + n2b * push2)
+    turn_a, turn_b = n1a * push1 + n2a * push2, n1b * push1 + n2b * push2
+    wa, wb = wa - ia * turn_a, wb + ib * turn_b
+    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    if booked:
+        pressed = work_of(
+            push1 * approach1 + push2 * approach2, push1 + push2, turn_a, turn_b, ma + mb, ia, ib
+        )
     tangent1, tangent2 = take(data, at + ONE + TANGENT_IMPULSE), take(data, at + TWO + TANGENT_IMPULSE)
     sliding1, sliding2 = across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a
-    rubbed = everywhere(0.0)
-    if drift != 0.0:
-        rubbed = _rubbed(data, at + ONE + SLIDING, tangent1, sliding1)
-        rubbed = rubbed + _rubbed(data, at + TWO + SLIDING, tangent2, sliding2)
     friction1, friction2 = two_frictions(
         tangent1, tangent2, sliding1, sliding2,
         take(data, at + ONE + TANGENT_MASS), take(data, at + TWO + TANGENT_MASS),
@@ -274,23 +309,42 @@ def _sweep_boxes(slots: Slots, k: int, motion: Motion, drift: float, soft: SoftC
     px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
     put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
     put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
-    put_numbers(motion.angular, slots.a, k * WIDE, wa - ia * (t1a * friction1 + t2a * friction2))
-    put_numbers(motion.angular, slots.b, k * WIDE, wb + ib * (t1b * friction1 + t2b * friction2))
-    return rubbed
+    turn_a, turn_b = t1a * friction1 + t2a * friction2, t1b * friction1 + t2b * friction2
+    put_numbers(motion.angular, slots.a, k * WIDE, wa - ia * turn_a)
+    put_numbers(motion.angular, slots.b, k * WIDE, wb + ib * turn_b)
+    if booked:
+        rubbed = work_of(
+            friction1 * sliding1 + friction2 * sliding2, friction_impulse, turn_a, turn_b, ma + mb, ia, ib
+        )
+    if drift != 0.0:
+        ux, uy, wa, wb = relative(slots, k, mean)
+        along, across = nx * ux + ny * uy, nx * uy - ny * ux
+        pressed = pressed + impulse1 * (along + wb * n1b - wa * n1a)
+        pressed = pressed + impulse2 * (along + wb * n2b - wa * n2a)
+        rubbed = rubbed + tangent1 * (across + wb * t1b - wa * t1a)
+        rubbed = rubbed + tangent2 * (across + wb * t2b - wa * t2a)
+    return pressed, rubbed
 
 
 @inlined
-def sweep_wide(near: Near, motion: Motion, drift: float, soft: SoftConstraint) -> float:
+def sweep_wide(
+    near: Near, motion: Motion, drift: float, soft: SoftConstraint, booked: bool
+) -> tuple[float, float]:
     """Solve all blocks once. Separations are first advanced by ``drift`` s at the present velocities.
 
-    Returns the work of the tangential impulses so far [J], where there is a drift.
+    Returns the work of normal and of tangential impulses [J]: where it is ``booked`` that of this sweep's,
+    and where there is a drift that of those before it, at the mean velocities that ``near.linear_before`` and
+    the angular ones hold.
     """
-    rubbed = everywhere(0.0)
+    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    mean = Mean(near.linear_before, near.angular_before)
     for number in range(near.counts[DISC_BLOCKS]):
-        rubbed = rubbed + _sweep_discs(near.discs, near.discs.order[number], motion, drift, soft)
+        one, other = _sweep_discs(near.discs, near.discs.order[number], motion, mean, drift, soft, booked)
+        pressed, rubbed = pressed + one, rubbed + other
     for number in range(near.counts[BOX_BLOCKS]):
-        rubbed = rubbed + _sweep_boxes(near.boxes, near.boxes.order[number], motion, drift, soft)
-    return sum_of(rubbed)
+        one, other = _sweep_boxes(near.boxes, near.boxes.order[number], motion, mean, drift, soft, booked)
+        pressed, rubbed = pressed + one, rubbed + other
+    return sum_of(pressed), sum_of(rubbed)
 
 
 @fused
@@ -309,7 +363,7 @@ def _warm_start(
 @fused
 def _start_discs(slots: Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
     data, at = slots.data, k * DISC_ROWS
-    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
+    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion.linear, motion.angular)
     px, py, friction_impulse = _warm_start(
         data, at + ONE, take(data, at + NORMAL_X), take(data, at + NORMAL_Y), warm_start_scale
     )
@@ -332,7 +386,7 @@ def _turning(data: Numbers, point: int, px: Wide, py: Wide) -> tuple[Wide, Wide]
 @fused
 def _start_boxes(slots: Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
     data, at = slots.data, k * BOX_ROWS
-    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion)
+    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion.linear, motion.angular)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     x1, y1, _ = _warm_start(data, at + ONE, nx, ny, warm_start_scale)
     x2, y2, _ = _warm_start(data, at + TWO, nx, ny, warm_start_scale)

@@ -10,6 +10,7 @@ from physicslab.lab.accuracy.catalogue import LEFT_OUT
 from physicslab.lab.accuracy.contacts.document import contact_document
 from physicslab.lab.accuracy.contacts.study import ContactStudy
 from physicslab.lab.accuracy.figures import record
+from physicslab.lab.accuracy.honesty.study import QUANTITIES, HonestRow, share_of
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
@@ -34,9 +35,11 @@ def document(
     )
 
 
-def trust_document(rows: Sequence[TrustRow], scenes: Mapping[str, Trust]) -> dict[str, Any]:
+def trust_document(
+    rows: Sequence[TrustRow], scenes: Mapping[str, Trust], random: Sequence[HonestRow] = ()
+) -> dict[str, Any]:
     """Return estimates of errors beside true errors, and what can be relied on in scenes by their names."""
-    found = summarise(rows)
+    found, share = summarise(rows), share_of(random)
     return lab_document(
         "trust",
         problems=[
@@ -47,10 +50,19 @@ def trust_document(rows: Sequence[TrustRow], scenes: Mapping[str, Trust]) -> dic
                 "estimate": finite(row.estimate),
                 "error": finite(row.error),
                 "ratio": finite(row.ratio),
+                "near": row.is_near,
             }
             for row in rows
         ],
         summary={"known": found.known, "near": found.near, "largest": found.largest, "holds": found.holds},
+        random=[{**asdict(row), "ratios": dict(zip(QUANTITIES, row.ratios, strict=False))} for row in random],
+        honest={
+            "known": share.known,
+            "honest": dict(zip(QUANTITIES, share.honest, strict=True)),
+            "too_large": share.too_large,
+            "worst": share.worst,
+            "holds": share.holds,
+        },
         scenes=[{"name": name, **trust_report(trust)} for name, trust in scenes.items()],
     )
 
@@ -125,10 +137,10 @@ def _row(problem: Problem, row: Row) -> dict[str, Any]:
 
 def _scene(study: SceneStudy) -> dict[str, Any]:
     estimate = asdict(study.estimate)
-    for name in ("reference", "bodies", "path", "paths"):
+    for name in ("reference", "bodies", "path", "paths", "document", "own_s", "left_s"):
         del estimate[name]
     return {
-        "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.tightest,
+        "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.reference,
         "estimate": estimate, "rows": [_scene_row(row) for row in study.rows],
         "horizon_s": study.horizon_s,
     }  # fmt: skip
@@ -137,5 +149,4 @@ def _scene(study: SceneStudy) -> dict[str, Any]:
 def _scene_row(row: SceneRow) -> dict[str, Any]:
     found = asdict(row)
     found["cpu_ms"] = 1e3 * found.pop("cpu_s") if not row.failure else None
-    found["error"] = row.tightest or row.half_step  # the tightest is compared with itself at half the step
     return {key: finite(value) if isinstance(value, float) else value for key, value in found.items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -12,17 +13,19 @@ from numpy.typing import NDArray
 
 from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.paths import Path, run_path
-from physicslab.lab.accuracy.twins import TWINS, Twin, finer, with_ids
+from physicslab.lab.accuracy.twins import TWINS, Document, Twin, refined, with_ids
 from physicslab.lab.case import attempt
 from physicslab.lab.worlds import steps_not_rigid
 from physicslab.world import World
 
-__all__ = ["Estimate", "Spread", "TwinResult", "estimate_error"]
+__all__ = ["Estimate", "Spread", "TwinResult", "estimate_error", "find_order"]
 
 _LIMITED_BY_STEP = 0.25
 """Share of the estimate that halving the step must explain for the step to be what limits the results."""
 _ORDER_MARGIN = 2.0
 """An observed order that is further from none than the method's own and this is chance."""
+_RUNS_AT_LEAST = 3.0
+"""How many times as long as the scene itself all other ways to compute it may take, whatever the budget."""
 _ROUNDINGS = 1e3
 """A spread of fewer roundings than this has no order."""
 
@@ -89,6 +92,10 @@ class Estimate:
         That of the scene itself.
     paths : dict of str to Path
         That of each twin that could be run, by its name; of a mirrored one mirrored back.
+    document : Document
+        The scene, with ids.
+    own_s, left_s : float
+        How long the scene itself took, and how much is left for what else is compared [s].
     """
 
     error: Spread | None = None
@@ -101,11 +108,19 @@ class Estimate:
     bodies: list[str] = field(default_factory=list)
     path: Path | None = None
     paths: dict[str, Path] = field(default_factory=dict)
+    document: Document = field(default_factory=dict)
+    own_s: float = 0.0
+    left_s: float = math.inf
+
+    def spread_of(self, name: str) -> Spread | None:
+        """Return how far a twin is off, where there is one that did not fail."""
+        return next((twin.spread for twin in self.twins if twin.name == name), None)
 
 
 def estimate_error(
-    load: Callable[[], World], seconds: float, moments: Sequence[float] = ()
-) -> Iterator[float | Estimate]:
+    load: Callable[[], World], seconds: float, moments: Sequence[float] = (), budget_s: float = math.inf,
+    twins: Sequence[Twin] = TWINS,
+) -> Iterator[float | Estimate]:  # fmt: skip
     """Run a scene and its twins; yield the share of the work that is done, then the estimate.
 
     Parameters
@@ -116,9 +131,13 @@ def estimate_error(
         How long it is run [s].
     moments : sequence of floats
         When paths are looked at before the end, after the start [s], in order.
+    budget_s : float
+        After how much time [s] twins are given up that are not done, compiling left out.
+    twins : sequence of Twin
+        In which other ways it is computed.
     """
     scene, found = load(), Estimate()
-    document = with_ids(write_scene(scene))
+    document = found.document = with_ids(write_scene(scene))
     scene.synchronise()
     found.bodies = [entity["id"] for entity in document["entities"] if "Velocity" in entity]
     looked = (*moments, seconds)
@@ -126,22 +145,36 @@ def estimate_error(
     def run(world: World, budget_s: float = math.inf) -> Path:
         return run_path(world, found.bodies, looked, budget_s)
 
-    found.path, found.failure = attempt(partial(run, load()))
+    began, world = time.perf_counter(), load()
+    found.path, found.failure = attempt(partial(run, world))
+    found.own_s = time.perf_counter() - began - world.compile_s
     if found.path is None:
         yield found
         return
+    left = max(budget_s, _RUNS_AT_LEAST * found.own_s)
     soft = not scene.event_driven or _something_rests(load(), seconds)
-    for i, twin in enumerate(TWINS):
-        world = twin.make(document, scene) if soft or twin.name != "rigid" else None
-        if world is not None:
-            found.twins.append(_compared(twin, world, run, found))
-            if twin.name == "rigid" and twin.name in found.paths and not any(steps_not_rigid(world)):
+    for i, twin in enumerate(twins):
+        other = twin.make(document, scene) if soft or twin.name != "rigid" else None
+        if other is not None:
+            began = time.perf_counter()
+            found.twins.append(_compared(twin, other, partial(run, budget_s=min(left, twin.budget_s)), found))
+            left = max(0.0, left - (time.perf_counter() - began - other.compile_s))
+            if twin.name == "rigid" and twin.name in found.paths and not any(steps_not_rigid(other)):
                 found.reference = found.paths[twin.name].places[-1]
-        yield (i + 1) / (len(TWINS) + 1)
+        yield (i + 1) / (len(twins) + 1)
+    found.left_s = left
     _summarise(found)
-    if found.error is not None:
-        found.order, found.order_reason = _order(found, scene, partial(run, finer(document, 4)))
     yield found
+
+
+def find_order(found: Estimate, load: Callable[[], World], seconds: float) -> None:
+    """Write into an estimate the power of the step with which its error falls, and how that was found."""
+    if found.error is not None:
+        scene = load()
+        scene.synchronise()
+        world = refined(found.document, scene, 4.0)
+        quarter = partial(run_path, world, found.bodies, (seconds,))
+        found.order, found.order_reason = _order(found, scene, quarter)
 
 
 def _something_rests(world: World, seconds: float) -> bool:
@@ -149,10 +182,10 @@ def _something_rests(world: World, seconds: float) -> bool:
     return any(world.contacts.active for _ in world.stepping(seconds=seconds))
 
 
-def _compared(twin: Twin, world: World, run: Callable[[World, float], Path], found: Estimate) -> TwinResult:
+def _compared(twin: Twin, world: World, run: Callable[[World], Path], found: Estimate) -> TwinResult:
     """Run a twin, and keep its path."""
     assert found.path is not None
-    path, failure = attempt(partial(run, world, twin.budget_s))
+    path, failure = attempt(partial(run, world))
     if path is None:
         return TwinResult(twin.name, twin.what, None, failure)
     found.paths[twin.name] = path = path.mirrored() if twin.mirrored else path
@@ -199,7 +232,7 @@ def _order(found: Estimate, scene: World, quarter: Callable[[], Path]) -> tuple[
     if path is None:
         return None, f"a quarter of the step fails: {failure}"
     fine = _spread(half, path.end).position
-    if fine == 0.0:
+    if min(coarse, fine) == 0.0:
         return None, "no difference is left between half and a quarter of the step"
     order = math.log2(coarse / fine)
     if abs(order) > scene.plan.integrator.order + _ORDER_MARGIN:

@@ -17,6 +17,8 @@ from physicslab.world import World
 __all__ = ["OutOfTime", "Path", "rows_of", "run_path"]
 
 _MIRROR = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
+_PATIENCE_S = 0.1
+"""How long a run that may be given up goes on before the clock is looked at [s]."""
 _WHOLE = 10**9
 """A stride that no run is longer than: the steps between two moments are made at once."""
 
@@ -39,6 +41,10 @@ class Path:
         That of the whole world [kg m/s] (k, 2).
     momentum_scale : array of floats
         The largest sum of the sizes of the momenta of bodies since the start [kg m/s] (k,).
+    angular, angular_scale : arrays of floats
+        The same of the angular momentum about the origin [kg m^2/s] (k,).
+    speeds, spins : arrays of floats
+        The largest speed [m/s] and spin [rad/s] of each body since the start (k, n).
     """
 
     states: NDArray[np.float64]
@@ -46,6 +52,10 @@ class Path:
     energy_scale: NDArray[np.float64]
     momentum: NDArray[np.float64]
     momentum_scale: NDArray[np.float64]
+    angular: NDArray[np.float64]
+    angular_scale: NDArray[np.float64]
+    speeds: NDArray[np.float64]
+    spins: NDArray[np.float64]
 
     @property
     def end(self) -> NDArray[np.float64]:
@@ -60,7 +70,9 @@ class Path:
 
     def mirrored(self) -> Path:
         """Return it with left and right exchanged."""
-        return replace(self, states=self.states * _MIRROR, momentum=self.momentum * _MIRROR[:2])
+        return replace(
+            self, states=self.states * _MIRROR, momentum=self.momentum * _MIRROR[:2], angular=-self.angular
+        )
 
 
 def rows_of(world: World, bodies: Sequence[str]) -> list[int]:
@@ -92,32 +104,46 @@ def run_path(
         If it takes longer.
     """
     rows = rows_of(world, bodies)
+    patience = _PATIENCE_S if math.isfinite(budget_s) else math.inf
     began = time.perf_counter() - world.compile_s  # kernels may have to be compiled first
     looks, reached = [_look(world, rows)], 0.0
     for moment in moments:
-        for _ in world.stepping(seconds=moment - reached, stride=1 if math.isfinite(budget_s) else _WHOLE):
+        for _ in world.stepping(seconds=moment - reached, stride=_WHOLE, patience=patience):
             if time.perf_counter() - began - world.compile_s > budget_s:
-                raise OutOfTime(f"given up after {budget_s:g} s, at t = {world.time:.3g} s")
+                raise OutOfTime(f"given up after {budget_s:.3g} s, at t = {world.time:.3g} s")
         reached = moment
         looks.append(_look(world, rows))
-    states, energy, energy_scale, momentum, momentum_scale = (
-        np.array([look[n] for look in looks]) for n in range(5)
+    states, energy, energy_scale, momentum, momentum_scale, angular, angular_scale = (
+        np.array([look[n] for look in looks]) for n in range(7)
     )
-    largest = (np.maximum.accumulate(scale)[1:] for scale in (energy_scale, momentum_scale))
-    return Path(states[1:], energy[1:], next(largest), momentum[1:], next(largest))
+    speeds, spins = np.hypot(states[..., 3], states[..., 4]), np.abs(states[..., 5])
+    energy_scale, momentum_scale, angular_scale, speeds, spins = (
+        np.maximum.accumulate(scale)[1:]
+        for scale in (energy_scale, momentum_scale, angular_scale, speeds, spins)
+    )
+    return Path(
+        states[1:], energy[1:], energy_scale, momentum[1:], momentum_scale, angular[1:], angular_scale,
+        speeds, spins,
+    )  # fmt: skip
 
 
-def _look(world: World, rows: list[int]) -> tuple[NDArray[np.float64], float, float, list[float], float]:
+def _look(
+    world: World, rows: list[int]
+) -> tuple[NDArray[np.float64], float, float, list[float], float, float, float]:
     """Return what a path has of a world as it is now, in its order."""
     transform, velocity = world.table(Transform), world.table(Velocity)
     columns = (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
-    energy, momentum = measure_energy(world), measure_momentum(world).linear
+    energy, momentum = measure_energy(world), measure_momentum(world)
     batch = world.batch(Transform, Velocity, Mass)
-    speeds = np.hypot(*velocity["linear"][batch.rows].T)
+    each = world.table(Mass)["mass"][batch.rows] * np.hypot(*velocity["linear"][batch.rows].T)
+    reach = np.hypot(*transform["position"][batch.rows].T)
+    turning = world.table(Mass)["inertia"][batch.rows] * np.abs(velocity["angular"][batch.rows])
     return (
         np.column_stack([column[rows] for column in columns]),
         energy.total,
         max(map(abs, (energy.total, energy.kinetic, *energy.potential.values()))),
-        [momentum.x, momentum.y],
-        float(np.sum(world.table(Mass)["mass"][batch.rows] * speeds)),
+        list(momentum.linear),
+        float(np.sum(each)),
+        momentum.angular,
+        float(np.sum(reach * each + np.where(np.isfinite(turning), turning, 0.0))),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
@@ -15,14 +16,19 @@ from physicslab.diagnostics.audit import Audit
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.writer import write_scene
 from physicslab.integrators import INTEGRATORS
-from physicslab.lab.accuracy.estimate import Estimate, estimate_error
+from physicslab.integrators.dop853 import DOP853
+from physicslab.lab.accuracy.estimate import Estimate, estimate_error, find_order
 from physicslab.lab.accuracy.horizon import find_horizon, scaled
-from physicslab.lab.accuracy.twins import finer_settings, with_ids
+from physicslab.lab.accuracy.twins import GOLDEN, Document, refined, with_ids
 from physicslab.lab.case import Job, attempt, cpu_time
+from physicslab.lab.worlds import steps_not_rigid
 from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
 
 __all__ = ["DEFAULT_S", "ESTIMATE", "SceneRow", "SceneStudy", "study_scene"]
+
+type _Ends = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Where bodies end [m] (n, 2) as configured, and in finer steps."""
 
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"
 DEFAULT_S = 5.0
@@ -32,6 +38,10 @@ _ESTIMATE_SHARE, _HORIZON_SHARE = 0.3, 0.4
 _HORIZON_TIMES = 6.0
 """How many times as long the horizon is looked for: it is often later than errors are compared."""
 _TIGHTEST = 1e-17
+_ROUNDINGS = 4.0
+"""Roundings of a place that the best of references may be off by."""
+_NO_BETTER = 2.0
+"""A run that is no further from the reference than so many times what is known of this is as good as it."""
 _SUBSTEP_FACTORS = (0.5, 1.0, 2.0, 4.0)
 """The rungs of a ladder of steps: so many times the scene's own substeps."""
 _SUBSTEPS_LIMIT = 10_000
@@ -64,10 +74,14 @@ class SceneRow:
     cpu_s : float
         Process time without compiling [s].
     half_step : float, optional
-        The largest distance [m] of any body from where it is with steps of half the length; with twice the
-        length for a method that chooses its steps, which overstates the error.
-    tightest : float, optional
-        The same from where the tightest method has it; ``None`` where there is no such method.
+        The largest distance [m] of any body from where it is with steps of half the length, and a tenth of
+        the tolerance.
+    error : float, optional
+        The same from where the finest of all runs has it.
+    at_most : bool
+        Whether that is no more than is known of the finest: the error is less, by how much is not known.
+    is_located : bool
+        Whether nothing touches, or all contacts are rigid and found at their own times.
     energy : float, optional
         The error of the energy at the end, as a share of the energy exchanged: what no account explains.
     failure : str
@@ -83,7 +97,9 @@ class SceneRow:
     evaluations: int = 0
     cpu_s: float = 0.0
     half_step: float | None = None
-    tightest: float | None = None
+    error: float | None = None
+    at_most: bool = False
+    is_located: bool = False
     energy: float | None = None
     failure: str = ""
 
@@ -98,8 +114,8 @@ class SceneStudy:
         Of the scene.
     seconds : float
         How long it was run [s].
-    tightest : str
-        The method that the others were compared with.
+    reference : str
+        What all were compared with.
     estimate : Estimate
         The error of the scene as it is configured.
     rows : list of SceneRow
@@ -111,7 +127,7 @@ class SceneStudy:
 
     name: str
     seconds: float
-    tightest: str
+    reference: str
     estimate: Estimate = field(default_factory=Estimate)
     rows: list[SceneRow] = field(default_factory=list)
     horizon_s: float | None = None
@@ -136,18 +152,64 @@ def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S
     for found in estimate_error(load, seconds):
         if isinstance(found, Estimate):
             study.estimate = found
+            find_order(found, load, seconds)
         else:
             yield _ESTIMATE_SHARE * found
     document = with_ids(write_scene(load()))
     horizon = find_horizon(document, study.estimate.bodies, _HORIZON_TIMES * seconds)
     study.horizon_s = yield from scaled(horizon, _ESTIMATE_SHARE, _HORIZON_SHARE)
-    best, study.tightest = study.estimate.reference, "rigid contacts"
-    if best is None:
-        best, study.tightest = _tightest(load, plain, seconds)
+    runs = []
     for i, simulation in enumerate(wanted):
-        study.rows.append(_row(load, simulation, best, seconds))
+        row, ends = _row(load, document, simulation, seconds)
+        study.rows.append(row)
+        runs.append((row, ends, simulation))
         yield _HORIZON_SHARE + (1.0 - _HORIZON_SHARE) * (i + 1) / len(wanted)
+    _compare(study, runs, document, load, plain)
     yield study
+
+
+def _compare(
+    study: SceneStudy, runs: list[tuple[SceneRow, _Ends | None, SimulationConfig]], document: Document,
+    load: Callable[[], World], plain: SimulationConfig,
+) -> None:  # fmt: skip
+    """Write into each row how far it is from the finest run: that which changes least in finer steps.
+
+    Soft contacts share a sink and agree on it, so where some run locates its contacts it is one of those.
+    """
+    others = []
+    if _takes(load, plain, DOP853.name):
+        tightest = dataclasses.replace(plain, integrator=DOP853.name, tolerance=_TIGHTEST)
+        others.append((*_row(load, document, tightest, study.seconds, repeats=1), tightest))
+    finest = [
+        (row.half_step, row, ends[1], simulation)
+        for row, ends, simulation in (*runs, *others)
+        if ends and row.half_step is not None
+    ]
+    located = [found for found in finest if found[1].is_located]
+    rigid, nudged = study.estimate.reference, study.estimate.spread_of("nudged")
+    floor = 0.0 if nudged is None else nudged.position
+    if rigid is not None and not located:
+        known, best, study.reference = 0.0, rigid, "rigid contacts"
+    elif finest:
+        known, row, best, simulation = min(located or finest, key=lambda found: found[0])
+        document = document | {"simulation": dataclasses.asdict(simulation)}
+        other = refined(
+            document, _prepared(load, simulation), GOLDEN
+        )  # half the step may meet the same events
+        places, failure = attempt(partial(_end, other, study.seconds))
+        known = max(known, 0.0 if failure or places is None else _apart(places, best) or 0.0)
+        step = f", {row.step}" if row.step else ""
+        how = f"auto: {row.integrator}" if row.asked == "auto" else row.integrator
+        study.reference = f"the finest of all methods ({how}{step}) in half the step"
+    else:
+        study.reference = "nothing: every method fails"
+        return
+    known = max(known, floor, _ROUNDINGS * math.ulp(float(np.abs(best).max(initial=0.0))))
+    study.reference += f", which is known to {known:.1g} m"
+    for row, ends, _ in runs:
+        if ends and (apart := _apart(ends[0], best)) is not None:
+            row.at_most = apart <= _NO_BETTER * known
+            row.error = max(apart, known) if row.at_most else apart
 
 
 def _without_trails(load: Callable[[], World]) -> Callable[[], World]:
@@ -192,26 +254,11 @@ def _prepared(load: Callable[[], World], simulation: SimulationConfig) -> World:
     return world
 
 
-def _tightest(
-    load: Callable[[], World], plain: SimulationConfig, seconds: float
-) -> tuple[NDArray[np.float64] | None, str]:
-    """Return where bodies end with the tightest method that the scene allows, and what it is called."""
-    for method, changes, words in (
-        ("exact", {}, "the closed form"),
-        ("dop853", {"tolerance": _TIGHTEST}, f"dop853 with a tolerance of {_TIGHTEST:g}"),
-        ("leapfrog", {"substeps": _limited(4 * plain.substeps)}, "leapfrog with a quarter of the step"),
-    ):
-        if _takes(load, plain, method):
-            simulation = dataclasses.replace(plain, integrator=method, **changes)
-            places, failure = attempt(partial(_end, _prepared(load, simulation), seconds))
-            if not failure:
-                return places, words
-    return None, "nothing: every method fails"
-
-
 def _row(
-    load: Callable[[], World], simulation: SimulationConfig, best: NDArray[np.float64] | None, seconds: float
-) -> SceneRow:
+    load: Callable[[], World], document: Document, simulation: SimulationConfig, seconds: float,
+    repeats: int = _REPEATS,
+) -> tuple[SceneRow, _Ends | None]:  # fmt: skip
+    """Return the row of a configuration, and where bodies end by it and by one in finer steps."""
     world = _prepared(load, simulation)
     method = world.plan
     parts = 1 if method.integrator.chooses_steps else method.substeps
@@ -223,19 +270,16 @@ def _row(
         method.integrator.name, method.reason, simulation.integrator, step,
         simulation.substeps, simulation.tolerance,
     )  # fmt: skip
-    _, row.failure = attempt(partial(_fill, row, load, simulation, best, seconds))
-    return row
+    ends, row.failure = attempt(partial(_fill, row, load, document, simulation, seconds, repeats))
+    return row, ends
 
 
 def _fill(
-    row: SceneRow,
-    load: Callable[[], World],
-    simulation: SimulationConfig,
-    best: NDArray[np.float64] | None,
-    seconds: float,
-) -> None:
+    row: SceneRow, load: Callable[[], World], document: Document, simulation: SimulationConfig,
+    seconds: float, repeats: int,
+) -> _Ends:  # fmt: skip
     """Run a scene by a configuration, and write its cost and its errors into a row."""
-    for _ in range(_REPEATS):  # the shortest: the first also compiles, and other programs run as well
+    for _ in range(repeats):  # the shortest: the first also compiles, and other programs run as well
         world = _prepared(load, simulation)
         audit = Audit(world)
         taken, places = cpu_time(partial(_end, world, seconds))
@@ -245,9 +289,12 @@ def _fill(
     row.evaluations = world.force_evaluations
     audit.sample(world)
     row.energy = audit.error
-    row.half_step = _apart(places, _end(_prepared(load, finer_settings(simulation, 2)), seconds))
-    if best is not None:
-        row.tightest = _apart(places, best)
+    contacts = world.plan.contacts if world.plan.collisions == "step" else "rigid"
+    row.is_located = contacts == "rigid" and not any(steps_not_rigid(world))
+    own = document | {"simulation": dataclasses.asdict(simulation)}
+    finer = _end(refined(own, _prepared(load, simulation), 2.0), seconds)
+    row.half_step = _apart(places, finer)
+    return places, finer
 
 
 def _end(world: World, seconds: float) -> NDArray[np.float64]:

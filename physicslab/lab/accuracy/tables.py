@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from physicslab.lab.accuracy.catalogue import LEFT_OUT
 from physicslab.lab.accuracy.estimate import Spread
+from physicslab.lab.accuracy.honesty.study import FAMILIES, QUANTITIES, HonestRow, share_of
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Row, Study
@@ -14,7 +15,15 @@ from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
 from physicslab.lab.accuracy.verdict import Verdict
 from physicslab.lab.table import cell, table
 
-__all__ = ["left_out_text", "scene_text", "study_text", "summary_text", "trust_rows_text", "trust_text"]
+__all__ = [
+    "honest_text",
+    "left_out_text",
+    "scene_text",
+    "study_text",
+    "summary_text",
+    "trust_rows_text",
+    "trust_text",
+]
 
 _HEAD = ("method", "order", "measured", "dt or tol", "steps", "forces", "CPU ms", "ms / s", "error", "energy",
          "momentum", "ang. mom.", "omega dt", "overlap", "hits", "verdict")  # fmt: skip
@@ -104,12 +113,12 @@ def _reported(rows: Sequence[tuple[str, ...]]) -> str:
 
 def scene_text(study: SceneStudy) -> str:
     """Return what was found of a scene as a table."""
-    head = ("method", "ran", "step", "forces", "CPU ms", "half step", "tightest", "energy", "")
+    head = ("method", "ran", "step", "forces", "CPU ms", "half step", "error [m]", "energy", "")
     return "\n".join([
         f"{study.name}: {ESTIMATE}",
         *_estimate_lines(study),
-        f"  how far bodies are [m] after {study.seconds:g} s from where they are with half the step "
-        f"(dop853: twice the step), and with {study.tightest}",
+        f"  how far bodies are [m] after {study.seconds:g} s from where they are with half the step (and a "
+        f"tenth of the tolerance); error: from {study.reference}",
         table([head, *map(_scene_cells, study.rows)], words=(0, 1, 8), indent="  "),
         f"  auto: {study.rows[0].reason}",
         "",
@@ -150,7 +159,8 @@ def _spread_cells(spread: Spread | None) -> tuple[str, str, str, str]:
 def _scene_cells(row: SceneRow) -> tuple[str, ...]:
     return (
         row.asked, row.integrator, row.step, str(row.evaluations), f"{1e3 * row.cpu_s:.3g}",
-        cell(row.half_step, ".1e"), cell(row.tightest, ".1e"), cell(row.energy, ".1e"), row.failure,
+        cell(row.half_step, ".1e"), f"{'at most ' if row.at_most else ''}{cell(row.error, '.1e')}",
+        cell(row.energy, ".1e"), row.failure,
     )  # fmt: skip
 
 
@@ -207,17 +217,38 @@ def trust_rows_text(rows: Sequence[TrustRow]) -> str:
     return "\n".join([table([head, *lines], words=(0, 1, 5)), "", closing])
 
 
+def honest_text(rows: Sequence[HonestRow]) -> str:
+    """Return a line for each family of random scenes: how often the estimate of an error is honest."""
+    families = {family: [row for row in rows if row.family == family] for family in FAMILIES}
+    head = ("random scenes", "known", *QUANTITIES, "worst", "too large")
+    lines = []
+    for name, found in (*families.items(), ("all", rows)):
+        share = share_of(found)
+        shown = (f"{count / share.known:.1%}" if share.known else "-" for count in share.honest)
+        lines.append((name, str(share.known), *shown, f"{share.worst:.2g}", str(share.too_large)))
+    share = share_of(rows)
+    closing = (
+        f"honest, the true error at most 3 times the estimate: {share.honest[0]} of {share.known} "
+        f"positions ({share.honest[0] / max(share.known, 1):.1%}), wanted 99 of 100: "
+        f"{'as it is to be' if share.holds else 'NOT AS IT IS TO BE'}; more than 100 times too large "
+        f"(and not of rounding): {share.too_large}"
+    )
+    return "\n".join([table([head, *lines], words=(0,)), "", closing])
+
+
 def trust_text(name: str, trust: Trust) -> str:
     """Return how many digits of a scene can be relied on, and until when."""
     if trust.failure:
         return f"{name}: cannot be measured: {trust.failure}\n"
-    head = ("until", "position", "energy", "momentum", "worst body")
+    head = ("until", "position", "velocity", "angle", "spin", "energy", "momentum", "worst body")
     rows = [
         (
-            f"{look.seconds:.4g} s", f"{look.digits:.1f}", f"{look.energy:.1f}", f"{look.momentum:.1f}",
+            f"{look.seconds:.4g} s", f"{look.digits:.1f}", f"{min(look.velocities):.1f}",
+            f"{min(look.angles):.1f}", f"{min(look.spins):.1f}", f"{look.energy:.1f}", f"{look.momentum:.1f}",
             [*trust.entities][look.bodies.index(look.digits)],
         )
         for look in trust.looks
     ]  # fmt: skip
-    lines = [f"{name}: digits that agree in all ways to compute it", table([head, *rows], words=(4,))]
+    lines = [f"{name}: digits that agree in all ways to compute it", table([head, *rows], words=(7,))]
+    lines += [f"  left out: {words}" for words in trust.left_out]
     return "\n".join([*lines, f"  horizon: {_horizon_words(trust.horizon_s)}", ""])

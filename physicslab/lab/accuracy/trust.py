@@ -9,7 +9,8 @@ is moved by far more: the rate at which both runs part is that at which any erro
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator, Iterable, Sequence
+import time
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import Any
@@ -18,20 +19,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.files.reader import read_scene
-from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error
 from physicslab.lab.accuracy.horizon import find_horizon, scaled, sizes_of
-from physicslab.lab.accuracy.nudges import NUDGE_SHARE, NUDGES, ROUNDING, error_of_tolerance, nudged
+from physicslab.lab.accuracy.nudges import NUDGE_SHARE, NUDGES, ROUNDING, nudged
 from physicslab.lab.accuracy.paths import Path, run_path
-from physicslab.lab.accuracy.twins import Document, finer, with_ids
+from physicslab.lab.accuracy.twins import TWINS, Document
 from physicslab.lab.case import Job, attempt
 from physicslab.lab.document import finite
 from physicslab.world import World
 
-__all__ = ["Look", "Trust", "assess", "moments_of", "trust_report"]
+__all__ = ["Look", "Trust", "assess", "moments_of", "scales", "trust_report"]
 
 _TWINS, _NUDGED = 0.6, 0.85
 """Shares of the work after which the twins are run, and after which the starts are that are moved."""
+BUDGET_S = 60.0
+"""How long all other ways to compute a scene may take [s], or three times as long as the scene itself."""
+STEP_SAFETY = 2.0
+"""How many times as far as a twin in other steps a result may be off: the twin's own error may be like it."""
+_WAYS = [twin for twin in TWINS if twin.name != "nudged"]
+"""The twins that are compared: there are more starts that are moved by one rounding."""
+_IN_STEPS = {twin.name for twin in TWINS if twin.differs_in_step}
+_NUDGED_NAME = "rounding"
+
+_PLACES, _VELOCITIES = slice(0, 2), slice(3, 5)
+"""Columns of a path's states."""
 
 type _Errors = NDArray[np.float64]
 type _Compare = Callable[[Path], _Errors]
@@ -46,17 +57,21 @@ class Look:
     ----------
     seconds : float
         When, after the start [s].
-    digits, energy, momentum : float
-        The fewest digits until then of any position, of the energy and of the momentum.
-    bodies : list of floats
-        Those of each body's position, in the order of the scene.
+    digits, energy, momentum, angular_momentum : float
+        The fewest digits until then of any position, of the energy and of both momenta.
+    bodies, velocities, angles, spins : lists of floats
+        Those of each body's position, velocity, angle and angular velocity, in the order of the scene.
     """
 
     seconds: float
     digits: float
     energy: float
     momentum: float
+    angular_momentum: float
     bodies: list[float]
+    velocities: list[float]
+    angles: list[float]
+    spins: list[float]
 
 
 @dataclass(slots=True)
@@ -69,16 +84,21 @@ class Trust:
         Of the position of the worst body; ``nan`` where nothing moves or the run failed.
     worst : str
         That body.
-    energy, momentum : float
+    cause : str
+        The twin that is furthest from it.
+    energy, momentum, angular_momentum : float
         Digits of the total energy, as a share of the largest of it and its parts since the start, and of the
-        momentum, as a share of the largest sum of those of all bodies.
-    entities : dict of str to float
-        How many digits of the position of each body agree in all ways to compute it.
+        momenta, as shares of the largest sums of those of all bodies.
+    entities, velocities, angles, spins : dicts of str to float
+        How many digits of the position, of the velocity, of the angle and of the angular velocity of each
+        body agree in all ways to compute it.
     horizon_s : float, optional
         The time from the start [s] at which an error of one rounding has grown to a tenth of a body's size;
         ``None`` where errors do not grow like that within the run.
     ways : list of str
         Which twins were compared.
+    left_out : list of str
+        Which were not, and why: they fail, or take too long.
     failure : str
         Why there are no figures.
     looks : list of Look
@@ -87,11 +107,17 @@ class Trust:
 
     digits: float = math.nan
     worst: str = ""
+    cause: str = ""
     energy: float = math.nan
     momentum: float = math.nan
+    angular_momentum: float = math.nan
     entities: dict[str, float] = field(default_factory=dict)
+    velocities: dict[str, float] = field(default_factory=dict)
+    angles: dict[str, float] = field(default_factory=dict)
+    spins: dict[str, float] = field(default_factory=dict)
     horizon_s: float | None = None
     ways: list[str] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
     failure: str = ""
     looks: list[Look] = field(default_factory=list)
 
@@ -107,7 +133,9 @@ def moments_of(seconds: float, dt: float, count: int) -> list[float]:
     return [n * dt for n in sorted(ends) if 1 <= n <= steps]
 
 
-def assess(load: Callable[[], World], seconds: float, moments: Sequence[float] = ()) -> Job[Trust]:
+def assess(
+    load: Callable[[], World], seconds: float, moments: Sequence[float] = (), budget_s: float = BUDGET_S
+) -> Job[Trust]:
     """Compute a scene in all ways there are; yield the share of the work that is done, then the result.
 
     Parameters
@@ -118,49 +146,128 @@ def assess(load: Callable[[], World], seconds: float, moments: Sequence[float] =
         How long it is run [s].
     moments : sequence of floats
         Before which other moments digits are counted as well, after the start [s], in order.
+    budget_s : float
+        After how long [s] ways are left out that are not done, where that is more than three runs.
     """
     estimate = Estimate()
-    for found in estimate_error(load, seconds, moments):
-        if isinstance(found, Estimate):
-            estimate = found
+    for step in estimate_error(load, seconds, moments, budget_s, _WAYS):
+        if isinstance(step, Estimate):
+            estimate = step
         else:
-            yield _TWINS * found
+            yield _TWINS * step
     if estimate.path is None or not estimate.bodies:
         yield Trust(failure=estimate.failure or "nothing moves")
         return
-    document, world = with_ids(write_scene(load())), load()
+    world, own, bodies, times = load(), estimate.path, estimate.bodies, (*moments, seconds)
     world.synchronise()
-    run = partial(run_path, bodies=estimate.bodies, moments=(*moments, seconds))
-    looser = None
-    if world.plan.integrator.chooses_steps:
-        looser, _ = attempt(partial(run, finer(document, 4)))
-    own = estimate.path
-    nudges = yield from scaled(_nudges(document, run), _TWINS, _NUDGED)
+    left_out = [f"{twin.name}: {twin.failure}" for twin in estimate.twins if twin.spread is None]
+    deadline = time.perf_counter() + estimate.left_s
+    run = partial(run_path, bodies=bodies, moments=times, budget_s=max(estimate.left_s, estimate.own_s))
+    nudges = yield from scaled(_nudges(estimate.document, run, deadline, left_out), _TWINS, _NUDGED)
+    if not estimate.paths and not nudges:
+        yield Trust(failure="no other way to compute it ends in time", left_out=left_out)
+        return
 
     def digits(compare: _Compare, scale: _Errors) -> _Errors:
         """Return the digits of a quantity at each moment."""
-        errors = _errors(compare, estimate.paths, looser, nudges)
+        errors = _errors(compare, estimate.paths, nudges).max(axis=0)
         shares = np.maximum(errors / np.where(scale > 0.0, scale, 1.0), ROUNDING)
         found: _Errors = np.maximum(-np.log10(shares), 0.0)
         return found
 
-    reach = np.maximum(np.hypot(*np.moveaxis(own.places, 2, 0)), sizes_of(world, estimate.bodies))
-    places = digits(lambda path: np.hypot(*np.moveaxis(path.places - own.places, 2, 0)), reach)
-    energy = digits(lambda path: np.abs(path.energy - own.energy), own.energy_scale)
-    momentum = digits(lambda path: np.hypot(*(path.momentum - own.momentum).T), own.momentum_scale)
-    horizon = yield from scaled(find_horizon(document, estimate.bodies, seconds), _NUDGED, 1.0)
+    reach, speeds, angles, spins = scales(world, own, bodies, times)
+    places = digits(_apart(own, _PLACES), reach)
+    columns = _Columns(
+        places,
+        digits(_apart(own, _VELOCITIES), speeds),
+        digits(lambda path: np.abs(path.states[..., 2] - own.states[..., 2]), angles),
+        digits(lambda path: np.abs(path.states[..., 5] - own.states[..., 5]), spins),
+        digits(lambda path: np.abs(path.energy - own.energy), own.energy_scale),
+        digits(lambda path: np.hypot(*(path.momentum - own.momentum).T), own.momentum_scale),
+        digits(lambda path: np.abs(path.angular - own.angular), own.angular_scale),
+    )  # fmt: skip
+    horizon = yield from _horizon(estimate, seconds, deadline, left_out)
     worst = int(places[-1].argmin())
-    yield Trust(
-        float(places[-1, worst]), estimate.bodies[worst], float(energy[-1]), float(momentum[-1]),
-        dict(zip(estimate.bodies, places[-1].tolist(), strict=True)), horizon, [*estimate.paths],
-        looks=_looks((*moments, seconds), places, energy, momentum) if moments else [],
+    found = Trust(float(places[-1, worst]), bodies[worst], ways=[*estimate.paths], left_out=left_out)
+    each = _errors(_apart(own, _PLACES), estimate.paths, nudges)[:, -1, worst]
+    found.cause = [*estimate.paths, _NUDGED_NAME][int(each.argmax())]
+    found.energy, found.momentum, found.angular_momentum = (float(column[-1]) for column in columns.whole)
+    found.entities, found.velocities, found.angles, found.spins = (
+        dict(zip(bodies, column[-1].tolist(), strict=True)) for column in columns.each
+    )
+    found.horizon_s, found.looks = horizon, columns.looks(times) if moments else []
+    yield found
+
+
+def scales(
+    world: World, path: Path, bodies: Sequence[str], times: Sequence[float]
+) -> tuple[_Errors, _Errors, _Errors, _Errors]:
+    """Return of what digits are shares, at each moment and of each body (k, n).
+
+    Of a position it is that or the size of the body [m], of a velocity the largest since the start or that
+    size in the time since then [m/s], of an angle that or a radian, of a spin the largest since the start or
+    a radian in that time [rad/s].
+    """
+    sizes, elapsed = sizes_of(world, bodies), np.array(times)[:, None]
+    reach = np.hypot(path.places[..., 0], path.places[..., 1])
+    return (
+        np.maximum(reach, sizes), np.maximum(path.speeds, sizes / elapsed),
+        np.maximum(np.abs(path.states[..., 2]), 1.0), np.maximum(path.spins, 1.0 / elapsed),
     )  # fmt: skip
 
 
-def _nudges(document: Document, run: Callable[[World], Path]) -> Generator[float, None, list[Path]]:
+@dataclass(frozen=True, slots=True)
+class _Columns:
+    """Digits at k moments, of quantities of n bodies (k, n) and of the world (k,)."""
+
+    places: _Errors
+    velocities: _Errors
+    angles: _Errors
+    spins: _Errors
+    energy: _Errors
+    momentum: _Errors
+    angular_momentum: _Errors
+
+    @property
+    def each(self) -> tuple[_Errors, ...]:
+        return self.places, self.velocities, self.angles, self.spins
+
+    @property
+    def whole(self) -> tuple[_Errors, ...]:
+        return self.energy, self.momentum, self.angular_momentum
+
+    def looks(self, times: Sequence[float]) -> list[Look]:
+        """Return the fewest digits until each moment."""
+        each, whole = (
+            [np.minimum.accumulate(column).tolist() for column in columns]
+            for columns in (self.each, self.whole)
+        )
+        return [
+            Look(seconds, min(each[0][n]), *(column[n] for column in whole), *(column[n] for column in each))
+            for n, seconds in enumerate(times)
+        ]
+
+
+def _apart(own: Path, columns: slice) -> _Compare:
+    """Return what measures how far vectors are from those of a path."""
+
+    def compare(path: Path) -> _Errors:
+        off = path.states[..., columns] - own.states[..., columns]
+        found: _Errors = np.hypot(off[..., 0], off[..., 1])
+        return found
+
+    return compare
+
+
+def _nudges(
+    document: Document, run: Callable[[World], Path], deadline: float, left_out: list[str]
+) -> Generator[float, None, list[Path]]:
     """Run starts that are moved by one rounding, and return the paths of those that do not fail."""
     paths = []
     for n in range(NUDGES):
+        if time.perf_counter() > deadline:
+            left_out.append(f"{NUDGES - n} of {NUDGES} starts moved by one rounding: no time was left")
+            break
         path, _ = attempt(partial(run, read_scene(nudged(document, n))))
         if path is not None:
             paths.append(path)
@@ -168,33 +275,34 @@ def _nudges(document: Document, run: Callable[[World], Path]) -> Generator[float
     return paths
 
 
-def _errors(
-    compare: _Compare, twins: dict[str, Path], looser: Path | None, nudges: Iterable[Path]
-) -> _Errors:
-    """Return the estimate of an error at each moment: the largest difference in any way to compute it.
+def _horizon(
+    estimate: Estimate, seconds: float, deadline: float, left_out: list[str]
+) -> Generator[float, None, float | None]:
+    """Look for the horizon, while there is time."""
+    job = scaled(find_horizon(estimate.document, estimate.bodies, seconds), _NUDGED, 1.0)
+    while True:
+        try:
+            yield next(job)
+        except StopIteration as end:
+            found: float | None = end.value
+            return found
+        if time.perf_counter() > deadline + estimate.own_s:
+            left_out.append("horizon: no time was left")
+            return None
 
-    Where the method chooses its steps, ``looser`` is the path with steps four times as long.
-    """
-    apart = {name: compare(path) for name, path in twins.items() if name != "nudged"}  # done in other ways
-    if looser is not None and "half step" in apart:
-        apart["half step"] = error_of_tolerance(apart["half step"], compare(looser))
+
+def _errors(compare: _Compare, twins: dict[str, Path], nudges: Sequence[Path]) -> _Errors:
+    """Return what each way to compute it says of an error, at each moment (ways, moments, ...)."""
+    apart = [compare(path) * (STEP_SAFETY if name in _IN_STEPS else 1.0) for name, path in twins.items()]
     squares = [compare(path) ** 2 for path in nudges]
-    rounding = [NUDGE_SHARE * np.sqrt(np.mean(squares, axis=0))] if squares else []
-    found: _Errors = np.max([*apart.values(), *rounding], axis=0)
-    return found
-
-
-def _looks(moments: Sequence[float], places: _Errors, energy: _Errors, momentum: _Errors) -> list[Look]:
-    """Return the fewest digits until each moment."""
-    places, energy, momentum = (np.minimum.accumulate(found) for found in (places, energy, momentum))
-    rows = zip(moments, places.tolist(), energy.tolist(), momentum.tolist(), strict=True)
-    return [Look(seconds, min(bodies), e, p, bodies) for seconds, bodies, e, p in rows]
+    rounding = NUDGE_SHARE * np.sqrt(np.mean(squares, axis=0)) if squares else np.zeros_like(apart[0])
+    return np.array([*apart, rounding])
 
 
 def trust_report(trust: Trust) -> dict[str, Any]:
     """Return it as ``run --json`` has it: no number that is not finite."""
     found = asdict(trust)
-    for name in ("digits", "energy", "momentum"):
+    for name in ("digits", "energy", "momentum", "angular_momentum"):
         found[name] = finite(found[name])
     if not trust.looks:
         del found["looks"]

@@ -15,10 +15,11 @@ from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.engines import OWN, Engine
 from physicslab.lab.accuracy.measure import finish
-from physicslab.lab.accuracy.nudges import NUDGE_SHARE, NUDGES, ROUNDING, error_of_tolerance, nudged
+from physicslab.lab.accuracy.nudges import NUDGE_SHARE, NUDGES, ROUNDING, nudged
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
-from physicslab.lab.accuracy.twins import Document, finer_settings
+from physicslab.lab.accuracy.trust import STEP_SAFETY
+from physicslab.lab.accuracy.twins import TWINS, Document, Twin, with_ids
 from physicslab.lab.case import Job, attempt
 from physicslab.world import World
 
@@ -29,6 +30,10 @@ CONTACT_STEP = 1.0 / 60.0
 _NEAR, _FAR, _SHARE = 10.0, 100.0, 0.95
 """Within what factor of the estimate true errors are to be, how much larger they may ever be, and how often
 they are to be as near."""
+_OF_ROUNDING = 1e-12
+"""An estimate up to this is one of what rounding adds up to, and the sum may by chance be far less."""
+_FINER = ("tightest", "short steps")
+"""Twins that are nearer to the truth than what is judged."""
 
 type _Worlds = tuple[World, ...]
 
@@ -59,6 +64,13 @@ class TrustRow:
             return None
         return max(self.error, ROUNDING) / max(self.estimate, ROUNDING)
 
+    @property
+    def is_near(self) -> bool:
+        """Whether the error is within a factor of 10 of the estimate, or less where both are of rounding."""
+        if self.estimate is None or self.ratio is None:
+            return False
+        return self.ratio <= _NEAR and (self.ratio >= 1.0 / _NEAR or self.estimate <= _OF_ROUNDING)
+
 
 @dataclass(frozen=True, slots=True)
 class TrustSummary:
@@ -85,8 +97,7 @@ class TrustSummary:
 def summarise(rows: Sequence[TrustRow]) -> TrustSummary:
     """Count the rows whose estimate is good."""
     ratios = [row.ratio for row in rows if row.ratio is not None]
-    near = sum(1.0 / _NEAR <= ratio <= _NEAR for ratio in ratios)
-    return TrustSummary(len(ratios), near, max(ratios, default=0.0))
+    return TrustSummary(len(ratios), sum(row.is_near for row in rows), max(ratios, default=0.0))
 
 
 def assess_problem(problem: Problem) -> Job[TrustRow]:
@@ -122,32 +133,39 @@ def _assess(
 ) -> Iterator[float | TrustRow]:  # fmt: skip
     """Estimate an error by how much the case's figure changes where it is computed in other ways."""
     worlds = make(simulation)
-    documents = [write_scene(world) for world in worlds]
-    for world in worlds:
+    documents = [with_ids(write_scene(world)) for world in worlds]
+    ready = make(simulation)
+    for world in ready:
         world.synchronise()
-    chooses = worlds[0].plan.integrator.chooses_steps
     error, _ = attempt(partial(measure, worlds))
     if error is None:
         yield TrustRow(case, method, None, None)
         return
 
-    def change(build: Callable[[], _Worlds]) -> float | None:
-        found, _ = attempt(lambda: measure(build()))
-        return None if found is None else abs(error - found)
+    def change(build: Callable[[], _Worlds | None]) -> float:
+        """Return how far the figure is from that of other worlds; 0 where there are none."""
+        other = build()
+        found, _ = (None, "") if other is None else attempt(partial(measure, other))
+        return 0.0 if found is None else abs(error - found)
 
-    half = change(lambda: make(finer_settings(simulation, 2)))
-    if chooses and half is not None:
-        looser = change(lambda: make(finer_settings(simulation, 4)))
-        law = half if looser is None else error_of_tolerance(np.array(half), np.array(looser))
-        half = float(law)
-    known = [half, *(change(partial(make, other)) for other in others)]
-    rounding = []
+    known = [change(partial(make, other)) for other in others]
+    ways = [twin for twin in TWINS if twin.differs_in_step or twin.name in _FINER]
+    for n, twin in enumerate(ways):
+        apart = change(partial(_twins, twin, documents, ready))
+        known.append(apart * (STEP_SAFETY if twin.differs_in_step else 1.0))
+        yield (n + 1) / (len(ways) + NUDGES + 1)
+    squares = []
     for n in range(NUDGES):
-        rounding.append(change(partial(_nudged, documents, n)))
-        yield (n + 1) / (NUDGES + 1)
-    squares = [found**2 for found in rounding if found is not None]
-    known.append(NUDGE_SHARE * math.sqrt(sum(squares) / len(squares)) if squares else 0.0)
-    yield TrustRow(case, method, max(found for found in known if found is not None), error)
+        squares.append(change(partial(_nudged, documents, n)) ** 2)
+        yield (len(ways) + n + 1) / (len(ways) + NUDGES + 1)
+    known.append(NUDGE_SHARE * math.sqrt(sum(squares) / NUDGES))
+    yield TrustRow(case, method, max(known), error)
+
+
+def _twins(twin: Twin, documents: Sequence[Document], worlds: _Worlds) -> _Worlds | None:
+    """Return the twins of all worlds, ``None`` where one has no such."""
+    found = [twin.make(document, world) for document, world in zip(documents, worlds, strict=True)]
+    return None if None in found else tuple(world for world in found if world is not None)
 
 
 def _nudged(documents: Sequence[Document], seed: int) -> _Worlds:

@@ -10,18 +10,21 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from physicslab.components import Shape
 from physicslab.components.naming import name_by_kinds
+from physicslab.diagnostics.passage import passage
 from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.text import unique_name
 from physicslab.files.reader import read_scene
+from physicslab.integrators.dop853 import DOP853
+from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
 
-__all__ = ["TWINS", "Document", "Twin", "finer", "finer_settings", "with_ids"]
+__all__ = ["GOLDEN", "TWINS", "Document", "Twin", "refined", "with_ids"]
 
 type Document = dict[str, Any]
 """A scene as :func:`physicslab.files.writer.write_scene` returns it, in which every entity has an id."""
@@ -41,6 +44,14 @@ _MIRRORED: dict[str, tuple[str, ...]] = {
 """Fields that a mirror changes; a scene with another component is not mirrored."""
 _RIGID_BUDGET_S = 10.0
 """Rigid contacts of many bodies, and of bodies that chatter, can take seconds a step."""
+GOLDEN = 0.5 * (1.0 + math.sqrt(5.0))
+"""By what factor steps are shorter that end at other moments: no two of both ever end together."""
+_FINE = 8.0
+"""How many times shorter steps are where half a step misses the events that a step does."""
+_PARTS_LIMIT = 64
+"""Into how many parts a step is divided at most so that nothing falls through what is thin."""
+_LEAST_TOLERANCE = 1e-20
+"""Of a scene's configuration."""
 _ULP_SCALE = 1e-2
 """Coordinates [m], [m/s], [rad] smaller than this are moved by a rounding of this."""
 
@@ -60,6 +71,8 @@ class Twin:
         Whether its x coordinates and angles have the opposite sign.
     budget_s : float
         After how much time [s] it is given up.
+    differs_in_step : bool
+        Whether it is off by an error of the same kind, so that the difference may be less than either.
     """
 
     name: str
@@ -67,6 +80,7 @@ class Twin:
     make: Callable[[Document, World], World | None]
     mirrored: bool = False
     budget_s: float = math.inf
+    differs_in_step: bool = False
 
 
 def with_ids(document: Document) -> Document:
@@ -82,20 +96,67 @@ def with_ids(document: Document) -> Document:
     return document
 
 
-def finer_settings(simulation: SimulationConfig, factor: int) -> SimulationConfig:
-    """Return the same with steps shorter by a factor.
+def refined(document: Document, world: World, factor: float) -> World:
+    """Return the scene with steps shorter by a factor, those of a method within its steps as well.
 
-    Methods that choose their steps accept errors that are larger by the factor to the power of 8, for steps
-    of order 8 that are longer by it: a tighter tolerance than the scene's might be more than rounding allows.
+    A method that chooses its steps is allowed a tenth of the error: of order 8, it makes them shorter by a
+    quarter then. Much less than rounding allows takes it for ever.
+
+    Parameters
+    ----------
+    document : Document
+        The scene.
+    world : World
+        Made from it, ready to be stepped: what ``auto`` chose for it holds for the other.
+    factor : float
+        Of the length of steps; 1 for another tolerance alone.
     """
-    tolerance = min(1e-2, simulation.tolerance * float(factor) ** 8)
-    return replace(simulation, dt=simulation.dt / factor, tolerance=tolerance)
+    tolerance = max(_LEAST_TOLERANCE, 0.1 * tolerance_for(world, world.schedule.forces))
+    twin = _with_settings(document, dt=world.simulation.dt / factor, tolerance=tolerance)
+    twin.synchronise()
+    if world.plan.collisions != "exact":
+        twin.resume(*world.plan.kept)  # auto would make the same steps within a shorter one
+    return twin
 
 
-def finer(document: Document, factor: int) -> World:
-    """Return the scene with :func:`finer_settings`."""
-    settings = finer_settings(SimulationConfig(**document["simulation"]), factor)
-    return _with_settings(document, dt=settings.dt, tolerance=settings.tolerance)
+def _half(document: Document, world: World) -> World | None:
+    return None if _follows_events(world) else refined(document, world, 2.0)
+
+
+def _fine(document: Document, world: World) -> World | None:
+    """Return the scene in so short steps that an event which is missed by a step is missed by little."""
+    return refined(document, world, _FINE) if _follows_events(world) else None
+
+
+def _follows_events(world: World) -> bool:
+    """Whether contacts are rigid: the step goes from event to event, and half of it may meet the same."""
+    return world.plan.collisions == "step" and world.plan.contacts == "rigid"
+
+
+def _other(document: Document, world: World) -> World | None:
+    """Return the scene with steps that end at other moments; none for a smooth method that chooses them."""
+    if world.plan.smooth and world.plan.integrator.chooses_steps:
+        return None
+    return refined(document, world, GOLDEN)
+
+
+def _tightest(document: Document, world: World) -> World | None:
+    """Return the scene by the method that chooses its steps, where it goes by one of fixed steps."""
+    if not world.plan.smooth or world.plan.integrator.chooses_steps:
+        return None
+    twin = _with_settings(document, integrator=DOP853.name, tolerance=SimulationConfig().tolerance)
+    twin.synchronise()
+    return None if twin.plan.refused else twin
+
+
+def _short(document: Document, world: World) -> World | None:
+    """Return the scene in steps in which nothing falls further than the thinnest body is thick."""
+    if world.plan.collisions == "none":
+        return None
+    found = passage(world)
+    if found is None or found.sizes <= 1.0:
+        return None
+    return refined(document, world, min(float(_PARTS_LIMIT), math.ceil(2.0 * math.sqrt(found.sizes))))
 
 
 def _with_settings(document: Document, **changes: Any) -> World:
@@ -186,10 +247,14 @@ def _awake(document: Document, world: World) -> World | None:
 
 
 TWINS: tuple[Twin, ...] = (
-    Twin("half step", "steps half as long, or for a method that chooses them twice as long",
-         lambda document, world: finer(document, 2)),
-    Twin("stiffer", "contacts four times as stiff, at half the step",
-         _stiffer),
+    Twin("other steps", "steps 0.618 times as long, which end at other moments", _other,
+         differs_in_step=True),
+    Twin("half step", "half the step, and a tenth of the tolerance", _half, differs_in_step=True),
+    Twin("eighth of the step", "steps an eighth as long, where contacts are rigid", _fine,
+         differs_in_step=True),
+    Twin("tightest", f"{DOP853.name} with the tightest tolerance", _tightest),
+    Twin("short steps", "steps in which nothing falls further than the thinnest body is thick", _short),
+    Twin("stiffer", "contacts four times as stiff, at half the step", _stiffer, differs_in_step=True),
     Twin("rigid", "contacts that do not give way: their laws solved to rounding, events at their own times",
          _rigid, budget_s=_RIGID_BUDGET_S),
     Twin("mirrored", "left and right exchanged", _mirror, mirrored=True),

@@ -20,6 +20,7 @@ from physicslab.view.controls.snapping import follow_snapping
 from physicslab.view.controls.spawning import spawn_box
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import TOOLS
+from physicslab.view.window.changing import set_end
 
 if TYPE_CHECKING:
     from physicslab.view.window.window import Window
@@ -106,7 +107,14 @@ class InputSystem(System):
         window = self._window
         deeds, window.deeds = window.deeds, []
         for deed in deeds:
-            deed(world, window)
+            self._do(deed, world)
+
+    def _do(self, action: Callable[[World, Window], None], world: World) -> None:
+        """Do something; what the system refuses, as in a folder that was removed, is said."""
+        try:
+            action(world, self._window)
+        except OSError as error:
+            self._window.notify(f"Not done: {error.strerror or error}", 6.0, failed=True)
 
     def _key(self, world: World, event: pygame.Event) -> None:
         mod = getattr(event, "mod", 0)
@@ -116,7 +124,7 @@ class InputSystem(System):
         action = KEYS.get(held + name) or KEYS.get(held.replace("shift+", "") + name)
         other_use = mod & _OTHER_USE and name not in _BY_PRINT
         if action is not None and not other_use:
-            action(world, self._window)
+            self._do(action, world)
 
     def _follow_alt(self, world: World, event: pygame.Event) -> None:
         """Open the menus where Alt is pressed and let go alone: with other keys it is for the desktop."""
@@ -133,7 +141,7 @@ class InputSystem(System):
     def _key_up(self, world: World, event: pygame.Event) -> None:
         action = RELEASES.get(pygame.key.name(event.key).lower())
         if action is not None:  # whatever else is held by now: what was begun must end
-            action(world, self._window)
+            self._do(action, world)
 
     def _press(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
@@ -143,7 +151,8 @@ class InputSystem(System):
         if event.button == pygame.BUTTON_LEFT:
             if self._window.picking is not None:
                 picking, self._window.picking = self._window.picking, None
-                picking(world, self._window, body_at(world, self._window.camera, event.pos))
+                picked = body_at(world, self._window.camera, event.pos)
+                set_end(self._window, picking.entity, picking.kind, picking.field, picked)
                 return
             if self._takes_handle(world, event.pos):
                 return
@@ -154,7 +163,8 @@ class InputSystem(System):
             self._tool.press(world, self._window)
         elif event.button == pygame.BUTTON_RIGHT:
             spawn_box(world, self._window)
-        if event.button == pygame.BUTTON_MIDDLE or (self._tool is not None and self._tool.pans):
+        by_tool = event.button == pygame.BUTTON_LEFT and self._tool is not None and self._tool.pans
+        if event.button == pygame.BUTTON_MIDDLE or by_tool:
             self._panning = event.button
 
     def _takes_handle(self, world: World, pixel: tuple[float, float]) -> bool:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from functools import lru_cache
 
-__all__ = ["MAX_LETTERS", "drawable", "shortened"]
+__all__ = ["MAX_LETTERS", "drawable", "encodable", "shortened"]
 
 MAX_LETTERS = 1000
 """Longer text is cut: no line, no caption and no message is read beyond that."""
@@ -43,7 +44,16 @@ def drawable(words: str) -> str:
     return "".join(letters)
 
 
+def encodable(text: str) -> str:
+    r"""Return text with each half of a surrogate pair and each NUL replaced: fields take UTF-8 up to a NUL.
+
+    >>> encodable("a\nb\0\udce9")
+    'a\nb\ufffd\ufffd'
+    """
+    return re.sub("[\0\ud800-\udfff]", "\ufffd", text)
+
+
 def _drawable_letter(letter: str) -> str:
-    if letter.isprintable():
+    if letter.isprintable() or unicodedata.category(letter) == "Co":  # icons are for private use
         return letter
     return " " if letter.isspace() else "\ufffd"

@@ -62,7 +62,11 @@ def round_quantity(value: float, unit: str) -> str:
     '0.2 N s'
     >>> round_quantity(5e-5, "N s")
     '5·10⁻⁵ N s'
+    >>> round_quantity(0.0, "m")
+    '0 m'
     """
+    if value == 0.0:
+        return f"0 {unit}"
     power = math.floor(math.log10(abs(value) * (1.0 + 1e-12)))
     if -3 <= power <= 5:
         return f"{value:.{max(-power, 0)}f} {unit}"

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from physicslab.files.new_scene import file_stem
+from physicslab.files.scene import SceneError, open_plain
 
 __all__ = ["is_recording", "new_paths", "new_scene_paths", "newest_scene", "scene_files"]
 
@@ -41,7 +42,7 @@ def scene_files(directory: Path) -> list[Path]:
     def offered(path: Path) -> bool:
         try:
             return _is_marked(path)
-        except OSError:
+        except (OSError, SceneError):
             return True
 
     return [path for path in reversed(_by_age(directory)) if offered(path)]
@@ -66,8 +67,7 @@ def newest_scene(directory: Path) -> Path | None:
 def is_recording(path: Path) -> bool:
     """Whether a file is marked as a recording; not if it cannot be read."""
     try:
-        with path.open("rb") as file:
-            return _RECORDING in file.read(_HEAD)
+        return _RECORDING in _head(path)
     except (OSError, ValueError):
         return False
 
@@ -77,6 +77,11 @@ def _by_age(directory: Path) -> list[Path]:
 
 
 def _is_marked(path: Path) -> bool:
-    with path.open("rb") as file:
-        head = file.read(_HEAD)
+    head = _head(path)
     return _MARK in head and _RECORDING not in head
+
+
+def _head(path: Path) -> bytes:
+    """Return the beginning of a plain file."""
+    with open_plain(path, path.name) as file:
+        return file.read(_HEAD)

@@ -35,7 +35,9 @@ class Sample:
     cpu_ms : float
         How long it took [ms].
     error : float
-        How far a body is off at the end, at most [m].
+        How far the body is off at the end that is off furthest [m].
+    at_most : bool
+        Whether it is no more than is known of the reference: the error is at most that.
     """
 
     integrator: str
@@ -45,6 +47,12 @@ class Sample:
     tolerance: float
     cpu_ms: float
     error: float
+    at_most: bool
+
+    @property
+    def words(self) -> str:
+        """The error in words."""
+        return f"{'at most ' if self.at_most else ''}{self.error:.2g} m"
 
     @property
     def name(self) -> str:
@@ -106,7 +114,7 @@ class ErrorStudy(LabProcess):
     @property
     def rounding_shows(self) -> bool:
         """Whether one rounding at the start changes as much as the smallest error: then none means much."""
-        return bool(self.samples) and self.rounding >= min(sample.error for sample in self.samples)
+        return self.rounding > 0.0 and any(self.rounding >= sample.error for sample in self.samples)
 
     @property
     def chaotic(self) -> bool:
@@ -116,10 +124,11 @@ class ErrorStudy(LabProcess):
     def csv(self) -> str:
         """Return all runs as a table."""
         rows = [
-            f"{s.asked},{s.integrator},{s.step},{s.substeps},{s.tolerance!r},{s.cpu_ms!r},{s.error!r}"
+            f"{s.asked},{s.integrator},{s.step},{s.substeps},{s.tolerance!r},{s.cpu_ms!r},{s.error!r},"
+            f"{'at most' if s.at_most else ''}"
             for s in self.samples
         ]
-        head = "chosen,method,step,substeps,tolerance,time [ms],error [m]"
+        head = "chosen,method,step,substeps,tolerance,time [ms],error [m],is"
         return "\n".join([head, *rows]) + "\n"
 
     def _read(self, report: dict[str, Any]) -> None:

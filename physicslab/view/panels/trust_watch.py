@@ -48,17 +48,21 @@ class Finding:
     ----------
     until : float
         That moment: time of the world [s].
-    digits, energy, momentum : float
-        The fewest digits of any position, of the energy and of the momentum.
-    bodies : tuple of floats
-        Those of each body's position.
+    digits, energy, momentum, angular_momentum : float
+        The fewest digits of any position, of the energy and of the momenta.
+    bodies, velocities, angles, spins : tuples of floats
+        Those of each body's position, velocity, angle and angular velocity.
     """
 
     until: float
     digits: float
     energy: float
     momentum: float
+    angular_momentum: float
     bodies: tuple[float, ...]
+    velocities: tuple[float, ...]
+    angles: tuple[float, ...]
+    spins: tuple[float, ...]
 
 
 class TrustWatch(LabProcess):
@@ -118,12 +122,16 @@ class TrustWatch(LabProcess):
         """Whether a time of the world [s] is after the horizon."""
         return self.horizon is not None and moment > self.horizon
 
-    def digits_of(self, entity: int, moment: float) -> float | None:
-        """Return the digits of a body's position at a time of the world [s], where they are known."""
+    def digits_of(self, entity: int, moment: float) -> tuple[float, float, float, float] | None:
+        """Return the digits of a body's position, velocity, angle and spin at a time of the world [s].
+
+        ``None`` where they are not known.
+        """
         found = self.finding(moment)
         if found is None or entity not in self._bodies:
             return None
-        return found.bodies[self._bodies.index(entity)]
+        n = self._bodies.index(entity)
+        return found.bodies[n], found.velocities[n], found.angles[n], found.spins[n]
 
     def worst(self, moment: float) -> int | None:
         """Return the body with the fewest digits."""
@@ -233,7 +241,8 @@ class TrustWatch(LabProcess):
         self._findings = tuple(
             Finding(
                 self.since + look["seconds"], look["digits"], look["energy"], look["momentum"],
-                tuple(look["bodies"]),
+                look["angular_momentum"],
+                *(tuple(look[name]) for name in ("bodies", "velocities", "angles", "spins")),
             )
             for look in found["looks"]
         )  # fmt: skip

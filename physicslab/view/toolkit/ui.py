@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 import pygame
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.canvas.drawable_text import drawable
+from physicslab.view.canvas.drawable_text import drawable, encodable
 from physicslab.view.canvas.theme import Colour, Theme
+from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.style import Fonts, packed
 
 __all__ = ["Ui"]
@@ -54,6 +55,8 @@ class Ui:
         When windows that come back where they were are put where they are at first.
     keys_go_to : str
         What is to get the keys in this frame: ``"menu"`` or ``"fields"``.
+    scenes : int
+        How many scenes were shown: what is half written or dragged in a widget is for one of them.
     focused : str
         The widget that keys go to, by its words.
     room : Rect
@@ -70,6 +73,7 @@ class Ui:
         self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
         self.once = imgui.Cond_.first_use_ever
         self.keys_go_to = self.focused = ""
+        self.scenes = 0
         self.room: Rect = (0, 0, 1 << 20, 1 << 20)
 
     def begin(self, theme: Theme, room: Rect = (0, 0, 1 << 20, 1 << 20), *, rearranged: bool = False) -> None:
@@ -168,6 +172,10 @@ class Ui:
             surface.set_clip(clip)
             surface.blit(picture, corner)
         surface.set_clip(None)
+
+    def held(self, label: str) -> str:
+        """Return a label without words for what is written or dragged in, which ends with the scene."""
+        return widget_label("", f"{label} of scene {self.scenes}")
 
     # ---- words ---------------------------------------------------------------------------------------------
 
@@ -293,14 +301,14 @@ class Ui:
             Whether it is marked as what there is now.
         """
         words = label if shown is None else shown
-        self.words.append(words)
+        self.words.append(drawable(words))
         if on:
             imgui.push_style_color(imgui.Col_.button, packed(self.theme.accent))
             imgui.push_style_color(imgui.Col_.button_hovered, packed(self.theme.accent, 0.9))
             imgui.push_style_color(imgui.Col_.text, packed(self.theme.background))
         if not enabled:
             imgui.begin_disabled()
-        clicked = imgui.button(f"{words}##{label}", ImVec2(*size))
+        clicked = imgui.button(widget_label(words, label), ImVec2(*size))
         self.note(label)
         if not enabled:
             imgui.end_disabled()
@@ -311,24 +319,24 @@ class Ui:
 
     def item(
         self, label: str, keys: str = "", *, on: bool = False, enabled: bool = True, tip: str = "",
-        shown: str | None = None,
+        shown: str | None = None, identity: str | None = None,
     ) -> bool:  # fmt: skip
         """Draw a line of the menu that is open, and return whether it was chosen.
 
-        ``shown`` is written on it, where that is not the label.
+        ``shown`` is written on it, where not the label; ``identity`` tells it from lines with the same one.
         """
-        label, words = drawable(label), drawable(label if shown is None else shown)
-        self.words.append(words)
-        chosen, _ = imgui.menu_item(label if shown is None else f"{words}##{label}", keys, on, enabled)
+        words = label if shown is None else shown
+        self.words.append(drawable(words))
+        chosen, _ = imgui.menu_item(widget_label(words, identity or label), keys, on, enabled)
         self.note(label)
         self.tip(tip)
         return bool(chosen)
 
     @contextmanager
-    def menu(self, label: str) -> Iterator[bool]:
-        """Begin a menu; what is yielded says whether it is open."""
-        self.words.append(label)
-        shown = bool(imgui.begin_menu(label))
+    def menu(self, label: str, identity: str | None = None) -> Iterator[bool]:
+        """Begin a menu; what is yielded says whether it is open. ``identity`` as in :meth:`item`."""
+        self.words.append(drawable(label))
+        shown = bool(imgui.begin_menu(widget_label(label, identity or label)))
         self.note(label)
         try:
             yield shown
@@ -357,8 +365,8 @@ class Ui:
 
     def checkbox(self, label: str, on: bool, tip: str = "") -> bool:
         """Draw a box to tick, and return whether it was clicked."""
-        self.words.append(label)
-        changed, _ = imgui.checkbox(label, on)
+        self.words.append(drawable(label))
+        changed, _ = imgui.checkbox(widget_label(label, label), on)
         self.note(label)
         self.tip(tip)
         return bool(changed)
@@ -368,34 +376,43 @@ class Ui:
         gap = imgui.get_style().item_inner_spacing.x
         return float(imgui.get_frame_height() + gap + imgui.calc_text_size(label).x)
 
-    def choice(
-        self, label: str, chosen: str, choices: Sequence[str] | Callable[[], Sequence[str]], tip: str = "",
-        width: float = -1.0,
-    ) -> str:  # fmt: skip
+    def choice[T](
+        self, label: str, chosen: T, choices: Sequence[T] | Callable[[], Mapping[T, str]], tip: str = "",
+        width: float = -1.0, shown: str | None = None,
+    ) -> T:  # fmt: skip
         """Draw a list that unfolds, and return what is chosen in it.
 
-        Where ``choices`` is called for them, that is done while the list is unfolded.
+        Parameters
+        ----------
+        choices : sequence, or callable
+            The texts there are; or what returns the words of each thing, called while the list is unfolded.
+        shown : str, optional
+            The words of what is chosen, where it is no text.
         """
-        self.words.append(chosen)
+        words = drawable(str(chosen) if shown is None else shown)
+        self.words.append(words)
         imgui.set_next_item_width(width)
-        shown = imgui.begin_combo(f"##{label}", chosen)
+        unfolded = imgui.begin_combo(widget_label("", label), words)
         self.note(label)
-        self.tip(tip if not shown else "")
-        if shown:
-            for name in choices() if callable(choices) else choices:
-                self.words.append(name)
-                clicked, _ = imgui.selectable(name, name == chosen)
+        self.tip(tip if not unfolded else "")
+        if unfolded:
+            offered = choices() if callable(choices) else {one: str(one) for one in choices}
+            for one, name in offered.items():
+                self.words.append(drawable(name))
+                clicked, _ = imgui.selectable(widget_label(name, repr(one)), one == chosen)
                 self.note(f"{label}: {name}")
                 if clicked:
-                    chosen = name
+                    chosen = one
             imgui.end_combo()
         return chosen
 
-    def selectable(self, label: str, *, on: bool = False, faint: bool = False) -> bool:
-        """Draw a line that can be clicked, and return whether it was."""
-        self.words.append(label)
+    def selectable(
+        self, label: str, *, on: bool = False, faint: bool = False, identity: str | None = None
+    ) -> bool:
+        """Draw a line that can be clicked, and return whether it was. ``identity`` as in :meth:`item`."""
+        self.words.append(drawable(label))
         imgui.push_style_color(imgui.Col_.text, packed(self.theme.faint if faint else self.theme.text))
-        clicked, _ = imgui.selectable(label, on)
+        clicked, _ = imgui.selectable(widget_label(label, identity or label), on)
         imgui.pop_style_color()
         self.note(label)
         return bool(clicked)
@@ -404,10 +421,12 @@ class Ui:
         self, label: str, value: float, low: float, high: float, shown: str, width: float = -1.0
     ) -> float | None:
         """Draw a slider with words on it, and return the new value if it was moved."""
+        shown = drawable(shown)
         self.words.append(shown)
         imgui.set_next_item_width(width)
         flags = imgui.SliderFlags_.no_input  # Ctrl-click would make a field of it, without units
-        moved, new = imgui.slider_float(f"##{label}", value, low, high, shown.replace("%", "%%"), flags)
+        words = shown.replace("%", "%%")
+        moved, new = imgui.slider_float(self.held(label), value, low, high, words, flags)
         self.note(label)
         return float(new) if moved else None
 
@@ -418,6 +437,7 @@ class Ui:
 
         In one of several lines Enter ends the writing, and Ctrl+Enter the line.
         """
+        text = encodable(text)
         self.words.append(text)
         if wrong:
             imgui.push_style_color(imgui.Col_.border, packed(self.theme.error))
@@ -426,15 +446,15 @@ class Ui:
         if self.keys_go_to == "fields":
             imgui.set_keyboard_focus_here()
             self.keys_go_to = ""
-        flags = imgui.InputTextFlags_
+        flags, known = imgui.InputTextFlags_, self.held(label)
         if lines == 1:
-            _, text = imgui.input_text(f"##{label}", text, flags.auto_select_all)
+            _, text = imgui.input_text(known, text, flags.auto_select_all)
         else:
             room = ImVec2(
                 width, lines * imgui.get_text_line_height() + 2.0 * imgui.get_style().frame_padding.y
             )
             several = flags.auto_select_all | flags.ctrl_enter_for_new_line
-            _, text = imgui.input_text_multiline(f"##{label}", text, room, several)
+            _, text = imgui.input_text_multiline(known, text, room, several)
         self.note(label)
         if wrong:
             imgui.pop_style_var()

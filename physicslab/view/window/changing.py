@@ -190,6 +190,9 @@ def name_entity(window: Window, entity: int, name: str) -> None:
 def set_end(window: Window, entity: int, kind: type[Component], field: str, end: int | None) -> None:
     """Let a field name another entity; the point there of a spring or an instrument stays where it is."""
     world = window.edits.world
+    if not world.has(entity, kind):
+        window.notify(f"The {plain_kind(kind).lower()} is gone", 6.0, failed=True)
+        return
     held = world.component(entity, kind)
     values = held.given() | {field: end}
     if isinstance(held, Spring):

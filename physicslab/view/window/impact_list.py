@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.diagnostics.ledger import read_impacts
+from physicslab.diagnostics.ledger import NO_IMPACTS, read_impacts
 from physicslab.history import History
 from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.world import World
@@ -57,7 +57,7 @@ class ImpactList:
         self.sorted_by = "time"
         self._reader = ImpactReader()
         self._world: World | None = None
-        self.records: Records = np.zeros(0, [("time", np.float64)])
+        self.records = _with_derived(NO_IMPACTS)
         self._room = self.records
         self._order: NDArray[np.int64] = np.zeros(0, np.int64)
         self._key: tuple[str, bool] | None = None  # what the order is by; None where it is to be found again

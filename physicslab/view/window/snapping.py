@@ -43,7 +43,9 @@ class Snapped:
 
 
 def extent_about(outlines: Outlines) -> tuple[Numbers, Numbers]:
-    """Return the lowest and the highest corner of what shapes take up (2,) [m]."""
+    """Return the lowest and the highest corner of what shapes take up (2,) [m]; points are at the origin."""
+    if not len(outlines.place):
+        return np.zeros(2), np.zeros(2)
     reach = outlines.reach
     return (outlines.place - reach).min(axis=0), (outlines.place + reach).max(axis=0)
 

@@ -8,6 +8,7 @@ import io
 import numpy as np
 
 from physicslab.components.quantities import QUANTITIES
+from physicslab.ecs.text import table_cell
 from physicslab.view.window.dashboard import Dashboard, GraphShown
 from physicslab.view.window.record import Key
 
@@ -33,4 +34,4 @@ def table_of(graph: GraphShown, dashboard: Dashboard) -> str:
 def _heading(key: Key, dashboard: Dashboard) -> str:
     body, name = key
     heading = f"{name} [{QUANTITIES[name].unit}]"
-    return heading if body is None else f"{dashboard.label(body)}: {heading}"
+    return heading if body is None else table_cell(f"{dashboard.label(body)}: {heading}")

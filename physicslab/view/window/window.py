@@ -38,7 +38,7 @@ from physicslab.view.window.snapping import Snapping
 from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
 
-__all__ = ["LEVELS", "Left", "Window"]
+__all__ = ["LEVELS", "Left", "Picking", "Window"]
 
 _PATIENCE = 3.0
 """How long [s] after Esc a second one closes the window though there are unsaved edits."""
@@ -69,6 +69,15 @@ class Left:
     history: History
     source: str | Path | None
     unchanged: int
+
+
+@dataclass(frozen=True, slots=True)
+class Picking:
+    """The field of an entity's component that the body is for which is clicked next."""
+
+    entity: int
+    kind: type[Component]
+    field: str
 
 
 class Window:
@@ -145,8 +154,8 @@ class Window:
         Whether places, sizes and angles snap, and where to.
     pins : Pins
         The fixed end of a spring that is dragged.
-    picking : callable, optional
-        What is done with the body that is clicked next, or with none where there is none.
+    picking : Picking, optional
+        What is given the body that is clicked next, or none where there is none.
     measuring : Measuring
         What is being placed, dragged or written of instruments.
     impacts : ImpactList
@@ -233,7 +242,7 @@ class Window:
         self.measured = Measured()
         self.pins = Pins()
         self.snapping = Snapping()
-        self.picking: Callable[[World, Window, int | None], None] | None = None
+        self.picking: Picking | None = None
         self.measuring, self.shows_stopwatch = Measuring(), False
         self.impacts, self.microscope = ImpactList(), Microscope()
         self.naming: str | None = None

@@ -18,7 +18,7 @@ from physicslab.history import SetField
 from physicslab.view.canvas.quantities import without_rounding
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.changing import change_fields, set_end
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Picking, Window
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
 
@@ -126,27 +126,21 @@ class ComponentRows:
         (entity,), end = window.selection.entities, values[0]
         self._numbers.label(ui, key, _label(spec), spec)
         none = _ABSENT.get(key, "none")
-        now = none if end is None else world.label(end)
         room = imgui.get_content_region_avail().x - 3.6 * ui.size
-        chosen = ui.choice(key, now, lambda: _names(world, entity, none), width=room)
+        now = none if end is None else world.label(end)
+        picked = ui.choice(key, end, lambda: _ends(world, entity, none), width=room, shown=now)
         imgui.same_line()
         if ui.button(f"{key} click", "Click the body in the world", shown="Click"):
-            window.picking = lambda world, window, picked: set_end(window, entity, kind, spec.name, picked)
+            window.picking = Picking(entity, kind, spec.name)
             window.notify("Click the body; empty space for none", 6.0)
-        if chosen != now:
-            picked = None if chosen == none else _numbered(world, chosen)
+        if picked != end:
             window.deeds.insert(0, lambda _, window: set_end(window, entity, kind, spec.name, picked))
 
 
-def _names(world: World, entity: int, none: str) -> list[str]:
+def _ends(world: World, entity: int, none: str) -> dict[int | None, str]:
     """Return the names of what has a place, but for one entity, after the word for none."""
     bodies = [other for other in world.batch(Transform).entities.tolist() if other != entity]
-    return [none, *(world.label(other) for other in sorted(bodies)[:_MAX_LISTED])]
-
-
-def _numbered(world: World, name: str) -> int | None:
-    bodies = world.batch(Transform).entities.tolist()
-    return next((entity for entity in bodies if world.label(entity) == name), None)
+    return {None: none} | {other: world.label(other) for other in sorted(bodies)[:_MAX_LISTED]}
 
 
 def _common(values: Sequence[Any]) -> Any:

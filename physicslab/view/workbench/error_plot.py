@@ -172,7 +172,7 @@ def _build_table(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, f
         imgui.table_next_column()
         if ui.button(f"Use run {n + 1}", "Run this scene by it from here on", shown=run.name):
             window.deeds.append(_using(run))
-        for words in (run.step, f"{run.cpu_ms:.3g} ms", f"{run.error:.2g} m"):
+        for words in (run.step, f"{run.cpu_ms:.3g} ms", run.words):
             imgui.table_next_column()
             ui.text(words)
     imgui.end_table()
@@ -212,10 +212,16 @@ def _opaque(colour: Colour) -> ImVec4:
 
 
 def _series(study: ErrorStudy) -> list[tuple[str, NDArray[np.float64], NDArray[np.float64]]]:
-    """Return the runs of each method, the fastest first: name, times [ms], errors [m]."""
+    """Return the runs of each method, the fastest first: name, times [ms], errors [m].
+
+    Those of which it is known only that the error is at most so large are apart.
+    """
     found = []
-    for name in dict.fromkeys(sample.name for sample in study.samples):
-        runs = sorted((s.cpu_ms, max(s.error, _FLOOR)) for s in study.samples if s.name == name)
+    for name, at_most in dict.fromkeys((sample.name, sample.at_most) for sample in study.samples):
+        runs = sorted(
+            (s.cpu_ms, max(s.error, _FLOOR)) for s in study.samples if s.name == name and s.at_most == at_most
+        )
         costs, errors = np.array(runs, np.float64).T.copy()
-        found.append((name, np.ascontiguousarray(costs), np.ascontiguousarray(errors)))
+        shown = f"{name}, at most" if at_most else name
+        found.append((shown, np.ascontiguousarray(costs), np.ascontiguousarray(errors)))
     return found

@@ -15,6 +15,7 @@ from physicslab.view.canvas.theme import Theme
 from physicslab.view.controls.file_actions import opening
 from physicslab.view.controls.scene_files import scene_files
 from physicslab.view.picture.picture import picture_of
+from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 
@@ -83,8 +84,7 @@ class Gallery:
         extent = ImVec2(_CARD[0] * size, _CARD[1] * size)
         corner = imgui.get_cursor_screen_pos()
         imgui.begin_group()
-        imgui.push_id(str(card.source))
-        clicked = imgui.selectable("##card", False, 0, extent)[0]
+        clicked = imgui.selectable(widget_label("", f"card {card.source}"), False, 0, extent)[0]
         ui.note(f"Scene: {card.title}")
         if clicked:
             window.deeds.append(opening(card.source))
@@ -105,7 +105,6 @@ class Gallery:
         )
         ui.faint(card.words, wrapped=False)
         imgui.pop_text_wrap_pos()
-        imgui.pop_id()
         imgui.set_cursor_screen_pos(ImVec2(corner.x, corner.y + extent.y))
         imgui.dummy(ImVec2(extent.x, 0.0))
         imgui.end_group()

@@ -8,7 +8,9 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Graph
 from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.controls import dashboard_actions
+from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.record import Key
@@ -16,7 +18,7 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_plot import GraphPlot
 from physicslab.view.workbench.graph_readings import ButtonRow, build_cursors, build_moment, build_readings
 from physicslab.view.workbench.panel_places import is_bar
-from physicslab.view.workbench.quantity_menu import build_quantities, shown_name
+from physicslab.view.workbench.quantity_menu import build_quantities, named_key
 from physicslab.world import World
 
 __all__ = ["GraphPanels", "owner_of"]
@@ -30,7 +32,7 @@ _LEAST = (12.0, 9.0)
 
 def owner_of(entity: int) -> str:
     """Return the name of a graph's window in Dear ImGui, without what is written as its title."""
-    return f"###graph {entity}"
+    return widget_label("", f"graph {entity}")
 
 
 class GraphPanels:
@@ -75,7 +77,7 @@ class GraphPanels:
         """Build one; return the time under the cursor, if the cursor is in its plot."""
         entity = graph.entity
         title = _title(graph, window)
-        known = imgui.internal.find_window_by_name(f"{title} {owner_of(entity)}")
+        known = imgui.internal.find_window_by_name(owner_of(entity))
         if known is not None and known.dock_id and ui.once != imgui.Cond_.always:
             self._moved.add(entity)  # a place would take it out of where it is docked
         elif place is not None and place != self._put.get(entity):
@@ -90,8 +92,8 @@ class GraphPanels:
         if place is not None:
             least = ImVec2(min(least.x, place[2]), min(least.y, place[3]))
         imgui.set_next_window_size_constraints(least, room)
-        shown, stays = imgui.begin(f"{title} {owner_of(entity)}", True, _FLAGS)
-        ui.words.append(title)
+        shown, stays = imgui.begin(widget_label(f"{title} ", f"graph {entity}"), True, _FLAGS)
+        ui.words.append(drawable(title))
         hovered: float | None = None
         self._follow_hand(entity)
         if shown:
@@ -149,7 +151,7 @@ class GraphPanels:
 
         gone = [line.key for line in graph.lines if line.key[0] not in (None, *world.entity_index.row_of)]
         for key in gone:
-            if ui.item(f"Remove: {shown_name(window.dashboard.label(key[0]))}: {key[1]}", on=True):
+            if ui.item(f"Remove: {named_key(key, window)}", on=True, identity=f"remove {key}"):
                 choose(key)
         build_quantities(ui, world, window, [line.key for line in graph.lines], choose)
 
@@ -213,4 +215,4 @@ def _title(graph: GraphShown, window: Window) -> str:
     bodies = list(dict.fromkeys(key[0] for key in graph.keys))
     names = [window.dashboard.label(body) for body in bodies]
     subject = ", ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} others"
-    return shown_name(f"Graph {graph.number}: {subject}" if names else f"Graph {graph.number}")
+    return f"Graph {graph.number}: {subject}" if names else f"Graph {graph.number}"

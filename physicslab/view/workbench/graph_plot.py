@@ -13,6 +13,7 @@ from physicslab.components.quantities import QUANTITIES
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.canvas.units import written_unit
 from physicslab.view.controls import dashboard_actions
+from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import GraphShown
@@ -129,7 +130,7 @@ class GraphPlot:
             ui.words.append(name)
             for is_before, record in ((True, dashboard.before), (False, dashboard.record)):
                 x, y = self._points(graph, line.key, record, is_before=is_before)
-                label = f"{name}##{line.entity}{' before' if is_before else ''}"
+                label = widget_label(name, f"{line.entity}{' before' if is_before else ''}")
                 look = _look(colour, _FAINT if is_before else 1.0, _WEIGHT * ui.size)
                 for part in unbroken(y):
                     implot.plot_line(label, x[part], y[part], look)

@@ -18,7 +18,7 @@ from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.plot_data import area_between, slope_between
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
-from physicslab.view.workbench.quantity_menu import scale_of, shown_name, unit_of
+from physicslab.view.workbench.quantity_menu import named_key, scale_of, unit_of
 from physicslab.world import World
 
 __all__ = ["ButtonRow", "build_cursors", "build_moment", "build_readings", "colours_of", "line_name"]
@@ -69,7 +69,7 @@ def colours_of(theme: Theme, graph: GraphShown) -> list[Colour]:
 def line_name(graph: GraphShown, key: Key, window: Window) -> str:
     """Return what a line is called: its body too, where lines are of several."""
     alone = len({other[0] for other in graph.keys}) == 1
-    return key[1] if alone else shown_name(f"{window.dashboard.label(key[0])}: {key[1]}")
+    return key[1] if alone else named_key(key, window)
 
 
 def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:

@@ -78,6 +78,12 @@ class Interface:
         self._free: Rect | None = None  # what docked windows leave of the world's room [px]
         self._arrangement = ""
 
+    def forget(self) -> None:
+        """Drop all that is half written or dragged in panels: it was for a world that is shown no more."""
+        self._inspector, self._settings, self._note = Inspector(), SettingsPanel(), NotePanel()
+        self._scene_panels.forget()
+        self.ui.scenes += 1
+
     @property
     def text(self) -> int:
         """Height of the text [px]."""

@@ -12,6 +12,7 @@ from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import file_actions
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.scene_files import scene_files
+from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.open_panel import recent_label
@@ -61,7 +62,7 @@ def _begin_walk(menu: str) -> None:
     """Put the mark of the keys on a menu."""
     bar = imgui.internal
     bar.focus_window(bar.get_current_window())
-    bar.set_nav_id(imgui.get_id(menu), bar.NavLayer.menu, 0, bar.ImRect())
+    bar.set_nav_id(imgui.get_id(widget_label(menu, menu)), bar.NavLayer.menu, 0, bar.ImRect())
     imgui.set_nav_cursor_visible(True)
 
 
@@ -93,7 +94,7 @@ def _build_recent(ui: Ui, window: Window) -> None:
 def _build_scenes(ui: Ui, world: World, window: Window) -> None:
     """Build a line for each scene, built-in or in the working directory."""
     for name, scene in SCENES.items():
-        if ui.item(scene.title, on=world.title == scene.title, tip=scene.description):
+        if ui.item(scene.title, identity=name, on=world.title == scene.title, tip=scene.description):
             window.deeds.append(file_actions.opening(name))
     try:
         files = scene_files(Path.cwd())
@@ -104,5 +105,5 @@ def _build_scenes(ui: Ui, world: World, window: Window) -> None:
         ui.rule()
         ui.faint("Files in the working directory")
     for path in files:
-        if ui.item(printable(path.name)):
+        if ui.item(printable(path.name), identity=str(path)):
             window.deeds.append(file_actions.opening(path))

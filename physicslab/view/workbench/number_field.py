@@ -201,7 +201,7 @@ class NumberFields:
         """
         width, corner = self._share * imgui.get_content_region_avail().x, imgui.get_cursor_screen_pos()
         imgui.push_item_flag(_ONLY_MOUSE, True)
-        imgui.invisible_button(f"drag {key}", ImVec2(width, imgui.get_frame_height()))
+        imgui.invisible_button(ui.held(f"drag {key}"), ImVec2(width, imgui.get_frame_height()))
         imgui.pop_item_flag()
         ui.note(f"label {key}")
         ui.words.append(words)

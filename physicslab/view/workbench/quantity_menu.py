@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import BODY_QUANTITIES, QUANTITIES, WORLD_QUANTITIES
-from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.units import written_unit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["build_quantities", "named_key", "scale_of", "shown_name", "unit_of"]
+__all__ = ["build_quantities", "named_key", "scale_of", "unit_of"]
 
 _OFFERED = 24
 """Bodies that a menu lists beside those that are selected or shown already."""
@@ -48,15 +46,6 @@ def named_key(key: Key, window: Window) -> str:
     return f"{window.dashboard.label(key[0])}: {key[1]}"
 
 
-def shown_name(name: str) -> str:
-    """Return a name as widgets show it: they take what follows ``##`` for a mark of their own.
-
-    >>> shown_name("a###b")
-    'a# # #b'
-    """
-    return re.sub("#(?=#)", "# ", drawable(name))
-
-
 def build_quantities(
     ui: Ui, world: World, window: Window, shown: Iterable[Key], choose: Callable[[Key], None]
 ) -> None:
@@ -71,8 +60,8 @@ def build_quantities(
     """
     marked = set(shown)
     for body in (None, *_offered(world, window, marked)):
-        name = "The world" if body is None else shown_name(world.label(body))
-        with ui.menu(name) as is_open:
+        name = "The world" if body is None else world.label(body)
+        with ui.menu(name, f"quantities of {body}") as is_open:
             if not is_open:
                 continue
             for group, quantities in (_OF_WORLD if body is None else _OF_BODY).items():

@@ -49,6 +49,10 @@ class ScenePanels:
         """Take over what is half written in a field; return why it is refused, empty where it is not."""
         return self._sliders.finish()
 
+    def forget(self) -> None:
+        """Drop what is dragged or half written in panels, and how wide they were."""
+        self._meters, self._sliders = MeterPanels(), SliderPanels()
+
     @staticmethod
     def save_picture(window: Window, toolkit: Toolkit) -> None:
         """Write the picture of a graph that is wanted, as it is painted."""

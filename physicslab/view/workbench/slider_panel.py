@@ -19,7 +19,6 @@ from physicslab.view.window.dashboard import SliderShown
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.number_field import NumberFields, shown_number
 from physicslab.view.workbench.panel_places import Small
-from physicslab.view.workbench.quantity_menu import shown_name
 from physicslab.view.workbench.small_panel import build_corners, build_title, size_of
 from physicslab.world import World
 
@@ -51,6 +50,8 @@ class SliderPanels:
 
     def build(self, ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
         """Build every slider at its place."""
+        self._held = {one.entity: self._held[one.entity] for one in window.dashboard.sliders
+                      if one.entity in self._held}  # fmt: skip
         for slider in window.dashboard.sliders:
             with ui.panel(f"slider {slider.entity}", places[slider.entity], rounded=True):
                 if build_title(ui, _title(slider, window), f"Slider {slider.number}"):
@@ -129,7 +130,7 @@ def _build_choice(ui: Ui, world: World, window: Window, slider: SliderShown, cha
     for entity in dict.fromkeys((*chosen, *moving)):
         if entity is None:
             continue
-        with ui.menu(shown_name(world.label(entity))) as is_open:
+        with ui.menu(world.label(entity), f"numbers of {entity}") as is_open:
             for name, (kind, spec) in SLIDER_FIELDS.items() if is_open else ():
                 if not world.has(entity, kind):
                     continue

@@ -11,7 +11,7 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Gate
 from physicslab.diagnostics.stopwatch import Lap, laps
-from physicslab.ecs.text import printable
+from physicslab.ecs.text import printable, table_cell
 from physicslab.state.attached import place_of
 from physicslab.systems.gate import GateSystem
 from physicslab.view.canvas.canvas import Rect
@@ -142,7 +142,7 @@ def crossings_csv(world: World) -> str:
     for lap in every:
         one, seconds = lap.crossing, lap.seconds
         since = "" if seconds is None else repr(seconds)
-        names = world.label(one.gate), world.label(one.body)
+        names = table_cell(world.label(one.gate)), table_cell(world.label(one.body))
         writer.writerow([repr(one.time), *names, one.direction, repr(one.speed), since])
     return text.getvalue()
 

@@ -19,6 +19,7 @@ BADGE = "Digits to trust"
 _ASKED = "Digits?"
 _OPENED, _INSET = 21.0, 0.35
 """Width of what opens, and how far the badge's frame is from its words, in heights of the text."""
+_QUANTITIES = ("Position", "Velocity", "Angle", "Spin")
 _FUTURES = ("one of many possible futures", "many futures")
 _MEANING = (
     "How many digits agree where this scene is computed in other ways: half the step, another model of "
@@ -66,16 +67,17 @@ def _width(ui: Ui, words: str) -> float:
 
 
 def build_body_digits(ui: Ui, world: World, window: Window, entity: int) -> None:
-    """Write to how many digits the position of a body is good, where that is known."""
+    """Write to how many digits a body's place and motion are good, where that is known."""
     digits, found = window.trust.digits_of(entity, world.time), window.trust.finding(world.time)
     if digits is None or found is None:
         return
-    words = f"good to {_counted(digits)}"
-    if window.trust.is_beyond(world.time):
-        words = "one of many"
-    elif found.until < world.time:
-        words = f"{_counted(digits)} until {found.until:.3g} s"
-    ui.row("Position", words, _sentence(window.trust, world, world.time))
+    for name, count in zip(_QUANTITIES, digits, strict=True):
+        words = f"good to {_counted(count)}"
+        if window.trust.is_beyond(world.time):
+            words = "one of many"
+        elif found.until < world.time:
+            words = f"{_counted(count)} until {found.until:.3g} s"
+        ui.row(name, words, _sentence(window.trust, world, world.time))
 
 
 def _frame(ui: Ui) -> None:
@@ -163,8 +165,13 @@ def _build_details(ui: Ui, world: World, window: Window) -> None:
     if found is not None:
         ui.gap(0.2)
         ui.row("Positions", _counted(found.digits), "Of the worst body")
+        for name, counts in zip(
+            ("Velocities", "Angles", "Spins"), (found.velocities, found.angles, found.spins), strict=True
+        ):
+            ui.row(name, _counted(min(counts)), "Of the worst body")
         ui.row("Energy", _counted(found.energy), "As a share of the largest of it and its parts")
         ui.row("Momentum", _counted(found.momentum), "As a share of the sum of those of all bodies")
+        ui.row("Turning", _counted(found.angular_momentum), "Angular momentum, in the same way")
         horizon = "none found" if trust.horizon is None else f"t = {trust.horizon:.3g} s"
         ui.row("Horizon", horizon, "When one rounding has grown to a tenth of a body's size")
         if found.digits < 1.0 and not trust.is_beyond(now):

@@ -44,7 +44,7 @@ class Walk:
         windows = sorted(imgui.get_current_context().windows, key=lambda one: (one.pos.x, one.pos.y))
         names = [str(one.name) for one in windows if _has_widgets(one)]
         walked = names.index(self._panel) + 1 if self._toolkit.walked and self._panel in names else 0
-        return names[walked % len(names)]
+        return names[walked % len(names)] if names else ""
 
     def follow(self, event: pygame.Event) -> None:
         """Begin where Tab leaves a field, and end at a click or Esc; before panels take the event."""
@@ -52,8 +52,10 @@ class Walk:
         if event.type == pygame.MOUSEBUTTONDOWN:
             toolkit.walked = False
         elif event.type == pygame.KEYDOWN and key == pygame.K_TAB and toolkit.typing:
-            self._panel = str(imgui.get_current_context().nav_window.root_window.name)
-            toolkit.walked = True
+            window = imgui.get_current_context().nav_window
+            if window is not None:  # None where a press in the world has just ended the writing
+                self._panel = str(window.root_window.name)
+                toolkit.walked = True
         elif event.type == pygame.KEYDOWN and key == pygame.K_ESCAPE and toolkit.has_keys:
             self._ends = not toolkit.has_popup()
 

@@ -1,0 +1,90 @@
+"""To how many digits a run is right: what is known of that at its end, as lines of its advice.
+
+What :mod:`physicslab.diagnostics.warnings` finds is wrong to the eye; what is found here is
+small, and matters to who reads figures.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.step_warnings import PHASE_LIMIT, lost_phase
+from physicslab.diagnostics.warning_records import ModelWarning
+from physicslab.world import World
+
+__all__ = ["DIGITS_LIMIT", "EXACT_PHASE", "find_imprecise", "words_of_digits"]
+
+EXACT_PHASE = 1e-9
+"""Phase [rad] that oscillations may lose without a word."""
+_EXACT_ENERGY = 1e-11
+"""Share of the energy exchanged that a method which follows the motion may leave as an error."""
+DIGITS_LIMIT = 6.0
+"""Fewer digits than this are told, where they were counted."""
+_CAUSES = {
+    "other steps": "it depends on when steps end, so events are not found at their own times",
+    "half step": "it changes with the length of the step",
+    "eighth of the step": "it changes with the length of the step: events are not found at their own times",
+    "stiffer": "contacts give way",
+    "rigid": "contacts give way, and rigid ones end elsewhere",
+    "tightest": "the method is not exact",
+    "short steps": "in steps so long bodies fall through what is thin",
+    "mirrored": "its mirror image ends elsewhere: what happens at one moment is not determined",
+    "permuted": "the order of the scene decides: what happens at one moment is not determined",
+    "awake": "bodies fell asleep that were not at rest",
+    "rounding": "one rounding at the start has grown to that",
+}
+"""Why a result is not right, by the way of computing it that is furthest off."""
+
+
+def find_imprecise(world: World, audit: Audit) -> tuple[ModelWarning, ...]:
+    """Return what is known of the error of a run that was not computed in other ways."""
+    return tuple(warning for rule in _RULES for warning in rule(world, audit))
+
+
+def words_of_digits(trust: Mapping[str, Any]) -> tuple[ModelWarning, ...]:
+    """Return the body with fewer than 6 digits, and why, of what a report has as ``trust``."""
+    if trust["digits"] is None or trust["digits"] >= DIGITS_LIMIT:
+        return ()
+    what = f"has {trust['digits']:.1f} digits of its position (--trust): {_CAUSES[trust['cause']]}"
+    return (ModelWarning(trust["worst"], what, None, "", None, "a shorter step" if _shorter(trust) else ""),)
+
+
+def _shorter(trust: Mapping[str, Any]) -> bool:
+    return trust["cause"] in ("other steps", "half step", "eighth of the step", "short steps", "stiffer")
+
+
+def _oscillation(world: World, audit: Audit) -> Iterator[ModelWarning]:
+    """Yield the spring that loses most phase, if it is seen in the last digits alone."""
+    found = lost_phase(world)
+    if found is not None and EXACT_PHASE < found[1] <= PHASE_LIMIT:
+        late, lost, rate = found
+        what = (
+            f"oscillates with omega h = {rate:.2g}, and is out of phase by the error of the method: places "
+            "are off by about that share of how far it stretches"
+        )
+        setting = 'simulation.integrator = "dop853"' if world.plan.smooth else ""
+        yield ModelWarning.about(world, late, what, lost, "rad", EXACT_PHASE, setting)
+
+
+def _passage(world: World, audit: Audit) -> Iterator[ModelWarning]:
+    """Yield the error of energy of a method that follows the motion, where it shows that it did not."""
+    if world.plan.smooth and world.plan.integrator.chooses_steps and audit.error > _EXACT_ENERGY:
+        what = (
+            "of the energy exchanged is an error of the method: bodies pass closely, or forces jump, and "
+            "places are off by more (--trust)"
+        )
+        yield ModelWarning(None, what, audit.error, "", _EXACT_ENERGY, "")
+
+
+def _softness(world: World, audit: Audit) -> Iterator[ModelWarning]:
+    """Yield that contacts were soft."""
+    if world.plan.collisions == "step" and world.plan.contacts == "soft" and math.isfinite(audit.error):
+        what = "contacts are soft: places are off by 1e-5 to 1e-2 of a size, which --trust measures"
+        yield ModelWarning(None, what, None, "", None, "")
+
+
+_RULES: tuple[Callable[[World, Audit], Iterator[ModelWarning]], ...] = (_oscillation, _passage, _softness)
+"""All of them. Another is added here, and nowhere else."""

@@ -1,0 +1,117 @@
+"""Smooth motion by another method, in 64 bits of mantissa where there are so many: Gragg, Bulirsch and Stoer.
+
+It shares nothing with the integrators that it judges: neither the method nor the code of the forces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.lab.accuracy.twins import Document
+
+__all__ = ["extrapolated", "moved"]
+
+type Long = NDArray[np.longdouble]
+
+_COLUMNS = 9
+"""Of the table of extrapolation: the order is twice that."""
+_TOLERANCE = 1e-16
+_LEAST = 1e-9
+"""Places [m] and velocities [m/s] smaller than this are right to a share of this."""
+_G, _DOWN = 1.0, (0.0, -9.81)
+"""Of scenes that give none."""
+
+
+def moved(document: Document, seconds: float) -> NDArray[np.float64]:
+    """Return the states (n, 6) of points after some time [s], under gravity, springs and drag."""
+    points = [entity for entity in document["entities"] if "Mass" in entity]
+    places, velocities = (
+        np.array([entity[kind][name] for entity in points], np.longdouble)
+        for kind, name in (("Transform", "position"), ("Velocity", "linear"))
+    )
+    q, v = extrapolated(_accelerations(document, points), places, velocities, seconds)
+    found = np.zeros((len(points), 6))
+    found[:, :2], found[:, 3:5] = q, v
+    return found
+
+
+def extrapolated(
+    accelerate: Callable[[Long, Long], Long], q: Long, v: Long, seconds: float
+) -> tuple[Long, Long]:
+    """Return places and velocities, of any shape, after some time [s]."""
+    left, h = np.longdouble(seconds), np.longdouble(seconds) / 16
+    reach_q = reach_v = _LEAST
+    while left > 0:
+        h = min(h, left)
+        reach_q, reach_v = max(reach_q, float(np.abs(q).max())), max(reach_v, float(np.abs(v).max()))
+        table: list[tuple[Long, Long]] = []
+        for column in range(1, _COLUMNS + 1):
+            row = [_midpoint(accelerate, q, v, h, 2 * column)]
+            for k, (below_q, below_v) in enumerate(table):
+                factor = (np.longdouble(column) / (column - 1 - k)) ** 2 - 1
+                last_q, last_v = row[-1]
+                row.append((last_q + (last_q - below_q) / factor, last_v + (last_v - below_v) / factor))
+            table = row
+        (one_q, one_v), (other_q, other_v) = table[-1], table[-2]
+        error = max(
+            float(np.abs(one_q - other_q).max()) / reach_q, float(np.abs(one_v - other_v).max()) / reach_v
+        )
+        if error <= _TOLERANCE or h < 1e-9 * seconds:
+            q, v, left = one_q, one_v, left - h
+        h *= min(2.0, max(0.2, 0.8 * (_TOLERANCE / max(error, 1e-30)) ** (1.0 / (2 * _COLUMNS - 1))))
+    return q, v
+
+
+def _midpoint(
+    accelerate: Callable[[Long, Long], Long], q: Long, v: Long, span: np.longdouble, steps: int
+) -> tuple[Long, Long]:
+    """Return the state after a span by Gragg's rule, whose error is a series in even powers of its steps."""
+    h = np.longdouble(span / steps)
+    old_q, old_v = q, v
+    new_q, new_v = q + h * v, v + h * accelerate(q, v)
+    for _ in range(steps - 1):
+        a = accelerate(new_q, new_v)
+        old_q, old_v, new_q, new_v = new_q, new_v, old_q + 2 * h * new_v, old_v + 2 * h * a
+    a = accelerate(new_q, new_v)
+    half = np.longdouble(0.5)
+    return half * (old_q + new_q + h * new_v), half * (old_v + new_v + h * a)
+
+
+def _accelerations(document: Document, points: list[dict[str, object]]) -> Callable[[Long, Long], Long]:
+    """Return what accelerates the points of a scene, as the contract has its laws."""
+    physics, number = document["physics"], {entity["id"]: n for n, entity in enumerate(points)}
+    mass = np.array([entity["Mass"]["mass"] for entity in points], np.longdouble)[:, None]  # type: ignore[index]
+    springs = [entity["Spring"] for entity in document["entities"] if "Spring" in entity]
+    drags = [(number[e["id"]], e["Drag"]) for e in document["entities"] if "Drag" in e]
+    mode = physics.get("gravity_mode", "linear")
+    down = np.array(physics.get("gravity", _DOWN), np.longdouble)
+    strength, soft = np.longdouble(physics.get("G", _G)), np.longdouble(physics.get("softening", 0.0))
+
+    def accelerate(q: Long, v: Long) -> Long:
+        force = mass * down if mode == "linear" else np.zeros_like(q)
+        if mode == "planet":
+            apart = q[None, :] - q[:, None]
+            square = (apart**2).sum(axis=2) + soft**2 + np.eye(len(q), dtype=np.longdouble)
+            force += (
+                strength * mass * (mass[None, :] * apart / (square * np.sqrt(square))[..., None]).sum(axis=1)
+            )
+        for spring in springs:
+            a, b = number[spring["a"]], number.get(spring.get("b"))
+            end = np.array(spring["anchor_b"], np.longdouble) if b is None else q[b]
+            speed = v[a] if b is None else v[a] - v[b]
+            line = q[a] - end
+            length = np.sqrt((line**2).sum())
+            pull = spring["stiffness"] * (length - np.longdouble(spring["rest_length"]))
+            pull += spring.get("damping", 0.0) * (speed * line).sum() / length
+            force[a] -= pull * line / length
+            if b is not None:
+                force[b] += pull * line / length
+        for n, drag in drags:
+            speed = np.sqrt((v[n] ** 2).sum())
+            force[n] -= (drag.get("linear", 0.0) + drag.get("quadratic", 0.0) * speed) * v[n]
+        return force / mass
+
+    return accelerate
