@@ -248,8 +248,8 @@ def test_the_short_method_has_order_five() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", range(20))
-def test_a_thousand_scenes_keep_the_laws(part: int) -> None:
+@pytest.mark.parametrize("part", range(8))
+def test_hundreds_of_scenes_keep_the_laws(part: int) -> None:
     """Two to twelve bodies: gaps, forces in their cones, energy; no step is left to soft contacts."""
     worlds = [scattered(seed, largest=12) for seed in range(50 * part, 50 * part + 50)]
     check_scenes(worlds, every=6, short=1e-7)  # seen: 4e-8 in one scene, of what is not known yet
