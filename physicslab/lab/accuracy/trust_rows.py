@@ -32,8 +32,6 @@ _NEAR, _FAR, _SHARE = 10.0, 100.0, 0.95
 they are to be as near."""
 _OF_ROUNDING = 1e-12
 """An estimate up to this is one of what rounding adds up to, and the sum may by chance be far less."""
-_FINER = ("tightest", "short steps")
-"""Twins that are nearer to the truth than what is judged."""
 
 type _Worlds = tuple[World, ...]
 
@@ -149,7 +147,7 @@ def _assess(
         return 0.0 if found is None else abs(error - found)
 
     known = [change(partial(make, other)) for other in others]
-    ways = [twin for twin in TWINS if twin.differs_in_step or twin.name in _FINER]
+    ways = [twin for twin in TWINS if twin.differs_in_step or twin.name == "tightest"]
     for n, twin in enumerate(ways):
         apart = change(partial(_twins, twin, documents, ready))
         known.append(apart * (STEP_SAFETY if twin.differs_in_step else 1.0))
