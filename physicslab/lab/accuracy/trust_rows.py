@@ -80,11 +80,14 @@ class TrustSummary:
         How many have both figures, and in how many the error is within a factor of 10 of the estimate.
     largest : float
         The largest true error over its estimate.
+    cautious : int
+        How many of those that are near have an estimate of rounding that is more than 10 times too large.
     """
 
     known: int
     near: int
     largest: float
+    cautious: int
 
     @property
     def holds(self) -> bool:
@@ -95,7 +98,9 @@ class TrustSummary:
 def summarise(rows: Sequence[TrustRow]) -> TrustSummary:
     """Count the rows whose estimate is good."""
     ratios = [row.ratio for row in rows if row.ratio is not None]
-    return TrustSummary(len(ratios), sum(row.is_near for row in rows), max(ratios, default=0.0))
+    near = [row.ratio for row in rows if row.is_near and row.ratio is not None]
+    cautious = sum(ratio < 1.0 / _NEAR for ratio in near)
+    return TrustSummary(len(ratios), len(near), max(ratios, default=0.0), cautious)
 
 
 def assess_problem(problem: Problem) -> Job[TrustRow]:
