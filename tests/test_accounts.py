@@ -272,7 +272,7 @@ def test_a_refused_edit_and_a_failed_step_leave_nothing() -> None:
     history.do(SetField(ball, "Velocity", "linear", (1e308, 0.0)))
     history.do(SetField(ball, "Transform", "position", (1e300, 0.0)))
     with pytest.raises(Diverged):
-        history.step(1e200)
+        history.step(1e90)
     for _ in range(2):
         history.undo()
     assert measure_account(history.world) == before

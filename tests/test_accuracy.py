@@ -244,6 +244,22 @@ def test_the_measured_order_is_the_stated_one(method: object) -> None:
     assert curve.order == pytest.approx(curve.integrator.order, abs=0.1)
 
 
+QUICK = ("drag_linear", "damped_under")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.slow]) for name in PROBLEMS]
+)
+def test_every_row_reaches_the_stated_order_or_says_why_not(name: str) -> None:
+    for curve in studied(name).curves:
+        if curve.refused or not curve.integrator.evaluations or PROBLEMS[name].search is not None:
+            continue  # without steps, or looked for with many worlds: no order is measured
+        reached = curve.order is not None and curve.order >= 0.9 * curve.integrator.order
+        assert reached != bool(curve.short), (curve.integrator.name, curve.order, curve.short)
+        if PROBLEMS[name].group == "oscillator":
+            assert "evenly" not in curve.short, "these forces are smooth"
+
+
 def test_a_method_for_positions_alone_is_said_not_to_hold_its_order_with_drag() -> None:
     curves = {curve.integrator.name: curve for curve in studied("drag_linear").curves}
     assert not curves["rk4"].short and curves["rk4"].order == pytest.approx(4, abs=0.1)

@@ -14,6 +14,7 @@ from physicslab.commands.step_watch import StepWatch
 from physicslab.components import Transform
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene
+from physicslab.history import History
 from physicslab.world import World
 
 BALL: dict[str, Any] = {
@@ -208,3 +209,25 @@ def test_a_long_name_is_shortened_in_messages(length: int, capsys: pytest.Captur
     Path("long.json").write_text(json.dumps({**scene, "name": "x" * 10**7}))
     assert main(["run", "long.json"]) == 2
     assert len(capsys.readouterr().err) < 300
+
+
+def test_a_replay_stops_when_its_time_is_up(capsys: pytest.CaptureFixture[str]) -> None:
+    history = History(load_scene("drop"))
+    history.step(steps=50)
+    history.save("r.json")
+    assert main(["replay", "r.json", "--at-most", "1e-9", "--json", "o.json"]) == 1
+    report = json.loads(Path("o.json").read_text())
+    assert "after 1 of 50 steps" in report["stopped"] and report["same"]
+    assert f"physicslab: r.json: {report['stopped']}" in capsys.readouterr().err
+    assert main(["replay", "r.json", "--at-most", "100"]) == 0
+
+
+@pytest.mark.parametrize("kind", ["html", "gif"])
+def test_an_export_stops_when_its_time_is_up_and_keeps_what_it_reached(
+    kind: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["export", "drop", f"--{kind}", f"o.{kind}", "--seconds", "5", "--at-most", "1e-9"]
+    assert main(command) == 1
+    error = capsys.readouterr().err
+    assert "drop: stopped after 1e-09 s of wall clock (--at-most) at t = " in error
+    assert Path(f"o.{kind}").stat().st_size > 0

@@ -70,8 +70,8 @@ def test_a_byte_order_mark_is_no_fault(tmp_path: Path) -> None:
 def test_what_is_no_plain_file_is_refused_at_once(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
-    assert refused(pipe) == "is a pipe or a device; a scene must be a plain file"
-    assert refused("/dev/zero") == "is a pipe or a device; a scene must be a plain file"
+    assert refused(pipe) == "is a pipe or a device; a scene file must be a plain file"
+    assert refused("/dev/zero") == "is a pipe or a device; a scene file must be a plain file"
     assert refused(tmp_path) == "is a directory, not a scene file"
 
 

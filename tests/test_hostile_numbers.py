@@ -234,7 +234,7 @@ def test_steps_that_cannot_be_counted_are_refused(steps: Any) -> None:
 def test_a_time_that_is_none_is_refused(seconds: Any) -> None:
     with pytest.raises(ValueError, match=r"run\.seconds = .*: must be a finite number >= 0 s"):
         World().run(seconds=seconds)
-    with pytest.raises(ValueError, match=r"step\.dt = .*: must be a finite number >= 1e-100 s"):
+    with pytest.raises(ValueError, match=r"step\.dt = .*: must be a finite number from 1e-100 to 1e\+100 s"):
         World().step(seconds)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
@@ -175,6 +176,24 @@ def test_over_no_time_the_pull_is_that_of_the_instant() -> None:
     state = (0.3, -0.7, 0.2, 0.9)
     mean = springs.mean_spring_pull.py_func(*state, 0.0, 1.0, 40.0, 3.0)  # type: ignore[attr-defined]
     assert mean == pytest.approx(springs.spring_pull.py_func(*state, 1.0, 40.0, 3.0))  # type: ignore[attr-defined]
+
+
+def test_a_damper_whose_length_passes_through_zero_keeps_the_order() -> None:
+    """A body swings through the point that holds it, on a spring that dampens it."""
+
+    def after(dt: float, method: str) -> NDArray[np.float64]:
+        world = World(
+            *standard_systems(), physics=PhysicsConfig(gravity_mode="none"),
+            simulation=SimulationConfig(dt=dt, substeps=1, integrator=method),
+        )  # fmt: skip
+        spring = Spring(rest_length=0, stiffness=100.0, damping=2.0)
+        world.spawn(Transform((1.0, 0.0)), Velocity(), Mass(1.0), spring)
+        world.run(seconds=0.75)
+        return np.concatenate((world.table(Transform)["position"], world.table(Velocity)["linear"])).ravel()
+
+    exact = after(0.75, "exact")
+    errors = [np.abs(after(0.75 / n, "implicit_midpoint") - exact).max() for n in (75, 150, 300, 600)]
+    assert all(fine < 0.3 * coarse for coarse, fine in itertools.pairwise(errors)), errors
 
 
 def falling(speed: float, component: object, **physics: object) -> World:

@@ -8,12 +8,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from physicslab.kernels.events import meeting
+from physicslab.kernels.arguments import Sizes
+from physicslab.kernels.events import encounter, meeting
 from physicslab.kernels.events.meeting import Course
+from physicslab.kernels.events.path import FIELDS
+from physicslab.kernels.interpreter import twin_of
 from physicslab.kernels.narrow.outline import Outline
+from physicslab.kernels.records import MANIFOLD
 
 meet_line, meet_circle_circle = compiled(meeting.meet_line), compiled(meeting.meet_circle_circle)
 meet_circle_box, meet_box_box = compiled(meeting.meet_circle_box), compiled(meeting.meet_box_box)
+time_apart, meeting_of = twin_of(encounter.time_apart), twin_of(encounter.meeting_of)
 away = st.floats(1.0, 3.0)
 turns = st.floats(0.0, 6.28)
 speeds = st.floats(-5.0, 5.0)
@@ -127,3 +132,29 @@ def test_the_fastest_and_the_faintest_meeting_are_found() -> None:
     # A parabola whose top dips into the circle from below.
     t = meet_circle_circle(Course(-2.0, -3.0, 1.0, math.sqrt(2 * (2.0 + 1e-9)), 0.0, -1.0), 1.0, SPAN, 0.0)
     assert 1.99 < t < 2.0
+
+
+@settings(max_examples=300)
+@given(
+    kinds=st.tuples(st.sampled_from((1, 2)), st.sampled_from((1, 2))),
+    wall=st.integers(-4, 3),
+    angles=st.tuples(*[st.sampled_from((0.0, 0.7))] * 2),
+    place=st.tuples(*[st.floats(-4.0, 4.0)] * 2),
+    rates=st.lists(speeds, min_size=4, max_size=4),
+    pulled=st.booleans(),
+    now=st.sampled_from((0.0, 0.3)),
+)
+def test_no_pair_meets_while_it_is_taken_as_apart(
+    kinds: tuple[int, int], wall: int, angles: tuple[float, float], place: tuple[float, float],
+    rates: list[float], pulled: bool, now: float,
+) -> None:  # fmt: skip
+    manifold = np.zeros(1, MANIFOLD).view(np.recarray)
+    manifold["a"], manifold["b"], manifold["wall"] = 0, 1, max(wall, -1)
+    paths = np.zeros((2, FIELDS))
+    paths[1, [0, 2]], paths[1, [4, 6]], paths[0, [4, 6]] = place, rates[:2], rates[2:]
+    paths[1, 9] = -9.81 * pulled
+    sizes = Sizes(np.array(kinds), np.array([0.4, 0.3]), np.array([0.6, 1.5]), np.array([0.8, 0.2]))
+    walls, angle = np.array([-5.0, -5.0, 5.0, 5.0]), np.array(angles)
+    apart = time_apart(manifold[0], paths, angle, sizes, walls, now, 1e-10)
+    meets, _ = meeting_of(manifold[0], paths, angle, sizes, walls, now, 0.0, SPAN, 0.0)
+    assert 0.0 <= apart <= meets

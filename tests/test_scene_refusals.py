@@ -137,7 +137,7 @@ SECTIONS = [
         {"physics": {"bounds_restitution": 2}},
         "physics.bounds_restitution = 2: must be a finite number from 0",
     ),
-    ({"simulation": {"dt": 0}}, "simulation.dt = 0: must be a finite number >= 1e-100"),
+    ({"simulation": {"dt": 0}}, "simulation.dt = 0: must be a finite number from 1e-100 to 1e+100"),
     ({"simulation": {"substeps": 0}}, "simulation.substeps = 0: must be a whole number"),
     ({"simulation": {"substeps": 1.5}}, "simulation.substeps = 1.5: must be a whole number"),
     ({"simulation": {"sleeping": "no"}}, 'simulation.sleeping = "no": must be "auto", true or false'),

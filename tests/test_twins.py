@@ -258,7 +258,7 @@ def test_chaos_shows_where_impacts_are_located() -> None:
             float(((Decimal(p.x) - x) ** 2 + (Decimal(p.y) - y) ** 2).sqrt())
             for p, (x, y) in zip(places, truth, strict=True)
         )
-        assert found.error is not None and found.worst == "nudged"
+        assert found.error is not None and found.worst in ("nudged", "other steps")
         ratios.append(found.error.position / true)
     assert min(ratios) > 0.1 and sorted(ratios)[-2] < 10.0 and max(ratios) < 30.0, "seven of eight"
 

@@ -262,7 +262,7 @@ def test_a_world_forgotten_while_another_works_does_not_come_back() -> None:
 @pytest.mark.parametrize("dt", [0.0, -1.0, math.nan, math.inf])
 def test_step_refuses_a_bad_dt(dt: float) -> None:
     world = World()
-    with pytest.raises(ValueError, match=r"dt = .*: must be a finite number >= 1e-100 s"):
+    with pytest.raises(ValueError, match=r"dt = .*: must be a finite number from 1e-100 to 1e\+100 s"):
         world.step(dt)
     assert (world.time, world.steps) == (0.0, 0)
 

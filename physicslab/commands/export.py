@@ -10,7 +10,7 @@ from physicslab.commands.assignments import add_assignments, assign
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.films import film_size, make_film
 from physicslab.commands.measured_run import MeasuredRun
-from physicslab.commands.numbers import STEP_LIMIT, positive_duration
+from physicslab.commands.numbers import STEP_LIMIT, add_budget, positive_duration
 from physicslab.commands.output import Output
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.page import page
@@ -48,6 +48,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     rate = "pictures of a film a second, where it is not to play as fast as the run (a GIF has 50 at most)"
     add("--fps", metavar="N", type=_rate, help=rate)
     add("--size", metavar="WxH", type=film_size, help="width and height of a film [px] (960x540)")
+    add_budget(parser)
     add_assignments(parser)
     parser.epilog = (
         f"A page holds bodies times instants of at most {_LIMIT:,}, positions to 7 digits. A scene of 20 "
@@ -86,8 +87,10 @@ def execute(arguments: Namespace) -> int:
     world = load_scene(arguments.scene)
     assign(world, arguments.set)
     with Tiers(is_small(world)) as tiers:
-        content, recorder = _recorded(world, arguments, tiers)
+        content, recorder, stopped = _recorded(world, arguments, tiers)
     output.write(content)
+    if stopped:
+        raise CommandError(f"{stopped}: the page ends there", FAILED)
     if not output.to_stdout:
         bodies = "1 body that moves" if recorder.moving == 1 else f"{recorder.moving:,} bodies that move"
         size = f"{len(content) / 1000:,.0f} kB"
@@ -96,18 +99,19 @@ def execute(arguments: Namespace) -> int:
     return 0
 
 
-def _recorded(world: World, arguments: Namespace, tiers: Tiers) -> tuple[bytes, RunRecorder]:
-    """Return the page of a run of the world, and what was recorded for it."""
+def _recorded(world: World, arguments: Namespace, tiers: Tiers) -> tuple[bytes, RunRecorder, str]:
+    """Return the page of a run of the world, what was recorded, and where it was stopped, if it was."""
     name = world.name or Path(arguments.scene).stem
     label = shortened(printable(name))
     recorder = RunRecorder(world)
     _check_size(world, recorder, arguments)
     try:
-        run = MeasuredRun(world, name, tiers, recorder=recorder, every=arguments.every)
+        run = MeasuredRun(world, name, tiers, arguments.at_most, recorder, arguments.every)
         run.go(arguments.seconds, None)
     except (Diverged, NotShown) as error:
         raise CommandError(f"{label}: {error}; no page was written", FAILED) from error
-    return page(world, name, recorder, _notes(world, run)), recorder
+    stopped = f"{label}: {run.stopped}" if run.stopped else ""
+    return page(world, name, recorder, _notes(world, run)), recorder, stopped
 
 
 def _check_size(world: World, recorder: RunRecorder, arguments: Namespace) -> None:

@@ -85,7 +85,9 @@ def make_film(option: str, path: str, arguments: Namespace) -> None:
     except ValueError as error:
         raise CommandError(f"{label}: {error}") from error
     name = world.name or Path(arguments.scene).stem
-    count = _run(world, name, output, every, rate, arguments)
+    count, stopped = _run(world, name, output, every, rate, arguments)
+    if stopped:
+        raise CommandError(f"{shortened(printable(name))}: {stopped}: the film ends there", FAILED)
     size = f"{os.path.getsize(path) / 1000:,.0f} kB"
     width, height = arguments.size
     shown = f"{count:,} pictures of {width} x {height} px, {rate:.4g} a second"
@@ -98,8 +100,10 @@ def _world(arguments: Namespace) -> World:
     return world
 
 
-def _run(world: World, name: str, output: Output, every: float, rate: float, arguments: Namespace) -> int:
-    """Make the film, and return how many pictures it has."""
+def _run(
+    world: World, name: str, output: Output, every: float, rate: float, arguments: Namespace
+) -> tuple[int, str]:
+    """Make the film; return how many pictures it has, and where the run was stopped, if it was."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
     from physicslab.view.overlay.moving import MovingPicture
 
@@ -108,7 +112,8 @@ def _run(world: World, name: str, output: Output, every: float, rate: float, arg
             extent = world.view or _extent(name, every, arguments, tiers)
             picture = MovingPicture(arguments.size, extent)
             with Film(output.path, arguments.size, rate) as film:
-                run = MeasuredRun(world, name, tiers, recorder=_Filming(film, picture), every=every)
+                filming = _Filming(film, picture)
+                run = MeasuredRun(world, name, tiers, arguments.at_most, filming, every)
                 run.go(arguments.seconds, None)
     except (Diverged, NotShown) as error:
         raise CommandError(f"{shortened(printable(name))}: {error}; no film was written", FAILED) from error
@@ -116,12 +121,16 @@ def _run(world: World, name: str, output: Output, every: float, rate: float, arg
         reason = error.strerror or str(error)
         label = shortened(printable(output.path), 200)
         raise CommandError(f"{label}: cannot be written: {reason}", FAILED) from error
-    return film.count
+    return film.count, run.stopped
 
 
 def _extent(name: str, every: float, arguments: Namespace, tiers: Tiers) -> Box:
-    """Return where a run takes place of which the scene does not say it: it is made once before."""
+    """Return where a run takes place of which the scene does not say it: it is made once before.
+
+    Each of the two has the time that one may take.
+    """
     world = _world(arguments)
     recorder = RunRecorder(world)
-    MeasuredRun(world, name, tiers, recorder=recorder, every=every).go(arguments.seconds, None)
+    run = MeasuredRun(world, name, tiers, arguments.at_most, recorder, every)
+    run.go(arguments.seconds, None)
     return extent_of_run(world, recorder)

@@ -5,10 +5,16 @@ from __future__ import annotations
 import argparse
 import math
 
-__all__ = ["STEP_LIMIT", "count", "duration", "positive_count", "positive_duration"]
+__all__ = ["STEP_LIMIT", "add_budget", "count", "duration", "positive_count", "positive_duration"]
 
 STEP_LIMIT = 10**15
 """More than any run will do; beyond it, times could no longer be counted exactly."""
+
+
+def add_budget(parser: argparse.ArgumentParser) -> None:
+    """Declare the wall-clock time after which a command stops."""
+    budget = "stop after so many seconds of wall clock, compiling left out: exit 1, with what was reached"
+    parser.add_argument("--at-most", metavar="SECONDS", type=positive_duration, help=budget)
 
 
 def duration(text: str) -> float:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from argparse import ArgumentParser, Namespace
 from typing import Any
 
 from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands.numbers import add_budget
 from physicslab.commands.output import Output
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.json_text import json_bytes
@@ -22,6 +24,7 @@ __all__ = ["add_arguments", "execute"]
 def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
     parser.add_argument("file", metavar="FILE", help="a recording, as the window or History.save writes it")
+    add_budget(parser)
     parser.add_argument("--json", metavar="FILE", help="write what came of it (- for stdout)")
 
 
@@ -33,29 +36,43 @@ def execute(arguments: Namespace) -> int:
         raise CommandError(f"--json {shortened(printable(arguments.json), 200)}: is the recording itself")
     world, line = load(arguments.file)
     first: Played | None = None
+    stopped, began = "", time.perf_counter() - world.compile_s
     with Tiers(is_small(world)):
         try:
             for played in play(world, line, label):
                 if played.columns and first is None:
                     first = played
+                seconds = time.perf_counter() - world.compile_s - began
+                if (
+                    arguments.at_most is not None
+                    and seconds >= arguments.at_most
+                    and played.step < line.steps
+                ):
+                    place = f"at t = {world.time:.9g} s, after {played.step} of {line.steps} steps"
+                    stopped = f"stopped after {arguments.at_most:g} s of wall clock (--at-most) {place}"
+                    break
         except Diverged as error:
             raise CommandError(f"{label}: {error}", FAILED) from error
     if output is not None:
-        output.write(json_bytes(_report(world, line.steps, len(line.entries), first)))
+        output.write(json_bytes(_report(world, line.steps, len(line.entries), first, stopped)))
     if first is not None:
         columns = " and ".join(first.columns)
         where = f"step {first.step} of {line.steps}, t = {first.time:.9g} s"
         raise CommandError(f"{label}: bits differ from {where} on, first in {columns}", FAILED)
+    if stopped:
+        raise CommandError(f"{label}: {stopped}, all bits as recorded so far", FAILED)
     if output is None or not output.to_stdout:
         print(f"{label}: {line.steps} steps, t = {world.time:.9g} s, all bits as recorded")
     return 0
 
 
-def _report(world: World, steps: int, entries: int, first: Played | None) -> dict[str, Any]:
+def _report(world: World, steps: int, entries: int, first: Played | None, stopped: str) -> dict[str, Any]:
     report: dict[str, Any] = {
         "format": "physicslab-replay/1", "entries": entries, "steps": steps, "time": world.time,
         "same": first is None,
     }  # fmt: skip
+    if stopped:
+        report["stopped"] = stopped
     if first is not None:
         report["first_difference"] = {"step": first.step, "time": first.time, "columns": list(first.columns)}
     return report

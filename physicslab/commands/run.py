@@ -16,7 +16,14 @@ from typing import TextIO
 from physicslab.commands.assignments import add_assignments, assign
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.measured_run import MeasuredRun
-from physicslab.commands.numbers import STEP_LIMIT, count, duration, positive_count, positive_duration
+from physicslab.commands.numbers import (
+    STEP_LIMIT,
+    add_budget,
+    count,
+    duration,
+    positive_count,
+    positive_duration,
+)
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.desktop.rescue import save_last_good
@@ -54,8 +61,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--integrator", metavar="NAME", help=f"one of {', '.join(INTEGRATORS)}")
     add("--contacts", metavar="NAME", help=f"one of {', '.join(CONTACTS)}")
     add_assignments(parser)
-    budget = "stop after so many seconds of wall clock, compiling left out: exit 1, with what was reached"
-    add("--at-most", metavar="SECONDS", type=positive_duration, help=budget)
+    add_budget(parser)
     add("--json", metavar="FILE", help="write energies, momenta, costs and the final state (- for stdout)")
     table = "write every body's state with all energies and momenta, at the start and after each step (-)"
     add("--csv", metavar="FILE", help=table)

@@ -94,6 +94,7 @@ class EventDriven:
         entities = state.entity_index.entities[self._moving]
         self._keys = coordinate_keys(entities, entities[:0])
         self._face = np.zeros(len(self._pairs), np.int64)
+        self._apart = np.zeros(len(self._pairs), np.int64)
         self._due = np.zeros((len(self._pairs), 5))
         self._impact_positions = np.full((len(self._pairs), 2), np.nan)
         self._bounds = bounds_of(state)
@@ -326,8 +327,8 @@ class EventDriven:
         self._paths[:, _MASS] = np.where(ballistic, state.table(Mass)["mass"], 0.0)
         made, elapsed, impacts, why, pair = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,
-            self._paths, self._mode, self._face, self._due, self._impact_positions,
-            motion_of(state), sizes_of(state), materials_of(state),
+            self._paths, self._mode, self._face, self._apart, self._due,
+            self._impact_positions, motion_of(state), sizes_of(state), materials_of(state),
             (bodies.inverse_mass, bodies.inverse_inertia), self._bounds,
             state.account.sums, contacts.log, contacts.logged, state.time + offset, span, steps, dt,
             self._urgent, ordered,

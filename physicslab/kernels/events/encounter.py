@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, Vectors, inlined
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Sizes
 from physicslab.kernels.events.meeting import (
     Course,
@@ -18,7 +18,7 @@ from physicslab.kernels.narrow.outline import Outline, Way, outline_of
 from physicslab.kernels.narrow.pair import touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point
 
-__all__ = ["gap_of", "meeting_of", "touch_pair"]
+__all__ = ["gap_of", "meeting_of", "time_apart", "touch_pair"]
 
 _ROUNDING = 1e-14
 """Share of a speed that rounding may have made."""
@@ -77,6 +77,58 @@ def meeting_of(
         c * dx + s * dy, c * dy - s * dx, c * ux + s * uy, c * uy - s * ux, c * wx + s * wy, c * wy - s * wx
     )
     return meet_circle_box(turned, box.half_x, box.half_y, radius, span, min_speed), 0
+
+
+@inlined
+def _half_extents(i: int, angle: Numbers, sizes: Sizes) -> tuple[float, float]:
+    """Return how far row i reaches from its middle along x and y [m], or more."""
+    if sizes.kind[i] != 2:
+        return sizes.radius[i], sizes.radius[i]
+    if angle[i] == 0.0:
+        return 0.5 * sizes.width[i], 0.5 * sizes.height[i]
+    either = 0.5 * (sizes.width[i] + sizes.height[i])
+    return either, either
+
+
+@inlined
+def _time_open(gap: float, speed: float, pull: float) -> float:
+    """Return how long a gap stays open [s]; 0 if it is closed."""
+    return meet_line(gap, speed, pull, 0.0) if gap > 0.0 else 0.0
+
+
+@always_inlined
+def time_apart(
+    manifold: Manifold, paths: Vectors, angle: Numbers, sizes: Sizes, walls: Numbers, now: float, error: float
+) -> float:
+    """Return for how many seconds from ``now`` on a pair surely is apart, whose place is known to ``error``.
+
+    By the rectangles about both, along each axis: cheap, and never longer than until the pair meets.
+    """
+    a, b, wall = manifold.a, manifold.b, manifold.wall
+    half_x, half_y = _half_extents(b, angle, sizes)
+    s = now - paths[b, 10]
+    x, y = (
+        paths[b, 0] + s * (paths[b, 4] + 0.5 * s * paths[b, 8]),
+        paths[b, 2] + s * (paths[b, 6] + 0.5 * s * paths[b, 9]),
+    )
+    vx, vy, wx, wy = paths[b, 4] + s * paths[b, 8], paths[b, 6] + s * paths[b, 9], paths[b, 8], paths[b, 9]
+    if wall >= 0:
+        sign = 1.0 if wall < 2 else -1.0
+        if wall == 0 or wall == 2:
+            return _time_open(sign * (x - walls[wall]) - half_x - error, sign * vx, sign * wx)
+        return _time_open(sign * (y - walls[wall]) - half_y - error, sign * vy, sign * wy)
+    s = now - paths[a, 10]
+    x -= paths[a, 0] + s * (paths[a, 4] + 0.5 * s * paths[a, 8])
+    y -= paths[a, 2] + s * (paths[a, 6] + 0.5 * s * paths[a, 9])
+    other_x, other_y = _half_extents(a, angle, sizes)
+    sign = math.copysign(1.0, x)
+    vx, wx = vx - (paths[a, 4] + s * paths[a, 8]), wx - paths[a, 8]
+    apart = _time_open(abs(x) - half_x - other_x - error, sign * vx, sign * wx)
+    if apart == math.inf:
+        return apart
+    sign = math.copysign(1.0, y)
+    vy, wy = vy - (paths[a, 6] + s * paths[a, 9]), wy - paths[a, 9]
+    return max(apart, _time_open(abs(y) - half_y - other_y - error, sign * vy, sign * wy))
 
 
 @inlined

@@ -24,7 +24,7 @@ from physicslab.kernels.arguments import (
     Sizes,
     SizesTuple,
 )
-from physicslab.kernels.events.encounter import gap_of, meeting_of, touch_pair
+from physicslab.kernels.events.encounter import gap_of, meeting_of, time_apart, touch_pair
 from physicslab.kernels.events.path import advance_to, begin, place, seen_from
 from physicslab.kernels.events.path_impact import resolve_ballistic_impacts
 from physicslab.kernels.narrow.contact import effective_masses, mix
@@ -64,6 +64,10 @@ _MIN_SPEED_RATIO = 1e-17
 """Share of the fastest speed that counts as none: bodies that stay together keep about as much."""
 _SAME_TIME = 1e-12
 """Share of a step within which impacts of one pair count as simultaneous."""
+_AHEAD = 64.0
+"""Steps for which pairs are at most taken as apart before they are looked at again."""
+_ROUNDING = 1e-11
+"""Share of the farthest place within that time by which pairs are taken as nearer than they seem apart."""
 _MAX_REPEATS = 32
 """Largest number of bounces of an inelastic pair within that time; then it stays together."""
 
@@ -72,8 +76,8 @@ class Flight(NamedTuple):
     """What is known of ballistic motion: the pairs, the bodies, and when each pair meets.
 
     Records and points of the pairs, and how many there are; paths, modes and motions of the bodies; of each
-    pair the face, when it meets, and where B was at its last impact; then sizes, masses and bounds, and the
-    account that impacts and gravity add to.
+    pair the face, the first step in which it may meet, when it meets in this one, and where B was at its last
+    impact; then sizes, masses and bounds, and the account that impacts and gravity add to.
     """
 
     manifolds: Manifolds
@@ -83,6 +87,7 @@ class Flight(NamedTuple):
     mode: Rows
     motion: Motion
     face: Rows
+    apart: Rows
     due: Vectors
     impact_position: Vectors
     sizes: Sizes
@@ -132,24 +137,52 @@ def _first(due: Vectors, count: int) -> int:
 
 
 @fused
-def _begin_all(flight: Flight, materials: Materials) -> tuple[int, float]:
-    """Begin all paths; return OVERLAP if bodies overlap too deeply, and the speed that counts as none."""
+def _begin_all(flight: Flight, step: int, span: float, left: int) -> tuple[int, float, float]:
+    """Begin all paths of a step, of which ``left`` are to come.
+
+    Returns OVERLAP if bodies overlap too deeply, else DONE; the speed that counts as none [m/s]; and the
+    distance that rounding may make until pairs that are apart are looked at again [m].
+    """
     paths, mode, due, (position, angle, linear, _) = flight.paths, flight.mode, flight.due, flight.motion
-    why, fastest = DONE, 0.0
+    why, fastest, farthest, sizes, time = DONE, 0.0, 0.0, flight.sizes, min(float(left), _AHEAD) * span
     for i in range(len(mode)):
         begin(paths, i, position[i, 0], position[i, 1], linear[i, 0], linear[i, 1])
-        fastest = max(fastest, abs(linear[i, 0]) + abs(linear[i, 1]))
+        speed = abs(linear[i, 0]) + abs(linear[i, 1])
+        fastest = max(fastest, speed)
+        way = time * (speed + time * (abs(paths[i, 8]) + abs(paths[i, 9])))
+        size = sizes.radius[i] + sizes.width[i] + sizes.height[i]
+        farthest = max(farthest, abs(position[i, 0]) + abs(position[i, 1]) + size + way)
+    rounding = _ROUNDING * farthest
     for p in range(flight.pairs):
+        if flight.apart[p] > step:
+            continue
         manifold = flight.manifolds[p]
         a, b = manifold.a, manifold.b
         due[p, 0], due[p, 1], due[p, 2], due[p, 3], due[p, 4] = math.inf, 0.0, -math.inf, 0.0, -1.0
-        mix(manifold, materials, flight.bounds)
-        if mode[a] == BALLISTIC or mode[b] == BALLISTIC:
-            gap, size = gap_of(manifold, paths, angle, flight.sizes, flight.bounds.walls)
-            if gap < -DEEP * size:
-                why = OVERLAP
-                _mark_in_contact(mode, a, b)
-    return why, _MIN_SPEED_RATIO * fastest
+        if mode[a] != BALLISTIC and mode[b] != BALLISTIC:
+            flight.apart[p] = step + left
+            continue
+        flight.apart[p] = _first_step(flight, p, step, 0.0, span, left, rounding)
+        if flight.apart[p] > step:
+            continue
+        gap, size = gap_of(manifold, paths, angle, flight.sizes, flight.bounds.walls)
+        if gap < -DEEP * size:
+            why = OVERLAP
+            _mark_in_contact(mode, a, b)
+    return why, _MIN_SPEED_RATIO * fastest, rounding
+
+
+@fused
+def _first_step(
+    flight: Flight, p: int, step: int, now: float, span: float, left: int, rounding: float
+) -> int:
+    """Return the first of the ``left`` steps from ``step`` on in which a pair may meet, seen from ``now``."""
+    steps = min(float(left), _AHEAD)
+    time = now + time_apart(
+        flight.manifolds[p], flight.paths, flight.motion.angle, flight.sizes, flight.bounds.walls, now,
+        rounding,
+    )  # fmt: skip
+    return step + int(min(time / span, steps))
 
 
 @inlined
@@ -204,8 +237,8 @@ def _meets_two(flight: Flight, p: int, within: float) -> bool:
 
 @fused
 def _meet(
-    flight: Flight, p: int, log: Impacts, number: int, start: float, now: float, low: float, dt: float,
-    ordered: bool,
+    flight: Flight, p: int, materials: Materials, log: Impacts, number: int, start: float, now: float,
+    low: float, dt: float, ordered: bool,
 ) -> tuple[int, int]:  # fmt: skip
     """Resolve a meeting; return why the motion ends, DONE if it goes on, and how many impacts it was.
 
@@ -216,6 +249,7 @@ def _meet(
         flight.paths, flight.mode, flight.due, flight.motion.angle, flight.motion.angular,
     )  # fmt: skip
     a, b = manifold.a, manifold.b
+    mix(manifold, materials, flight.bounds)
     dx, dy, ux, uy, wx, wy = seen_from(paths, a, b, now, low)
     x, _, y, _ = place(paths, b, now, low)
     touch_pair(manifold, one, two, flight.face[p], x, y, dx, dy, angle, flight.sizes, flight.bounds.walls)
@@ -268,8 +302,8 @@ def _end_all(flight: Flight, now: float, low: float) -> None:
 
 @kernel
 def run_events(
-    manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, due: Vectors,
-    impact_position: Vectors, motion: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
+    manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, apart: Rows,
+    due: Vectors, impact_position: Vectors, motion: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, bounds: BoundsTuple,
     account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int, dt: float,
     urgent: int, ordered: bool,
@@ -282,10 +316,11 @@ def run_events(
     ``paths`` (rows, 13) holds the remainders of places and velocities, which are carried on, the
     accelerations [m/s^2] in columns 8 and 9 and in column 12 the mass [kg] of what gravity pulls, ``mode``
     that of each row;
-    ``face`` (pairs,) and ``due`` (pairs, 5) are work space; ``impact_position`` (pairs, 2) receives where B
-    was at the pair's last impact of the last step [m]. What impacts and gravity give is added to ``account``
-    (:mod:`physicslab.kernels.accounts`). Impacts are logged from number ``logged`` on, with times from
-    ``start`` [s]; a step has ``dt`` seconds. ``urgent`` is a pair that meets now, before all others, or -1.
+    ``face`` and ``apart`` (pairs,) and ``due`` (pairs, 5) are work space; ``impact_position`` (pairs, 2)
+    receives where B was at the pair's last impact of the last step [m]. What impacts and gravity give is
+    added to ``account`` (:mod:`physicslab.kernels.accounts`). Impacts are logged from number ``logged`` on,
+    with times from ``start`` [s]; a step has ``dt`` seconds. ``urgent`` is a pair that meets now, before all
+    others, or -1.
     All paths begin again after ``span`` seconds, so that steps made at once have the bits of single ones.
 
     Returns
@@ -296,19 +331,20 @@ def run_events(
     """
     now, low, impacts, window, within, p, made, why = 0.0, 0.0, 0, 0.0, 0, -1, 0, DONE
     flight = Flight(
-        manifolds, points, count, paths, mode, Motion(*motion), face, due, impact_position,
-        Sizes(*sizes), Inverse(*inverse), Bounds(*bounds), account,
+        manifolds, points, count, paths, mode, Motion(*motion), face, apart, due,
+        impact_position, Sizes(*sizes), Inverse(*inverse), Bounds(*bounds), account,
     )  # fmt: skip
     mixed = Materials(*materials)
+    apart[:count] = 0
     while made < steps:
-        if made > 0:
+        if within > 0:
             _clear_impacts(flight)
-        why, min_speed = _begin_all(flight, mixed)
+        why, min_speed, rounding = _begin_all(flight, made, span, steps - made)
         if why == OVERLAP:
             return made, 0.0, impacts, why, -1
         now, low, window, within, first, second = 0.0, 0.0, 0.0, 0, -1, -1
         while why == DONE:
-            _predict_pairs(flight, first, second, now, low, span - now, min_speed)
+            _predict_pairs(flight, first, second, now, low, span, min_speed, made, steps - made, rounding)
             p = _first(due, count)
             if urgent >= 0:
                 p, due[urgent, 0], due[urgent, 1], urgent = urgent, 0.0, 0.0, -1
@@ -322,7 +358,9 @@ def run_events(
                 why = TOO_MANY_IMPACTS
                 break
             first, second = manifolds[p].a, manifolds[p].b
-            why, new = _meet(flight, p, log, logged + impacts, start + made * span, now, low, dt, ordered)
+            why, new = _meet(
+                flight, p, mixed, log, logged + impacts, start + made * span, now, low, dt, ordered
+            )
             impacts += new
         _end_all(flight, now, low)
         if why != DONE:
@@ -334,11 +372,14 @@ def run_events(
 @endless
 @fused
 def _predict_pairs(
-    flight: Flight, first: int, second: int, now: float, low: float, span: float, min_speed: float
-) -> None:
-    """Predict when the pairs of two rows meet next; of all rows, if ``first`` is -1."""
+    flight: Flight, first: int, second: int, now: float, low: float, span: float, min_speed: float,
+    step: int, left: int, rounding: float,
+) -> None:  # fmt: skip
+    """Predict when the pairs of two rows meet next in this step; of all rows, if ``first`` is -1."""
     mode, due = flight.mode, flight.due
     for p in range(flight.pairs):
+        if first < 0 and flight.apart[p] > step:
+            continue
         manifold = flight.manifolds[p]
         a, b = manifold.a, manifold.b
         # Impacts on fixed and kinematic bodies do not change the meetings of their other pairs.
@@ -350,9 +391,13 @@ def _predict_pairs(
         if mode[a] != BALLISTIC and mode[b] != BALLISTIC:
             due[p, 0] = math.inf
             continue
+        if flight.apart[p] > step:
+            flight.apart[p] = _first_step(flight, p, step, now, span, left, rounding)
+            if flight.apart[p] > step:
+                continue
         t, flight.face[p] = meeting_of(
-            manifold, flight.paths, flight.motion.angle, flight.sizes, flight.bounds.walls, now, low, span,
-            min_speed,
+            manifold, flight.paths, flight.motion.angle, flight.sizes, flight.bounds.walls, now, low,
+            span - now, min_speed,
         )  # fmt: skip
         if t < math.inf:
             due[p, 0], due[p, 1] = add(now, low, t)

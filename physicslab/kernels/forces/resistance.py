@@ -33,7 +33,8 @@ def damper_resistance(q, v, span, force, parameters, indices):  # type: ignore[n
     The velocity of a body that circles at the end of a damper changes along it, though its length stays: by
     a . d - (n1 . v1 - n0 . v0), where a is the mean direction, d the change of velocity, and n0 and n1 the
     directions at the start and at the end. Half of that is taken off, so that a rod that only turns is left
-    to the midpoint rule: with the end's velocity along the mean direction it would lose speed.
+    to the midpoint rule: with the end's velocity along the mean direction it would lose speed. A line that
+    turns by more than a right angle passes through zero instead, and is that of the middle.
     """
     n = indices[0]
     for s in range(indices[1]):
@@ -71,8 +72,12 @@ def damper_resistance(q, v, span, force, parameters, indices):  # type: ignore[n
         nx, ny = share * (dx + near_b * bx - near_a * ax), share * (dy + near_b * by - near_a * ay)
         yx = v[b] - give_b * spin_b[0] * by - v[a] + give_a * spin_a[0] * ay
         yy = v[b + 1] + give_b * spin_b[0] * bx - v[a + 1] - give_a * spin_a[0] * ax
+        passes = l0x * l1x + l0y * l1y < 0.0
+        if passes:
+            size = math.sqrt(nx * nx + ny * ny)
+            nx, ny = (nx / size, ny / size) if size > 0.0 else (0.0, 0.0)
         rate = nx * yx + ny * yy
-        if start > 0.0 and end > 0.0:
+        if not passes and start > 0.0 and end > 0.0:
             v0x, v0y = v[2 * n + b] - v[2 * n + a], v[2 * n + b + 1] - v[2 * n + a + 1]
             v1x = v[n + b] + v[b] - v[n + a] - v[a]
             v1y = v[n + b + 1] + v[b + 1] - v[n + a + 1] - v[a + 1]

@@ -55,7 +55,8 @@ def mean_spring_pull(
     The line from A to B goes within ``span`` seconds from l0 = d - span/2 v to l1 = d + span/2 v. The pull is
     k ((|l0| + |l1|) / 2 - rest_length) along (l0 + l1) / (|l0| + |l1|), and the damper's by the mean rate of
     lengthening (LaBudde & Greenspan, J. Comput. Phys. 15 (1974) 134). After the force come that direction
-    and that rate, as :func:`spring_pull` has them.
+    and that rate, as :func:`spring_pull` has them. Where the line turns by more than a right angle, B passes
+    A: the mean length changes by less than B goes, so the damper is that of the line in the middle.
     """
     rx, ry = 0.5 * span * vx, 0.5 * span * vy
     lengths = math.sqrt((dx - rx) * (dx - rx) + (dy - ry) * (dy - ry))
@@ -64,7 +65,13 @@ def mean_spring_pull(
         return 0.0, 0.0, 0.0, 0.0, 0.0
     nx, ny = 2.0 * dx / lengths, 2.0 * dy / lengths
     rate = nx * vx + ny * vy
-    pull = stiffness * (0.5 * lengths - rest_length) + damping * rate
+    stretch, square = stiffness * (0.5 * lengths - rest_length), dx * dx + dy * dy
+    if 0.0 < square < rx * rx + ry * ry:
+        px, py, length = stretch * nx, stretch * ny, math.sqrt(square)
+        nx, ny = dx / length, dy / length
+        rate = nx * vx + ny * vy
+        return px + damping * rate * nx, py + damping * rate * ny, nx, ny, rate
+    pull = stretch + damping * rate
     return pull * nx, pull * ny, nx, ny, rate
 
 

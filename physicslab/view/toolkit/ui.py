@@ -234,35 +234,6 @@ class Ui:
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(room, 0.0))
         self.text(value, colour if lesser else None)
 
-    def bar(
-        self, label: str, value: str, share: float, colour: Colour, *, zero: float = 0.0, tip: str = ""
-    ) -> None:
-        """Write a label and its value over a bar as long as a share (-1 to 1), which begins at ``zero``."""
-        self.row(label, value, tip)
-        width, height = imgui.get_content_region_avail().x, round(0.4 * self.size)
-        corner = imgui.get_cursor_screen_pos()
-        paper = imgui.get_window_draw_list()
-        paper.add_rect_filled(
-            corner, ImVec2(corner.x + width, corner.y + height), packed(self.theme.key), 0.5 * height
-        )
-        low, high = (min(max(end, 0.0), 1.0) * width for end in sorted((zero, zero + share)))
-        if high - low >= 1.0:
-            if zero == 0.0:
-                high = max(high, height)  # as wide as its ends are round
-            paper.add_rect_filled(
-                ImVec2(corner.x + low, corner.y), ImVec2(corner.x + high, corner.y + height), packed(colour),
-                0.5 * height,
-            )  # fmt: skip
-        if 0.0 < zero < 1.0:
-            self.zero_line(corner.x + zero * width, corner.y, height)
-        imgui.dummy(ImVec2(width, height))
-
-    def zero_line(self, x: float, top: float, height: float) -> None:
-        """Draw where zero is on a bar [px]."""
-        beyond = 0.15 * self.size
-        ends = ImVec2(x - 0.5, top - beyond), ImVec2(x + 0.5, top + height + beyond)
-        imgui.get_window_draw_list().add_rect_filled(*ends, packed(self.theme.text))
-
     def tip(self, words: str) -> None:
         """Show words beside the cursor while it rests on what was drawn last."""
         if words and imgui.is_item_hovered(_TIP_FLAGS):

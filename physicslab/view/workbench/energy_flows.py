@@ -12,6 +12,7 @@ from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
 from physicslab.view.canvas.quantities import quantity, round_quantity
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.panels.figures import WorldFigures
+from physicslab.view.toolkit.bars import bar, zero_line
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 
@@ -116,7 +117,7 @@ def _build_sums(ui: Ui, figures: WorldFigures) -> None:
     low, high = (limit(0.0, *(value for _, value, _, _ in rows)) for limit in (min, max))
     scale = max(high - low, 1e-300)
     for label, value, colour, tip in rows:
-        ui.bar(label, figures.joules(value), value / scale, colour, zero=-low / scale, tip=tip)
+        bar(ui, label, figures.joules(value), value / scale, colour, zero=-low / scale, tip=tip)
 
 
 def _rounded(energy: float) -> str:
@@ -152,7 +153,7 @@ def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
         left += long
     zero = corner.x + sum(max(-part.energy, 0.0) for part in parts) / whole * width
     if zero > corner.x:
-        ui.zero_line(zero, corner.y, height)
+        zero_line(ui, zero, corner.y, height)
     imgui.dummy(ImVec2(width, height))
     figures = [f"{part.name} {quantity(part.energy, 'J')}" for part in parts]
     ui.tip(". ".join(("; ".join(figures), _ZERO_TIP)))

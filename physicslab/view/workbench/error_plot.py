@@ -14,6 +14,7 @@ from physicslab.view.canvas.quantities import round_quantity
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.controls import file_actions
 from physicslab.view.panels.error_study import ErrorStudy, Sample
+from physicslab.view.toolkit.bars import bar
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -50,7 +51,7 @@ def build_error_plot(ui: Ui, window: Window) -> None:
 def _build_progress(ui: Ui, window: Window) -> None:
     study, (left, top, width, _) = window.error_study, window.room()
     with ui.floating("Measuring the error", (left + 0.5 * width, top + 4.0 * ui.size)) as stays:
-        ui.bar("Measuring this scene with every method", f"{study.share:.0%}", study.share, ui.theme.accent)
+        bar(ui, "Measuring this scene with every method", f"{study.share:.0%}", study.share, ui.theme.accent)
         stopped = ui.button("Stop", "Give up measuring (F5)")
     if stopped or not stays[0]:
         window.deeds.append(file_actions.study_error)

@@ -7,6 +7,7 @@ import math
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.panels.trust_watch import RUNS, Finding, TrustWatch
+from physicslab.view.toolkit.bars import bar
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
@@ -180,7 +181,7 @@ def _build_details(ui: Ui, world: World, window: Window) -> None:
         ui.faint(f"They were not checked for longer: {trust.failure}")
     if trust.running:
         ui.gap(0.2)
-        ui.bar("Checking", f"{trust.share:.0%}", trust.share, ui.theme.accent)
+        bar(ui, "Checking", f"{trust.share:.0%}", trust.share, ui.theme.accent)
     elif not trust.wanted:
         ui.faint(f"It computes the scene about {RUNS} times over, beside the window: frames go first.")
     ui.rule()
