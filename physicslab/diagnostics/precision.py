@@ -6,7 +6,6 @@ small, and matters to who reads figures.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
@@ -30,10 +29,10 @@ _CAUSES = {
     "stiffer": "contacts give way",
     "rigid": "contacts give way, and rigid ones end elsewhere",
     "tightest": "the method is not exact",
-    "short steps": "in steps so long bodies fall through what is thin",
     "mirrored": "its mirror image ends elsewhere: what happens at one moment is not determined",
     "permuted": "the order of the scene decides: what happens at one moment is not determined",
     "awake": "bodies fell asleep that were not at rest",
+    "overlap": "bodies overlap by that much",
     "rounding": "one rounding at the start has grown to that",
 }
 """Why a result is not right, by the way of computing it that is furthest off."""
@@ -53,7 +52,7 @@ def words_of_digits(trust: Mapping[str, Any]) -> tuple[ModelWarning, ...]:
 
 
 def _shorter(trust: Mapping[str, Any]) -> bool:
-    return trust["cause"] in ("other steps", "half step", "eighth of the step", "short steps", "stiffer")
+    return trust["cause"] in ("other steps", "half step", "eighth of the step", "stiffer")
 
 
 def _oscillation(world: World, audit: Audit) -> Iterator[ModelWarning]:
@@ -79,12 +78,5 @@ def _passage(world: World, audit: Audit) -> Iterator[ModelWarning]:
         yield ModelWarning(None, what, audit.error, "", _EXACT_ENERGY, "")
 
 
-def _softness(world: World, audit: Audit) -> Iterator[ModelWarning]:
-    """Yield that contacts were soft."""
-    if world.plan.collisions == "step" and world.plan.contacts == "soft" and math.isfinite(audit.error):
-        what = "contacts are soft: places are off by 1e-5 to 1e-2 of a size, which --trust measures"
-        yield ModelWarning(None, what, None, "", None, "")
-
-
-_RULES: tuple[Callable[[World, Audit], Iterator[ModelWarning]], ...] = (_oscillation, _passage, _softness)
+_RULES: tuple[Callable[[World, Audit], Iterator[ModelWarning]], ...] = (_oscillation, _passage)
 """All of them. Another is added here, and nowhere else."""

@@ -16,7 +16,6 @@ from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
 from physicslab.diagnostics.contact_warnings import RIGID_LIMIT, contact_warnings, rigid_setting
-from physicslab.diagnostics.passage import passage
 from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, step_warnings
 from physicslab.diagnostics.warning_records import ModelWarning, WorstWarnings
 from physicslab.state.masses import quiet
@@ -43,9 +42,6 @@ MASS_RATIO_LIMIT = 3000.0
 """Mass of a body over that of a lighter one that it lies on. On top of ten boxes of 1 m a body a thousand
 times as heavy sinks by 2 cm in 10 s, three thousand times by 4 cm, ten thousand times by 38 cm: substeps,
 which are made shorter for such loads, are then as short as they may be."""
-PASSAGE_LIMIT = 1.0
-"""Way of a fall from rest in a step, in thicknesses of the body and of the thinnest other together: floors
-as thick as themselves let boxes through from 2.5, discs from 25."""
 _PEAK_MARGIN = 1.5
 """Between two looks at a run speeds are higher than those seen: so many more substeps are advised."""
 _RIGID_MASS_RATIO = 1e6
@@ -95,20 +91,6 @@ def _soft_contacts(world: World) -> Iterator[ModelWarning]:
         for rule in (_overlap, _mass_ratios, _speeds, _spins):
             yield from rule(world, graph)
         yield from _falls(world)
-
-
-def _falls_through(world: World) -> Iterator[ModelWarning]:
-    """Yield the body that falls further in a step than it and the thinnest other body are thick."""
-    if world.plan.collisions == "none" or world.plan.contacts == "soft":
-        return  # soft contacts hold discs always, and boxes up to 25
-    graph = contact_graph(world)
-    found = passage(world, np.concatenate((graph.a[graph.touching], graph.b[graph.touching])))
-    if found is not None and found.sizes > PASSAGE_LIMIT:
-        through = world.label(found.through)
-        what = f"may fall through {through}: in a step it falls so many times as far as both are thick"
-        finer = world.simulation.dt / math.ceil(2.0 * math.sqrt(found.sizes))
-        setting = f"simulation.dt = {finer:.2g}"
-        yield ModelWarning.about(world, found.body, what, found.sizes, "", PASSAGE_LIMIT, setting)
 
 
 def _laws(world: World) -> Iterator[ModelWarning]:
@@ -237,7 +219,7 @@ def _more_substeps(world: World, factor: float) -> str:
 
 
 RULES: tuple[Callable[[World], Iterator[ModelWarning]], ...] = (
-    _refusals, _division, step_warnings, _distance, _falls_through, _finished_otherwise, _laws,
+    _refusals, _division, step_warnings, _distance, _finished_otherwise, _laws,
     _contact_model, _soft_contacts,
 )  # fmt: skip
 """All of them, in the order in which they are shown. Another is added here, and nowhere else."""

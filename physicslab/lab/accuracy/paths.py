@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Transform, Velocity
+from physicslab.diagnostics.contact_graph import contact_graph
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.world import World
 
@@ -45,6 +46,8 @@ class Path:
         The same of the angular momentum about the origin [kg m^2/s] (k,).
     speeds, spins : arrays of floats
         The largest speed [m/s] and spin [rad/s] of each body since the start (k, n).
+    overlaps : array of floats
+        How deep each body overlaps another [m] (k, n).
     """
 
     states: NDArray[np.float64]
@@ -56,6 +59,7 @@ class Path:
     angular_scale: NDArray[np.float64]
     speeds: NDArray[np.float64]
     spins: NDArray[np.float64]
+    overlaps: NDArray[np.float64]
 
     @property
     def end(self) -> NDArray[np.float64]:
@@ -113,8 +117,8 @@ def run_path(
                 raise OutOfTime(f"given up after {budget_s:.3g} s, at t = {world.time:.3g} s")
         reached = moment
         looks.append(_look(world, rows))
-    states, energy, energy_scale, momentum, momentum_scale, angular, angular_scale = (
-        np.array([look[n] for look in looks]) for n in range(7)
+    states, energy, energy_scale, momentum, momentum_scale, angular, angular_scale, overlaps = (
+        np.array([look[n] for look in looks]) for n in range(8)
     )
     speeds, spins = np.hypot(states[..., 3], states[..., 4]), np.abs(states[..., 5])
     energy_scale, momentum_scale, angular_scale, speeds, spins = (
@@ -123,13 +127,13 @@ def run_path(
     )
     return Path(
         states[1:], energy[1:], energy_scale, momentum[1:], momentum_scale, angular[1:], angular_scale,
-        speeds, spins,
+        speeds, spins, overlaps[1:],
     )  # fmt: skip
 
 
 def _look(
     world: World, rows: list[int]
-) -> tuple[NDArray[np.float64], float, float, list[float], float, float, float]:
+) -> tuple[NDArray[np.float64], float, float, list[float], float, float, float, NDArray[np.float64]]:
     """Return what a path has of a world as it is now, in its order."""
     transform, velocity = world.table(Transform), world.table(Velocity)
     columns = (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
@@ -146,4 +150,13 @@ def _look(
         float(np.sum(each)),
         momentum.angular,
         float(np.sum(reach * each + np.where(np.isfinite(turning), turning, 0.0))),
+        _overlaps(world)[rows],
     )
+
+
+def _overlaps(world: World) -> NDArray[np.float64]:
+    """Return how deep the body in each row overlaps another [m] (rows,)."""
+    graph, deepest = contact_graph(world), np.zeros(len(world.table(Transform)["angle"]))
+    for side in (graph.a, graph.b):
+        np.maximum.at(deepest, side[graph.touching], graph.depth)
+    return deepest

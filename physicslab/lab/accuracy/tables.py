@@ -210,7 +210,8 @@ def trust_rows_text(rows: Sequence[TrustRow]) -> str:
     if not found.known:
         return table([head, *lines], words=(0, 1, 5))
     closing = (
-        f"within a factor of 10: {found.near} of {found.known} ({found.near / found.known:.0%}); "
+        f"within a factor of 10: {found.near} of {found.known} ({found.near / found.known:.0%}), "
+        f"with {found.cautious} estimates of rounding (up to 1e-12) that are more than 10 times too large; "
         f"the true error is at most {found.largest:.2g} times the estimate: "
         f"{'as it is to be' if found.holds else 'NOT AS IT IS TO BE'} (95 %, and at most 100)"
     )

@@ -40,6 +40,8 @@ _WAYS = [twin for twin in TWINS if twin.name != "nudged"]
 """The twins that are compared: there are more starts that are moved by one rounding."""
 _IN_STEPS = {twin.name for twin in TWINS if twin.differs_in_step}
 _NUDGED_NAME = "rounding"
+_OVERLAP_NAME = "overlap"
+"""Of what no other way to compute it shows: bodies that came to rest in each other, by the limit of a gap."""
 
 _PLACES, _VELOCITIES = slice(0, 2), slice(3, 5)
 """Columns of a path's states."""
@@ -85,7 +87,7 @@ class Trust:
     worst : str
         That body.
     cause : str
-        The twin that is furthest from it.
+        The twin that is furthest from it, ``"rounding"`` or ``"overlap"``.
     energy, momentum, angular_momentum : float
         Digits of the total energy, as a share of the largest of it and its parts since the start, and of the
         momenta, as shares of the largest sums of those of all bodies.
@@ -168,15 +170,15 @@ def assess(
         yield Trust(failure="no other way to compute it ends in time", left_out=left_out)
         return
 
-    def digits(compare: _Compare, scale: _Errors) -> _Errors:
-        """Return the digits of a quantity at each moment."""
-        errors = _errors(compare, estimate.paths, nudges).max(axis=0)
+    def digits(compare: _Compare, scale: _Errors, least: _Errors | float = 0.0) -> _Errors:
+        """Return the digits of a quantity at each moment, whose error is known to be so large at least."""
+        errors = np.maximum(_errors(compare, estimate.paths, nudges).max(axis=0), least)
         shares = np.maximum(errors / np.where(scale > 0.0, scale, 1.0), ROUNDING)
         found: _Errors = np.maximum(-np.log10(shares), 0.0)
         return found
 
     reach, speeds, angles, spins = scales(world, own, bodies, times)
-    places = digits(_apart(own, _PLACES), reach)
+    places = digits(_apart(own, _PLACES), reach, own.overlaps)
     columns = _Columns(
         places,
         digits(_apart(own, _VELOCITIES), speeds),
@@ -190,7 +192,8 @@ def assess(
     worst = int(places[-1].argmin())
     found = Trust(float(places[-1, worst]), bodies[worst], ways=[*estimate.paths], left_out=left_out)
     each = _errors(_apart(own, _PLACES), estimate.paths, nudges)[:, -1, worst]
-    found.cause = [*estimate.paths, _NUDGED_NAME][int(each.argmax())]
+    each = np.append(each, own.overlaps[-1, worst])
+    found.cause = [*estimate.paths, _NUDGED_NAME, _OVERLAP_NAME][int(each.argmax())]
     found.energy, found.momentum, found.angular_momentum = (float(column[-1]) for column in columns.whole)
     found.entities, found.velocities, found.angles, found.spins = (
         dict(zip(bodies, column[-1].tolist(), strict=True)) for column in columns.each

@@ -32,8 +32,6 @@ _NEAR, _FAR, _SHARE = 10.0, 100.0, 0.95
 they are to be as near."""
 _OF_ROUNDING = 1e-12
 """An estimate up to this is one of what rounding adds up to, and the sum may by chance be far less."""
-_FINER = ("tightest", "short steps")
-"""Twins that are nearer to the truth than what is judged."""
 
 type _Worlds = tuple[World, ...]
 
@@ -82,11 +80,14 @@ class TrustSummary:
         How many have both figures, and in how many the error is within a factor of 10 of the estimate.
     largest : float
         The largest true error over its estimate.
+    cautious : int
+        How many of those that are near have an estimate of rounding that is more than 10 times too large.
     """
 
     known: int
     near: int
     largest: float
+    cautious: int
 
     @property
     def holds(self) -> bool:
@@ -97,7 +98,9 @@ class TrustSummary:
 def summarise(rows: Sequence[TrustRow]) -> TrustSummary:
     """Count the rows whose estimate is good."""
     ratios = [row.ratio for row in rows if row.ratio is not None]
-    return TrustSummary(len(ratios), sum(row.is_near for row in rows), max(ratios, default=0.0))
+    near = [row.ratio for row in rows if row.is_near and row.ratio is not None]
+    cautious = sum(ratio < 1.0 / _NEAR for ratio in near)
+    return TrustSummary(len(ratios), len(near), max(ratios, default=0.0), cautious)
 
 
 def assess_problem(problem: Problem) -> Job[TrustRow]:
@@ -149,7 +152,7 @@ def _assess(
         return 0.0 if found is None else abs(error - found)
 
     known = [change(partial(make, other)) for other in others]
-    ways = [twin for twin in TWINS if twin.differs_in_step or twin.name in _FINER]
+    ways = [twin for twin in TWINS if twin.differs_in_step or twin.name == "tightest"]
     for n, twin in enumerate(ways):
         apart = change(partial(_twins, twin, documents, ready))
         known.append(apart * (STEP_SAFETY if twin.differs_in_step else 1.0))

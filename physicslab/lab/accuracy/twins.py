@@ -15,7 +15,6 @@ from typing import Any
 
 from physicslab.components import Shape
 from physicslab.components.naming import name_by_kinds
-from physicslab.diagnostics.passage import passage
 from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.text import unique_name
@@ -48,8 +47,6 @@ GOLDEN = 0.5 * (1.0 + math.sqrt(5.0))
 """By what factor steps are shorter that end at other moments: no two of both ever end together."""
 _FINE = 8.0
 """How many times shorter steps are where half a step misses the events that a step does."""
-_PARTS_LIMIT = 64
-"""Into how many parts a step is divided at most so that nothing falls through what is thin."""
 _LEAST_TOLERANCE = 1e-20
 """Of a scene's configuration."""
 _ULP_SCALE = 1e-2
@@ -149,16 +146,6 @@ def _tightest(document: Document, world: World) -> World | None:
     return None if twin.plan.refused else twin
 
 
-def _short(document: Document, world: World) -> World | None:
-    """Return the scene in steps in which nothing falls further than the thinnest body is thick."""
-    if world.plan.collisions == "none":
-        return None
-    found = passage(world)
-    if found is None or found.sizes <= 1.0:
-        return None
-    return refined(document, world, min(float(_PARTS_LIMIT), math.ceil(2.0 * math.sqrt(found.sizes))))
-
-
 def _with_settings(document: Document, **changes: Any) -> World:
     return read_scene(document | {"simulation": document["simulation"] | changes})
 
@@ -253,7 +240,6 @@ TWINS: tuple[Twin, ...] = (
     Twin("eighth of the step", "steps an eighth as long, where contacts are rigid", _fine,
          differs_in_step=True),
     Twin("tightest", f"{DOP853.name} with the tightest tolerance", _tightest),
-    Twin("short steps", "steps in which nothing falls further than the thinnest body is thick", _short),
     Twin("stiffer", "contacts four times as stiff, at half the step", _stiffer, differs_in_step=True),
     Twin("rigid", "contacts that do not give way: their laws solved to rounding, events at their own times",
          _rigid, budget_s=_RIGID_BUDGET_S),

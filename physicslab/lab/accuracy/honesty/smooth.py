@@ -7,7 +7,7 @@ from functools import partial
 from random import Random
 from typing import Any
 
-from physicslab.lab.accuracy.honesty.extrapolation import moved
+from physicslab.lab.accuracy.honesty.extrapolation import moved, passed
 from physicslab.lab.accuracy.honesty.scene import KnownScene, body, written
 
 __all__ = ["drag", "flyby", "net", "orbit", "springs"]
@@ -94,7 +94,8 @@ def flyby(draw: Random) -> KnownScene:
         body("p", (-draw.uniform(2.0, 8.0), _log(draw, 0.03, 1.0)), mass=_log(draw, 1e-12, 0.5),
              velocity=(draw.uniform(0.5, 2.0), 0.0)),
     ]  # fmt: skip
-    return _known(written(entities, _log(draw, 1 / 240, 1 / 20), _PLANETS), draw.uniform(6.0, 14.0))
+    document, seconds = written(entities, _log(draw, 1 / 240, 1 / 20), _PLANETS), draw.uniform(6.0, 14.0)
+    return KnownScene(document, seconds, partial(passed, document, seconds))
 
 
 def drag(draw: Random) -> KnownScene:
