@@ -134,7 +134,7 @@ def press(
     note_velocities(contacts, near, motion, inverse, acting, h)
     impulse.solve(contacts, near, motion, inverse, acting, softness, h, scale, sweeps)
     if near.counts[WIDE_COUNT] > 0:
-        book_slots(near, motion, inverse, 1.0)
+        book_slots(near, motion, inverse, True)
     return h
 
 
@@ -151,10 +151,8 @@ def relax(
     """Remove the velocity that came from correcting overlap, ``h`` seconds after :func:`press`."""
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return
-    contacts, wide = _contacts(near), near.counts[WIDE_COUNT] > 0
-    if wide:  # booked again where bodies are now, as what the sweeps add is
-        book_slots(near, motion, inverse, -1.0)
+    contacts = _contacts(near)
     impulse.relax(contacts, near, motion, inverse, h, impulse.sweeps_of(near, iterations))
-    if wide:
-        book_slots(near, motion, inverse, 1.0)
+    if near.counts[WIDE_COUNT] > 0:
+        book_slots(near, motion, inverse, False)
     separate(contacts, near, motion, inverse.mass, acting, softness.max_push * h)

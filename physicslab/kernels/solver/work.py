@@ -104,6 +104,17 @@ def _relative(point: Point, a: int, b: int, linear: Vectors, angular: Numbers) -
     return vx, vy
 
 
+@inlined
+def _book_moved(
+    near: Near, motion: Motion, inverse: Inverse, a: int, b: int, x: float, y: float, px: float, py: float
+) -> None:
+    """Book that an impulse from outside acted where B was against A before it moved by (x, y) [m]."""
+    still = a if inverse.mass[a] == 0.0 else b
+    linear = motion.linear
+    driven = linear[still, 0] != 0.0 or linear[still, 1] != 0.0 or motion.angular[still] != 0.0
+    near.account[HAND if driven else CONTACT, SPIN] -= x * py - y * px
+
+
 @always_inlined
 def book_solved(
     contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: float
@@ -136,12 +147,11 @@ def book_solved(
             px += push * nx - rub * ny
             py += push * ny + rub * nx
         if inverse.mass[a] == 0.0 or inverse.mass[b] == 0.0:
-            still, body = (a, b) if inverse.mass[a] == 0.0 else (b, a)
-            position, linear, sign = motion.position, motion.linear, 1.0 if body == b else -1.0
+            still, sign = (a, 1.0) if inverse.mass[a] == 0.0 else (b, -1.0)
+            position, linear = motion.position, motion.linear
             x = position[b, 0] - position[a, 0] - manifold.offset_x + sign * h * linear[still, 0]
             y = position[b, 1] - position[a, 1] - manifold.offset_y + sign * h * linear[still, 1]
-            driven = linear[still, 0] != 0.0 or linear[still, 1] != 0.0 or motion.angular[still] != 0.0
-            near.account[HAND if driven else CONTACT, SPIN] -= x * py - y * px
+            _book_moved(near, motion, inverse, a, b, x, y, px, py)
     return pressed, rubbed
 
 
@@ -196,8 +206,12 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
 
 
 @inlined
-def book_slots(near: Near, motion: Motion, inverse: Inverse, sign: float) -> None:
-    """Book what comes from outside by wide contacts, where bodies are now, with a ``sign``."""
+def book_slots(near: Near, motion: Motion, inverse: Inverse, solved: bool) -> None:
+    """Book what comes from outside by wide contacts in a substep; where it is just ``solved``, note it.
+
+    What is noted are the impulses that then act, and the place of the body that they move: their moment is
+    that about where it was, and that of what they change by later about where it is then.
+    """
     for slots in (near.discs, near.boxes):
         data, rows = slots.data, rows_of(slots.kind)
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
@@ -207,26 +221,31 @@ def book_slots(near: Near, motion: Motion, inverse: Inverse, sign: float) -> Non
                 a, b, at = slots.a[slot], slots.b[slot], k * rows + slot - k * WIDE
                 if slots.pair[slot] < 0 or (inverse.inertia[a] > 0.0 and inverse.inertia[b] > 0.0):
                     continue
-                nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
-                px, py, turn_a, turn_b = 0.0, 0.0, 0.0, 0.0
-                for of in (ONE, TWO):
-                    if slots.kind == DISC and of == TWO:
-                        continue
-                    if slots.kind == DISC:
-                        ax, ay = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
-                        bx, by = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny
-                    else:
-                        ax, ay = data[at + of + ARM_AX], data[at + of + ARM_AY]
-                        bx, by = data[at + of + ARM_BX], data[at + of + ARM_BY]
-                    push, rub = sign * data[at + of + IMPULSE], sign * data[at + of + TANGENT_IMPULSE]
+                nx, ny, noted, j = data[at + NORMAL_X], data[at + NORMAL_Y], near.noted, 2 * slots.pair[slot]
+                push, rub = data[at + ONE + IMPULSE], data[at + ONE + TANGENT_IMPULSE]
+                px, py = push * nx - rub * ny, push * ny + rub * nx
+                if slots.kind == DISC:
+                    turn_a, turn_b = data[at + RADIUS_A] * rub, -data[at + RADIUS_B] * rub
+                else:
+                    turn_a = data[at + ONE + ARM_AX] * py - data[at + ONE + ARM_AY] * px
+                    turn_b = data[at + ONE + ARM_BX] * py - data[at + ONE + ARM_BY] * px
+                    push, rub = data[at + TWO + IMPULSE], data[at + TWO + TANGENT_IMPULSE]
                     x, y = push * nx - rub * ny, push * ny + rub * nx
                     px, py = px + x, py + y
-                    turn_a += ax * y - ay * x
-                    turn_b += bx * y - by * x
+                    turn_a += data[at + TWO + ARM_AX] * y - data[at + TWO + ARM_AY] * x
+                    turn_b += data[at + TWO + ARM_BX] * y - data[at + TWO + ARM_BY] * x
+                moved, sign = (b, 1.0) if inverse.mass[a] == 0.0 else (a, -1.0)
+                here_x, here_y = sign * motion.position[moved, 0], sign * motion.position[moved, 1]
+                if solved:
+                    noted[j, 0], noted[j, 1], noted[j, 2], noted[j, 3] = px, py, here_x, here_y
+                    continue
                 book_outside(
                     near.account, CONTACT, _masses(a, b, inverse), _pose(a, b, motion), _speeds(a, b, motion),
                     px, py, turn_a, turn_b,
                 )  # fmt: skip
+                if inverse.mass[a] == 0.0 or inverse.mass[b] == 0.0:
+                    x, y = here_x - noted[j, 2], here_y - noted[j, 3]
+                    _book_moved(near, motion, inverse, a, b, x, y, noted[j, 0], noted[j, 1])
 
 
 @inlined
