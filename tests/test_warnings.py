@@ -395,7 +395,7 @@ def test_speed_matters_in_a_crowd_and_not_alone() -> None:
     worst = WorstWarnings()
     worst.add(find_warnings(world))
     (found,) = [advice for advice in worst.all if "sizes of a body" in advice.what]
-    assert found.excess > 10.0 and found.setting.startswith("simulation.substeps = ")
+    assert found.excess[0] > 10.0 and found.setting.startswith("simulation.substeps = ")
 
 
 def test_a_box_that_spins_fast_is_said_near_others_alone() -> None:
@@ -497,4 +497,11 @@ def test_at_most_three_are_said_and_the_rest_counted() -> None:
     style = TextStyle(11, THEMES[0].warning, bold=True)
     assert all(canvas.text_size(word, style)[0] <= 300 for word in words)
     assert draw_advice([], 400, 50, 600, 300, 12, canvas, THEMES[0]) is None
-    assert math.isinf(ModelWarning(None, "x", None, "", None, "").excess)
+    assert math.isinf(ModelWarning(None, "x", None, "", None, "").excess[0])
+
+
+def test_of_warnings_without_a_limit_the_largest_is_kept() -> None:
+    worst = WorstWarnings()
+    for value in (1e-4, 3e-2, 2e-3):
+        worst.add([ModelWarning(None, "off by so much", value, "m", 0.0, "")])
+    assert [warning.value for warning in worst.all] == [3e-2]

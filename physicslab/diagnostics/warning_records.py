@@ -49,9 +49,10 @@ class ModelWarning:
         return cls(name, what, value, unit, limit, setting, entity)
 
     @property
-    def excess(self) -> float:
-        """The value in units of the limit; infinite where there are none."""
-        return math.inf if self.value is None or not self.limit else self.value / self.limit
+    def excess(self) -> tuple[float, float]:
+        """The value in units of the limit, infinite where there is none; of two such the value decides."""
+        value = 0.0 if self.value is None else self.value
+        return value / self.limit if self.limit and self.value is not None else math.inf, value
 
     def __str__(self) -> str:
         words = f"{self.entity}: {self.what}" if self.entity else self.what
