@@ -52,7 +52,10 @@ def _softness(world: World, rigid: Rigid | None) -> Iterator[ModelWarning]:
     h = simulation.dt / simulation.substeps
     off = max(float(forces.max(initial=0.0)) * h * h, float(graph.depth.max(initial=0.0)))
     why = rigid.why_soft if left and rigid is not None else plan.contact_reason
-    what = f"contacts are soft, as {why}; what touches may be off by so much, as run --trust measures"
+    what = (
+        f"contacts are soft, as {why}; what barely stands may fall, and what touches is off by about so much "
+        "(run --trust measures it)"
+    )
     setting = "" if left else rigid_setting(world, len(graph.touching))
     if off > 0.0:
         yield ModelWarning(None, what, off, "m", 0.0, setting or "a smaller simulation.dt, or fewer bodies")
