@@ -147,7 +147,7 @@ def test_many_cases_are_spread_over_processes_and_their_results_come_in_order(
 ) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     names = [str(n) for n in range(16)]
-    found = list(in_processes(_square_or_end, names, early=["15"]))
+    found = list(in_processes(_square_or_end, names))
     assert [one for one in found if isinstance(one, int)] == [n * n for n in range(16)]
     assert all(0.0 <= share <= 1.0 for share in found if isinstance(share, float))
     with pytest.raises(BrokenProcessPool):

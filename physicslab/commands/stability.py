@@ -30,8 +30,7 @@ def execute(arguments: Namespace) -> int:
     run, aligned = LabRun("stability", arguments), columns(cases)
     outcomes: list[Outcome] = []
     run.show(head_text(aligned))
-    long = [case.name for case in cases if case.long]
-    found = run.shown(in_processes(run_named, [case.name for case in cases], early=long))
+    found = run.shown(in_processes(run_named, [case.name for case in cases]))
     try:
         for case, figures in zip(cases, found, strict=True):
             outcomes.append(Outcome(case, *figures))

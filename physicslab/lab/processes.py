@@ -15,17 +15,13 @@ _WORTH_A_PROCESS = 8
 """As many cases take longer than a process needs to start."""
 
 
-def in_processes[Result](
-    work: Callable[[str], Result], names: Sequence[str], early: Sequence[str] = ()
-) -> Iterator[float | Result]:
+def in_processes[Result](work: Callable[[str], Result], names: Sequence[str]) -> Iterator[float | Result]:
     """Run a function for each name, in a process for each processor; yield shares done, and results in order.
 
     Parameters
     ----------
     work : callable
         A function of a module: takes a name, and returns what can be pickled.
-    early : sequence of str
-        Names to begin with, the longest first: at the end nothing then waits for one process.
 
     Raises
     ------
@@ -42,12 +38,11 @@ def in_processes[Result](
         with Warmup() as warmup:
             while not warmup.finished:
                 warmup.poll(0.1)
-    order = [*(name for name in early if name in names), *(name for name in names if name not in early)]
     # A fork would share threads of the compiled code: each worker imports for itself.
     with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
-        futures = {name: pool.submit(work, name) for name in order}
+        futures = [pool.submit(work, name) for name in names]
         try:
-            yield from _in_order([futures[name] for name in names])
+            yield from _in_order(futures)
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
 
