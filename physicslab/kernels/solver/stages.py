@@ -134,7 +134,7 @@ def press(
     note_velocities(contacts, near, motion, inverse, acting, h)
     impulse.solve(contacts, near, motion, inverse, acting, softness, h, scale, sweeps)
     if near.counts[WIDE_COUNT] > 0:
-        book_slots(near, motion, inverse, True)
+        book_slots(near, motion, inverse, acting, h, True)
     return h
 
 
@@ -152,7 +152,7 @@ def relax(
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return
     contacts = _contacts(near)
-    impulse.relax(contacts, near, motion, inverse, h, impulse.sweeps_of(near, iterations))
+    impulse.relax(contacts, near, motion, inverse, acting, h, impulse.sweeps_of(near, iterations))
     if near.counts[WIDE_COUNT] > 0:
-        book_slots(near, motion, inverse, False)
+        book_slots(near, motion, inverse, acting, h, False)
     separate(contacts, near, motion, inverse.mass, acting, softness.max_push * h)
