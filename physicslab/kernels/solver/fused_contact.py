@@ -73,9 +73,9 @@ def _keep(motion: Motion, kept: Motion) -> None:
 @inlined
 def _keep_book(account: Vectors) -> None:
     """Copy the accounts, to return to where a step fails."""
-    numbers = account.reshape(account.size)
-    for i in range(4 * BEFORE):
-        numbers[4 * BEFORE + i] = numbers[i]
+    for row in range(BEFORE):
+        for column in range(4):
+            account[BEFORE + row, column] = account[row, column]
 
 
 @inlined

@@ -6,7 +6,9 @@ yet, or not any more: with a the acceleration of the point by forces, the mean v
 (v + v' - a h) / 2. A body at rest then does no work: its velocity is a h before, and 0 after.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, PX, PY, SPIN
@@ -39,6 +41,10 @@ __all__ = [
 ]  # fmt: skip
 
 
+_unsigned: Any = np.uint64
+"""Makes an index of which no loop tests whether it counts from the end: that takes as long as the work."""
+
+
 @always_inlined
 def _note(near: Near, row: int, motion: Motion, inverse: Inverse, acting: Acting, h: float) -> None:
     """Note the velocity of a body; without what ``h`` seconds of forces have given to it unless all alike."""
@@ -61,15 +67,15 @@ def note_velocities(
     if near.counts[WIDE_COUNT] == 0 and 2 * contacts.number < rows:
         for k in range(contacts.number):
             manifold = contacts.manifolds[contacts.touching[k]]
-            _note(near, manifold.a, motion, inverse, acting, h)
-            _note(near, manifold.b, motion, inverse, acting, h)
+            for row in (manifold.a, manifold.b):
+                _note(near, row, motion, inverse, acting, h)
     elif acting.any and not acting.uniform:
         for row in range(rows):
             _note(near, row, motion, inverse, acting, h)
     else:  # in loops that are vectorised
-        before, now = near.linear_before.reshape(2 * rows), motion.linear.reshape(2 * rows)
-        for i in range(2 * rows):
-            before[i] = now[i]
+        for row in range(rows):
+            near.linear_before[row, 0] = motion.linear[row, 0]
+            near.linear_before[row, 1] = motion.linear[row, 1]
         for row in range(rows):
             near.angular_before[row] = motion.angular[row]
 
@@ -129,8 +135,10 @@ def book_solved(
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
-        a, b, nx, ny, px, py = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y, 0.0, 0.0
-        for j in range(2 * p, 2 * p + manifold.count):
+        a, b, px, py = _unsigned(manifold.a), _unsigned(manifold.b), 0.0, 0.0
+        nx, ny = manifold.normal_x, manifold.normal_y
+        for number in range(2 * p, 2 * p + manifold.count):
+            j = _unsigned(number)
             point = contacts.points[j]
             vx, vy = _relative(point, a, b, motion.linear, motion.angular)
             push, rub, along, across = (
@@ -214,9 +222,10 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
-        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        a, b, nx, ny = _unsigned(manifold.a), _unsigned(manifold.b), manifold.normal_x, manifold.normal_y
         px, py, turn_a, turn_b = 0.0, 0.0, 0.0, 0.0
-        for j in range(2 * p, 2 * p + manifold.count):
+        for number in range(2 * p, 2 * p + manifold.count):
+            j = _unsigned(number)
             point, noted = contacts.points[j], near.noted
             push, rub = point.normal_impulse, point.tangent_impulse
             more, also = push - noted[j, 0], rub - noted[j, 1]
@@ -249,7 +258,7 @@ def book_slots(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: 
             if not slots.outside[k]:
                 continue
             for slot in range(k * WIDE, (k + 1) * WIDE):
-                a, b, at = slots.a[slot], slots.b[slot], k * rows + slot - k * WIDE
+                a, b, at = _unsigned(slots.a[slot]), _unsigned(slots.b[slot]), k * rows + slot - k * WIDE
                 if slots.pair[slot] < 0 or (inverse.inertia[a] > 0.0 and inverse.inertia[b] > 0.0):
                     continue
                 nx, ny, noted, j = data[at + NORMAL_X], data[at + NORMAL_Y], near.noted, 2 * slots.pair[slot]
