@@ -7,11 +7,11 @@ import math
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
-    "length_of", "percentage", "power_of_ten", "quantity", "round_quantity", "vector_quantity",
+    "ROUNDING", "length_of", "percentage", "power_of_ten", "quantity", "round_quantity", "vector_quantity",
     "without_rounding",
 ]  # fmt: skip
 
-_NONE = 1e-12
+ROUNDING = 1e-12
 """Share of what a number is a part of below which it is rounding."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -52,7 +52,7 @@ def without_rounding(value: float, scale: float) -> float:
     >>> without_rounding(3e-16, 2.0), without_rounding(3e-9, 2.0)
     (0.0, 3e-09)
     """
-    return value if not abs(value) <= _NONE * scale or math.isinf(scale) else 0.0
+    return value if not abs(value) <= ROUNDING * scale or math.isinf(scale) else 0.0
 
 
 def round_quantity(value: float, unit: str) -> str:
