@@ -62,15 +62,16 @@ def round_quantity(value: float, unit: str) -> str:
     '0.2 N s'
     >>> round_quantity(5e-5, "N s")
     '5·10⁻⁵ N s'
-    >>> round_quantity(0.0, "m")
-    '0 m'
+    >>> round_quantity(-9.6e-10, "J"), round_quantity(0.0, "m")
+    ('-1·10⁻⁹ J', '0 m')
     """
     if value == 0.0:
         return f"0 {unit}"
     power = math.floor(math.log10(abs(value) * (1.0 + 1e-12)))
     if -3 <= power <= 5:
         return f"{value:.{max(-power, 0)}f} {unit}"
-    return f"{value / 10.0**power:.0f}·10{str(power).translate(_RAISED)} {unit}"
+    digits, _, exponent = f"{value:.0e}".partition("e")
+    return f"{digits}·10{str(int(exponent)).translate(_RAISED)} {unit}"
 
 
 def vector_quantity(value: Vector2, unit: str) -> str:
