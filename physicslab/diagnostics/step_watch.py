@@ -66,8 +66,8 @@ class StepWatch:
         first, self._worst = self._slow is None, each
         why, setting, figures = self._reason(impacts, evaluations)
         self._slow = ModelWarning(None, f"a step takes long: {why}", each, "s", _SLOW_S, setting)
-        line = f"slow: the step to t = {world.time:.9g} s took {each:.3g} s: {why} ({figures}); {setting} would help"
-        return line if first else ""
+        line = f"slow: the step to t = {world.time:.9g} s took {each:.3g} s: {why} ({figures})"
+        return f"{line}; {setting} would help" if first else ""
 
     def note_impacts(self) -> str:
         """Take note of the impacts that were located in time since the last call.
