@@ -27,7 +27,7 @@ from physicslab.lab.bench.moving import chains
 from physicslab.lab.worlds import floor, place
 from physicslab.prefabs import box, circle
 from physicslab.stepping import split_forces, spring_flow
-from physicslab.stepping.contact import Contact
+from physicslab.stepping.soft import Soft
 from physicslab.stepping.split_forces import SplitForces
 from physicslab.world import World
 
@@ -64,8 +64,8 @@ def chain(order: int = 1, *, discs: int = 10, height: float = 0.3, gravity: floa
 def split_of(world: World) -> SplitForces:
     world.synchronise()
     stepper = world.steppers.usable[-1]
-    assert isinstance(stepper, Contact) and stepper._split is not None
-    return stepper._split
+    assert isinstance(stepper, Soft) and stepper.substeps.split is not None
+    return stepper.substeps.split
 
 
 def follows(world: World) -> bool:

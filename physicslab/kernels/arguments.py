@@ -7,13 +7,15 @@ of 15); what Python calls gives them their names: ``Motion(*motion)``.
 from typing import NamedTuple
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, fused
+from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Couples, Impacts, Manifolds, Points
 from physicslab.kernels.wide.layout import Slots, SlotsTuple
 
 __all__ = [
-    "Acting", "ActingTuple", "Bounds", "BoundsTuple", "Contacts", "Gravity", "GravityTuple", "Inverse",
-    "InverseTuple", "Log", "Materials", "MaterialsTuple", "Motion", "MotionTuple", "Near", "NearTuple",
-    "Plan", "PlanTuple", "Sizes", "SizesTuple", "Sleepers", "SleepersTuple", "Softness", "SoftnessTuple",
+    "Acting", "ActingTuple", "Bounds", "BoundsTuple", "Contacts", "Course", "CourseTuple", "Gravity",
+    "GravityTuple", "Inverse", "InverseTuple", "Log", "Materials", "MaterialsTuple", "Motion", "MotionTuple",
+    "Near", "NearTuple", "Packed", "PackedTuple", "Plan", "PlanTuple", "Sizes", "SizesTuple", "Sleepers",
+    "SleepersTuple", "Softness", "SoftnessTuple",
     "named_near",
 ]  # fmt: skip
 
@@ -132,7 +134,8 @@ class Softness(NamedTuple):
 class Plan(NamedTuple):
     """Substeps a step, iterations of the solver, the substep and the step [s], the time at the start [s].
 
-    Of 0 iterations, the number goes by that of the contacts.
+    0 iterations: their number is chosen from that of the contacts. Then the time [s] that a step counts as
+    rest, and the substep in which the records of a step begin, -1 where they have begun.
     """
 
     substeps: int
@@ -140,12 +143,48 @@ class Plan(NamedTuple):
     h: float
     dt: float
     time: float
+    rested: float
+    first: int
+
+
+class Course(NamedTuple):
+    """The parts of a substep in order (n,), as numbered in :mod:`physicslab.kernels.solver.soft`.
+
+    Of each its ``shares`` (n,) of the substep's time, how far the positions have ``drifted`` before it (n,),
+    and by how much the middle of the substep comes ``later`` than that of a kick (n,), all in substeps. Where
+    the substep begins and ends, seen from where impacts are resolved, and how long after its beginning that
+    is. Last, whether the ends of steps are Python's, as some parts are.
+    """
+
+    parts: Rows
+    shares: Numbers
+    drifted: Numbers
+    later: Numbers
+    start: float
+    end: float
+    middle: float
+    hooked: bool
+
+
+class Packed(NamedTuple):
+    """The state as compiled forces read it (3 rows + 1,), their sum (3 rows,), and their addresses (n, 3).
+
+    Then the rows whose velocities are predicted for contacts (rows,), and room for positions (rows, 2) [m]
+    from before bodies are moved apart; of no length where what that changes is booked in any case.
+    """
+
+    q: Numbers
+    v: Numbers
+    pull: Numbers
+    calls: Calls
+    predictable: Flags
+    before: Vectors
 
 
 class Gravity(NamedTuple):
     """Masses and moments of inertia, the inverse of both (of all bodies), gravity [m/s^2].
 
-    Then the speculative margin [m].
+    Then the speculative margin [m], and the cause by which kicks of other forces are booked.
     """
 
     mass: Numbers
@@ -155,12 +194,14 @@ class Gravity(NamedTuple):
     gx: float
     gy: float
     margin: float
+    other: int
 
 
 class Sleepers(NamedTuple):
     """Whether bodies may sleep and how many do; which, their rests [s] and lowest speeds [m/s].
 
-    Then room for marks, the rows whose pairs are inactive, and those pairs.
+    Then room for marks, the rows whose pairs are inactive, and those pairs; the forces (rows, 3) [N, N m] on
+    those that sleep, and whether some came from a file, so that what supports them is not known yet.
     """
 
     on: bool
@@ -171,6 +212,8 @@ class Sleepers(NamedTuple):
     marked: Flags
     inactive: Flags
     pairs: Rows
+    forces: Vectors
+    unverified: bool
 
 
 MotionTuple = tuple[Vectors, Numbers, Vectors, Numbers]
@@ -197,9 +240,11 @@ NearTuple = tuple[
     Numbers,
 ]
 SoftnessTuple = tuple[float, float, float]
-PlanTuple = tuple[int, int, float, float, float]
-GravityTuple = tuple[Numbers, Numbers, Numbers, Numbers, float, float, float]
-SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows]
+PlanTuple = tuple[int, int, float, float, float, float, int]
+CourseTuple = tuple[Rows, Numbers, Numbers, Numbers, float, float, float, bool]
+PackedTuple = tuple[Numbers, Numbers, Numbers, Calls, Flags, Vectors]
+GravityTuple = tuple[Numbers, Numbers, Numbers, Numbers, float, float, float, int]
+SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows, Vectors, bool]
 """The same, without names."""
 
 
