@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from physicslab import cli
-from physicslab.lab.processes import in_processes
+from physicslab.lab.jobs import in_processes
 from physicslab.lab.stability.case import StabilityCase, Verdict, run_case
 from physicslab.lab.stability.catalogue import CASES
 from physicslab.state.masses import Diverged

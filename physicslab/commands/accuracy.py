@@ -17,13 +17,14 @@ from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
 from physicslab.lab.accuracy.contacts.engines import OWN
 from physicslab.lab.accuracy.contacts.study import ContactStudy, study_case
-from physicslab.lab.accuracy.contacts.tables import contact_summary, contact_text
 from physicslab.lab.accuracy.document import document, trust_document
 from physicslab.lab.accuracy.honesty.study import FAMILIES, HonestRow, assess_known
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import DEFAULT_S, SceneStudy, study_scene
 from physicslab.lab.accuracy.study import Study, study
 from physicslab.lab.accuracy.tables import (
+    contact_summary,
+    contact_text,
     honest_text,
     left_out_text,
     scene_text,
@@ -34,7 +35,7 @@ from physicslab.lab.accuracy.tables import (
 )
 from physicslab.lab.accuracy.trust import Trust, assess, moments_of
 from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem
-from physicslab.lab.case import Job
+from physicslab.lab.jobs import Job
 from physicslab.scenes import SCENES
 
 __all__ = ["add_arguments", "execute"]
@@ -172,7 +173,7 @@ def _plot(found: Study) -> bytes:
 
 
 def _contact_plot(found: ContactStudy) -> bytes:
-    from physicslab.lab.accuracy.contacts.plot import case_plot
+    from physicslab.lab.accuracy.plot import case_plot
 
     return case_plot(found)
 
@@ -186,6 +187,6 @@ def _draw_overviews(run: LabRun, found: list[ContactStudy]) -> None:
 
 
 def _overview(found: list[ContactStudy], by: str) -> bytes:
-    from physicslab.lab.accuracy.contacts.plot import overview
+    from physicslab.lab.accuracy.plot import overview
 
     return overview(found, by)

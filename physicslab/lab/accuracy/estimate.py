@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -15,6 +15,7 @@ from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.paths import Path, run_path
 from physicslab.lab.accuracy.twins import TWINS, Document, Twin, refined, with_ids
 from physicslab.lab.case import attempt
+from physicslab.lab.jobs import Job
 from physicslab.lab.worlds import steps_not_rigid
 from physicslab.world import World
 
@@ -120,8 +121,8 @@ class Estimate:
 def estimate_error(
     load: Callable[[], World], seconds: float, moments: Sequence[float] = (), budget_s: float = math.inf,
     twins: Sequence[Twin] = TWINS,
-) -> Iterator[float | Estimate]:  # fmt: skip
-    """Run a scene and its twins; yield the share of the work that is done, then the estimate.
+) -> Job[Estimate]:  # fmt: skip
+    """Run a scene and its twins; yield the share of the work that is done.
 
     Parameters
     ----------
@@ -149,8 +150,7 @@ def estimate_error(
     found.path, found.failure = attempt(partial(run, world))
     found.own_s = time.perf_counter() - began - world.compile_s
     if found.path is None:
-        yield found
-        return
+        return found
     left = max(budget_s, _RUNS_AT_LEAST * found.own_s)
     soft = not scene.event_driven or _something_rests(load(), seconds)
     for i, twin in enumerate(twins):
@@ -164,7 +164,7 @@ def estimate_error(
         yield (i + 1) / (len(twins) + 1)
     found.left_s = left
     _summarise(found)
-    yield found
+    return found
 
 
 def find_order(found: Estimate, load: Callable[[], World], seconds: float) -> None:

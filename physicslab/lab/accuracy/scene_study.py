@@ -18,9 +18,10 @@ from physicslab.files.writer import write_scene
 from physicslab.integrators import INTEGRATORS
 from physicslab.integrators.dop853 import DOP853
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error, find_order
-from physicslab.lab.accuracy.horizon import find_horizon, scaled
+from physicslab.lab.accuracy.horizon import find_horizon
 from physicslab.lab.accuracy.twins import GOLDEN, Document, refined, with_ids
-from physicslab.lab.case import Job, attempt, cpu_time
+from physicslab.lab.case import attempt, cpu_time
+from physicslab.lab.jobs import Job, scaled
 from physicslab.lab.worlds import steps_not_rigid
 from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
@@ -134,7 +135,7 @@ class SceneStudy:
 
 
 def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S) -> Job[SceneStudy]:
-    """Run a scene with every method; yield the share of the work that is done, then the result.
+    """Run a scene with every method; yield the share of the work that is done.
 
     Parameters
     ----------
@@ -149,12 +150,8 @@ def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S
     methods = [method for method in INTEGRATORS if _takes(load, plain, method)]
     wanted = [auto, *(rung for method in methods for rung in _ladder(plain, method))]
     study = SceneStudy(name, seconds, "")
-    for found in estimate_error(load, seconds):
-        if isinstance(found, Estimate):
-            study.estimate = found
-            find_order(found, load, seconds)
-        else:
-            yield _ESTIMATE_SHARE * found
+    study.estimate = yield from scaled(estimate_error(load, seconds), 0.0, _ESTIMATE_SHARE)
+    find_order(study.estimate, load, seconds)
     document = with_ids(write_scene(load()))
     horizon = find_horizon(document, study.estimate.bodies, _HORIZON_TIMES * seconds)
     study.horizon_s = yield from scaled(horizon, _ESTIMATE_SHARE, _HORIZON_SHARE)
@@ -165,7 +162,7 @@ def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S
         runs.append((row, ends, simulation))
         yield _HORIZON_SHARE + (1.0 - _HORIZON_SHARE) * (i + 1) / len(wanted)
     _compare(study, runs, document, load, plain)
-    yield study
+    return study
 
 
 def _compare(

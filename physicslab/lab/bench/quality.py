@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -97,8 +98,7 @@ def _energy(world: World, before: Moment) -> float:
 
 
 def _kinetic_energy(world: World, before: Moment) -> float:
-    energy = measure_energy(world)
-    return energy.kinetic_linear + energy.kinetic_angular
+    return measure_energy(world).kinetic
 
 
 def _creep(world: World, before: Moment) -> float:
@@ -106,29 +106,16 @@ def _creep(world: World, before: Moment) -> float:
     return float(np.sqrt((_moved(world, before)[moving] ** 2).sum(axis=1).mean()))
 
 
-def sideways(limit: float) -> Quality:
-    """Return the largest displacement of a body sideways [m], as a quality."""
-    return Quality("sideways drift", "m", limit, _sideways)
-
-
-def sink(limit: float) -> Quality:
-    """Return the largest displacement of a body downwards [m], as a quality."""
-    return Quality("sink", "m", limit, _sink)
-
-
-def overlap(limit: float) -> Quality:
-    """Return the deepest overlap of two bodies [m], as a quality."""
-    return Quality("deepest overlap", "m", limit, _overlap)
-
-
-def energy_change(limit: float) -> Quality:
-    """Return the change of the energy since the start, as a share of it, as a quality."""
-    return Quality("energy change", "", limit, _energy)
-
-
-def largest_overlap(limit: float) -> Quality:
-    """Return the deepest overlap of two bodies [m] that was seen while they moved, as a quality."""
-    return Quality("largest overlap", "m", limit, _overlap, "throughout")
+sideways = partial(Quality, "sideways drift", "m", measure=_sideways)
+"""Returns the largest displacement of a body sideways as a quality, with its limit [m]."""
+sink = partial(Quality, "sink", "m", measure=_sink)
+"""Returns the largest displacement of a body downwards as a quality, with its limit [m]."""
+overlap = partial(Quality, "deepest overlap", "m", measure=_overlap)
+"""Returns the deepest overlap of two bodies as a quality, with its limit [m]."""
+largest_overlap = partial(Quality, "largest overlap", "m", measure=_overlap, when="throughout")
+"""Returns the deepest overlap that was seen while bodies moved as a quality, with its limit [m]."""
+energy_change = partial(Quality, "energy change", "", measure=_energy)
+"""Returns the change of the energy since the start as a quality, with its limit, as a share of it."""
 
 
 def at_rest(energy: float, drift: float) -> tuple[Quality, Quality]:

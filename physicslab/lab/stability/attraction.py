@@ -62,12 +62,16 @@ def _pythagorean() -> float:
     return _energy_change(world, 70.0)
 
 
-ATTRACTION = [
+_case = partial(StabilityCase, group="planets")
+_keeps = partial(
+    _case, right="the adaptive method keeps the energy", figure="largest change of energy", limit=1e-6
+)
+
+ATTRACTION = (
     *(
-        StabilityCase(
-            name=name, title=title, group="planets",
+        _case(
+            name=name, title=title, figure="bodies without a finite place, unreported", limit=0.0,
             right="a clear end that names the time, or the right motion: never NaN",
-            figure="bodies without a finite place, unreported", limit=0.0,
             measure=partial(_unreported, softening, apart),
         )
         for name, title, softening, apart in (
@@ -76,14 +80,9 @@ ATTRACTION = [
             ("planets_head_on", "two bodies that fall into each other, softening 0", 0.0, 1.0),
         )
     ),
-    StabilityCase(
-        name="planets_close", title="two bodies that pass at 1e-6 of their largest distance", group="planets",
-        right="the adaptive method keeps the energy", figure="largest change of energy", limit=1e-6,
+    _keeps(
+        name="planets_close", title="two bodies that pass at 1e-6 of their largest distance",
         measure=_close_encounter,
     ),
-    StabilityCase(
-        name="planets_pythagorean", title="the Pythagorean problem, t = 70", group="planets",
-        right="the adaptive method keeps the energy", figure="largest change of energy", limit=1e-6,
-        measure=_pythagorean,
-    ),
-]  # fmt: skip
+    _keeps(name="planets_pythagorean", title="the Pythagorean problem, t = 70", measure=_pythagorean),
+)  # fmt: skip

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import partial
 
 from physicslab.lab.case import Case, attempt
+from physicslab.lab.worlds import open_space
 
-__all__ = ["Outcome", "StabilityCase", "Verdict", "run_case"]
+__all__ = ["MODELS", "Outcome", "StabilityCase", "Verdict", "part_of", "run_case", "touching_space"]
+
+MODELS = {"soft": "soft contacts", "rigid": "rigid contacts"}
+"""What both models of contacts are called, by the word in a scene's ``simulation``."""
+touching_space = partial(open_space, collisions="step")
+"""Returns an empty world for a model of contacts, to which impacts belong as well."""
 
 
 class Verdict(StrEnum):
@@ -78,3 +85,12 @@ def run_case(case: StabilityCase) -> Outcome:
     start = time.perf_counter()
     figure, failure = attempt(case.measure)
     return Outcome(case, figure, failure, time.perf_counter() - start)
+
+
+def part_of[*Given](number: int, run: Callable[[*Given], Sequence[float]], *given: *Given) -> float:
+    """Return one of the figures of a run, at which several cases look.
+
+    >>> part_of(1, divmod, 17.0, 5.0)
+    2.0
+    """
+    return run(*given)[number]

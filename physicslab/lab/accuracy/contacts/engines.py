@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from functools import partial
 
 from physicslab.ecs.config import SimulationConfig
-from physicslab.lab.peers.box2d3_mirror import Box2D3Mirror
-from physicslab.lab.peers.box2d_mirror import Box2DMirror
+from physicslab.lab.peers.mirrors import Box2D3Mirror, Box2DMirror, PymunkMirror
 from physicslab.lab.peers.peer import Peer
-from physicslab.lab.peers.pymunk_mirror import PymunkMirror
 from physicslab.world import World
 
 __all__ = ["ENGINES", "OWN", "Engine"]
