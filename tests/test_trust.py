@@ -21,10 +21,9 @@ from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
 from physicslab.lab.accuracy.contacts.engines import OWN, Engine
 from physicslab.lab.accuracy.estimate import estimate_error
 from physicslab.lab.accuracy.horizon import find_horizon
-from physicslab.lab.accuracy.nudges import nudged
 from physicslab.lab.accuracy.trust import Trust, assess, moments_of
 from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem, summarise
-from physicslab.lab.accuracy.twins import with_ids
+from physicslab.lab.accuracy.twins import nudged, with_ids
 from physicslab.lab.jobs import result_of
 from physicslab.prefabs import box, circle
 from physicslab.world import World

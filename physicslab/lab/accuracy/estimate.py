@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.files.writer import write_scene
-from physicslab.lab.accuracy.paths import Path, run_path
+from physicslab.lab.accuracy.paths import Path, differences, run_path
 from physicslab.lab.accuracy.twins import TWINS, Document, Twin, refined, with_ids
 from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job
@@ -197,9 +197,8 @@ def _compared(twin: Twin, world: World, run: Callable[[World], Path], found: Est
 
 
 def _spread(own: NDArray[np.float64], other: NDArray[np.float64]) -> Spread:
-    apart = np.abs(own - other)
-    places, speeds = np.hypot(apart[:, 0], apart[:, 1]), np.hypot(apart[:, 3], apart[:, 4])
-    return Spread(*(float(column.max(initial=0.0)) for column in (places, apart[:, 2], speeds, apart[:, 5])))
+    position, velocity, angle, spin = (float(apart.max(initial=0.0)) for apart in differences(own, other))
+    return Spread(position, angle, velocity, spin)
 
 
 def _summarise(found: Estimate) -> None:

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform
 from physicslab.files.reader import read_scene
-from physicslab.lab.accuracy.nudges import ROUNDING
 from physicslab.lab.accuracy.paths import rows_of
-from physicslab.lab.accuracy.twins import Document
+from physicslab.lab.accuracy.twins import ROUNDING, Document
 from physicslab.lab.jobs import Job
 from physicslab.state.masses import Diverged
 from physicslab.world import World

@@ -21,9 +21,8 @@ from numpy.typing import NDArray
 from physicslab.files.reader import read_scene
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error
 from physicslab.lab.accuracy.horizon import find_horizon, sizes_of
-from physicslab.lab.accuracy.nudges import NUDGE_SHARE, NUDGES, ROUNDING, nudged
-from physicslab.lab.accuracy.paths import Path, run_path
-from physicslab.lab.accuracy.twins import TWINS, Document
+from physicslab.lab.accuracy.paths import Path, differences, run_path
+from physicslab.lab.accuracy.twins import NUDGE_SHARE, NUDGES, ROUNDING, TWINS, Document, nudged
 from physicslab.lab.case import attempt
 from physicslab.lab.document import plain
 from physicslab.lab.jobs import Job, scaled
@@ -43,9 +42,6 @@ _IN_STEPS = {twin.name for twin in TWINS if twin.differs_in_step}
 _NUDGED_NAME = "rounding"
 _OVERLAP_NAME = "overlap"
 """Of what no other way to compute it shows: bodies that came to rest in each other, by the limit of a gap."""
-
-_PLACES, _VELOCITIES = slice(0, 2), slice(3, 5)
-"""Columns of a path's states."""
 
 type _Errors = NDArray[np.float64]
 type _Compare = Callable[[Path], _Errors]
@@ -171,22 +167,23 @@ def assess(
         found: _Errors = np.maximum(-np.log10(shares), 0.0)
         return found
 
-    reach, speeds, angles, spins = scales(world, own, bodies, times)
-    places = digits(_apart(own, _PLACES), reach, own.overlaps)
-    each = (
-        places,
-        digits(_apart(own, _VELOCITIES), speeds),
-        digits(lambda path: np.abs(path.states[..., 2] - own.states[..., 2]), angles),
-        digits(lambda path: np.abs(path.states[..., 5] - own.states[..., 5]), spins),
-    )
+    def apart(number: int, path: Path) -> _Errors:
+        return differences(path.states, own.states)[number]
+
+    floors: tuple[_Errors | float, ...] = (own.overlaps, 0.0, 0.0, 0.0)
+    each = [
+        digits(partial(apart, n), scale, floor)
+        for n, (scale, floor) in enumerate(zip(scales(world, own, bodies, times), floors, strict=True))
+    ]
     whole = (
         digits(lambda path: np.abs(path.energy - own.energy), own.energy_scale),
         digits(lambda path: np.hypot(*(path.momentum - own.momentum).T), own.momentum_scale),
         digits(lambda path: np.abs(path.angular - own.angular), own.angular_scale),
     )
     horizon = yield from _horizon(estimate, seconds, deadline, left_out)
+    places = each[0]
     worst = int(places[-1].argmin())
-    ways = _errors(_apart(own, _PLACES), estimate.paths, nudges)[:, -1, worst]
+    ways = _errors(partial(apart, 0), estimate.paths, nudges)[:, -1, worst]
     cause = int(np.append(ways, own.overlaps[-1, worst]).argmax())
     found = Trust(float(places[-1, worst]), bodies[worst], ways=[*estimate.paths], left_out=left_out)
     found.cause = [*estimate.paths, _NUDGED_NAME, _OVERLAP_NAME][cause]
@@ -220,17 +217,6 @@ def scales(
         np.maximum(reach, sizes), np.maximum(path.speeds, sizes / elapsed),
         np.maximum(np.abs(path.states[..., 2]), 1.0), np.maximum(path.spins, 1.0 / elapsed),
     )  # fmt: skip
-
-
-def _apart(own: Path, columns: slice) -> _Compare:
-    """Return what measures how far vectors are from those of a path."""
-
-    def compare(path: Path) -> _Errors:
-        off = path.states[..., columns] - own.states[..., columns]
-        found: _Errors = np.hypot(off[..., 0], off[..., 1])
-        return found
-
-    return compare
 
 
 def _nudges(

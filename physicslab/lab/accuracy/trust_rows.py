@@ -12,11 +12,19 @@ from physicslab.files.reader import read_scene
 from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.engines import OWN, Engine
-from physicslab.lab.accuracy.nudges import NUDGE_SHARE, NUDGES, ROUNDING, nudged
 from physicslab.lab.accuracy.problem import KnownCase, Problem
 from physicslab.lab.accuracy.settings import Setting
 from physicslab.lab.accuracy.trust import STEP_SAFETY
-from physicslab.lab.accuracy.twins import TWINS, Document, Twin, with_ids
+from physicslab.lab.accuracy.twins import (
+    NUDGE_SHARE,
+    NUDGES,
+    ROUNDING,
+    TWINS,
+    Document,
+    Twin,
+    nudged,
+    with_ids,
+)
 from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job
 from physicslab.world import World

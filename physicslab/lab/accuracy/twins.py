@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Iterator
+import random
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,7 +24,10 @@ from physicslab.integrators.dop853 import DOP853
 from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
 
-__all__ = ["GOLDEN", "TWINS", "Document", "Twin", "refined", "with_ids"]
+__all__ = [
+    "GOLDEN", "NUDGES", "NUDGE_SHARE", "ROUNDING", "TWINS", "Document", "Twin", "nudged", "refined",
+    "with_ids",
+]  # fmt: skip
 
 type Document = dict[str, Any]
 """A scene as :func:`physicslab.files.writer.write_scene` returns it, in which every entity has an id."""
@@ -49,8 +53,18 @@ _FINE = 8.0
 """How many times shorter steps are where half a step misses the events that a step does."""
 _LEAST_TOLERANCE = 1e-20
 """Of a scene's configuration."""
-_ULP_SCALE = 1e-2
-"""Coordinates [m], [m/s], [rad] smaller than this are moved by a rounding of this."""
+NUDGES = 6
+"""How many starts are moved by one rounding."""
+NUDGE_SHARE = 0.5
+"""A number is off by half a rounding where it is rounded, and these are moved by a whole one."""
+ROUNDING = 2.0**-50
+"""The smallest error of a result, as a share of its size: that of a few operations."""
+_NUMBERS: dict[str, tuple[str, ...]] = {
+    "Transform": ("position", "angle"),
+    "Velocity": ("linear", "angular"),
+    "Mass": ("mass",),
+}
+"""The numbers of a body that are moved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,34 +213,36 @@ def _without_past(document: Document) -> Document:
 
 
 def _nudge(document: Document, world: World) -> World | None:
-    """Return the scene with places and velocities of bodies moved by one rounding, some up and some down."""
-    twin = copy.deepcopy(document)
-    ways = _alternating()
+    return read_scene(nudged(document, 0))
+
+
+def nudged(document: Document, seed: int) -> Document:
+    """Return a scene whose numbers are moved by one rounding each, up or down.
+
+    These are places, velocities and masses of what can move, and gravity. What is zero stays: it is
+    not rounded, and with it a symmetry that no rounding breaks.
+    """
+    twin, order = copy.deepcopy(document), random.Random(seed)
+
+    def move(part: dict[str, Any], *names: str) -> None:
+        for name in names:
+            value = part.get(name)
+            if isinstance(value, list):
+                part[name] = [_next(number, order) for number in value]
+            elif value is not None:
+                part[name] = _next(value, order)
+
     for entity in twin["entities"]:
-        if "Velocity" not in entity:
-            continue
-        turns = not entity.get("Mass", {}).get("fixed_rotation", False)
-        speeds = ("linear", "angular") if turns else ("linear",)
-        for name, fields in (("Transform", ("position", "angle")), ("Velocity", speeds)):
-            part = entity.setdefault(name, {})
-            for field in fields:
-                value = part.get(field, 0.0 if field.startswith("ang") else [0.0, 0.0])
-                part[field] = (
-                    [_moved(v, ways) for v in value] if isinstance(value, list) else _moved(value, ways)
-                )
-    return read_scene(twin)
+        if "Velocity" in entity:
+            for kind, names in _NUMBERS.items():
+                move(entity.get(kind, {}), *names)
+    move(twin.get("physics", {}), "gravity", "G")
+    return twin
 
 
-def _alternating() -> Iterator[float]:
-    """Yield signs of which neither neighbours nor every second, third or sixth are all alike."""
-    i = 0
-    while True:
-        i += 1
-        yield 1.0 if (i * i // 3 + i) % 2 else -1.0
-
-
-def _moved(value: float, ways: Iterator[float]) -> float:
-    return value + next(ways) * math.ulp(max(abs(value), _ULP_SCALE))
+def _next(number: float, order: random.Random) -> float:
+    """Return the next number up or down; of zero itself."""
+    return math.nextafter(number, order.choice((-math.inf, math.inf))) if number else number
 
 
 def _awake(document: Document, world: World) -> World | None:

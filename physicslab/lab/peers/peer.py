@@ -139,8 +139,8 @@ class Peer(ABC):
     def add_shape(self, body: Any, shape: Shape, material: Material) -> None:
         """Add a body's outline and surface."""
 
-    def weigh(self, body: Any, mass: float, inertia: float) -> None:  # noqa: B027 (pymunk has it already)
-        """Set the mass [kg] and moment of inertia [kg m^2] of a dynamic body, 0 where it does not turn."""
+    def weigh(self, body: Any, mass: float, inertia: float) -> None:  # noqa: B027 (not all need it)
+        """Set the mass [kg] and inertia [kg m^2] of a dynamic body, the second 0 where it does not turn."""
 
     @abstractmethod
     def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:
@@ -149,7 +149,7 @@ class Peer(ABC):
     @property
     @abstractmethod
     def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
-        """What a program calls with the step [s] to advance by it, and the settings that come after the step."""
+        """What a program calls with the step [s] to advance, and the settings that come after the step."""
 
     def step(self, dt: float) -> None:
         """Advance by one step [s]."""

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from physicslab.files.reader import read_scene
 from physicslab.lab.accuracy.honesty import smooth, touching
 from physicslab.lab.accuracy.honesty.scene import KnownScene
-from physicslab.lab.accuracy.nudges import ROUNDING
-from physicslab.lab.accuracy.paths import run_path
+from physicslab.lab.accuracy.paths import differences, run_path
 from physicslab.lab.accuracy.trust import assess, scales
+from physicslab.lab.accuracy.twins import ROUNDING
 from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job, scaled
 from physicslab.world import World
@@ -136,11 +136,6 @@ def assess_known(family: str, seed: int) -> Job[HonestRow]:
 def _true_shares(known: KnownScene, world: World, bodies: list[str]) -> NDArray[np.float64]:
     """Return the true errors (4, n): of positions, velocities, angles and spins, as shares."""
     path = run_path(world, bodies, (known.seconds,))
-    off = path.end - known.truth()
-    errors = np.array(
-        [np.hypot(off[:, 0], off[:, 1]), np.hypot(off[:, 3], off[:, 4]), np.abs(off[:, 2]), np.abs(off[:, 5])]
-    )
-    found: NDArray[np.float64] = errors / np.array(
-        [scale[-1] for scale in scales(world, path, bodies, (known.seconds,))]
-    )
-    return found
+    errors = differences(path.end, known.truth())
+    whole = scales(world, path, bodies, (known.seconds,))
+    return np.array([error / scale[-1] for error, scale in zip(errors, whole, strict=True)])
