@@ -10,7 +10,7 @@ from __future__ import annotations
 import copy
 import math
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -53,6 +53,8 @@ _FINE = 8.0
 """How many times shorter steps are where half a step misses the events that a step does."""
 _LEAST_TOLERANCE = 1e-20
 """Of a scene's configuration."""
+_ULP_SCALE = 1e-2
+"""Coordinates [m], [m/s], [rad] smaller than this are moved by a rounding of this."""
 NUDGES = 6
 """How many starts are moved by one rounding."""
 NUDGE_SHARE = 0.5
@@ -213,7 +215,34 @@ def _without_past(document: Document) -> Document:
 
 
 def _nudge(document: Document, world: World) -> World | None:
-    return read_scene(nudged(document, 0))
+    """Return the scene with places and velocities of bodies moved by one rounding, some up and some down."""
+    twin = copy.deepcopy(document)
+    ways = _alternating()
+    for entity in twin["entities"]:
+        if "Velocity" not in entity:
+            continue
+        turns = not entity.get("Mass", {}).get("fixed_rotation", False)
+        speeds = ("linear", "angular") if turns else ("linear",)
+        for name, fields in (("Transform", ("position", "angle")), ("Velocity", speeds)):
+            part = entity.setdefault(name, {})
+            for field in fields:
+                value = part.get(field, 0.0 if field.startswith("ang") else [0.0, 0.0])
+                part[field] = (
+                    [_moved(v, ways) for v in value] if isinstance(value, list) else _moved(value, ways)
+                )
+    return read_scene(twin)
+
+
+def _alternating() -> Iterator[float]:
+    """Yield signs of which neither neighbours nor every second, third or sixth are all alike."""
+    i = 0
+    while True:
+        i += 1
+        yield 1.0 if (i * i // 3 + i) % 2 else -1.0
+
+
+def _moved(value: float, ways: Iterator[float]) -> float:
+    return value + next(ways) * math.ulp(max(abs(value), _ULP_SCALE))
 
 
 def nudged(document: Document, seed: int) -> Document:
