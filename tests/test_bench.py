@@ -15,9 +15,8 @@ from physicslab.lab.bench.clock import TURN, take_turns
 from physicslab.lab.bench.costs import UNUSED, measure_memory, measure_unused
 from physicslab.lab.bench.engine import OurEngine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
-from physicslab.lab.bench.quality import Quality
 from physicslab.lab.bench.result import SceneResult, exponent, growths
-from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.bench.scene import BenchScene, Quality
 from physicslab.lab.bench.targets import Check
 from physicslab.lab.case import Catalogue
 from physicslab.lab.document import machine_text

@@ -116,7 +116,7 @@ def test_zeros_are_not_nudged_and_all_else_is_by_one_rounding() -> None:
 
 @pytest.mark.parametrize("name", ["free_fall", "kepler_e0.5", "figure_eight", "bounce", "friction_slide"])
 def test_the_true_error_is_within_a_factor_of_ten_of_the_estimate(name: str) -> None:
-    assert row(name).is_near
+    assert row(name).near
 
 
 @pytest.mark.parametrize("contacts", OWN, ids=lambda engine: engine.name)
@@ -125,7 +125,7 @@ def test_the_true_error_of_contacts_is_within_a_factor_of_ten_of_the_estimate(
     name: str, contacts: Engine
 ) -> None:
     """The error of ``slide_spring`` does not fall with the tolerance, as that of a method of order 8 does."""
-    assert result_of(assess_contacts(CONTACTS[name], contacts)).is_near
+    assert result_of(assess_contacts(CONTACTS[name], contacts)).near
 
 
 @pytest.mark.slow

@@ -22,7 +22,7 @@ def slid(speed: float, slowing: float, t: float) -> tuple[float, float]:
     """
     stops = speed / slowing if slowing > 0.0 else math.inf
     moving = min(t, stops)
-    return speed * moving - 0.5 * slowing * moving**2, speed - slowing * t if t < stops else 0.0
+    return speed * moving - 0.5 * slowing * moving * moving, speed - slowing * t if t < stops else 0.0
 
 
 def rolled(

@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-__all__ = ["lab_document", "machine", "machine_text", "plain"]
+__all__ = ["lab_document", "machine", "machine_text", "pick", "plain"]
 
 _PACKAGES = ("physicslab", "numpy", "numba", "esper")
 _PEERS = ("pymunk", "box2d", "pyb2d3")
@@ -37,6 +37,15 @@ def plain(value: object) -> Any:
     if isinstance(value, Mapping):
         return {key: plain(part) for key, part in value.items()}
     return [plain(part) for part in value] if isinstance(value, Iterable) else value
+
+
+def pick(record: object, *names: str) -> dict[str, Any]:
+    """Return some attributes of a record by their names.
+
+    >>> pick(1.5, "real", "imag")
+    {'real': 1.5, 'imag': 0.0}
+    """
+    return {name: getattr(record, name) for name in names}
 
 
 def machine(*, peers: bool = False) -> dict[str, str | int]:

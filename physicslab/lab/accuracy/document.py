@@ -13,7 +13,7 @@ from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Study
 from physicslab.lab.accuracy.trust import Trust, trust_report
 from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
-from physicslab.lab.document import lab_document, plain
+from physicslab.lab.document import lab_document, pick, plain
 
 __all__ = ["document", "trust_document"]
 
@@ -38,71 +38,54 @@ def trust_document(
     """Return estimates of errors beside true errors, and what can be relied on in scenes by their names."""
     found, share = summarise(rows), share_of(random)
     problems = [
-        {
-            "name": row.case.name, "measure": row.case.measure, "method": row.method,
-            "estimate": row.estimate, "error": row.error, "ratio": row.ratio, "near": row.is_near,
-        }
+        pick(row.case, "name", "measure") | pick(row, "method", "estimate", "error", "ratio", "near")
         for row in rows
-    ]  # fmt: skip
+    ]
     return lab_document(
         "trust",
         problems=problems,
-        summary={"known": found.known, "near": found.near, "largest": found.largest, "holds": found.holds},
+        summary=pick(found, "known", "near", "largest", "holds"),
         random=[{**plain(row), "ratios": dict(zip(QUANTITIES, row.ratios, strict=False))} for row in random],
-        honest={
-            "known": share.known, "honest": dict(zip(QUANTITIES, share.honest, strict=True)),
-            "too_large": share.too_large, "worst": share.worst, "holds": share.holds,
-        },
+        honest=pick(share, "known", "honest", "too_large", "worst", "holds")
+        | {"honest": dict(zip(QUANTITIES, share.honest, strict=True))},
         scenes=[{"name": name, **trust_report(trust)} for name, trust in scenes.items()],
-    )  # fmt: skip
+    )
 
 
 def _study(study: Study) -> dict[str, Any]:
     problem = study.problem
     against = "the energy at the start" if "energy" in problem.keeps else None
     return {
-        "name": problem.name, "title": problem.title, "group": problem.group, "source": problem.family,
-        "reference": record(problem.family)["method"], "compared": problem.compared,
-        "measure": problem.measure, "seconds": problem.seconds, "good": problem.good,
-        "excellent": problem.excellent, "rounding_floor": study.floor,
+        **pick(problem, "name", "title", "group"), "source": problem.family,
+        "reference": record(problem.family)["method"],
+        **pick(problem, "compared", "measure", "seconds", "good", "excellent"),
+        "rounding_floor": study.floor,
         "energy_against": "the exact energy at that time" if problem.exact_energy else against,
-        "note": problem.note, "best": study.best, "auto": study.auto, "rigid": study.rigid,
+        "note": problem.note, **pick(study, "best", "auto", "rigid"),
         "integrators": [_curve(curve) for curve in study.curves],
     }  # fmt: skip
 
 
 def _curve(curve: Curve) -> dict[str, Any]:
-    method = curve.integrator
-    return {
-        "name": method.name, "title": method.title, "order": method.order, "order_measured": curve.order,
-        "order_short": curve.short, "refused": curve.refused, "rows": curve.rows,
-    }  # fmt: skip
+    measured = {"order_measured": curve.order, "order_short": curve.short}
+    return pick(curve.integrator, "name", "title", "order") | measured | pick(curve, "refused", "rows")
 
 
 def _contacts(study: ContactStudy) -> dict[str, Any]:
     case = study.case
     engines = [
-        {
-            "name": curve.engine.name, "title": curve.engine.title, "order_measured": curve.order,
-            "verdict": curve.verdict, "refused": curve.refused, "rows": curve.rows,
-        }
+        pick(curve.engine, "name", "title")
+        | {"order_measured": curve.order}
+        | pick(curve, "verdict", "refused", "rows")
         for curve in study.curves
-    ]  # fmt: skip
-    return {
-        "name": case.name, "title": case.title, "group": case.group, "compared": case.compared,
-        "measure": case.measure, "reference": case.source, "seconds": case.seconds, "wanted": case.wanted,
-        "engines": engines,
-    }  # fmt: skip
+    ]
+    names = pick(case, "name", "title", "group", "compared", "measure")
+    return names | {"reference": case.source} | pick(case, "seconds", "wanted") | {"engines": engines}
 
 
 def _scene(study: SceneStudy) -> dict[str, Any]:
-    found, rows = study.estimate, [plain(row) for row in study.rows]
-    names = ("error", "worst", "order", "order_reason", "twins", "failure")
-    for row in rows:
-        cpu_s = row.pop("cpu_s")
-        row["cpu_ms"] = None if row["failure"] else 1e3 * cpu_s
+    estimate = pick(study.estimate, "error", "worst", "order", "order_reason", "twins", "failure")
     return {
         "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.reference,
-        "estimate": {name: getattr(found, name) for name in names}, "rows": rows,
-        "horizon_s": study.horizon_s,
+        "estimate": estimate, "rows": study.rows, "horizon_s": study.horizon_s,
     }  # fmt: skip

@@ -210,7 +210,7 @@ def _spread_cells(spread: Spread | None) -> tuple[str, str, str, str]:
 
 def _scene_cells(row: SceneRow) -> tuple[str, ...]:
     return (
-        row.asked, row.integrator, row.step, str(row.evaluations), f"{1e3 * row.cpu_s:.3g}",
+        row.asked, row.integrator, row.step, str(row.evaluations), cell(row.cpu_ms, ".3g"),
         cell(row.half_step, ".1e"), f"{'at most ' if row.at_most else ''}{cell(row.error, '.1e')}",
         cell(row.energy, ".1e"), row.failure,
     )  # fmt: skip

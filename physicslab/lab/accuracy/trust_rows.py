@@ -67,7 +67,7 @@ class TrustRow:
         return max(self.error, ROUNDING) / max(self.estimate, ROUNDING)
 
     @property
-    def is_near(self) -> bool:
+    def near(self) -> bool:
         """Whether the error is within a factor of 10 of the estimate, or less where both are of rounding."""
         if self.estimate is None or self.ratio is None:
             return False
@@ -102,7 +102,7 @@ class TrustSummary:
 def summarise(rows: Sequence[TrustRow]) -> TrustSummary:
     """Count the rows whose estimate is good."""
     ratios = [row.ratio for row in rows if row.ratio is not None]
-    near = [row.ratio for row in rows if row.is_near and row.ratio is not None]
+    near = [row.ratio for row in rows if row.near and row.ratio is not None]
     cautious = sum(ratio < 1.0 / _NEAR for ratio in near)
     return TrustSummary(len(ratios), len(near), max(ratios, default=0.0), cautious)
 

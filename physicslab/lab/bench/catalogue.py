@@ -12,8 +12,16 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.lab.bench.moving import FUNNELS, MOVING
-from physicslab.lab.bench.quality import at_rest, energy_change, lost, overlap, sideways, sink, within
-from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.bench.scene import (
+    BenchScene,
+    at_rest,
+    energy_change,
+    lost,
+    overlap,
+    sideways,
+    sink,
+    within,
+)
 from physicslab.lab.bench.untuned import UNTUNED
 from physicslab.lab.case import Catalogue
 from physicslab.lab.worlds import soft_space

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Spring
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.bench.quality import Places, at_rest, largest_overlap, lost, overlap, within
-from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.bench.scene import BenchScene, Places, at_rest, largest_overlap, lost, overlap, within
 from physicslab.lab.worlds import GRAVITY, floor, soft_space
 from physicslab.prefabs import box, circle, container
 from physicslab.world import World

@@ -8,7 +8,7 @@ from typing import Any
 from physicslab.lab.bench.costs import Memory, Unused
 from physicslab.lab.bench.result import Growth, SceneResult, growths
 from physicslab.lab.bench.targets import Check, checks
-from physicslab.lab.document import lab_document, plain
+from physicslab.lab.document import lab_document, pick, plain
 
 __all__ = ["BenchReport"]
 
@@ -56,13 +56,9 @@ class BenchReport:
 
 def _scene(result: SceneResult) -> dict[str, Any]:
     scene = result.scene
-    limits = [
-        {"name": quality.name, "unit": quality.unit, "limit": quality.limit, "when": quality.when}
-        for quality in scene.quality
-    ]
     return {
-        "name": scene.name, "title": scene.title, "group": scene.group, "bodies": scene.size,
-        "contacts": result.contacts, "settled_s": scene.seconds, "steps": scene.steps,
-        "one_call": scene.compiled_runs, "quality_limits": limits, "systems_ms": result.systems,
-        "engines": [*result.engines.values()],
+        **pick(scene, "name", "title", "group"), "bodies": scene.size, "contacts": result.contacts,
+        "settled_s": scene.seconds, "steps": scene.steps, "one_call": scene.compiled_runs,
+        "quality_limits": [pick(quality, "name", "unit", "limit", "when") for quality in scene.quality],
+        "systems_ms": result.systems, "engines": [*result.engines.values()],
     }  # fmt: skip

@@ -11,8 +11,7 @@ from functools import partial
 import numpy as np
 
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.bench.quality import largest_overlap, lost, overlap, within
-from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.bench.scene import BenchScene, largest_overlap, lost, overlap, within
 from physicslab.lab.worlds import floor, soft_space
 from physicslab.prefabs import box, circle, container
 from physicslab.world import World
