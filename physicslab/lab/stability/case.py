@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import partial
@@ -40,8 +40,8 @@ class StabilityCase(Case):
         The largest figure that passes.
     measure : callable
         Builds a world, runs it and returns the figure.
-    long : bool
-        Whether it takes so long that only the command runs it, and no test.
+    long_s : float
+        About how long it takes [s], where only the command runs it, and no test; else 0.
     """
 
     right: str
@@ -49,7 +49,13 @@ class StabilityCase(Case):
     limit: float
     measure: Callable[[], float]
     unit: str = ""
-    long: bool = False
+    long_s: float = 0.0
+
+    @property
+    def run(self) -> Hashable:
+        """What is alike for cases that look at one run from several sides."""
+        measure = self.measure
+        return measure.args[1:] if isinstance(measure, partial) and measure.func is part_of else self.name
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Sequence
+
 from physicslab.lab.case import Catalogue
 from physicslab.lab.stability.attraction import ATTRACTION
-from physicslab.lab.stability.case import run_case
+from physicslab.lab.stability.case import StabilityCase, run_case
 from physicslab.lab.stability.chains import CHAINS
 from physicslab.lab.stability.impacts import IMPACTS
 from physicslab.lab.stability.ranges import RANGES
@@ -13,10 +15,20 @@ from physicslab.lab.stability.squeezed import SQUEEZED
 from physicslab.lab.stability.standing import STANDING
 from physicslab.lab.stability.steps import STEPS
 
-__all__ = ["CASES", "run_named"]
+__all__ = ["CASES", "run_named", "runs_of"]
 
 CASES = Catalogue((*SPRINGS, *CHAINS, *STANDING, *SQUEEZED, *IMPACTS, *STEPS, *ATTRACTION, *RANGES))
 """Every case by name; families are groups."""
+
+
+def runs_of(cases: Sequence[StabilityCase]) -> list[list[str]]:
+    """Return the names of cases by the run at which they look, the longest run first."""
+    runs: dict[Hashable, list[StabilityCase]] = {}
+    for case in cases:
+        runs.setdefault(case.run, []).append(case)
+    longest = max(runs.values(), key=lambda run: run[0].long_s, default=[])
+    ordered = sorted(runs.values(), key=lambda run: run is not longest)
+    return [[case.name for case in run] for run in ordered]
 
 
 def run_named(name: str) -> tuple[float | None, str, float]:

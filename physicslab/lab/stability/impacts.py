@@ -171,7 +171,7 @@ IMPACTS = (
         for seconds in (60.0, 200.0)
     ),
     _bounces(
-        name="gas_energy", title="gas of 2,000 elastic discs, 10,000 steps", limit=0.002, long=True,
+        name="gas_energy", title="gas of 2,000 elastic discs, 10,000 steps", limit=0.002, long_s=4.0,
         right="energy is kept within 0.2 %", figure="largest change of energy", measure=_gas_energy,
     ),
     _amplitude(

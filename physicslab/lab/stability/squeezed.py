@@ -101,16 +101,16 @@ def _squeezed(contacts: str, speed: float) -> tuple[float, float]:
 _crowds = partial(StabilityCase, group="crowds")
 
 
-def _apart(count: int, steps: int) -> tuple[StabilityCase, ...]:
-    title, long = f"{count:,} discs of 0.1 m on one spot", count > 1_000
+def _apart(count: int, steps: int, long_s: float = 0.0) -> tuple[StabilityCase, ...]:
+    title = f"{count:,} discs of 0.1 m on one spot"
     return (
         _crowds(
-            name=f"crowd_{count}_speed", title=title, figure="fastest disc", unit="m/s", limit=2.0, long=long,
-            right="they come apart slowly: coming apart makes no energy to speak of",
+            name=f"crowd_{count}_speed", title=title, figure="fastest disc", unit="m/s", limit=2.0,
+            right="they come apart slowly: coming apart makes no energy to speak of", long_s=long_s,
             measure=partial(part_of, 0, _parting, count, steps),
         ),
         _crowds(
-            name=f"crowd_{count}_apart", title=f"{title}, after {steps} steps", limit=0.2, long=long,
+            name=f"crowd_{count}_apart", title=f"{title}, after {steps} steps", limit=0.2, long_s=long_s,
             right="they are apart, to a tenth of their size", figure="deepest overlap, of a radius",
             measure=partial(part_of, 1, _parting, count, steps),
         ),
@@ -129,7 +129,7 @@ SQUEEZED = (
         unit="m", right="they go the same ways: no normal is left to chance", limit=0.0,
         measure=partial(_difference, 1_000, 6),
     ),
-    *_apart(5_000, 900),
+    *_apart(5_000, 900, long_s=60.0),
     *(
         StabilityCase(
             name=f"spin_1e4_e{e:g}_{kind}_{contacts}", group="spins",
