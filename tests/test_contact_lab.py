@@ -28,7 +28,7 @@ from physicslab.lab.accuracy.contacts.study import (
 from physicslab.lab.accuracy.figures import digits
 from physicslab.lab.accuracy.tables import contact_summary, contact_text, order_text
 from physicslab.lab.accuracy.verdict import Verdict
-from physicslab.lab.closed_forms import corner_impact, stopped_by_friction
+from physicslab.lab.closed_forms import corner_impact, rolled, slid, stopped_by_friction
 from physicslab.lab.jobs import result_of
 from physicslab.lab.peers.mirrors import Box2D3Mirror
 from physicslab.lab.peers.peer import CannotBuild
@@ -95,6 +95,26 @@ def test_a_block_on_a_spring_goes_as_its_equation_of_motion_has_it() -> None:
         if i % 1000 == 0:
             assert x == pytest.approx(stopped_by_friction(1.0, rate, held, i * h), abs=1e-3)
     assert abs(x) <= held
+
+
+@pytest.mark.parametrize("pull", [0.0, 1.5, 9.0])
+def test_a_wheel_slips_and_rolls_as_its_equation_of_motion_has_it(pull: float) -> None:
+    """Pulled by 9 m/s^2 it slips for ever: friction of 2 m/s^2 cannot turn it as fast."""
+    friction, share, h = 2.0, 0.5, 1e-4
+    way, speed, rim, turning = 0.0, 3.0, 0.0, 0.0
+    for i in range(1, 10_001):
+        slips = speed - turning > 1e-9
+        rate = pull - friction if slips else pull / (1.0 + share)
+        speed, turning = speed + h * rate, turning + h * (friction / share if slips else rate)
+        turning = min(turning, speed)
+        way, rim = way + h * speed, rim + h * turning
+        if i % 2_500 == 0:
+            assert rolled(3.0, friction, i * h, pull=pull, share=share) == pytest.approx(
+                (way, speed, rim, turning), abs=2e-3
+            )
+    assert slid(3.0, friction - pull, 1.0) == pytest.approx(
+        (3.0 + 0.5 * (pull - friction), 3.0 + pull - friction)
+    )
 
 
 def test_impacts_on_corners_keep_the_laws_of_newton_and_coulomb() -> None:
