@@ -44,7 +44,7 @@ def rolled(
         Its moment of inertia over m r^2.
 
     >>> rolled(3.0, 2.0, 1.0)
-    (2.25, 2.0, 1.75, 2.0)
+    (2.25, 2.0, 1.5, 2.0)
     """
     grip = (1.0 + 1.0 / share) * friction - pull
     slipping = min(t, speed / grip if grip > 0.0 else math.inf)
