@@ -20,7 +20,8 @@ from physicslab.lab.accuracy.planets import crowd
 from physicslab.lab.accuracy.plot import method_styles
 from physicslab.lab.accuracy.settings import Setting, ladder, refusal
 from physicslab.lab.accuracy.study import Study, study
-from physicslab.lab.accuracy.verdict import Verdict, measured_order, verdict
+from physicslab.lab.accuracy.verdict import measured_order, verdict
+from physicslab.lab.case import Verdict
 from physicslab.lab.jobs import result_of
 
 type Figures = dict[tuple[str, ...], mpmath.mpf]

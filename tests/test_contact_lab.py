@@ -27,7 +27,7 @@ from physicslab.lab.accuracy.contacts.study import (
 )  # fmt: skip
 from physicslab.lab.accuracy.figures import digits
 from physicslab.lab.accuracy.tables import contact_summary, contact_text, order_text
-from physicslab.lab.accuracy.verdict import Verdict
+from physicslab.lab.case import Verdict
 from physicslab.lab.closed_forms import corner_impact, rolled, slid, stopped_by_friction
 from physicslab.lab.jobs import result_of
 from physicslab.lab.peers.mirrors import Box2D3Mirror

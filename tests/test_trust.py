@@ -18,7 +18,7 @@ from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene, write_scene
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
-from physicslab.lab.accuracy.contacts.engines import OWN, Engine
+from physicslab.lab.accuracy.contacts.engines import OWN, ContactEngine
 from physicslab.lab.accuracy.estimate import estimate_error
 from physicslab.lab.accuracy.horizon import find_horizon
 from physicslab.lab.accuracy.trust import Trust, assess, moments_of
@@ -122,7 +122,7 @@ def test_the_true_error_is_within_a_factor_of_ten_of_the_estimate(name: str) -> 
 @pytest.mark.parametrize("contacts", OWN, ids=lambda engine: engine.name)
 @pytest.mark.parametrize("name", ["slide_spring", "roll_hill", "seam_box", "corner_roll"])
 def test_the_true_error_of_contacts_is_within_a_factor_of_ten_of_the_estimate(
-    name: str, contacts: Engine
+    name: str, contacts: ContactEngine
 ) -> None:
     """The error of ``slide_spring`` does not fall with the tolerance, as that of a method of order 8 does."""
     assert result_of(assess_contacts(CONTACTS[name], contacts)).near

@@ -6,12 +6,13 @@ import math
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
 from physicslab.state.masses import Diverged
 
-__all__ = ["Case", "Catalogue", "attempt", "cpu_time"]
+__all__ = ["Case", "Catalogue", "Verdict", "attempt", "cpu_time"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,6 +33,18 @@ class Case:
     def family(self) -> str:
         """The name for it and others together on the command line."""
         return self.group
+
+
+class Verdict(StrEnum):
+    """How good a figure is: whether it is within a limit, or how near an error is to what can be."""
+
+    PASSED = "passed"
+    EXCELLENT = "excellent"
+    GOOD = "good"
+    SHORT = "falls short"
+    ROUNDING = "rounding floor"
+    CHAOS = "chaos limit"
+    FAILED = "failed"
 
 
 class Catalogue[AnyCase: Case](dict[str, AnyCase]):

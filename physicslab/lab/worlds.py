@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import TypedDict
 
@@ -153,9 +153,12 @@ def energy_growth(world: World, steps: int, scale: float | None = None, every: i
     return max(0.0, largest(world, steps, lambda: (measure_energy(world).total - start) / share, every))
 
 
-def energy_change(world: World, steps: int, every: int = 1) -> float:
-    """Return the largest change of the energy since the start, whatever caused it, as a share of it."""
+def energy_change(world: World, moves: Iterable[object]) -> float:
+    """Return the largest change of the energy, whatever caused it, as a share of what is exchanged.
+
+    It is looked at whenever ``moves``, which advances the world, yields.
+    """
     audit = Audit(world)
-    for _ in world.stepping(steps=steps, stride=every):
+    for _ in moves:
         audit.sample(world)
     return audit.change

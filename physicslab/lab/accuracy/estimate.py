@@ -19,7 +19,7 @@ from physicslab.lab.jobs import Job
 from physicslab.lab.worlds import steps_not_rigid
 from physicslab.world import World
 
-__all__ = ["Estimate", "Spread", "TwinResult", "estimate_error", "find_order"]
+__all__ = ["Departure", "Estimate", "TwinResult", "estimate_error", "find_order"]
 
 _LIMITED_BY_STEP = 0.25
 """Share of the estimate that halving the step must explain for the step to be what limits the results."""
@@ -32,7 +32,7 @@ _ROUNDINGS = 1e3
 
 
 @dataclass(frozen=True, slots=True)
-class Spread:
+class Departure:
     """The largest difference of any body between two runs.
 
     Attributes
@@ -55,7 +55,7 @@ class TwinResult:
     ----------
     name, what : str
         The twin.
-    spread : Spread, optional
+    spread : Departure, optional
         ``None`` where it failed.
     failure : str
         Why.
@@ -63,7 +63,7 @@ class TwinResult:
 
     name: str
     what: str
-    spread: Spread | None
+    spread: Departure | None
     failure: str = ""
 
 
@@ -73,7 +73,7 @@ class Estimate:
 
     Attributes
     ----------
-    error : Spread, optional
+    error : Departure, optional
         The largest spread of any twin; ``None`` where the scene or all of its twins fail.
     worst : str
         The twin that is furthest off in place.
@@ -99,7 +99,7 @@ class Estimate:
         How long the scene itself took, and how much is left for what else is compared [s].
     """
 
-    error: Spread | None = None
+    error: Departure | None = None
     worst: str = ""
     order: float | None = None
     order_reason: str = ""
@@ -113,7 +113,7 @@ class Estimate:
     own_s: float = 0.0
     left_s: float = math.inf
 
-    def spread_of(self, name: str) -> Spread | None:
+    def spread_of(self, name: str) -> Departure | None:
         """Return how far a twin is off, where there is one that did not fail."""
         return next((twin.spread for twin in self.twins if twin.name == name), None)
 
@@ -196,9 +196,9 @@ def _compared(twin: Twin, world: World, run: Callable[[World], Path], found: Est
     return TwinResult(twin.name, what, _spread(found.path.end, path.end))
 
 
-def _spread(own: NDArray[np.float64], other: NDArray[np.float64]) -> Spread:
+def _spread(own: NDArray[np.float64], other: NDArray[np.float64]) -> Departure:
     position, velocity, angle, spin = (float(apart.max(initial=0.0)) for apart in differences(own, other))
-    return Spread(position, angle, velocity, spin)
+    return Departure(position, angle, velocity, spin)
 
 
 def _summarise(found: Estimate) -> None:
@@ -207,7 +207,7 @@ def _summarise(found: Estimate) -> None:
         return
     found.worst = max(spreads, key=lambda name: spreads[name].position)
     names = ("position", "angle", "velocity", "spin")
-    found.error = Spread(*(max(getattr(spread, name) for spread in spreads.values()) for name in names))
+    found.error = Departure(*(max(getattr(spread, name) for spread in spreads.values()) for name in names))
 
 
 def _order(found: Estimate, scene: World, quarter: Callable[[], Path]) -> tuple[float | None, str]:

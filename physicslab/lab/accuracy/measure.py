@@ -11,9 +11,9 @@ import numpy as np
 from physicslab.components import Transform, Velocity
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
-from physicslab.lab.accuracy.verdict import Verdict, verdict
+from physicslab.lab.accuracy.verdict import verdict
 from physicslab.lab.accuracy.watch import Row, watch
-from physicslab.lab.case import attempt, cpu_time
+from physicslab.lab.case import Verdict, attempt, cpu_time
 from physicslab.world import World
 
 __all__ = ["measure", "rounding_floor"]

@@ -8,14 +8,14 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from physicslab.lab.accuracy.catalogue import LEFT_OUT
 from physicslab.lab.accuracy.contacts.study import ROUNDING, ContactCurve, ContactStudy
-from physicslab.lab.accuracy.estimate import Spread
+from physicslab.lab.accuracy.estimate import Departure
 from physicslab.lab.accuracy.honesty.study import FAMILIES, QUANTITIES, HonestRow, share_of
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Study
 from physicslab.lab.accuracy.trust import Trust
 from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
-from physicslab.lab.accuracy.verdict import Verdict
 from physicslab.lab.accuracy.watch import Row
+from physicslab.lab.case import Verdict
 from physicslab.lab.table import cell, table
 
 __all__ = [
@@ -202,7 +202,7 @@ def _horizon_words(horizon_s: float | None) -> str:
     return f"one of many possible futures {horizon_s:.3g} s after the start, by whatever method"
 
 
-def _spread_cells(spread: Spread | None) -> tuple[str, str, str, str]:
+def _spread_cells(spread: Departure | None) -> tuple[str, str, str, str]:
     if spread is None:
         return ("-", "-", "-", "-")
     return f"{spread.position:.1e}", f"{spread.angle:.1e}", f"{spread.velocity:.1e}", f"{spread.spin:.1e}"

@@ -11,7 +11,7 @@ from physicslab.ecs.config import SimulationConfig
 from physicslab.files.reader import read_scene
 from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.contacts.case import ContactCase
-from physicslab.lab.accuracy.contacts.engines import OWN, Engine
+from physicslab.lab.accuracy.contacts.engines import OWN, ContactEngine
 from physicslab.lab.accuracy.problem import KnownCase, Problem
 from physicslab.lab.accuracy.settings import Setting
 from physicslab.lab.accuracy.trust import STEP_SAFETY
@@ -115,7 +115,7 @@ def assess_problem(problem: Problem) -> Job[TrustRow]:
     return (yield from _assess(problem, world.plan.integrator.name, simulation))
 
 
-def assess_contacts(case: ContactCase, engine: Engine) -> Job[TrustRow]:
+def assess_contacts(case: ContactCase, engine: ContactEngine) -> Job[TrustRow]:
     """Estimate the error of a contact case with one of our models of contacts, and measure its true error.
 
     With soft contacts, rigid ones are another way to compute it.

@@ -13,7 +13,7 @@ from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.diagnostics.forces import fastest_force
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
-from physicslab.lab.accuracy.verdict import Verdict
+from physicslab.lab.case import Verdict
 from physicslab.world import World
 
 __all__ = ["Row", "watch"]

@@ -5,25 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import partial
 
-from physicslab.lab.case import Case, attempt
+from physicslab.lab.case import Case, Verdict, attempt
 from physicslab.lab.worlds import open_space
 
-__all__ = ["MODELS", "Outcome", "StabilityCase", "Verdict", "part_of", "run_case", "touching_space"]
+__all__ = ["MODELS", "Outcome", "StabilityCase", "part_of", "run_case", "touching_space"]
 
 MODELS = {"soft": "soft contacts", "rigid": "rigid contacts"}
 """What both models of contacts are called, by the word in a scene's ``simulation``."""
 touching_space = partial(open_space, collisions="step")
 """Returns an empty world for a model of contacts, to which impacts belong as well."""
-
-
-class Verdict(StrEnum):
-    """Whether a figure is within its limit."""
-
-    PASSED = "passed"
-    SHORT = "falls short"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -110,7 +110,8 @@ def _apex_error(seconds: float, collisions: str) -> float:
 
 
 def _gas_energy() -> float:
-    return energy_change(SCENES["gas"].build(), 10_000, every=50)
+    world = SCENES["gas"].build()
+    return energy_change(world, world.stepping(steps=10_000, stride=50))
 
 
 def _cradle_amplitude(damping: float) -> float:

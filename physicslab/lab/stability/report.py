@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import Any
 
+from physicslab.lab.case import Verdict
 from physicslab.lab.document import lab_document
-from physicslab.lab.stability.case import Outcome, StabilityCase, Verdict
+from physicslab.lab.stability.case import Outcome, StabilityCase
 from physicslab.lab.table import Columns, cell
 
 __all__ = ["columns", "document", "head_text", "row_text", "short_names", "summary_text"]

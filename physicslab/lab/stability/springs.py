@@ -51,7 +51,7 @@ def _rest_error(stiffness: float, touches: bool) -> float:
 def _energy(stiffness: float, touches: bool) -> float:
     """Return the change of energy; 0 where the engine reports that it does not follow the motion."""
     world, _ = _hung(stiffness, _STRETCH, gravity=None, touches=touches)
-    changed = energy_change(world, _STEPS)
+    changed = energy_change(world, world.stepping(steps=_STEPS))
     return 0.0 if "too fast to be followed" in world.plan.reason else changed
 
 
@@ -89,7 +89,7 @@ def _swing(touches: bool, stiffness: float) -> tuple[World, int]:
 
 def _swing_change(touches: bool, stiffness: float) -> float:
     world, _ = _swing(touches, stiffness)
-    return energy_change(world, _STEPS)
+    return energy_change(world, world.stepping(steps=_STEPS))
 
 
 def _along_the_rod(touches: bool, stiffness: float) -> float:

@@ -12,9 +12,8 @@ from itertools import pairwise
 import numpy as np
 
 from physicslab.lab.accuracy.contacts.case import ContactCase
-from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN, Engine
-from physicslab.lab.accuracy.verdict import Verdict
-from physicslab.lab.case import attempt, cpu_time
+from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN, ContactEngine
+from physicslab.lab.case import Verdict, attempt, cpu_time
 from physicslab.lab.jobs import Job
 from physicslab.lab.peers.peer import CannotBuild
 from physicslab.lab.worlds import steps_not_rigid
@@ -70,7 +69,7 @@ class ContactCurve:
 
     Attributes
     ----------
-    engine : Engine
+    engine : ContactEngine
         Which.
     rows : list of ContactRow
         From the longest step to the shortest.
@@ -82,7 +81,7 @@ class ContactCurve:
         Why there are no rows.
     """
 
-    engine: Engine
+    engine: ContactEngine
     rows: list[ContactRow] = field(default_factory=list)
     order: float | None = None
     verdict: Verdict | None = None
@@ -156,7 +155,7 @@ def _verdict(case: ContactCase, curve: ContactCurve) -> Verdict | None:
     return Verdict.GOOD if curve.engine.name == "soft" and converges else Verdict.SHORT
 
 
-def measure_row(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
+def measure_row(case: ContactCase, engine: ContactEngine, dt: float) -> ContactRow:
     """Compute a case with an engine and a step [s], repeatedly if that is short.
 
     Raises
@@ -175,7 +174,7 @@ def measure_row(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
     return row
 
 
-def _run(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
+def _run(case: ContactCase, engine: ContactEngine, dt: float) -> ContactRow:
     worlds = case.worlds(engine.simulation(dt))
     advances = [engine.start(world, dt) for world in worlds]
     compiled = sum(world.compile_s for world in worlds)
