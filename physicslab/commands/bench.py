@@ -19,6 +19,7 @@ from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT, SCENES, by_default, 
 from physicslab.lab.bench.costs import UNUSED, Unused, measure_memory, measure_unused
 from physicslab.lab.bench.engine import PEERS, OurEngine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
+from physicslab.lab.bench.plot import bench_picture
 from physicslab.lab.bench.report import BenchReport
 from physicslab.lab.bench.result import SceneResult
 from physicslab.lab.bench.scene import BenchScene
@@ -91,7 +92,7 @@ def execute(arguments: Namespace) -> int:
     _note(run, "")
     run.show(report_text(report))
     run.write(report.document)
-    run.draw("bench", partial(_plot, report))
+    run.draw("bench", partial(bench_picture, report))
     for result in report.scenes:
         if result.ours.failure:
             raise CommandError(f"{result.scene.name}: {result.ours.failure}", FAILED)
@@ -164,9 +165,3 @@ def _note(run: LabRun, text: str) -> None:
     """Print to stderr what is no part of the report."""
     if sys.stderr is not None:  # a program may be started without it
         run.show(text, sys.stderr)
-
-
-def _plot(report: BenchReport) -> bytes:
-    from physicslab.lab.bench.plot import bench_picture  # matplotlib takes a while, and may not be there
-
-    return bench_picture(report)
