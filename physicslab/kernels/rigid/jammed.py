@@ -1,9 +1,9 @@
 """Sliding that no contact forces go on with: it stops at once, by impulses, though nothing approaches.
 
-Points that slide have their friction given, and what they press may then press them the more: there may be no
-forces that keep all laws (Painleve's paradox; piles that come to rest have it often). Impulses keep them: what
-a short step by impulses finds, in the limit of no time (a tangential impact, or an impact without collision;
-Genot & Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653). In that limit no body moves, so nothing overlaps.
+Points that slide have their friction given, and what they press may then press them the more: there may be
+no forces that keep all laws (Painleve's paradox; piles that come to rest have it often). Impulses keep them:
+those of a short step in the limit of no time (a tangential impact, or an impact without collision; Genot &
+Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653). In that limit no body moves, so nothing overlaps.
 """
 
 from physicslab.kernels import Numbers, fused
