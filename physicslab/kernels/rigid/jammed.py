@@ -51,7 +51,8 @@ def stop_sliding(
         solve_equations(equations, count, 1.0)
     apply(scene, equations, count, v)
     measure_all(scene, equations, count, q, v)
-    stopped, changed[0, PAIR] = changed[0, PAIR] >= 0, -1
+    stopped: bool = changed[0, PAIR] >= 0
+    changed[0, PAIR] = -1
     for i in range(count):
         before, after = vectors[FREE, 2 * i + 1], measures[i, VT]
         back = after if before < 0.0 else -after
