@@ -8,10 +8,10 @@ import pytest
 from numpy.typing import NDArray
 from recording import RecordingCanvas
 
+from physicslab.systems.frame.refresh_timer import RefreshTimer
 from physicslab.view.canvas.canvas import Rect, TextStyle, TextSurface
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.rounded import rounded
-from physicslab.view.panels.refresh_timer import RefreshTimer
 
 RECT = (20, 10, 120, 60)
 INK = TextStyle(14, (230, 230, 230))
@@ -87,13 +87,13 @@ def test_rounded_rectangles_of_any_size_are_the_same_both_ways(size: tuple[int, 
 
 def test_one_job_is_due_at_a_time_and_none_is_forgotten() -> None:
     refresh_timer = RefreshTimer({"figures": 0.1, "costs": 0.1, "advice": 0.25})
-    done = [refresh_timer.due(n / 60) for n in range(61)]
+    done = [job for n in range(61) for job in refresh_timer.due(n / 60)]
     counts = {name: done.count(name) for name in ("figures", "costs", "advice")}
     assert counts["figures"] in (9, 10, 11) and counts["costs"] in (9, 10, 11) and counts["advice"] in (4, 5)
 
 
 def test_after_all_was_done_nothing_is_due() -> None:
     refresh_timer = RefreshTimer({"figures": 0.1, "costs": 0.2})
-    refresh_timer.all_done(5.0)
-    assert refresh_timer.due(5.05) is None
-    assert [refresh_timer.due(5.11), refresh_timer.due(5.12)] == ["figures", None]
+    assert refresh_timer.all_due(5.0) == ["figures", "costs"]
+    assert refresh_timer.due(5.05) == []
+    assert [refresh_timer.due(5.11), refresh_timer.due(5.12)] == [["figures"], []]
