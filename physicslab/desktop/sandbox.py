@@ -204,7 +204,7 @@ class Sandbox:
             window.error_study.running
             or window.filming.running
             or window.next_world is not None
-            or bool(window.deeds)
+            or bool(window.pending)
             or window.closing
         )
         return not (busy or window.is_moving(self.world) or self.interface.toolkit.unsettled)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from physicslab.components import Held, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component
@@ -16,7 +16,7 @@ from physicslab.view.controls.measuring import nudged
 from physicslab.view.controls.tools import HAND, Tool
 from physicslab.view.overlay.instruments import instruments_of
 from physicslab.view.panels.laws import has_gravity
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 __all__ = [
@@ -71,7 +71,7 @@ _TEXT_SCALES = (0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0)
 _NO_GRAVITY = "This world was made without GravitySystem: no law of gravity acts in it"
 
 
-def choose_tool(window: Window, tool: Tool) -> None:
+def choose_tool(world: World, window: Window, tool: Tool) -> None:
     """Let the left mouse button do something else."""
     window.spring_tool.cancel()
     window.measuring.cancel()
@@ -290,7 +290,7 @@ def leave(world: World, window: Window) -> None:
     elif window.selection.entities:
         window.selection.clear()
     elif window.tool != HAND.name:
-        choose_tool(window, HAND)
+        choose_tool(world, window, HAND)
     else:
         window.ask_to_close(world)
 
@@ -366,7 +366,7 @@ def select_next(world: World, window: Window) -> None:
         window.selection.take(next((entity for entity in bodies if entity > now), bodies[0]))
 
 
-def nudger(across: int, up: int) -> Callable[[World, Window], None]:
+def nudger(across: int, up: int) -> Action:
     """Return what moves all that is selected by so many pixels."""
 
     def nudge(world: World, window: Window) -> None:
@@ -383,7 +383,7 @@ def nudger(across: int, up: int) -> Callable[[World, Window], None]:
     return nudge
 
 
-def turner(sign: int) -> Callable[[World, Window], None]:
+def turner(sign: int) -> Action:
     """Return what turns each body that is selected by a degree, or by 15 where angles snap."""
 
     def turn(world: World, window: Window) -> None:
@@ -420,10 +420,10 @@ def redo(world: World, window: Window) -> None:
     window.notify(f"Put back: {words}" if words else "There is nothing to put back")
 
 
-def seek(window: Window, step: int) -> None:
+def seek(world: World, window: Window, step: int) -> None:
     """Go to the place after so many steps, and pause there; beyond the ends to the nearest."""
     history = window.edits.history
-    window.hand.drop(history.world)
+    window.hand.drop(world)
     window.edits.take_back_shown()
     first, last = history.steps_range
     window.pace.paused = True
@@ -432,7 +432,7 @@ def seek(window: Window, step: int) -> None:
 
 def step_back(world: World, window: Window) -> None:
     """Pause, and go back by one step."""
-    seek(window, window.edits.history.step_count - 1)
+    seek(world, window, window.edits.history.step_count - 1)
 
 
 def _width(world: World, entity: int) -> float:

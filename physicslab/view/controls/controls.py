@@ -36,12 +36,11 @@ from physicslab.view.controls.tools import (
     remove_selected,
 )
 from physicslab.view.panels.laws import has_gravity
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 __all__ = ["CONTROLS", "KEYS", "RELEASES", "Control"]
 
-type Action = Callable[[World, Window], None]
 type State = Callable[[World, Window], bool]
 
 _BOX, _PENDULUM = (
@@ -101,9 +100,9 @@ class Control:
 
     def pressed(self, world: World, window: Window) -> None:
         """Do what its line in a menu does."""
-        deed = self.click or self.action
-        if deed is not None:
-            deed(world, window)
+        action = self.click or self.action
+        if action is not None:
+            action(world, window)
 
 
 def _gravity_is(world: World, mode: str) -> bool:

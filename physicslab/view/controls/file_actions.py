@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 from physicslab.ecs.fields import InvalidValue
@@ -15,23 +14,9 @@ from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "Deed",
-    "begin_open",
-    "begin_save_as",
-    "open_named",
-    "open_scene",
-    "opening",
-    "reopen",
-    "request_screenshot",
-    "restart",
-    "save",
-    "save_new",
-    "save_under",
-    "study_error",
-]
-
-type Deed = Callable[[World, Window], None]
-"""What a click is to do."""
+    "begin_open", "begin_save_as", "open_from_list", "open_named", "open_scene", "reopen",
+    "request_screenshot", "restart", "save", "save_new", "save_under", "study_error",
+]  # fmt: skip
 
 
 def save(world: World, window: Window) -> None:
@@ -97,7 +82,7 @@ def begin_open(world: World, window: Window) -> None:
     window.opening = "" if window.opening is None else None
 
 
-def open_named(window: Window, text: str) -> None:
+def open_named(world: World, window: Window, text: str) -> None:
     """Open the file of a name, or of the number of a line of the last few files."""
     recent, text = window.recent.there, text.strip()
     if not text:
@@ -133,14 +118,10 @@ def open_scene(window: Window, source: str | Path) -> str:
     return ""
 
 
-def opening(source: str | Path) -> Deed:
-    """Return what opens a scene, and closes the gallery."""
-
-    def deed(world: World, window: Window) -> None:
-        window.shows_gallery = False
-        open_scene(window, source)
-
-    return deed
+def open_from_list(world: World, window: Window, source: str | Path) -> None:
+    """Open a scene, and close the gallery."""
+    window.shows_gallery = False
+    open_scene(window, source)
 
 
 def restart(world: World, window: Window) -> None:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import pygame
 
 from physicslab.view.controls.actions import nudger, turner
 from physicslab.view.controls.tools import TOOLS
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 __all__ = ["ARROWS", "enter", "open_menu", "walk"]
@@ -58,7 +57,7 @@ def _post(kind: int, place: tuple[int, int], **more: Any) -> None:
     pygame.event.post(pygame.Event(kind, pos=place, touch=False, by_key=True, **more))
 
 
-def _arrow(across: int, down: int, step: int) -> Callable[[World, Window], None]:
+def _arrow(across: int, down: int, step: int) -> Action:
     """Return what moves all that is selected by a pixel; where nothing is, the cursor by a step.
 
     With Shift held, an arrow to the side turns what is selected.

@@ -19,7 +19,7 @@ from physicslab.view.controls.spawning import spawn_box
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.window.changing import set_end
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 __all__ = ["WindowEvents"]
@@ -70,7 +70,7 @@ class WindowEvents:
     def begin(self, world: World, events: Sequence[pygame.Event], elapsed: float) -> None:
         """Do what panels were clicked for in the last frame."""
         self._window.now += elapsed
-        self._window.touched = bool(events or self._window.deeds)
+        self._window.touched = bool(events or self._window.pending)
         self._do_pending(world)
 
     def handle(self, world: World, event: pygame.Event) -> None:
@@ -103,11 +103,11 @@ class WindowEvents:
 
     def _do_pending(self, world: World) -> None:
         """Do what panels were clicked for."""
-        pending, self._window.deeds = self._window.deeds, []
+        pending, self._window.pending = self._window.pending, []
         for action in pending:
             self._do(action, world)
 
-    def _do(self, action: Callable[[World, Window], None], world: World) -> None:
+    def _do(self, action: Action, world: World) -> None:
         """Do something; what the system refuses, as in a folder that was removed, is said."""
         try:
             action(world, self._window)
@@ -150,12 +150,12 @@ class WindowEvents:
             if self._window.picking is not None:
                 picking, self._window.picking = self._window.picking, None
                 picked = body_at(world, self._window.camera, event.pos)
-                set_end(self._window, picking.entity, picking.kind, picking.field, picked)
+                set_end(world, self._window, picking.entity, picking.kind, picking.field, picked)
                 return
             if self._takes_handle(world, event.pos):
                 return
             if (impact := clicked_impact(world, self._window, event.pos)) is not None:
-                close_up(impact)(world, self._window)
+                close_up(world, self._window, impact)
                 return
             self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)

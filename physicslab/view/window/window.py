@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Concatenate
 
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
@@ -38,7 +39,10 @@ from physicslab.view.window.snapping import Snapping
 from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
 
-__all__ = ["LEVELS", "Left", "Picking", "Window"]
+__all__ = ["LEVELS", "Action", "Left", "Picking", "Window"]
+
+type Action = Callable[[World, Window], object]
+"""What a click or a key does."""
 
 _PATIENCE = 3.0
 """How long [s] after Esc a second one closes the window though there are unsaved edits."""
@@ -182,8 +186,8 @@ class Window:
         Where the rectangle begins that is being drawn around bodies [m].
     dashboard : Dashboard
         The graphs, meters and sliders that are shown, and what is recorded for them.
-    deeds : list of callables
-        What panels were clicked for; it is done when the next frame begins.
+    pending : list of Action
+        What panels were clicked for: it is done when the next frame begins.
     source : str or path, optional
         The built-in scene or the file that is shown; restarting opens it again.
     room : callable
@@ -254,7 +258,7 @@ class Window:
         self.copied: list[list[Component]] = []
         self.band: Vector2 | None = None
         self.dashboard = Dashboard()
-        self.deeds: list[Callable[[World, Window], None]] = []
+        self.pending: list[Action] = []
         self.source: str | Path | None = None
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
         self.error_study = ErrorStudy()
@@ -300,6 +304,18 @@ class Window:
         """Show a message for a while; ``failed`` marks what could not be done."""
         self.notice_failed = failed
         self._notice, self._notice_until = words, self.now + seconds
+
+    def do_next[**P](
+        self, action: Callable[Concatenate[World, Window, P], object], *args: P.args, **kwargs: P.kwargs
+    ) -> None:
+        """Have ``action(world, window, ...)`` done when the next frame begins."""
+        self.pending.append(lambda world, window: action(world, window, *args, **kwargs))
+
+    def do_first[**P](
+        self, action: Callable[Concatenate[World, Window, P], object], *args: P.args, **kwargs: P.kwargs
+    ) -> None:
+        """Have it done before what is pending already: what was written, before the click that ended that."""
+        self.pending.insert(0, lambda world, window: action(world, window, *args, **kwargs))
 
     def follow_history(self, history: History) -> None:
         """Let edits, and what the hand does, go to the history of the world that is shown."""

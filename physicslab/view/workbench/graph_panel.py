@@ -7,6 +7,7 @@ from collections.abc import Callable
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Graph
+from physicslab.components.graph import TIME
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.controls import dashboard_actions
@@ -105,7 +106,7 @@ class GraphPanels:
             hovered = plot.build(ui, world, window, graph, height)
         imgui.end()
         if not stays:
-            window.deeds.append(dashboard_actions.close_graph(graph))
+            window.do_next(dashboard_actions.close_graph, graph)
         return hovered
 
     def _follow_hand(self, entity: int) -> None:
@@ -147,7 +148,7 @@ class GraphPanels:
     @staticmethod
     def _build_lines(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         def choose(key: Key) -> None:
-            window.deeds.append(dashboard_actions.toggle_line(graph, key))
+            window.do_next(dashboard_actions.toggle_line, graph, key)
 
         gone = [line.key for line in graph.lines if line.key[0] not in (None, *world.entity_index.row_of)]
         for key in gone:
@@ -159,7 +160,8 @@ class GraphPanels:
     def _build_across(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         def choose(key: Key | None) -> None:
             window.dashboard.free_axes.discard(graph.entity)
-            window.deeds.append(dashboard_actions.put_across(graph, key))
+            body, name = key or (None, TIME)
+            window.do_next(dashboard_actions.change, graph.entity, Graph(name, body, graph.side))
 
         if ui.item("Time [s]", on=graph.across is None):
             choose(None)
@@ -175,14 +177,14 @@ class GraphPanels:
             dashboard.marks[:] = [None, None]
         ui.rule()
         if ui.item("Save as a table (CSV)"):
-            window.deeds.append(dashboard_actions.save_table(graph))
+            window.do_next(dashboard_actions.save_table, graph)
         if ui.item("Save as a picture (PNG)"):
             dashboard.picture_of = graph.entity
         ui.rule()
         other = "left" if graph.side == "right" else "right"
         if ui.item(f"Put it at the {other}"):
-            body, name = graph.across or (None, "time")
-            window.deeds.append(dashboard_actions.changing(graph.entity, Graph(name, body, other)))
+            body, name = graph.across or (None, TIME)
+            window.do_next(dashboard_actions.change, graph.entity, Graph(name, body, other))
 
 
 def _build_bar(ui: Ui, window: Window, bar: Rect, places: dict[int, Rect]) -> None:

@@ -196,7 +196,7 @@ class GraphPlot:
         if imgui.is_mouse_clicked(0):
             self._pressed = place
         if imgui.is_mouse_double_clicked(0):
-            window.deeds.append(dashboard_actions.go_to(time))
+            window.do_next(dashboard_actions.go_to, time)
             self._pressed = None
         if imgui.is_mouse_released(0) and self._pressed is not None:
             if math.dist(place, self._pressed) <= _CLICK:

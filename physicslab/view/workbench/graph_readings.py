@@ -170,7 +170,7 @@ def build_cursors(ui: Ui, window: Window, graph: GraphShown) -> None:
         words = f"{name} {time:.3f} s"
         row.next(words)
         if ui.button(f"Go to {name} in graph {graph.number}", "Pause, and go to this moment", shown=words):
-            window.deeds.append(dashboard_actions.go_to(time))
+            window.do_next(dashboard_actions.go_to, time)
     row.next("Clear")
     if ui.button(f"Clear cursors in graph {graph.number}", "Take the cursors A and B away", shown="Clear"):
         marks[:] = [None, None]

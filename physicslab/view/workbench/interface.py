@@ -13,7 +13,7 @@ from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
-from physicslab.view.workbench.film_panel import build_film
+from physicslab.view.workbench.file_panels import build_film, build_open, build_save
 from physicslab.view.workbench.gallery import Gallery
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.history_panel import build_history
@@ -23,11 +23,9 @@ from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
 from physicslab.view.workbench.microscope_panel import build_microscope
 from physicslab.view.workbench.note_panel import NotePanel
-from physicslab.view.workbench.open_panel import build_open
 from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
-from physicslab.view.workbench.save_panel import build_save
 from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.settings_panel import SettingsPanel
 from physicslab.view.workbench.stopwatch_panel import build_stopwatch
@@ -46,7 +44,7 @@ _BUTTONS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 
 
 class Interface:
-    """The panels of a window. They change nothing: what a click is to do is put on ``Window.deeds``.
+    """The panels of a window. They change nothing: what a click is to do is put on ``Window.pending``.
 
     Parameters
     ----------

@@ -90,13 +90,13 @@ def _build_number(ui: Ui, words: str, unit: str) -> None:
 def _build_menu(ui: Ui, world: World, window: Window, meter: MeterShown) -> None:
     def choose(key: Key) -> None:
         made = Meter(key[1], key[0], meter.corner)
-        window.deeds.append(dashboard_actions.changing(meter.entity, made))
+        window.do_next(dashboard_actions.change, meter.entity, made)
 
     build_quantities(ui, world, window, [meter.key], choose)
     ui.rule()
     corner = build_corners(ui, meter.corner, CORNERS)
     if corner is not None:
         made = Meter(meter.key[1], meter.key[0], corner)
-        window.deeds.append(dashboard_actions.changing(meter.entity, made))
+        window.do_next(dashboard_actions.change, meter.entity, made)
     if ui.item("Remove the meter"):
-        window.deeds.append(dashboard_actions.removing(meter.entity))
+        window.do_next(dashboard_actions.remove, meter.entity)

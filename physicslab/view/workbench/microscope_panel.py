@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 
 from imgui_bundle import ImVec2, imgui
 
@@ -13,7 +13,7 @@ from physicslab.view.controls import impact_actions
 from physicslab.view.panels.collision_words import AGREES, Step, body_name, law_steps, story
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.microscope import FRAMES
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.view.workbench.collision_drawing import draw_bodies, draw_contact, draw_energies, draw_momenta
 from physicslab.world import World
 
@@ -79,19 +79,20 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
     ui.text(f"At {collision.time:.6f} s   ·   A: {a}   ·   B: {b}   ·   {pair}")
     imgui.pop_text_wrap_pos()
     end = imgui.get_cursor_pos_x() + wide
-    buttons: tuple[tuple[str, str, Callable[[World, Window], None], bool], ...] = (
-        ("Earlier", "The impact before this one; time goes back to it", impact_actions.go_beside(-1), False),
-        ("Later", "The impact after this one", impact_actions.go_beside(1), False),
+    buttons: tuple[tuple[str, str, Action, bool], ...] = (
+        ("Earlier", "The impact before this one; time goes back to it",
+         partial(impact_actions.go_beside, by=-1), False),
+        ("Later", "The impact after this one", partial(impact_actions.go_beside, by=1), False),
         ("Slowly through it", "Go to shortly before it, and let time run slowly (Shift+Tab)",
          impact_actions.run_slowly, microscope.slow is not None),
         ("Pause at the next impact", "Let time run until what is selected (or anything) strikes something "
          "(Shift+Z)", impact_actions.pause_at_next, microscope.waits_for is not None),
         ("All impacts", "The table of impacts (Z)", impact_actions.toggle_impacts, window.impacts.shown),
     )  # fmt: skip
-    for n, (label, tip, deed, on) in enumerate(buttons):
+    for n, (label, tip, action, on) in enumerate(buttons):
         _go_on(label, end, is_first=n == 0)
         if ui.button(label, tip, on=on):
-            window.deeds.append(deed)
+            window.do_next(action)
     for n, (frame, tip) in enumerate(FRAMES.items()):
         label = f"Seen by: {frame}"
         _go_on(frame, end, is_first=n == 0)

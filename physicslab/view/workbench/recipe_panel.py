@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from physicslab.ecs.fields import Field
@@ -39,16 +38,13 @@ class RecipePanel:
     def _build_row(self, ui: Ui, spec: Field, window: Window) -> None:
         def commit(new: float) -> None:
             spec.check(new)
-            window.deeds.append(_changing(spec.name, new))
+            window.do_next(_change, spec.name, new)
 
         value = getattr(window.recipe, spec.name)
         zero = _ZERO.get(spec.name, "")
         self._numbers.row(ui, f"new {spec.name}", spec.name.capitalize(), spec, value, commit, zero=zero)
 
 
-def _changing(name: str, value: float) -> Callable[[World, Window], None]:
-    def deed(world: World, window: Window) -> None:
-        change = {name: value}
-        window.recipe = replace(window.recipe, **change)
-
-    return deed
+def _change(world: World, window: Window, name: str, value: float) -> None:
+    change = {name: value}
+    window.recipe = replace(window.recipe, **change)

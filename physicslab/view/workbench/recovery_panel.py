@@ -37,9 +37,9 @@ def build_recovery(ui: Ui, window: Window, free: Rect) -> int:
         if in_line:
             imgui.align_text_to_frame_padding()
         ui.text(words, ui.theme.notice, wrapped=not in_line)
-        for n, (label, deed) in enumerate(_OFFERS.items()):
+        for n, (label, action) in enumerate(_OFFERS.items()):
             if in_line or (beside and n):
                 imgui.same_line()
             if ui.button(label):
-                window.deeds.append(deed)
+                window.do_next(action)
     return round(height) + 2 * _PAD

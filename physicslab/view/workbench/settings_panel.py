@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from physicslab.ecs.config import COLLISIONS, CONTACTS, INTEGRATORS, PhysicsConfig, SimulationConfig
@@ -59,7 +58,7 @@ class SettingsPanel:
 
         def commit(new: float) -> None:
             spec.check(new)
-            window.deeds.append(_changing(config, name, new))
+            window.do_next(_change, config, name, new)
 
         self._numbers.row(ui, name, words, spec, value, commit, drags=False)
 
@@ -70,15 +69,9 @@ class SettingsPanel:
         chosen = ui.choice(words, now, choices)
         if chosen != now:
             value: object = _SLEEPING[chosen] if name == "sleeping" else chosen
-            window.deeds.append(_changing(SimulationConfig, name, value))
+            window.do_next(_change, SimulationConfig, name, value)
 
 
-def _changing(config: type[Config], name: str, value: object) -> Callable[[World, Window], None]:
-    """Return what changes one setting; where it is refused, nothing is changed, and the reason is shown."""
-
-    def deed(world: World, window: Window) -> None:
-        window.edits.do(
-            SetPhysics({name: value}) if config is PhysicsConfig else SetSimulation({name: value})
-        )
-
-    return deed
+def _change(world: World, window: Window, config: type[Config], name: str, value: object) -> None:
+    """Change one setting; where it is refused, nothing is changed, and the reason is shown."""
+    window.edits.do(SetPhysics({name: value}) if config is PhysicsConfig else SetSimulation({name: value}))

@@ -78,10 +78,10 @@ class SliderPanels:
             moved = _rounded(moved, slider)
             self._held[slider.entity] = moved
             if moved != value:
-                window.deeds.append(dashboard_actions.slide(slider, moved, held=True))
+                window.do_next(dashboard_actions.slide, slider, moved, held=True)
         if not held and slider.entity in self._held:
             last = self._held.pop(slider.entity)
-            window.deeds.append(dashboard_actions.slide(slider, last, held=False))
+            window.do_next(dashboard_actions.slide, slider, last, held=False)
 
     def _build_menu(self, ui: Ui, world: World, window: Window, slider: SliderShown) -> None:
         given: dict[str, Any] = {
@@ -91,7 +91,7 @@ class SliderPanels:
 
         def change(**changes: Any) -> None:
             made = Slider(**(given | changes))  # raises where they are refused
-            window.deeds.append(dashboard_actions.changing(slider.entity, made))
+            window.do_next(dashboard_actions.change, slider.entity, made)
 
         for name, words in _ENDS:
             spec = next(spec for spec in Slider.FIELDS if spec.name == name)
@@ -107,7 +107,7 @@ class SliderPanels:
         if corner is not None:
             change(corner=corner)
         if ui.item("Remove the slider"):
-            window.deeds.append(dashboard_actions.removing(slider.entity))
+            window.do_next(dashboard_actions.remove, slider.entity)
 
     def _build_end(self, ui: Ui, slider: SliderShown, spec: Field, value: float, change: Any) -> str:
         key = f"{spec.name} of slider {slider.number}"

@@ -53,7 +53,7 @@ def build_stopwatch(ui: Ui, world: World, window: Window, room: Rect) -> None:
         _build_times(ui, world, every, gates)
         _build_table(ui, world, every[-(_ROWS if columns is _COLUMNS else _FEWER_ROWS) :], columns)
         if ui.button("CSV of crossings", "Write all of them to a file", shown="CSV", enabled=bool(every)):
-            window.deeds.append(_save)
+            window.do_next(_save)
     if not stays[0]:
         window.shows_stopwatch = False
 
