@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Align", "Canvas", "Look", "Numbers", "Painter", "Points", "Rect", "TextStyle", "TextSurface",
+    "is_within",
 ]  # fmt: skip
 
 type Numbers = NDArray[np.float64]
@@ -24,6 +25,14 @@ type Points = NDArray[np.float64]
 """A float64 array (n, 2): right and down from the top left corner [px]."""
 type Rect = tuple[int, int, int, int]
 """Left, top, width, height [px]."""
+
+
+def is_within(place: tuple[float, float], rect: Rect) -> bool:
+    """Whether a place lies in a rectangle [px]."""
+    left, top, width, height = rect
+    return left <= place[0] < left + width and top <= place[1] < top + height
+
+
 type Painter = Callable[[pygame.Surface], None]
 """Draws on a surface."""
 type Align = Literal["left", "centre", "right"]

@@ -7,7 +7,7 @@ import math
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
-    "length_of", "percentage", "power_of_ten", "quantity", "round_quantity", "vector_quantity",
+    "length_of", "percentage", "power_of_ten", "quantity", "round_quantity", "rounded_up", "vector_quantity",
     "without_rounding",
 ]  # fmt: skip
 
@@ -53,6 +53,16 @@ def without_rounding(value: float, scale: float) -> float:
     (0.0, 3e-09)
     """
     return value if not abs(value) <= _NONE * scale or math.isinf(scale) else 0.0
+
+
+def rounded_up(at_least: float, slack: float = 0.0) -> float:
+    """Return the smallest 1, 2 or 5 times a power of ten that is at least so large, but for a share.
+
+    >>> rounded_up(0.03), rounded_up(7.0), rounded_up(5.001, 1e-3)
+    (0.05, 10.0, 5.0)
+    """
+    power = 10.0 ** math.floor(math.log10(at_least))
+    return next(k * power for k in (1.0, 2.0, 5.0, 10.0) if k * power >= at_least * (1.0 - slack))
 
 
 def round_quantity(value: float, unit: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from physicslab.components import Strobe, Trail
 from physicslab.view.controls import (
@@ -105,6 +106,24 @@ class Control:
             action(world, window)
 
 
+def _switch(
+    label: str, does: str, key: str, flag: str, group: str, tip: str, *, minor: bool = True
+) -> Control:
+    """Return what turns a flag of the window on and off, such as ``"pace.slow_motion"``."""
+    path, _, name = flag.rpartition(".")
+
+    def owner(window: Window) -> Any:
+        return getattr(window, path) if path else window
+
+    def toggle(world: World, window: Window) -> None:
+        setattr(owner(window), name, not getattr(owner(window), name))
+
+    def is_on(world: World, window: Window) -> bool:
+        return bool(getattr(owner(window), name))
+
+    return Control(label, does, key, toggle, minor=minor, group=group, tip=tip, state=is_on)
+
+
 def _gravity_is(world: World, mode: str) -> bool:
     return has_gravity(world) and world.physics.gravity_mode == mode
 
@@ -124,8 +143,7 @@ CONTROLS: tuple[Control, ...] = (
             tip="Take back the last edit or run"),
     Control("Ctrl+Y", "redo", "ctrl+y", actions.redo, also=("ctrl+shift+z",), minor=True, group="edit",
             tip="Put back what was taken back last"),
-    Control("U", "history", "u", actions.toggle_history, minor=True, group="edit",
-            state=lambda _, window: window.lists_history, tip="The list of all edits, runs and branches"),
+    _switch("U", "history", "u", "lists_history", "edit", "The list of all edits, runs and branches"),
     Control("Ctrl+B", "another branch", "ctrl+b", history_actions.next_branch, minor=True, group="edit",
             tip="Go to what was done before the past was changed, and back"),
     Control("Ctrl+C", "copy", "ctrl+c", actions.copy_selected, minor=True, group="edit",
@@ -155,8 +173,8 @@ CONTROLS: tuple[Control, ...] = (
             tip="Pause, and go back by one step"),
     Control("Ctrl+R", "start again", "ctrl+r", file_actions.restart, minor=True, group="time",
             tip="Open this scene once more, as it was at its start"),
-    Control("Tab", "slow motion", "tab", actions.toggle_slow_motion, group="time",
-            state=lambda _, window: window.pace.slow_motion, tip="Slow motion: a quarter of the speed"),
+    _switch("Tab", "slow motion", "tab", "pace.slow_motion", "time", "Slow motion: a quarter of the speed",
+            minor=False),
     Control("[", "half the speed", "[", actions.slower, also=("page down",), minor=True, group="time",
             tip="Half the speed"),
     Control("]", "twice the speed", "]", actions.faster, also=("page up",), minor=True, group="time",
@@ -186,9 +204,8 @@ CONTROLS: tuple[Control, ...] = (
     Control("X", "strobe of all that moves", "x", toggle_strobes, minor=True, group="measure",
             state=lambda world, _: bool(world.table(Strobe).handles),
             tip="Pictures of all that moves, ten a second"),
-    Control("Z", "impacts", "z", impact_actions.toggle_impacts, minor=True, group="measure",
-            state=lambda _, window: window.impacts.shown,
-            tip="A table of all impacts; a click on a row, or on a spark, opens the collision microscope"),
+    _switch("Z", "impacts", "z", "impacts.shown", "measure",
+            "A table of all impacts; a click on a row, or on a spark, opens the collision microscope"),
     Control("Shift+Z", "pause at the next impact", "shift+z", impact_actions.pause_at_next, minor=True,
             group="measure", state=lambda _, window: window.microscope.waits_for is not None,
             tip="Time stands still when what is selected strikes something, and the microscope opens"),
@@ -207,10 +224,8 @@ CONTROLS: tuple[Control, ...] = (
     Control("Ctrl+Shift+M", "slider", "ctrl+shift+m", dashboard_actions.add_slider, minor=True,
             group="measure",
             tip="Changes a number by sliding: of what is selected, or gravity"),
-    Control("I", "panel at the right", "i", actions.toggle_figures, minor=True, group="show",
-            state=lambda _, window: window.figures, tip="What is selected, or the world in figures"),
-    Control("H", "grid", "h", actions.toggle_grid, minor=True, group="show",
-            state=lambda _, window: window.grid, tip="The grid"),
+    _switch("I", "panel at the right", "i", "figures", "show", "What is selected, or the world in figures"),
+    _switch("H", "grid", "h", "grid", "show", "The grid"),
     Control("Middle", "pan", tool=PAN, tip="Move the view by dragging"),
     Control("Wheel", "zoom"),
     Control("+", "zoom in", "=", actions.zoom_in, also=("+", "[+]"), minor=True, group="view",
@@ -222,8 +237,7 @@ CONTROLS: tuple[Control, ...] = (
     Control("F", "fit", "f", actions.fit, group="view", tip="Fit everything into the window"),
     Control("Home", "first view", "home", actions.go_home, minor=True, group="view",
             tip="The view at the start"),
-    Control("L", "scenes", "l", actions.toggle_gallery, minor=True, group="file",
-            state=lambda _, window: window.shows_gallery, tip="Choose a scene by its picture"),
+    _switch("L", "scenes", "l", "shows_gallery", "file", "Choose a scene by its picture"),
     Control("Ctrl+S", "save the scene", "ctrl+s", file_actions.save, minor=True, group="file",
             tip="Save the scene to a new file"),
     Control("Ctrl+Shift+S", "save under a name", "ctrl+shift+s", file_actions.begin_save_as, minor=True,
@@ -257,8 +271,7 @@ CONTROLS: tuple[Control, ...] = (
             tip="Open the menus: arrows, Enter, Esc. So does Alt alone"),
     Control("F7", "panels as at first", "f7", actions.put_panels_back, minor=True, group="window",
             tip="Put windows that were moved or docked back where they were at first"),
-    Control("F1", "all keys", "f1", actions.toggle_help, group="help",
-            state=lambda _, window: window.help, tip="All keys"),
+    _switch("F1", "all keys", "f1", "help", "help", "All keys", minor=False),
     Control("Esc", "quit", "escape", actions.leave, group="quit", click=actions.close, tip="Quit"),
 )  # fmt: skip
 """Everything there is to press, in the order of the help and the menus."""

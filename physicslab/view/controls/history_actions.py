@@ -33,9 +33,7 @@ def switch(world: World, window: Window, branch: Branch) -> None:
     history = window.edits.history
     if branch not in history.branches:  # clicked before the line changed
         return
-    window.hand.drop(world)
-    window.edits.take_back_shown()
-    window.pace.paused = True
+    window.pause_for_history(world)
     history.switch(branch)
     window.notify("Another branch: Space plays it, Ctrl+B goes back", 5.0)
 

@@ -12,9 +12,7 @@ from physicslab.view.controls.picking import body_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = [
-    "clicked_impact", "close_up", "go_beside", "pause_at_next", "run_slowly", "save_table", "toggle_impacts",
-]  # fmt: skip
+__all__ = ["clicked_impact", "close_up", "go_beside", "pause_at_next", "run_slowly", "save_table"]
 
 _REACH = 14.0
 """How near to the mark of an impact a click need be [px]."""
@@ -22,11 +20,6 @@ _SLOWLY = 0.0625
 """How fast time runs around an impact that is shown slowly."""
 _AROUND = 0.12
 """How long before and after the impact that is [s]."""
-
-
-def toggle_impacts(world: World, window: Window) -> None:
-    """Show the table of impacts, or no longer; impacts are listed from when it is shown first."""
-    window.impacts.shown = not window.impacts.shown
 
 
 def close_up(world: World, window: Window, record: Any) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 
 import pygame
 
+from physicslab.view.canvas.canvas import is_within
 from physicslab.view.controls.actions import nudger, turner
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.window.window import Action, Window
@@ -45,10 +46,8 @@ def enter(world: World, window: Window) -> None:
 
 def _cursor(window: Window) -> tuple[int, int]:
     """Return where the cursor is [px]; where it was not in the world yet, that is the middle of it."""
-    left, top, width, height = window.room()
-    x, y = window.pointer
-    inside = left <= x < left + width and top <= y < top + height
-    x, y = window.pointer if inside and window.has_pointed else window.middle
+    inside = window.has_pointed and is_within(window.pointer, window.room())
+    x, y = window.pointer if inside else window.middle
     return round(x), round(y)
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pygame
 from imgui_bundle import ImVec2, imgui, implot
 
-from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.canvas import Rect, is_within
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.toolkit.events import AWAY, feed
 from physicslab.view.toolkit.pictures import Pictures
@@ -92,8 +92,7 @@ class Toolkit:
 
     def covers(self, place: tuple[float, float]) -> bool:
         """Whether a panel lies at a place of the screen [px]."""
-        x, y = place
-        return any(left <= x < left + w and top <= y < top + h for left, top, w, h in self.covered)
+        return any(is_within(place, rect) for rect in self.covered)
 
     def take(self, event: pygame.Event) -> bool:
         """Let panels have an event first; return whether the world is not to see it.

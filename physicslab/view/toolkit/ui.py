@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 import pygame
@@ -327,12 +327,31 @@ class Ui:
             if shown:
                 imgui.end_popup()
 
-    def same_line_if_room(self, label: str) -> None:
-        """Go on in the same line where there is room for a button with such words."""
+    def same_line_if_room(self, label: str, end: float | None = None) -> None:
+        """Go on in the same line where there is room for a button with such words, up to an ``end`` [px]."""
         imgui.same_line()
         needed = imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x
-        if imgui.get_content_region_avail().x < needed:
+        room = imgui.get_content_region_avail().x if end is None else end - imgui.get_cursor_pos_x()
+        if room < needed:
             imgui.new_line()
+
+    def table(self, name: str, columns: Sequence[tuple[str, float]], rows: Iterable[Sequence[str]]) -> None:
+        """Draw a table of words; ``columns`` are their heads, and their widths in heights of the text."""
+        flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_fixed_fit
+        if not imgui.begin_table(name, len(columns), flags):
+            return
+        for head, width in columns:
+            imgui.table_setup_column(head, imgui.TableColumnFlags_.width_fixed, width * self.size)
+        imgui.table_next_row()
+        for head, _ in columns:
+            imgui.table_next_column()
+            self.faint(head, wrapped=False)
+        for row in rows:
+            imgui.table_next_row()
+            for words in row:
+                imgui.table_next_column()
+                self.text(words)
+        imgui.end_table()
 
     def checkbox(self, label: str, on: bool, tip: str = "") -> bool:
         """Draw a box to tick, and return whether it was clicked."""

@@ -322,6 +322,12 @@ class Window:
         self.edits = Edits(history, lambda words: self.notify(words, 6.0, failed=True))
         self.hand.write = lambda world, command: self.edits.write(command)
 
+    def pause_for_history(self, world: World) -> None:
+        """Pause, with nothing in the hand and no edit half done, to go to another place of the history."""
+        self.hand.drop(world)
+        self.edits.take_back_shown()
+        self.pace.paused = True
+
     @property
     def handled(self) -> int | None:
         """The body whose handles are shown: the one that is selected, while time stands still."""

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from imgui_bundle import ImVec2, imgui, implot
 from numpy.typing import NDArray
 
 from physicslab.history import SetSimulation
 from physicslab.view.canvas.quantities import round_quantity
-from physicslab.view.canvas.theme import Colour
 from physicslab.view.controls import file_actions
 from physicslab.view.panels.error_study import ErrorStudy, Sample
 from physicslab.view.toolkit.bars import bar
+from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -122,14 +122,14 @@ def _build_plot(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, fl
     for n, (name, times, distances) in enumerate(series):
         spec = implot.Spec()
         spec.marker, spec.marker_size = n % implot.Marker_.count, 5.0
-        spec.line_color = spec.marker_fill_color = spec.marker_line_color = _opaque(
+        spec.line_color = spec.marker_fill_color = spec.marker_line_color = as_vector(
             ui.theme.bodies[n % len(ui.theme.bodies)]
         )
         implot.plot_line(name, times, distances, spec)
         ui.words.append(name)
     if study.rounding > 0.0:
         spec = implot.Spec()
-        spec.flags, spec.line_color = implot.InfLinesFlags_.horizontal, _opaque(ui.theme.faint)
+        spec.flags, spec.line_color = implot.InfLinesFlags_.horizontal, as_vector(ui.theme.faint)
         implot.plot_inf_lines("one rounding at the start", np.array([study.rounding]), spec)
     _build_marks(ui, study, window)
     implot.end_plot()
@@ -200,11 +200,6 @@ def _limits(values: NDArray[np.float64]) -> tuple[float, float]:
     low, high = float(values.min()) / _ROOM, float(values.max()) * _ROOM
     missing = max(10.0 * low / high, 1.0) ** 0.5
     return low / missing, high * missing
-
-
-def _opaque(colour: Colour) -> ImVec4:
-    red, green, blue = colour
-    return ImVec4(red / 255, green / 255, blue / 255, 1.0)
 
 
 def _series(study: ErrorStudy) -> list[tuple[str, NDArray[np.float64], NDArray[np.float64]]]:

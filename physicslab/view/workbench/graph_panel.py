@@ -17,7 +17,7 @@ from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_plot import GraphPlot
-from physicslab.view.workbench.graph_readings import ButtonRow, build_cursors, build_moment, build_readings
+from physicslab.view.workbench.graph_readings import build_cursors, build_moment, build_readings
 from physicslab.view.workbench.panel_places import is_bar
 from physicslab.view.workbench.quantity_menu import build_quantities, named_key
 from physicslab.world import World
@@ -123,24 +123,22 @@ class GraphPanels:
     def _build_head(self, ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         """Build the choice of lines, and what can be done with them."""
         number, dashboard = graph.number, window.dashboard
-        row = ButtonRow()
-        row.next("Lines")
         if ui.button(f"Lines of graph {number}", "What is plotted", shown="Lines"):
             imgui.open_popup("lines")
         across = "time" if graph.across is None else graph.across[1]
-        row.next(f"Across: {across}")
+        ui.same_line_if_room(f"Across: {across}")
         tip = "What stands on the horizontal axis: the time, or another quantity"
         if ui.button(f"Across graph {number}", tip, shown=f"Across: {across}"):
             imgui.open_popup("across")
-        row.next("Follow")
+        ui.same_line_if_room("Follow")
         follows = graph.entity not in dashboard.free_axes
         tip = "Let the axes follow what is recorded; scroll or drag in the plot to look closer"
         if ui.button(f"Follow graph {number}", tip, shown="Follow", on=follows):
             dashboard.free_axes ^= {graph.entity}
-        row.next("More")
+        ui.same_line_if_room("More")
         if ui.button(f"More of graph {number}", "Cursors, files, place", shown="More"):
             imgui.open_popup("more")
-        build_moment(ui, world, window, row.used)
+        build_moment(ui, world, window)
         _popup("lines", lambda: self._build_lines(ui, world, window, graph))
         _popup("across", lambda: self._build_across(ui, world, window, graph))
         _popup("more", lambda: self._build_more(ui, world, window, graph))

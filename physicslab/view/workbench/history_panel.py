@@ -64,8 +64,7 @@ def _build_branches(ui: Ui, window: Window) -> None:
 def _go_to(world: World, window: Window, entry: int) -> None:
     """Take back or put back edits and runs until so many are done."""
     history = window.edits.history
-    window.hand.drop(world)
-    window.pace.paused = True
+    window.pause_for_history(world)
     while history.position > entry and history.undo() is not None:
         pass
     while history.position < entry and history.redo() is not None:

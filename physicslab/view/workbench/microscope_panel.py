@@ -87,15 +87,17 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
          impact_actions.run_slowly, microscope.slow is not None),
         ("Pause at the next impact", "Let time run until what is selected (or anything) strikes something "
          "(Shift+Z)", impact_actions.pause_at_next, microscope.waits_for is not None),
-        ("All impacts", "The table of impacts (Z)", impact_actions.toggle_impacts, window.impacts.shown),
+        ("All impacts", "The table of impacts (Z)", _toggle_table, window.impacts.shown),
     )  # fmt: skip
     for n, (label, tip, action, on) in enumerate(buttons):
-        _go_on(label, end, is_first=n == 0)
+        if n:
+            ui.same_line_if_room(label, end)
         if ui.button(label, tip, on=on):
             window.do_next(action)
     for n, (frame, tip) in enumerate(FRAMES.items()):
         label = f"Seen by: {frame}"
-        _go_on(frame, end, is_first=n == 0)
+        if n:
+            ui.same_line_if_room(frame, end)
         if ui.button(label, f"Velocities, momenta and energies as an observer finds them. {tip}",
                      shown=frame, on=microscope.frame == frame):  # fmt: skip
             microscope.frame = frame
@@ -103,16 +105,8 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
     ui.faint("observer", wrapped=False)
 
 
-def _go_on(words: str, end: float, *, is_first: bool) -> None:
-    """Go on in the same line where a button with such words still ends within the window."""
-    if is_first:
-        return
-    imgui.same_line()
-    if (
-        imgui.get_cursor_pos_x() + imgui.calc_text_size(words).x + 2.0 * imgui.get_style().frame_padding.x
-        > end
-    ):
-        imgui.new_line()
+def _toggle_table(world: World, window: Window) -> None:
+    window.impacts.shown = not window.impacts.shown
 
 
 def _build_drawings(ui: Ui, world: World, window: Window, wide: float) -> None:
@@ -165,29 +159,18 @@ def _build_words(ui: Ui, world: World, window: Window) -> None:
 
 def _build_velocities(ui: Ui, seen: Collision) -> None:
     """Build a table of the velocities of both, split along n and t."""
-    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_fixed_fit
-    if not imgui.begin_table("velocities", 4, flags):
-        return
-    for words, width in (("", 5.0), ("along n", 6.6), ("along t", 6.6), ("turning", 7.4)):
-        imgui.table_setup_column(words, imgui.TableColumnFlags_.width_fixed, width * ui.size)
-    imgui.table_next_row()
-    for words in ("", "along n", "along t", "turning"):
-        imgui.table_next_column()
-        ui.faint(words, wrapped=False)
     speed, turning = seen.speed_scale, seen.turning_scale
-    for name, body in (("A", seen.a), ("B", seen.b)):
-        for when, motion in (("before", body.before), ("after", body.after)):
-            imgui.table_next_row()
-            along, across = motion.linear.dot(seen.normal), motion.linear.dot(seen.tangent)
-            cells = (
-                f"{name} {when}", quantity(without_rounding(along, speed), "m/s"),
-                quantity(without_rounding(across, speed), "m/s"),
-                quantity(without_rounding(motion.angular, turning), "rad/s"),
-            )  # fmt: skip
-            for words in cells:
-                imgui.table_next_column()
-                ui.text(words)
-    imgui.end_table()
+    rows = [
+        (
+            f"{name} {when}",
+            quantity(without_rounding(motion.linear.dot(seen.normal), speed), "m/s"),
+            quantity(without_rounding(motion.linear.dot(seen.tangent), speed), "m/s"),
+            quantity(without_rounding(motion.angular, turning), "rad/s"),
+        )
+        for name, body in (("A", seen.a), ("B", seen.b))
+        for when, motion in (("before", body.before), ("after", body.after))
+    ]
+    ui.table("velocities", (("", 5.0), ("along n", 6.6), ("along t", 6.6), ("turning", 7.4)), rows)
 
 
 def _build_momentum(ui: Ui, seen: Collision) -> None:

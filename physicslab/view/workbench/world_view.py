@@ -7,6 +7,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from physicslab.components import Transform
+from physicslab.view.canvas.canvas import is_within
 from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import TOOLS
@@ -137,17 +138,11 @@ class WorldView:
     def _draw_ghost(self, world: World) -> None:
         """Show at the cursor what a click would make, in the colour of errors where there is no room."""
         window, spawn = self._window, TOOLS[self._window.tool].spawn
-        left, top, width, height = window.room()
-        x, y = window.pointer
-        inside = left <= x < left + width and top <= y < top + height
         held = window.hand.entity, window.handles.dragged, window.spring_tool.entity
         idle = held == (None, None, None) and not window.pointer_on_panel and window.has_pointed
-        if (
-            spawn is None
-            or not inside
-            or not idle
-            or body_at(world, window.camera, window.pointer) is not None
-        ):
+        if spawn is None or not idle or not is_within(window.pointer, window.room()):
+            return
+        if body_at(world, window.camera, window.pointer) is not None:
             return
         ghost, theme = spawn.outlines(window), window.theme
         colour = theme.error if refused_place(world, ghost) else theme.accent
