@@ -233,7 +233,7 @@ class Sandbox:
                 made += 1
                 if made < due and self.window.dashboard.graphs:
                     self.window.dashboard.follow(self.world, self.history)  # the last of them is the frame's
-                if microscope.struck(self.world, logged, before):
+                if microscope.sees_impact(self.world, logged, before):
                     pace.halt()
                     self.history.divide()
                     break

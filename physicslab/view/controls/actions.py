@@ -21,11 +21,43 @@ from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 __all__ = [
-    "choose_tool", "clear", "close", "copy_selected", "duplicate_selected", "enlarge", "faster", "fit",
-    "go_home", "larger_text", "leave", "next_theme", "nudger", "paste", "put_panels_back", "redo", "reduce",
-    "seek", "select_all", "select_next", "slower", "smaller_text", "step", "step_back", "toggle_arrows",
-    "toggle_gravity", "toggle_impulses", "toggle_pause", "toggle_planets", "toggle_scales",
-    "toggle_snapping", "toggle_trails", "turner", "undo", "zoom", "zoom_in", "zoom_out",
+    "choose_tool",
+    "clear",
+    "close",
+    "copy_selected",
+    "duplicate_selected",
+    "enlarge",
+    "faster",
+    "fit",
+    "go_home",
+    "larger_text",
+    "leave",
+    "next_theme",
+    "nudger",
+    "paste",
+    "redo",
+    "reduce",
+    "reset_layout",
+    "seek",
+    "select_all",
+    "select_next",
+    "slower",
+    "smaller_text",
+    "step",
+    "step_back",
+    "toggle_arrows",
+    "toggle_gravity",
+    "toggle_impulses",
+    "toggle_pause",
+    "toggle_planets",
+    "toggle_scales",
+    "toggle_snapping",
+    "toggle_trails",
+    "turner",
+    "undo",
+    "zoom",
+    "zoom_in",
+    "zoom_out",
 ]  # fmt: skip
 
 _ZOOM_STEP = 3.0
@@ -190,10 +222,10 @@ def toggle_snapping(world: World, window: Window) -> None:
     window.notify("Snapping is on" if window.snapping.on else "Snapping is off")
 
 
-def put_panels_back(world: World, window: Window) -> None:
-    """Put every window back where it is at first, and undock it."""
+def reset_layout(world: World, window: Window) -> None:
+    """Put every window back in its first place, and undock it."""
     window.arrangement = ""
-    window.notify("Windows are where they were at first")
+    window.notify("Layout reset")
 
 
 def leave(world: World, window: Window) -> None:

@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from physicslab.components import Graph, GraphLine, Mass, Meter, Shape, Slider, Spring, Transform, Velocity
+from physicslab.components.quantities import QUANTITIES
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import InvalidValue
+from physicslab.ecs.text import table_cell
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.view.controls import actions
 from physicslab.view.controls.file_actions import save_new
-from physicslab.view.window.dashboard import GraphShown, SliderShown
+from physicslab.view.window.dashboard import Dashboard, GraphShown, SliderShown
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.record import Key
-from physicslab.view.window.table import table_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "add_meter", "add_slider", "change", "close_graph", "go_to", "plot_phase", "plot_selected",
-    "remove", "save_picture", "save_table", "slide", "toggle_line", "usual_range",
+    "add_meter", "add_slider", "change", "close_graph", "go_to", "plot_phase", "plot_selected", "remove",
+    "save_picture", "save_table", "slide", "table_of", "toggle_line", "usual_range",
 ]  # fmt: skip
 
 _ENERGIES = ("kinetic energy", "potential energy", "total energy")
@@ -196,3 +201,25 @@ def _selected(world: World, window: Window) -> list[int]:
 
 def _labels(world: World, bodies: Sequence[int]) -> str:
     return world.label(bodies[0]) if len(bodies) == 1 else f"{len(bodies)} bodies" if bodies else ""
+
+
+def table_of(graph: GraphShown, dashboard: Dashboard) -> str:
+    """Return what a graph shows as CSV: the time, then a column for each quantity, in full figures.
+
+    Moments at which nothing of it was measured are left out.
+    """
+    record, keys = dashboard.record, list(dict.fromkeys(graph.keys))
+    columns = np.array([record.values(key) for key in keys]).reshape(len(keys), len(record))
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(["time [s]", *(_heading(key, dashboard) for key in keys)])
+    for n in np.flatnonzero(~np.isnan(columns).all(axis=0)).tolist():
+        values = ("" if np.isnan(value) else repr(float(value)) for value in columns[:, n])
+        rows.writerow([repr(float(record.times[n])), *values])
+    return text.getvalue()
+
+
+def _heading(key: Key, dashboard: Dashboard) -> str:
+    body, name = key
+    heading = f"{name} [{QUANTITIES[name].unit}]"
+    return heading if body is None else table_cell(f"{dashboard.label(body)}: {heading}")

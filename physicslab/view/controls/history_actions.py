@@ -1,4 +1,4 @@
-"""What the user can do with what was done: go to other branches, keep all of it in a file."""
+"""What the user can do with the history: switch branches, save all of it in a file."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def next_branch(world: World, window: Window) -> None:
     if branches:
         switch(world, window, branches[0])
     else:
-        window.notify("There is no other branch: one begins where something is changed in the past")
+        window.notify("There is no other branch: a change in the past begins one")
 
 
 def save_recording(world: World, window: Window) -> None:

@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pygame
 
+from physicslab.components import Held, Shape, Transform
+from physicslab.contacts.outlines import Outlines
+from physicslab.ecs.vector import Vector2
 from physicslab.view.controls import actions
 from physicslab.view.controls.controls import KEYS, RELEASES
 from physicslab.view.controls.file_actions import open_scene
@@ -14,15 +17,15 @@ from physicslab.view.controls.impact_actions import clicked_impact, close_up
 from physicslab.view.controls.keyboard import open_menu
 from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
 from physicslab.view.controls.picking import body_at
-from physicslab.view.controls.snapping import follow_snapping
 from physicslab.view.controls.spawning import spawn_box
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.window.changing import set_end
+from physicslab.view.window.placing import outlines_of
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
-__all__ = ["WindowEvents"]
+__all__ = ["WindowEvents", "follow_snapping"]
 
 _BY_PRINT = ("+", "-", ".", ",", "[", "]")
 """Keys that go by what they print: on other keyboards they are elsewhere, or need AltGr."""
@@ -223,3 +226,33 @@ class WindowEvents:
         self._window.spring_tool.cancel()
         let_instrument_go(world, self._window)
         self._panning, self._tool = 0, None
+
+
+def follow_snapping(world: World, window: Window) -> None:
+    """Find where the cursor's place snaps to: of a body in the hand, a size, a pin, or what is made next."""
+    snapping, cursor = window.snapping, window.place
+    snapping.clear()
+    if not snapping.active or window.pointer_on_panel:
+        return
+    held, camera = window.hand.entity, window.camera
+    if held is not None:
+        if window.pace.paused and world.has(held, Held) and world.has(held, Transform):
+            transform = world.component(held, Transform)
+            middle = cursor - world.component(held, Held).grip.rotated(transform.angle)
+            snapping.follow(world, camera, cursor, middle, _about(world, held), (held,))
+    elif window.handles.dragged is not None:
+        if window.handles.dragged == "size":
+            snapping.follow(world, camera, cursor, cursor, None, window.selection.entities)
+    elif window.pins.dragged is not None:
+        snapping.follow(world, camera, cursor, cursor, None, ())
+    elif (spawn := TOOLS[window.tool].spawn) is not None:
+        snapping.follow(world, camera, cursor, cursor, spawn.about(window), ())
+
+
+def _about(world: World, entity: int) -> Outlines | None:
+    """Return the outline of a body, as if its middle were at the origin."""
+    if not world.has(entity, Shape):
+        return None
+    rows = world.batch(Transform, Shape).rows
+    own = rows[world.entity_index.entities[rows] == entity]
+    return outlines_of(world, own).moved(Vector2() - world.component(entity, Transform).position)

@@ -108,7 +108,7 @@ def draw_arrows(
     """Draw arrows of one kind from ``start``, each ``span`` long.
 
     Shafts are one call of :meth:`Canvas.lines`, heads a second one; arrows that are cut have two strokes
-    across the middle. What is shorter than ``MIN_LENGTH``, not finite, or out of the picture is left out.
+    across the middle. Arrows shorter than ``MIN_LENGTH``, not finite, or out of the picture are left out.
     Each arrow may have an opacity of its own.
     """
     limit = max_length(canvas)

@@ -34,7 +34,7 @@ _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_di
 
 
 class Ui:
-    """The widgets of one frame. What is drawn is noted: where it is, by its words, and all that is written.
+    """The widgets of one frame. Each is noted: where it is, by its words, and all that is written.
 
     Parameters
     ----------
@@ -316,15 +316,18 @@ class Ui:
                 imgui.end_menu()
 
     @contextmanager
-    def list(self, label: str, tip: str = "") -> Iterator[bool]:
-        """Draw a button that opens a list of lines; what is yielded says whether it is open."""
-        if self.button(label, tip):
+    def list(
+        self, label: str, tip: str = "", *, shown: str | None = None, on: bool = False,
+        size: tuple[float, float] = (0.0, 0.0),
+    ) -> Iterator[bool]:  # fmt: skip
+        """Draw a button that opens a list of lines; the yielded value says whether it is open."""
+        if self.button(label, tip, shown=shown, on=on, size=size):
             imgui.open_popup(label)
-        shown = bool(imgui.begin_popup(label))
+        is_open = bool(imgui.begin_popup(label))
         try:
-            yield shown
+            yield is_open
         finally:
-            if shown:
+            if is_open:
                 imgui.end_popup()
 
     def same_line_if_room(self, label: str, end: float | None = None) -> None:

@@ -70,8 +70,8 @@ def _do(window: Window, commands: Sequence[Command]) -> None:
 def addable(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Callable[[int], Component]]]:
     """Return what can be added to some bodies: by its plain name its meaning, and what makes it for a body.
 
-    These are all components that one of them has not. What is made with values of its own, or names other
-    entities and takes no part in the motion, as graphs do, is made by tools; it is not among them.
+    These are all components that one of them has not, but for those that are made by tools: with values of
+    their own, or naming other entities without a part in the motion, as graphs do.
     """
     if not all(world.has(entity, Transform) for entity in entities):
         return {}
@@ -125,7 +125,7 @@ def _meaning(kind: type[Component]) -> str:
 
 
 def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable[[int], Component]]]:
-    """Yield by what words a component is made for an entity; of one that cannot be made nothing."""
+    """Yield (label, factory) pairs of a component; none if it cannot be created."""
     if kind is Shape:
         yield "Shape: circle", lambda entity: Shape.circle(_SIZE)
         yield "Shape: box", lambda entity: Shape.box(2.0 * _SIZE, 2.0 * _SIZE)

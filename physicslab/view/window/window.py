@@ -136,7 +136,7 @@ class Window:
     text_scale : float
         How much larger than usual text is.
     arrangement : str
-        Where windows lie and are docked, in words of the toolkit; empty where all are as at first.
+        Where windows lie and are docked, in words of the toolkit; empty for the layout of the start.
     keys_go_to : str
         Where keys are to go from the next frame on: ``"menu"``, ``"fields"``, ``"panel"`` (the next one) or
         nowhere else.
@@ -370,7 +370,7 @@ class Window:
     def go_home(self, world: World) -> None:
         """Show the world as at the start: what its scene says is to be seen, or else all of it.
 
-        Of a scene that does not say it is shown at the usual scale where it fits, else smaller.
+        A scene that does not say is shown at the usual scale where it fits, else smaller.
         """
         self._show(world, float("inf") if world.view else self.config.pixels_per_metre, world.view)
 

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 from physicslab.ecs.text import printable
 from physicslab.export.film import ENDINGS
 from physicslab.view.controls import file_actions
-from physicslab.view.controls.film_actions import begin_film
+from physicslab.view.controls.file_actions import begin_film
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.filming import ALL, BACK, FORWARD, FROM_NOW
 from physicslab.view.window.window import Window

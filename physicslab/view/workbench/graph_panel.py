@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Graph
@@ -123,25 +121,25 @@ class GraphPanels:
     def _build_head(self, ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         """Build the choice of lines, and what can be done with them."""
         number, dashboard = graph.number, window.dashboard
-        if ui.button(f"Lines of graph {number}", "What is plotted", shown="Lines"):
-            imgui.open_popup("lines")
-        across = "time" if graph.across is None else graph.across[1]
-        ui.same_line_if_room(f"Across: {across}")
-        tip = "What stands on the horizontal axis: the time, or another quantity"
-        if ui.button(f"Across graph {number}", tip, shown=f"Across: {across}"):
-            imgui.open_popup("across")
+        with ui.list(f"Lines of graph {number}", "The plotted quantities", shown="Lines") as is_open:
+            if is_open:
+                self._build_lines(ui, world, window, graph)
+        across = f"Across: {'time' if graph.across is None else graph.across[1]}"
+        ui.same_line_if_room(across)
+        tip = "The quantity on the horizontal axis: the time, or another one"
+        with ui.list(f"Across graph {number}", tip, shown=across) as is_open:
+            if is_open:
+                self._build_across(ui, world, window, graph)
         ui.same_line_if_room("Follow")
         follows = graph.entity not in dashboard.free_axes
         tip = "Let the axes follow what is recorded; scroll or drag in the plot to look closer"
         if ui.button(f"Follow graph {number}", tip, shown="Follow", on=follows):
             dashboard.free_axes ^= {graph.entity}
         ui.same_line_if_room("More")
-        if ui.button(f"More of graph {number}", "Cursors, files, place", shown="More"):
-            imgui.open_popup("more")
+        with ui.list(f"More of graph {number}", "Cursors, files, place", shown="More") as is_open:
+            if is_open:
+                self._build_more(ui, world, window, graph)
         build_moment(ui, world, window)
-        _popup("lines", lambda: self._build_lines(ui, world, window, graph))
-        _popup("across", lambda: self._build_across(ui, world, window, graph))
-        _popup("more", lambda: self._build_more(ui, world, window, graph))
 
     @staticmethod
     def _build_lines(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
@@ -202,12 +200,6 @@ def _build_bar(ui: Ui, window: Window, bar: Rect, places: dict[int, Rect]) -> No
                 f"Open graph {graph.number}", tip, shown=f"{graph.number}", on=is_open, size=(0, height)
             ):
                 window.dashboard.active = graph.entity
-
-
-def _popup(name: str, build: Callable[[], None]) -> None:
-    if imgui.begin_popup(name):
-        build()
-        imgui.end_popup()
 
 
 def _title(graph: GraphShown, window: Window) -> str:

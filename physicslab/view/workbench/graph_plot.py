@@ -10,8 +10,8 @@ from imgui_bundle import ImVec2, imgui, implot
 from numpy.typing import NDArray
 
 from physicslab.components.quantities import QUANTITIES
+from physicslab.view.canvas.quantities import written_unit
 from physicslab.view.canvas.theme import Colour
-from physicslab.view.canvas.units import written_unit
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.style import as_vector, packed

@@ -8,9 +8,8 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.components.quantities import QUANTITIES
 from physicslab.diagnostics.quantities import why_undefined
 from physicslab.diagnostics.scales import scales_of
-from physicslab.view.canvas.quantities import quantity, without_rounding
+from physicslab.view.canvas.quantities import product, quantity, quotient, without_rounding, written_unit
 from physicslab.view.canvas.theme import Colour, Theme, mixed
-from physicslab.view.canvas.units import product, quotient, written_unit
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui

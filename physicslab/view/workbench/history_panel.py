@@ -1,4 +1,4 @@
-"""What was done: every edit and run, the last one last, and other branches; a click goes there."""
+"""The history: every edit and run, the last one last, and other branches; a click goes there."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from physicslab.world import World
 __all__ = ["build_history"]
 
 _WIDTH, _HEIGHT, _LINE = 17.0, 20.0, 1.5
-"""Of the lists, and of a line of the lower one, in heights of the text."""
+"""Size of the lists, and height of a line of the lower one, in heights of the text."""
 _LETTERS = 34
 """How much of a branch is written in its line; the rest is in its tip."""
 
@@ -53,7 +53,7 @@ def _build_branches(ui: Ui, window: Window) -> None:
         return
     ui.rule()
     ui.heading("Other branches")
-    ui.tip("What was done before the past was changed; Ctrl+B goes from one to the next")
+    ui.tip("Edits and runs from before the past was changed; Ctrl+B switches from one to the next")
     for n, branch in enumerate(history.branches, start=1):
         words = branch_words(branch, history.start)
         if ui.selectable(f"{n}. {shortened(words, _LETTERS)}"):

@@ -8,9 +8,14 @@ from physicslab.diagnostics.warnings import ModelWarning, find_warnings
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.overlay.edge_arrows import draw_edge_arrows
-from physicslab.view.overlay.selection_marks import draw_selection
-from physicslab.view.panels.axis_numbers import draw_axis_numbers
-from physicslab.view.panels.banners import DroppedTime, draw_banners, draw_messages, lay_out_messages
+from physicslab.view.overlay.marks import draw_selection
+from physicslab.view.panels.banners import (
+    DroppedTime,
+    draw_advice,
+    draw_banners,
+    draw_messages,
+    lay_out_messages,
+)
 from physicslab.view.panels.figures import EnergyWatch, FrameMeter, WorldFigures, measure_world
 from physicslab.view.panels.laws import has_gravity
 from physicslab.view.panels.legend import legend_of
@@ -22,8 +27,7 @@ from physicslab.view.panels.readings import (
     measure_lines,
     method_lines,
 )
-from physicslab.view.panels.scale_bar import draw_scale_bar
-from physicslab.view.panels.warnings import draw_advice
+from physicslab.view.panels.scale_bar import draw_axis_numbers, draw_scale_bar
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
@@ -155,9 +159,7 @@ class Hud:
         taken += [*shown, *([] if advice is None else [advice])]
         legend = legend_of(window.overlays, (width - 2 * margin, height), size, canvas, theme)
         if legend is not None:
-            legend = legend.moved(left + margin, top + margin)
-            legend.draw(canvas, theme)
-            taken.append(legend.panel.rect)
+            taken.append(legend.draw(left + margin, top + margin, canvas, theme))
         draw_edge_arrows(world, window.camera, [*taken, *self._interface.layout.panels], size, canvas, theme)
         return taken
 

@@ -29,7 +29,7 @@ _TIPS = (
     "Speed along the normal after the impact, as a share of the approach", "Kinetic energy that it took",
 )  # fmt: skip
 _HEIGHT = 11.0
-"""Of the table, in heights of the text."""
+"""Height of the table, in heights of the text."""
 _SLACK = 1.5
 
 

@@ -83,7 +83,7 @@ class Inspector:
     def finish(self, window: Window) -> str:
         """Take over what is half written in a field, and return why it is refused; empty where it is not.
 
-        What was written of bodies that are shown no more is dropped.
+        Text for bodies that are shown no more is dropped.
         """
         if self._shown != (window.edits.world, window.selection.entities):
             self._numbers.clear()

@@ -58,11 +58,9 @@ class MeterPanels:
         reading, scales = Reading(world), scales_of(world)
         for meter in window.dashboard.meters:
             with ui.panel(f"meter {meter.entity}", places[meter.entity], rounded=True):
-                if build_title(ui, named_key(meter.key, window), f"Meter {meter.number}"):
-                    imgui.open_popup("meter")
-                if imgui.begin_popup("meter"):
-                    _build_menu(ui, world, window, meter)
-                    imgui.end_popup()
+                with build_title(ui, named_key(meter.key, window), f"Meter {meter.number}") as is_open:
+                    if is_open:
+                        _build_menu(ui, world, window, meter)
                 why = why_undefined(world, meter.key[1], meter.key[0])
                 if why:
                     ui.faint(f"The body is {why}" if why == "gone" else f"It {why}")

@@ -15,7 +15,7 @@ from physicslab.world import World
 __all__ = ["NotePanel"]
 
 _WIDTH, _LINES = 17.0, 3
-"""Of the field, in heights of the text and in lines."""
+"""Size of the field, in heights of the text and in lines."""
 _FLAGS = (
     imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_nav | imgui.WindowFlags_.no_move

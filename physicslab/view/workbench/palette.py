@@ -36,15 +36,11 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
                 window.do_next(actions.choose_tool, tool)
         hidden = next((tool for tool in behind if tool.name == window.tool), None)
         words = f"{ICONS['more']}  More" if hidden is None else _words(hidden)
-        if ui.button(
-            "More", "More to put into the world", shown=words, on=hidden is not None, size=(width, height)
-        ):
-            imgui.open_popup("more tools")
-        if imgui.begin_popup("more tools"):
-            for tool in behind:
+        tip, is_hidden, size = "More to put into the world", hidden is not None, (width, height)
+        with ui.list("More", tip, shown=words, on=is_hidden, size=size) as is_open:
+            for tool in behind if is_open else ():
                 if ui.item(tool.title, on=window.tool == tool.name, tip=tool.usage):
                     window.do_next(actions.choose_tool, tool)
-            imgui.end_popup()
         imgui.pop_style_var()
 
 

@@ -11,8 +11,7 @@ from physicslab.components.meter import CORNERS
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
 from physicslab.ecs.fields import Field
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.canvas.quantities import quantity
-from physicslab.view.canvas.units import written_unit
+from physicslab.view.canvas.quantities import quantity, written_unit
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import SliderShown
@@ -54,11 +53,9 @@ class SliderPanels:
                       if one.entity in self._held}  # fmt: skip
         for slider in window.dashboard.sliders:
             with ui.panel(f"slider {slider.entity}", places[slider.entity], rounded=True):
-                if build_title(ui, _title(slider, window), f"Slider {slider.number}"):
-                    imgui.open_popup("slider")
-                if imgui.begin_popup("slider"):
-                    self._build_menu(ui, world, window, slider)
-                    imgui.end_popup()
+                with build_title(ui, _title(slider, window), f"Slider {slider.number}") as is_open:
+                    if is_open:
+                        self._build_menu(ui, world, window, slider)
                 self._build_slider(ui, world, window, slider)
 
     def _build_slider(self, ui: Ui, world: World, window: Window, slider: SliderShown) -> None:

@@ -35,7 +35,7 @@ def build_levels(ui: Ui, window: Window) -> None:
 
 
 def build_world(ui: Ui, world: World, figures: WorldFigures, window: Window) -> None:
-    """Build what anybody wants to see: what this is, its energies, its gravity."""
+    """Build the part for everyone: what this is, its energies, its gravity."""
     ui.heading(world.title or world.name or "A scene")
     if world.description:
         ui.faint(world.description)

@@ -12,16 +12,21 @@ from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.overlay.free_body import draw_free_body
-from physicslab.view.overlay.ghost import draw_cursor, draw_ghost
-from physicslab.view.overlay.handle_marks import draw_handles, draw_reading
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.instrument_marks import draw_instruments
 from physicslab.view.overlay.instruments import instruments_of
-from physicslab.view.overlay.selection_marks import draw_band, draw_selection
-from physicslab.view.overlay.snap_marks import draw_snap_marks
+from physicslab.view.overlay.marks import (
+    draw_band,
+    draw_cursor,
+    draw_ghost,
+    draw_handles,
+    draw_reading,
+    draw_selection,
+    draw_snap_marks,
+)
 from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.panels.panels import text_size
-from physicslab.view.picture.painting import draw_world
+from physicslab.view.picture.picture import draw_world
 from physicslab.view.window.placing import refused_place
 from physicslab.view.window.window import Window
 from physicslab.world import World
