@@ -197,14 +197,8 @@ class Ui:
 
     def heading(self, words: str) -> None:
         """Write a title."""
-        words = drawable(words)
-        self.words.append(words)
         imgui.push_font(self.fonts.bold, self.size * 1.06)
-        imgui.push_style_color(imgui.Col_.text, packed(self.theme.heading))
-        imgui.push_text_wrap_pos(0.0)
-        imgui.text_unformatted(words)
-        imgui.pop_text_wrap_pos()
-        imgui.pop_style_color()
+        self.text(words, self.theme.heading, wrapped=True)
         imgui.pop_font()
 
     def gap(self, share: float = 0.4) -> None:
