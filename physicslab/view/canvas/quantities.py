@@ -8,11 +8,11 @@ from collections import Counter
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
-    "percentage", "product", "quantity", "quotient", "round_quantity",
-    "rounded_up", "vector_quantity", "without_rounding", "written_unit",
+    "ROUNDING", "percentage", "product", "quantity", "quotient", "round_quantity", "rounded_up",
+    "vector_quantity", "without_rounding", "written_unit",
 ]  # fmt: skip
 
-_NONE = 1e-12
+ROUNDING = 1e-12
 """Share of what a number is a part of below which it is rounding."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -48,7 +48,7 @@ def without_rounding(value: float, scale: float) -> float:
     >>> without_rounding(3e-16, 2.0), without_rounding(3e-9, 2.0)
     (0.0, 3e-09)
     """
-    return value if not abs(value) <= _NONE * scale or math.isinf(scale) else 0.0
+    return value if not abs(value) <= ROUNDING * scale or math.isinf(scale) else 0.0
 
 
 def rounded_up(at_least: float, slack: float = 0.0) -> float:
@@ -68,8 +68,8 @@ def round_quantity(value: float, unit: str) -> str:
     '0.2 N s'
     >>> round_quantity(5e-5, "N s")
     '5·10⁻⁵ N s'
-    >>> round_quantity(0.0, "m")
-    '0 m'
+    >>> round_quantity(-9.6e-10, "J"), round_quantity(0.0, "m")
+    ('-1·10⁻⁹ J', '0 m')
     """
     if value == 0.0:
         return f"0 {unit}"
