@@ -135,14 +135,16 @@ def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
 
 
 @fused
-def relax(contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: float, sweeps: int) -> None:
+def relax(
+    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float, sweeps: int
+) -> None:
     """Go through all contacts without correction, so that pushing bodies apart leaves no velocity behind.
 
     ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call. The work
     of the impulses of that is booked, and of those found here: each by the mean velocity of before and after
     all of them, or in a crowd, which has too many points to look at again, of before and after itself.
     """
-    pressed, rubbed = book_solved(contacts, near, motion, inverse, h)
+    pressed, rubbed = book_solved(contacts, near, motion, inverse, acting, h)
     crowd = near.counts[WIDE_COUNT] > 0
     if crowd:
         take_means(near, motion)

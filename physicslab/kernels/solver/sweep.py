@@ -70,9 +70,11 @@ def _pushed(
 
 @fused
 def _one_point(
-    manifold: Manifold, point: Point, v: Velocities, weights: Weights, soft: SoftConstraint
+    manifold: Manifold, point: Point, v: Velocities, weights: Weights, soft: SoftConstraint, booked: bool
 ) -> tuple[Velocities, Done]:
     """Find the impulses of a pair of one point; return the velocities after them, and what was done.
+
+    Of friction the work is computed only where it is ``booked``.
 
     How the normal impulse changes the speed of sliding is added to it: a shorter chain of operations, each of
     which waits for the one before, than by the velocities after it.
@@ -95,7 +97,8 @@ def _one_point(
         tangent = held_by_friction(held, point.tangent_mass, slide, limit) - held
         point.tangent_impulse = held + tangent
         moment_a, moment_b = tangent * roll_a, tangent * roll_b
-        rubbed = work_of(tangent * slide, tangent, moment_a, moment_b, ma, ia, ib)
+        if booked:
+            rubbed = work_of(tangent * slide, tangent, moment_a, moment_b, ma, ia, ib)
     px, py = normal * nx - tangent * ny, normal * ny + tangent * nx
     moment_a, moment_b = normal * turn_a + moment_a, normal * turn_b + moment_b
     done = Done(max(abs(normal), abs(tangent)), pressed, rubbed)
@@ -171,7 +174,7 @@ def sweep(
         weights = Weights(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
         v = Velocities(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
         if manifold.count == 1:
-            v, done = _one_point(manifold, one, v, weights, soft)
+            v, done = _one_point(manifold, one, v, weights, soft, booked)
             change = done.change
             if booked:
                 pressed, rubbed = pressed + done.pressed, rubbed + done.rubbed
