@@ -20,7 +20,7 @@ AGREES = 1e-9
 """Relative difference up to which the solver's figure and the one worked out here are the same."""
 _LETTERS = 24
 _SOFTER = 0.99
-"""Share of the mass without rotation below which it is said that rotation makes the blow softer."""
+"""Share of the mass without rotation below which it is said that rotation makes the impact softer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
     told += list(_law(collision, result))
     if not collision.alone:
         told.append(
-            "Other bodies struck one of these two at the same moment. What is worked out here is this pair "
+            "Other bodies hit one of these two at the same moment. The working here is of this pair "
             "by itself; the motions after are those of all impacts together, and may differ from it."
         )
     return told
@@ -88,7 +88,7 @@ def _bounce(collision: Collision, result: Result, found: float) -> str:
 
 
 def _rotation(collision: Collision) -> Iterator[str]:
-    """Yield why a blow beside the centre is softer."""
+    """Yield why an impact beside the centre is softer."""
     response = collision.responses[0]
     plain, turning = 1.0 / response.apart, 1.0 / response.kn
     if len(collision.spots) == 2:
@@ -98,13 +98,13 @@ def _rotation(collision: Collision) -> Iterator[str]:
         )
     elif turning < _SOFTER * plain:
         yield (
-            f"The blow passes beside a centre of mass, so the contact gives way by turning: it acts like "
-            f"{quantity(turning, 'kg')}, and not like {quantity(plain, 'kg')} as without rotation. Such a "
-            f"blow is softer."
+            f"The impulse passes beside a centre of mass, so the contact gives way by turning: it acts like "
+            f"{quantity(turning, 'kg')}, and not like {quantity(plain, 'kg')} as without rotation. Such an "
+            f"impact is softer."
         )
     else:
         acts = f"It acts like {quantity(plain, 'kg')}."
-        yield f"The blow goes through the centres: rotation does not soften it. {acts}"
+        yield f"The impulse goes through the centres: rotation does not soften it. {acts}"
 
 
 def _friction(collision: Collision, result: Result, before: float, after: float) -> str:
@@ -125,7 +125,7 @@ def _law(collision: Collision, result: Result) -> Iterator[str]:
     """Yield which law holds where it is not Newton's with the e of the materials."""
     if collision.law == ENERGETIC:
         yield (
-            "Newton's law would make energy here, since friction turns the sliding round within the blow. "
+            "Newton's law would make energy here, since friction reverses the sliding during the impact. "
             "Stronge's law holds: the normal force gives back e² of the work that it took."
         )
     elif collision.law == LOWERED:
@@ -167,15 +167,21 @@ def _masses(collision: Collision) -> Iterator[Step]:
     response = collision.responses[0]
     reach = max(arm.magnitude for spot in collision.spots for arm in (spot.arm_a, spot.arm_b))
     both = f"{_one_over(a.inverse_mass)} + {_one_over(b.inverse_mass)}"
+
+    def terms(*arms: float) -> str:
+        """Return the part of both bodies that turn, with their arms."""
+        parts = zip(arms, (a, b), strict=True)
+        return " + ".join(
+            f"{_number(without_rounding(arm, reach))}²·{_one_over(body.inverse_inertia)}"
+            for arm, body in parts
+        )
+
     yield Step(
-        "Mass that the blow meets if neither body could turn", "1/m = 1/m_A + 1/m_B", both,
+        "Mass that the impulse meets if neither body could turn", "1/m = 1/m_A + 1/m_B", both,
         f"m = {quantity(1.0 / response.apart, 'kg')}",
     )  # fmt: skip
     for k, one in enumerate(collision.responses):
-        turned = " + ".join(
-            f"{_number(without_rounding(arm, reach))}²·{_one_over(body.inverse_inertia)}"
-            for arm, body in ((one.normal_a, a), (one.normal_b, b))
-        )
+        turned = terms(one.normal_a, one.normal_b)
         of = f" at point {k + 1}" if len(collision.responses) == 2 else ""
         yield Step(
             f"Mass along the normal, with rotation{of}",
@@ -183,10 +189,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
             f"m_n = {quantity(1.0 / one.kn, 'kg')}",
         )  # fmt: skip
     if collision.friction > 0.0:
-        turned = " + ".join(
-            f"{_number(without_rounding(arm, reach))}²·{_one_over(body.inverse_inertia)}"
-            for arm, body in ((response.across_a, a), (response.across_b, b))
-        )
+        turned = terms(response.across_a, response.across_b)
         yield Step(
             "Mass along the surface, with rotation",
             "1/m_t = 1/m_A + 1/m_B + (r_A×t)²/I_A + (r_B×t)²/I_B", f"{both} + {turned}",
@@ -325,5 +328,5 @@ def _torque(body: Body, collision: Collision) -> float:
 
 
 def _vector(value: Vector2, scale: float, unit: str) -> str:
-    """Return a vector whose components are none where they are rounding beside ``scale``."""
+    """Return a vector; components that are rounding beside ``scale`` are treated as zero."""
     return vector_quantity(Vector2(*(without_rounding(part, scale) for part in value)), unit)
