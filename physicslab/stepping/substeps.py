@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,8 +68,7 @@ _COSTS: dict[type[System], int] = {
 """Where the loop keeps what their work costs; that of forces is in one."""
 
 
-@dataclass(frozen=True, slots=True)
-class Span:
+class Span(NamedTuple):
     """What substeps are to cover: their number a step, the length of a substep and of a step, the start [s].
 
     ``rested`` is the time [s] that a step counts as rest of what is slow.
@@ -144,6 +142,7 @@ class Substeps:
         start, end = plan.stages.window
         parts = np.array(self._parts, np.int64)
         self._course = parts, shares, drifted, later, start, end, -start, self._hooked
+        self._is_compiled = [*(part != soft.HOOK for part in self._parts), True]
         self._evaluates = state.has_forces and not {soft.UNIFORM, soft.PACKED}.isdisjoint(self._parts)
         compiled = _KERNELS if self._compiled else self._accounts.kernels
         self.kernels: tuple[Any, ...] = (*compiled, *(schedule.kernels(state) if reasons else ()))
@@ -260,11 +259,10 @@ class Substeps:
         """
         before, made, substep, part = state.time, 0, 0, 0
         first = 0 if self._contact is None or self._contact.first else -1
-        parts = [*self._parts, soft.ALL - 1]
         try:
             while made < steps and self._parts:
                 why = soft.PYTHON
-                if parts[part] != soft.HOOK:
+                if self._is_compiled[part]:
                     where = substep, part, first
                     why, done, substep, part = self._advance(state, span, steps - made, made, where, cause)
                     cause, made = -1, made + done
