@@ -158,8 +158,13 @@ def relax(
         elif not unsettled:
             break
     push, rub = book_relaxed(contacts, near, motion, inverse)
-    near.account[CONTACT, ENERGY] += pressed if crowd else pressed + push
-    near.account[FRICTION, ENERGY] += rubbed if crowd else rubbed + rub
+    if not crowd:
+        pressed, rubbed = pressed + push, rubbed + rub
+    # Friction gives no energy: where sliding turns round within a substep, or friction holds a body that is
+    # pushed out of an overlap, the mean speed is not that at which it acts.
+    taken = min(rubbed, 0.0)
+    near.account[CONTACT, ENERGY] += pressed + (rubbed - taken)
+    near.account[FRICTION, ENERGY] += taken
 
 
 @kernel
