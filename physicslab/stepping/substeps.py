@@ -146,7 +146,7 @@ class Substeps:
         self._evaluates = state.has_forces and not {soft.UNIFORM, soft.PACKED}.isdisjoint(self._parts)
         compiled = _KERNELS if self._compiled else self._accounts.kernels
         self.kernels: tuple[Any, ...] = (*compiled, *(schedule.kernels(state) if reasons else ()))
-        self._cost = np.zeros(soft.COSTS, np.int64)
+        self._cost, self._forces = np.zeros(soft.COSTS, np.int64), len(schedule.forces)
         self._h = 0.0
         self._columns: object = None
         self._entry: Callable[..., Any] = soft.advance
@@ -404,7 +404,7 @@ class Substeps:
         for system, calls in self._calls.items():
             timing, shared = timings[system.name], 1
             if isinstance(system, ForceSystem):
-                place, shared = soft.GRAVITY, len(self._schedule.forces)
+                place, shared = soft.GRAVITY, self._forces
             else:
                 place = _COSTS[type(system)]
             once = isinstance(system, SleepSystem) and not self._hooked
