@@ -49,17 +49,17 @@ def do_stage(
     state.compile((soft.advance,))
     near, inverse, contacts = near or near_in(state), inverse or inverse_in(state), state.contacts
     motion = motion or motion_of(state)
-    unused, none = np.zeros(1), np.zeros(0, np.bool_)
-    course = np.array([part]), np.ones(1), unused, unused, *state.window, -1.0, True
+    none = np.zeros(0, np.bool_)
+    course = np.array([part]), np.array([[1.0], [0.0], [0.0]]), *state.window, -1.0, True
     plan = 2, state.simulation.iterations or 0, h, h, state.moment, h, 1 if first else 0
     gravity = _NOTHING, _NOTHING, *inverse, 0.0, 0.0, speculative_margin(state, h), 0
     packed = _NOTHING, _NOTHING, _NOTHING, np.zeros((0, 3), np.int64), none, _NO_VECTORS
     rows = np.zeros(0, np.int64)
     sleepers = False, 0, none, _NOTHING, _NOTHING, none, none, rows, _NO_VECTORS, False
-    *_, impacts, contacts.impulse_dt = soft.advance(
+    *_, impacts, _, contacts.impulse_dt = soft.advance(
         1, 1, 0, plan, course, -1, motion, motion, sizes_of(state), materials_of(state), inverse,
-        state.bodies.sub_integrated, acting or acting_in(state), gravity, packed, sleepers, (0.0, 0.0),
-        np.zeros((8, 0)), bounds_of(state), near, contacts.opened, softness, contacts.impulse_dt,
+        state.bodies.sub_integrated, acting or acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
+        (0.0, 0.0), np.zeros((8, 0)), bounds_of(state), near, contacts.opened, softness, contacts.impulse_dt,
         contacts.step_log, np.zeros(soft.COSTS, np.int64),
     )  # fmt: skip
     return int(impacts)

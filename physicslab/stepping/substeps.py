@@ -123,7 +123,9 @@ class Substeps:
         # Where a system of one's own moves the bodies itself, its error is that of the method.
         if schedule.find(IntegrateSystem) is not None and any(map(acts_unbooked, schedule.running)):
             self._run = lambda stage, state, h: run_measured(stage, schedule, state, h)
-        self._compiled, self.uniform, self._packs, reasons = self._contact is not None, True, False, []
+        springs = None if self.split is None else self.split.springs
+        self._compiled = self._contact is not None or springs is not None
+        self.uniform, self._packs, reasons = True, False, []
         self._parts: list[int] = []
         self._times: list[tuple[float, float, float]] = []
         self._hooks: dict[int, _Hook] = {}
@@ -138,10 +140,9 @@ class Substeps:
                 reasons.append(reason)
         self.hooks = tuple(reasons)
         self._hooked = bool(reasons) or not whole
-        shares, drifted, later = np.array(self._times).reshape(-1, 3).T.copy()
         start, end = plan.stages.window
-        parts = np.array(self._parts, np.int64)
-        self._course = parts, shares, drifted, later, start, end, -start, self._hooked
+        parts, times = np.array(self._parts, np.int64), np.array(self._times).reshape(-1, 3).T.copy()
+        self._course = parts, times, start, end, -start, self._hooked
         self._is_compiled = [*(part != soft.HOOK for part in self._parts), True]
         self._evaluates = state.has_forces and not {soft.UNIFORM, soft.PACKED}.isdisjoint(self._parts)
         compiled = _KERNELS if self._compiled else self._accounts.kernels
@@ -149,6 +150,7 @@ class Substeps:
         self._cost, self._forces = np.zeros(soft.COSTS, np.int64), len(schedule.forces)
         self._h = 0.0
         self._columns: object = None
+        self._springs = (np.zeros(0), np.zeros(0, np.int64)) if springs is None else springs.arrays
         self._entry: Callable[..., Any] = soft.advance
         self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], Any]
         self._packed: tuple[list[NDArray[np.int64]], NDArray[np.int64]] = [], np.zeros((0, 3), np.int64)
@@ -182,8 +184,11 @@ class Substeps:
         elif systems and not (stage is Stage.BROAD_PHASE and not self._whole):
             reason = self._add_systems(state, stage, systems, share)
         if split is not None and stage is Stage.DRIFT:
-            self._hook(lambda state, h: split.take_part(stage, state, share * h))
-            reason = reason or "what springs and drag act on is sub-integrated"
+            self._hook(lambda state, h: split.take_part(stage, state, share * h), share)
+            if split.springs is not None:
+                self._parts[-1] = soft.SPRINGS
+            else:
+                reason = reason or "what springs and drag act on is sub-integrated"
         self._drifted += share if stage is Stage.DRIFT else 0.0
         self._kicked += share if stage is Stage.KICK else 0.0
         return reason
@@ -275,7 +280,7 @@ class Substeps:
                         break
                 elif why != soft.ALL:
                     began = span.start + made * span.dt
-                    state.moment = began + (substep + self._course[6]) * span.h
+                    state.moment = began + (substep + self._course[4]) * span.h
                     state.time = began + substep * span.h + self._times[part][1] * span.h
                     self._leave(state, why, part, span.h)
                     part += 1
@@ -326,9 +331,10 @@ class Substeps:
             span.rested, first,
         )  # fmt: skip
         arguments = self._arguments(state, span.h)
-        why, done, substep, part, finished_impacts, impacts, contacts.impulse_dt = self._entry(
+        why, done, substep, part, finished_impacts, impacts, evaluations, contacts.impulse_dt = self._entry(
             steps, substep, part, plan, self._course, cause, *arguments
         )
+        state.force_evaluations += evaluations
         contacts.changed()
         state.collisions += finished_impacts
         if done and not self._hooked:
@@ -365,8 +371,8 @@ class Substeps:
         if self._broad_phase is not None:
             fat = self._broad_phase.fat
         return (
-            *motion, packed, sleepers, damping, fat, bounds, near_in(state), contacts.opened, self._softness,
-            contacts.impulse_dt, contacts.step_log, self._cost,
+            *motion, packed, self._springs, sleepers, damping, fat, bounds, near_in(state), contacts.opened,
+            self._softness, contacts.impulse_dt, contacts.step_log, self._cost,
         )  # fmt: skip
 
     def _addresses(self, state: State) -> NDArray[np.int64]:

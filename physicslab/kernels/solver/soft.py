@@ -35,6 +35,8 @@ from physicslab.kernels.arguments import (
     SleepersTuple,
     Softness,
     SoftnessTuple,
+    Springs,
+    SpringsTuple,
     named_near,
 )
 from physicslab.kernels.broad.fat_boxes import still_holds
@@ -43,6 +45,7 @@ from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, predict
 from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
+from physicslab.kernels.ode.spring_flow import flow_springs
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.edits import find_pushed
 from physicslab.kernels.sleep.islands import count_rest, find_touched
@@ -54,8 +57,8 @@ from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to
 __all__ = [
     "ACCELERATE", "ALL", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "DRIFT", "FIND",
     "GRAVITY", "HOOK", "IMPACTS", "INTEGRATE", "KICK", "OVERLAP", "PACKED", "PAIRS", "PAIRS_STALE",
-    "PREDICT", "PYTHON", "RELAX", "RESOLVE", "SLEEP", "SLEEP_PENDING", "SOLVE", "STEPS", "UNIFORM", "WAKE",
-    "WAKE_PENDING", "WALL_PENDING", "WIDEN", "advance",
+    "PREDICT", "PYTHON", "RELAX", "RESOLVE", "SLEEP", "SLEEP_PENDING", "SOLVE", "SPRINGS", "STEPS",
+    "UNIFORM", "WAKE", "WAKE_PENDING", "WALL_PENDING", "WIDEN", "advance",
 ]  # fmt: skip
 
 ALL, PYTHON, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING, WALL_PENDING = range(8)
@@ -64,12 +67,16 @@ again; so many bodies touch that more blocks may be needed; the last step left a
 sleeping body is touched or pushed; at the end of a step, an island may fall asleep, or a body was beyond the
 bounds."""
 (
-    HOOK, DRIFT, UNIFORM, PACKED, KICK, PAIRS, FIND, WIDEN, WAKE, IMPACTS, PREDICT, SOLVE, RELAX, OVERLAP,
-) = range(14)  # fmt: skip
-"""The parts of a substep: what is Python's; bodies move; uniform forces, or compiled ones, are added up, and
-kick; whether the near pairs are still all that are near; where bodies touch; steady contacts get into blocks,
-once a step; whether sleeping bodies are to be woken; impacts; velocities are predicted; the impulses of
-contacts, and those after bodies have moved; what is Python's if these have moved bodies apart."""
+    HOOK, DRIFT, SPRINGS, UNIFORM, PACKED, KICK, PAIRS, FIND, WIDEN, WAKE, IMPACTS, PREDICT, SOLVE, RELAX,
+    OVERLAP,
+) = range(15)  # fmt: skip
+"""The parts of a substep: what is Python's; bodies move; those on springs do, or Python moves them; uniform
+forces, or compiled ones, are added up, and kick; whether the near pairs are still all that are near; where
+bodies touch; steady contacts get into blocks, once a step; whether sleeping bodies are to be woken; impacts;
+velocities are predicted; the impulses of contacts, and those after bodies have moved; what is Python's if
+these have moved bodies apart."""
+SHARE, DRIFTED, LATER = range(3)
+"""Where in ``Course.times`` these are."""
 COSTS, STEPS = 8, 7
 ACCELERATE, GRAVITY, INTEGRATE, BROAD_PHASE, CONTACT, RESOLVE, SLEEP = range(STEPS)
 """The systems whose work this is, in the order of their times in ``cost``; then how many steps were begun."""
@@ -172,15 +179,15 @@ def _made_wide(
 def _advance(
     steps: int, substep: int, part: int, plan: Plan, course: Course, cause: int,
     motion: Motion, kept: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sub_integrated: Flags,
-    acting: Acting, gravity: Gravity, packed: Packed, sleepers: Sleepers, damping: tuple[float, float],
-    fat: Vectors, bounds: Bounds, near: Near, opened: Rows, softness: Softness, impulse_dt: float,
-    impacts: Impacts, cost: Rows,
-) -> tuple[int, int, int, int, int, int, float]:  # fmt: skip
+    acting: Acting, gravity: Gravity, packed: Packed, springs: Springs, sleepers: Sleepers,
+    damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near, opened: Rows, softness: Softness,
+    impulse_dt: float, impacts: Impacts, cost: Rows,
+) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by steps, beginning at a part of a substep, as :func:`advance` describes."""
     position, angle, linear, angular = motion
     h, counts, account = plan.h, near.counts, near.account
     damped = damping[0] != 0.0 or damping[1] != 0.0
-    done, impact_count, finished_impacts = 0, 0, 0
+    done, bounced, finished, evaluations = 0, 0, 0, 0
     weighed, total, mx, my = False, 0.0, 0.0, 0.0
     now = ticks()
     while done < steps:
@@ -193,9 +200,15 @@ def _advance(
                     _keep_book(account)
                 now = charge(cost, ACCELERATE, now)
         while part < len(course.parts):
-            what, span, why = course.parts[part], course.shares[part] * h, ALL
+            what, span, why = course.parts[part], course.times[SHARE, part] * h, ALL
             if what == DRIFT:
                 drift(position, angle, linear, angular, sub_integrated, span)
+                weighed = False
+                now = charge(cost, INTEGRATE, now)
+            elif what == SPRINGS:
+                made = flow_springs(motion, springs, span, account)
+                evaluations += max(0, made)
+                why = ALL if made >= 0 else PYTHON
                 weighed = False
                 now = charge(cost, INTEGRATE, now)
             elif what in (UNIFORM, PACKED):
@@ -205,7 +218,7 @@ def _advance(
                     uniform_gravity(acting.force, gravity.mass, gravity.inverse_mass, gravity.gx, gravity.gy)
                 else:
                     began = plan.time + done * plan.dt + substep * h
-                    _add_up(motion, acting, gravity, packed, began + course.drifted[part] * h)
+                    _add_up(motion, acting, gravity, packed, began + course.times[DRIFTED, part] * h)
                 now = charge(cost, GRAVITY, now)
             elif what == KICK:
                 if acting.uniform:
@@ -221,7 +234,7 @@ def _advance(
                 if damped:
                     book_damping(
                         position, linear, angular, acting.force, acting.torque, inverse.mass, inverse.inertia,
-                        sub_integrated, damping[0], damping[1], span, course.later[part] * h, account,
+                        sub_integrated, damping[0], damping[1], span, course.times[LATER, part] * h, account,
                     )  # fmt: skip
                 if damped or acting.any:
                     kick(
@@ -257,7 +270,7 @@ def _advance(
                     near, motion, sizes, inverse, acting, Log(impacts, moment, account), span,
                     course.start * span, course.end * span,
                 )  # fmt: skip
-                impact_count += came
+                bounced += came
                 weighed = weighed and came == 0
                 now = charge(cost, RESOLVE, now)
             elif what == PREDICT:
@@ -277,18 +290,18 @@ def _advance(
             elif what == HOOK or _moved(motion, packed.before):
                 why = PYTHON
             if why != ALL:
-                return why, done, substep, part, finished_impacts, impact_count, impulse_dt
+                return why, done, substep, part, finished, bounced, evaluations, impulse_dt
             part += 1
         substep, part = substep + 1, 0
         if substep == plan.substeps:
             substep = 0
             if course.hooked:
-                return ALL, 1, substep, part, impact_count, impact_count, impulse_dt
+                return ALL, 1, substep, part, bounced, bounced, evaluations, impulse_dt
             failed = find_beyond(position, angle, FARTHEST) >= 0 or find_beyond(linear, angular, LARGEST) >= 0
             now = charge(cost, ACCELERATE, now)
             if failed:
-                return DIVERGED, done, substep, part, finished_impacts, impact_count, impulse_dt
-            done, finished_impacts = done + 1, impact_count
+                return DIVERGED, done, substep, part, finished, bounced, evaluations, impulse_dt
+            done, finished = done + 1, bounced
             if sleepers.on:
                 check = count_rest(
                     linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height,
@@ -297,10 +310,28 @@ def _advance(
                 )  # fmt: skip
                 now = charge(cost, SLEEP, now)
                 if check:
-                    return SLEEP_PENDING, done, substep, part, finished_impacts, impact_count, impulse_dt
+                    return (
+                        SLEEP_PENDING,
+                        done,
+                        substep,
+                        part,
+                        finished,
+                        bounced,
+                        evaluations,
+                        impulse_dt,
+                    )
             if counts[OUTSIDE] != 0:
-                return WALL_PENDING, done, substep, part, finished_impacts, impact_count, impulse_dt
-    return ALL, done, substep, part, finished_impacts, impact_count, impulse_dt
+                return (
+                    WALL_PENDING,
+                    done,
+                    substep,
+                    part,
+                    finished,
+                    bounced,
+                    evaluations,
+                    impulse_dt,
+                )
+    return ALL, done, substep, part, finished, bounced, evaluations, impulse_dt
 
 
 @kernel
@@ -308,10 +339,10 @@ def advance(
     steps: int, substep: int, part: int, plan: PlanTuple, course: CourseTuple, cause: int,
     motion: MotionTuple, kept: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, sub_integrated: Flags, acting: ActingTuple, gravity: GravityTuple,
-    packed: PackedTuple, sleepers: SleepersTuple, damping: tuple[float, float], fat: Vectors,
-    bounds: BoundsTuple, near: NearTuple, opened: Rows, softness: SoftnessTuple, impulse_dt: float,
-    impacts: Impacts, cost: Rows,
-) -> tuple[int, int, int, int, int, int, float]:  # fmt: skip
+    packed: PackedTuple, springs: SpringsTuple, sleepers: SleepersTuple, damping: tuple[float, float],
+    fat: Vectors, bounds: BoundsTuple, near: NearTuple, opened: Rows, softness: SoftnessTuple,
+    impulse_dt: float, impacts: Impacts, cost: Rows,
+) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by ``steps`` steps, beginning at a part of a substep.
 
     ``kept`` has the state now, and receives that in which the last step began. ``impacts`` is the log, and
@@ -321,7 +352,8 @@ def advance(
     Where some parts are Python's, the ends of steps are too: nothing is kept, and energy is not measured.
 
     Returns why it ended, how many steps are done, the substep and the part that it was in, the impacts in the
-    steps that are done and all impacts, and the time [s] over which the points' impulses act.
+    steps that are done and all impacts, how often the forces of springs that move bodies were evaluated, and
+    the time [s] over which the points' impulses act.
     """
     of, moved, masses, along = named_near(near), Motion(*motion), Gravity(*gravity), Course(*course)
     if cause >= 0:
@@ -329,7 +361,7 @@ def advance(
     ended = _advance(
         steps, substep, part, Plan(*plan), along, cause, moved, Motion(*kept),
         Sizes(*sizes), Materials(*materials), Inverse(*inverse), sub_integrated,
-        Acting(*acting), masses, Packed(*packed), Sleepers(*sleepers), damping, fat,
+        Acting(*acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping, fat,
         Bounds(*bounds), of, opened, Softness(*softness), impulse_dt, impacts, cost,
     )  # fmt: skip
     if not along.hooked:
