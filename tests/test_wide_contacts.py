@@ -122,7 +122,7 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         near = (counts, near[1], points, near[3], touching, discs, boxes, *near[7:])
         motion = Motion(*motion_of(world))._replace(linear=linear, angular=angular)
         inverse = (bodies.inverse_mass, bodies.inverse_inertia)
-        acting = (bodies.force, bodies.torque, True, bodies.unkicked, True)
+        acting = (bodies.pull, True, bodies.unkicked, True)
         do_stage(
             world, soft.SOLVE, h, softness=(0.17, 7.0, 1.5), near=near,
             motion=cast(MotionTuple, tuple(motion)), inverse=inverse, acting=acting,

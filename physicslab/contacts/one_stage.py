@@ -53,7 +53,7 @@ def do_stage(
     course = np.array([part]), np.array([[1.0], [0.0], [0.0]]), *state.window, -1.0, True
     plan = 2, state.simulation.iterations or 0, h, h, state.moment, h, 1 if first else 0
     gravity = _NOTHING, _NOTHING, *inverse, 0.0, 0.0, speculative_margin(state, h), 0
-    packed = _NOTHING, _NOTHING, _NOTHING, np.zeros((0, 3), np.int64), none, _NO_VECTORS
+    packed = _NO_VECTORS, np.zeros((0, 3), np.int64), _NO_VECTORS
     rows = np.zeros(0, np.int64)
     sleepers = False, 0, none, _NOTHING, _NOTHING, none, none, rows, _NO_VECTORS, False
     *_, impacts, _, contacts.impulse_dt = soft.advance(

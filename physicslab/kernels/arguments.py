@@ -16,6 +16,7 @@ __all__ = [
     "GravityTuple", "Inverse", "InverseTuple", "Log", "Materials", "MaterialsTuple", "Motion", "MotionTuple",
     "Near", "NearTuple", "Packed", "PackedTuple", "Plan", "PlanTuple", "Sizes", "SizesTuple", "Sleepers",
     "SleepersTuple", "Softness", "SoftnessTuple", "Springs", "SpringsTuple",
+    "named_acting",
     "named_near",
 ]  # fmt: skip
 
@@ -53,13 +54,15 @@ class Inverse(NamedTuple):
 
 
 class Acting(NamedTuple):
-    """Forces (rows, 2) [N] and torques [N m], whether there are any, and the rows that they do not kick.
+    """Forces (rows, 2) [N] and torques [N m], both in one (3 rows,), whether there are any.
 
+    Then the rows that they do not kick.
     Then whether they are uniform: they accelerate all that can be moved alike, and turn nothing.
     """
 
     force: Vectors
     torque: Numbers
+    pull: Numbers
     any: bool
     unkicked: Flags
     uniform: bool
@@ -172,17 +175,14 @@ class Springs(NamedTuple):
 
 
 class Packed(NamedTuple):
-    """The state as compiled forces read it (3 rows + 1,), their sum (3 rows,), and their addresses (n, 3).
+    """The state as compiled forces read it (2, 3 rows + 1), and their addresses (n, 3).
 
-    Then the rows whose velocities are predicted for contacts (rows,), and room for positions (rows, 2) [m]
-    from before bodies are moved apart; of no length where what that changes is booked in any case.
+    Then room for positions (rows, 2) [m] from before bodies are moved apart; of no length where what that
+    changes is booked in any case.
     """
 
-    q: Numbers
-    v: Numbers
-    pull: Numbers
+    state: Vectors
     calls: Calls
-    predictable: Flags
     before: Vectors
 
 
@@ -225,7 +225,7 @@ MotionTuple = tuple[Vectors, Numbers, Vectors, Numbers]
 SizesTuple = tuple[Rows, Numbers, Numbers, Numbers]
 MaterialsTuple = tuple[Numbers, Numbers]
 InverseTuple = tuple[Numbers, Numbers]
-ActingTuple = tuple[Vectors, Numbers, bool, Flags, bool]
+ActingTuple = tuple[Numbers, bool, Flags, bool]
 BoundsTuple = tuple[Numbers, float, float]
 NearTuple = tuple[
     Rows,
@@ -248,10 +248,20 @@ SoftnessTuple = tuple[float, float, float]
 PlanTuple = tuple[int, int, float, float, float, float, int]
 CourseTuple = tuple[Rows, Vectors, float, float, float, bool]
 SpringsTuple = tuple[Numbers, Rows]
-PackedTuple = tuple[Numbers, Numbers, Numbers, Calls, Flags, Vectors]
+PackedTuple = tuple[Vectors, Calls, Vectors]
 GravityTuple = tuple[Numbers, Numbers, Numbers, Numbers, float, float, float, int]
 SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows, Vectors, bool]
 """The same, without names."""
+
+
+@fused
+def named_acting(plain: ActingTuple) -> Acting:
+    """Give names to a tuple, and to both parts of the forces."""
+    pull, acts, unkicked, uniform = plain
+    rows = len(unkicked)
+    return Acting(
+        pull[: 2 * rows].reshape(rows, 2), pull[2 * rows : 3 * rows], pull, acts, unkicked, uniform
+    )  # fmt: skip
 
 
 @fused

@@ -86,7 +86,13 @@ class Soft:
         state.substeps = factor * state.simulation.substeps
         wanted, steps = steps, 1 if single else min(steps, self._max_steps)
         began = working_ns() if wanted > 1 else 0
-        self._begin(state)
+        refill(state)
+        if self._broad_phase is not None:
+            self._broad_phase.follow_rows(state)
+        if self._contact is not None:
+            self._contact.begin_step(state)
+        if self.substeps.split is not None:
+            self.substeps.split.begin(state)
         rested = min(h, state.simulation.dt)  # of a divided step only the end is observed
         span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested)
         cause = self._open(state) if self.keeps_balance else -1
@@ -100,16 +106,6 @@ class Soft:
         if wanted > 1:
             self._max_steps = max(1, min(_MAX_STEPS, made * _CALL_NS // max(working_ns() - began, 1)))
         return Advance(made, parts)
-
-    def _begin(self, state: State) -> None:
-        """Begin new records of impacts, and take the present forces and masses."""
-        refill(state)
-        if self._broad_phase is not None:
-            self._broad_phase.follow_rows(state)
-        if self._contact is not None:
-            self._contact.begin_step(state)
-        if self.substeps.split is not None:
-            self.substeps.split.begin(state)
 
     def _end_step(self, state: State, h: float) -> None:
         """Judge what has come of a step with hooks, as the loop does where there are none."""

@@ -75,7 +75,7 @@ class SplitForces:
     Parameters
     ----------
     state : State
-        Whose bodies. Its ``bodies.sub_integrated`` is set.
+        Whose bodies. Its ``bodies.sub_integrated`` and ``unkicked`` are set.
     forces : sequence of ForceSystem
         What acts.
     method : Integrator
@@ -85,8 +85,6 @@ class SplitForces:
 
     Attributes
     ----------
-    predictable : bool array (rows,)
-        The rows whose velocity is predicted for the contacts.
     springs : SpringFlow, optional
         What the loop of substeps moves by itself, as long as no spring turns too fast.
     """
@@ -113,12 +111,12 @@ class SplitForces:
         """Find what is pulled gently at its present speed: a file must not need to remember that."""
         h = state.simulation.dt / state.simulation.substeps
         bodies = state.bodies
-        self.predictable: NDArray[np.bool_] = bodies.sub_integrated & (bodies.inverse_mass > 0.0)
+        predictable = bodies.sub_integrated & (bodies.inverse_mass > 0.0)
         for force in self._ode.forces:
             rates = force.rates(state)
             if rates is not None:
-                self.predictable &= rates * h <= _MAX_PREDICTABLE
-        bodies.unkicked[:] = bodies.sub_integrated & ~self.predictable
+                predictable &= rates * h <= _MAX_PREDICTABLE
+        bodies.unkicked[:] = bodies.sub_integrated & ~predictable
 
     def begin(self, state: State) -> None:
         """Take the present forces and masses; they are kept for a step."""
@@ -136,7 +134,8 @@ class SplitForces:
             bodies, velocity = state.bodies, state.table(Velocity)
             motion.predict(
                 velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
-                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, self.predictable, h,
+                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, bodies.sub_integrated,
+                bodies.unkicked, h,
             )  # fmt: skip
 
     def _follow(self, state: State, h: float) -> int:

@@ -361,8 +361,7 @@ class Substeps:
             self._entry = direct_entry(soft.advance)
         motion, laws, marked = self._fixed
         bodies = state.bodies
-        predictable = bodies.unkicked if self.split is None else self.split.predictable
-        packed = bodies.q, bodies.v, bodies.pull, self._addresses(state), predictable, self._accounts.before
+        packed = bodies.packed, self._addresses(state), self._accounts.before
         sleepers = (
             self._sleep is not None, sleep.count, sleep.asleep, sleep.rest, sleep.slowest, marked,
             contacts.inactive, contacts.sleeping, sleep.forces, sleep.unverified,

@@ -303,7 +303,7 @@ class ForceSystem(System):
     def add_packed(self, state: State, h: float) -> None:
         """Add the packed force at the present state."""
         bodies = state.bodies
-        add_forces(bodies.q, bodies.v, bodies.pull, self.calls(state))
+        add_forces(bodies.packed[0], bodies.packed[1], bodies.pull, self.calls(state))
 
     def calls(self, state: State) -> NDArray[np.int64]:
         """Return the addresses (1, 3) of the packed force; what it is made of is looked at once a step."""

@@ -37,13 +37,14 @@ from physicslab.kernels.arguments import (
     SoftnessTuple,
     Springs,
     SpringsTuple,
+    named_acting,
     named_near,
 )
 from physicslab.kernels.broad.fat_boxes import still_holds
 from physicslab.kernels.energy import moments_of_mass, motion_totals
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import uniform_gravity
-from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, predict
+from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
 from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
 from physicslab.kernels.ode.spring_flow import flow_springs
 from physicslab.kernels.records import Impacts
@@ -118,19 +119,6 @@ def _balance(account: Vectors, motion: Motion, gravity: Gravity, cause: int) -> 
         account[cause, SPIN] += spin - account[BALANCE, SPIN]
     account[BALANCE, ENERGY], account[BALANCE, PX] = energy, px
     account[BALANCE, PY], account[BALANCE, SPIN] = py, spin
-
-
-@inlined
-def _add_up(motion: Motion, acting: Acting, gravity: Gravity, packed: Packed, now: float) -> None:
-    """Add up compiled forces at the time ``now``, from zero."""
-    n = len(motion.angle)
-    for i in range(n):
-        packed.q[2 * i], packed.q[2 * i + 1] = motion.position[i, 0], motion.position[i, 1]
-        packed.q[2 * n + i] = motion.angle[i]
-        packed.v[2 * i], packed.v[2 * i + 1] = motion.linear[i, 0], motion.linear[i, 1]
-        packed.v[2 * n + i] = motion.angular[i]
-    packed.q[3 * n] = now
-    add_forces(packed.q, packed.v, packed.pull, packed.calls)
 
 
 @inlined
@@ -218,7 +206,9 @@ def _advance(
                     uniform_gravity(acting.force, gravity.mass, gravity.inverse_mass, gravity.gx, gravity.gy)
                 else:
                     began = plan.time + done * plan.dt + substep * h
-                    _add_up(motion, acting, gravity, packed, began + course.times[DRIFTED, part] * h)
+                    drifted = began + course.times[DRIFTED, part] * h
+                    pack_state(position, angle, linear, angular, drifted, packed.state)
+                    add_forces(packed.state[0], packed.state[1], acting.pull, packed.calls)
                 now = charge(cost, GRAVITY, now)
             elif what == KICK:
                 if acting.uniform:
@@ -276,7 +266,7 @@ def _advance(
             elif what == PREDICT:
                 predict(
                     linear, angular, acting.force, acting.torque, inverse.mass, inverse.inertia,
-                    packed.predictable, span,
+                    sub_integrated, acting.unkicked, span,
                 )  # fmt: skip
             elif what == SOLVE:
                 impulse_dt = press(near, motion, inverse, acting, softness, span, impulse_dt, plan.iterations)
@@ -361,7 +351,7 @@ def advance(
     ended = _advance(
         steps, substep, part, Plan(*plan), along, cause, moved, Motion(*kept),
         Sizes(*sizes), Materials(*materials), Inverse(*inverse), sub_integrated,
-        Acting(*acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping, fat,
+        named_acting(acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping, fat,
         Bounds(*bounds), of, opened, Softness(*softness), impulse_dt, impacts, cost,
     )  # fmt: skip
     if not along.hooked:
