@@ -16,10 +16,11 @@ from unittest.mock import patch
 import numpy as np
 
 from physicslab.kernels import interpreter, motion, twins
+from physicslab.kernels.constraint import pair
 from physicslab.kernels.events import path
 from physicslab.kernels.interpreter import interpreted
 from physicslab.kernels.rigid import constraints, curve
-from physicslab.kernels.solver import impact, impulse, sweep
+from physicslab.kernels.solver import impulse, sweep
 from physicslab.kernels.wide import float64x8
 
 __all__ = ["FAULT", "WRONG_DRIFTS", "WRONG_KICKS", "lost_impulses", "mutated"]
@@ -143,7 +144,7 @@ def lost_impulses(rows: set[int]) -> Iterator[None]:
         target[places] = before
 
     faults: tuple[tuple[Any, Mutant], ...] = (
-        (impact._strike, last), (impulse.apply_impulse, last), (sweep._pushed, pushed),
+        (pair.after_impulse, pushed), (impulse.apply_impulse, last), (sweep._pushed, pushed),
         (float64x8.put_vectors, put), (float64x8.put_numbers, put),
         (path.push, not_pushed), (constraints.apply, applied),
     )  # fmt: skip

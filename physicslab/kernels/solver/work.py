@@ -9,10 +9,11 @@ yet, or not any more: with a the acceleration of the point by forces, the mean v
 from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, GRAVITY, HAND, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
+from physicslab.kernels.constraint.pair import PairInverseMass, PairVelocity
 from physicslab.kernels.motion import damped
 from physicslab.kernels.near_counts import DISC_BLOCKS, WIDE_COUNT
 from physicslab.kernels.records import Point
-from physicslab.kernels.solver.impact_log import Masses, Pose, Speeds, book_outside
+from physicslab.kernels.solver.impact_log import Pose, book_outside
 from physicslab.kernels.wide.layout import (
     ARM_AX,
     ARM_AY,
@@ -156,8 +157,8 @@ def book_solved(
 
 
 @inlined
-def _masses(a: int, b: int, inverse: Inverse) -> Masses:
-    return Masses(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
+def _masses(a: int, b: int, inverse: Inverse) -> PairInverseMass[float]:
+    return PairInverseMass(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
 
 
 @inlined
@@ -167,9 +168,9 @@ def _pose(a: int, b: int, motion: Motion) -> Pose:
 
 
 @inlined
-def _speeds(a: int, b: int, motion: Motion) -> Speeds:
+def _speeds(a: int, b: int, motion: Motion) -> PairVelocity[float]:
     linear, angular = motion.linear, motion.angular
-    return Speeds(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
+    return PairVelocity(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
 
 
 @always_inlined

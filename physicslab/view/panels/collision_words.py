@@ -20,7 +20,7 @@ AGREES = 1e-9
 """Relative difference up to which the solver's figure and the one worked out here are the same."""
 _LETTERS = 24
 _SOFTER = 0.99
-"""Share of the mass without rotation below which it is said that rotation makes the blow softer."""
+"""Share of the mass without rotation below which it is said that rotation makes the impact softer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,9 +88,9 @@ def _bounce(collision: Collision, result: Result, found: float) -> str:
 
 
 def _rotation(collision: Collision) -> Iterator[str]:
-    """Yield why a blow beside the centre is softer."""
+    """Yield why an impact beside the centre is softer."""
     response = collision.responses[0]
-    plain, turning = 1.0 / response.apart, 1.0 / response.kn
+    plain, turning = 1.0 / (collision.a.inverse_mass + collision.b.inverse_mass), 1.0 / response.kn
     if len(collision.spots) == 2:
         yield (
             f"One point by itself would give way by turning, and act like {quantity(turning, 'kg')} and not "
@@ -98,13 +98,13 @@ def _rotation(collision: Collision) -> Iterator[str]:
         )
     elif turning < _SOFTER * plain:
         yield (
-            f"The blow passes beside a centre of mass, so the contact gives way by turning: it acts like "
-            f"{quantity(turning, 'kg')}, and not like {quantity(plain, 'kg')} as without rotation. Such a "
-            f"blow is softer."
+            f"The impulse passes beside a centre of mass, so the contact gives way by turning: it acts like "
+            f"{quantity(turning, 'kg')}, and not like {quantity(plain, 'kg')} as without rotation. Such an "
+            f"impact is softer."
         )
     else:
         acts = f"It acts like {quantity(plain, 'kg')}."
-        yield f"The blow goes through the centres: rotation does not soften it. {acts}"
+        yield f"The impulse goes through the centres: rotation does not soften it. {acts}"
 
 
 def _friction(collision: Collision, result: Result, before: float, after: float) -> str:
@@ -125,7 +125,7 @@ def _law(collision: Collision, result: Result) -> Iterator[str]:
     """Yield which law holds where it is not Newton's with the e of the materials."""
     if collision.law == ENERGETIC:
         yield (
-            "Newton's law would make energy here, since friction turns the sliding round within the blow. "
+            "Newton's law would make energy here, since friction turns the sliding round within the impact. "
             "Stronge's law holds: the normal force gives back e² of the work that it took."
         )
     elif collision.law == LOWERED:
@@ -163,18 +163,17 @@ def _one_over(inverse: float) -> str:
 
 
 def _masses(collision: Collision) -> Iterator[Step]:
-    a, b = collision.a, collision.b
-    response = collision.responses[0]
+    a, b, state, response = collision.a, collision.b, collision.states[0], collision.responses[0]
     reach = max(arm.magnitude for spot in collision.spots for arm in (spot.arm_a, spot.arm_b))
     both = f"{_one_over(a.inverse_mass)} + {_one_over(b.inverse_mass)}"
     yield Step(
-        "Mass that the blow meets if neither body could turn", "1/m = 1/m_A + 1/m_B", both,
-        f"m = {quantity(1.0 / response.apart, 'kg')}",
+        "Mass that the impulse meets if neither body could turn", "1/m = 1/m_A + 1/m_B", both,
+        f"m = {quantity(1.0 / (a.inverse_mass + b.inverse_mass), 'kg')}",
     )  # fmt: skip
-    for k, one in enumerate(collision.responses):
+    for k, (at, one) in enumerate(zip(collision.states, collision.responses, strict=True)):
         turned = " + ".join(
             f"{_number(without_rounding(arm, reach))}²·{_one_over(body.inverse_inertia)}"
-            for arm, body in ((one.normal_a, a), (one.normal_b, b))
+            for arm, body in ((at.normal_a, a), (at.normal_b, b))
         )
         of = f" at point {k + 1}" if len(collision.responses) == 2 else ""
         yield Step(
@@ -185,7 +184,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
     if collision.friction > 0.0:
         turned = " + ".join(
             f"{_number(without_rounding(arm, reach))}²·{_one_over(body.inverse_inertia)}"
-            for arm, body in ((response.across_a, a), (response.across_b, b))
+            for arm, body in ((state.tangent_a, a), (state.tangent_b, b))
         )
         yield Step(
             "Mass along the surface, with rotation",
@@ -199,7 +198,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
                 " + ".join(
                     f"{_number(n)}·{_number(t)}·{_one_over(body.inverse_inertia)}"
                     for n, t, body in (
-                        (response.normal_a, response.across_a, a), (response.normal_b, response.across_b, b),
+                        (state.normal_a, state.tangent_a, a), (state.normal_b, state.tangent_b, b),
                     )
                 ),
                 f"c = {quantity(response.coupling, '1/kg')}",
@@ -257,7 +256,7 @@ def _impulses_of_two(collision: Collision, result: Result) -> list[Step]:
         Step(
             "Each point also moves the other",
             "k = 1/m_A + 1/m_B + (r_A1×n)(r_A2×n)/I_A + (r_B1×n)(r_B2×n)/I_B",
-            "", f"k = {quantity(collision.between, '1/kg')}",
+            "", f"k = {quantity(collision.pair_response.kn_12, '1/kg')}",
         )
     )  # fmt: skip
     e = result.restitution
