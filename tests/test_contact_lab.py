@@ -16,7 +16,7 @@ from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
 from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN
 from physicslab.lab.accuracy.contacts.sliding import stopped_by_friction
-from physicslab.lab.accuracy.contacts.striking import corner_blow
+from physicslab.lab.accuracy.contacts.striking import corner_impact
 from physicslab.lab.accuracy.contacts.study import (
     HALVINGS,
     ROUNDING,
@@ -97,7 +97,7 @@ def test_a_block_on_a_spring_goes_as_its_equation_of_motion_has_it() -> None:
     assert abs(x) <= held
 
 
-def test_blows_on_corners_keep_the_laws_of_newton_and_coulomb() -> None:
+def test_impacts_on_corners_keep_the_laws_of_newton_and_coulomb() -> None:
     random = np.random.default_rng(4)
     slid = 0
     for _ in range(200):
@@ -108,7 +108,7 @@ def test_blows_on_corners_keep_the_laws_of_newton_and_coulomb() -> None:
             random.random(),
             random.random(),
         )
-        vx, vy, spin = corner_blow((x, y), inertia, fall, e, mu)
+        vx, vy, spin = corner_impact((x, y), inertia, fall, e, mu)
         jx, jy = vx, vy + fall
         assert spin == pytest.approx((x * jy - y * jx) / inertia, rel=1e-12)
         if vx - spin * y == pytest.approx(0.0, abs=1e-12 * fall):

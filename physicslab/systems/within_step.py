@@ -24,7 +24,7 @@ class StepPath:
 
     Each is the cubic polynomial with these places and velocities (Hermite), which is off by at most
     ``h**4 / 384`` times the fourth derivative. Where the velocity changes more than a smooth path through
-    these places allows, as by a blow, it is two straight lines that meet at the moment of the blow.
+    these places allows, as by an impact, it is two straight lines that meet at the moment of the impact.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class StepPath:
     h : float
         The length of the step [s].
     corner : float64 array (n,)
-        The moment of the blow as a share of the step, 0 where there must have been several; NaN for smooth
+        The moment of the impact as a share of the step, 0 where there must have been several; NaN for smooth
         paths.
     """
 

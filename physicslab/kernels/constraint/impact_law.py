@@ -155,7 +155,7 @@ def stronge_impulse(at: PointResponse, restitution: float, friction: float) -> t
     after = min(max(-coupling / kt, -friction), friction)
     slowed, stopped = coupling + kt * before, 0.0
     rise1, rise2 = kn + coupling * before, max(kn + coupling * after, _STUCK_RESPONSE * kn)
-    if slowed * sliding < 0.0:
+    if slowed < 0.0 < sliding or sliding < 0.0 < slowed:
         stopped = -sliding / slowed
     elif sliding != 0.0 and rise1 > 0.0:
         stopped = math.inf
@@ -379,7 +379,7 @@ def narrow_search(search: RestitutionSearch, work: float) -> RestitutionSearch:
         share = 0.5 * (low + high)
     if high - low <= _ENERGY_TOLERANCE or trial >= _MAX_TRIALS - 2:
         share = low
-    return RestitutionSearch(share, low, low_work, high, high_work, side, trial + 1, False)
+    return RestitutionSearch(share, low, low_work, high, high_work, side, trial + 1, trial >= _MAX_TRIALS)
 
 
 @inlined

@@ -14,6 +14,7 @@ from physicslab.kernels.constraint.pair import (
     ContactFrame,
     PairInverseMass,
     PairVelocity,
+    PointState,
     frame_of,
     impulse_at,
     moments_of,
@@ -36,18 +37,14 @@ def path_velocity(paths: Vectors, angular: Numbers, a: int, b: int) -> PairVeloc
 
 
 @inlined
-def _approach(
+def _state(
     paths: Vectors, angular: Numbers, a: int, b: int, at: ContactFrame[float]
-) -> tuple[float, float]:
-    """Return how fast B's point moves against A's along the normal, and the remainder [m/s].
-
-    The paths begin now.
-    """
+) -> tuple[PointState[float], float]:
+    """Return the state of a point and the remainder of its velocity along the normal; the paths begin now."""
     vx, x_low = add_pair(paths[b, 4], paths[b, 5], -paths[a, 4], -paths[a, 5])
     vy, y_low = add_pair(paths[b, 6], paths[b, 7], -paths[a, 6], -paths[a, 7])
-    vx += angular[a] * at.arm_ay - angular[b] * at.arm_by
-    vy += angular[b] * at.arm_bx - angular[a] * at.arm_ax
-    return vx * at.nx + vy * at.ny, x_low * at.nx + y_low * at.ny
+    state = point_state(at, PairVelocity(0.0, 0.0, angular[a], vx, vy, angular[b]))
+    return state, x_low * at.nx + y_low * at.ny
 
 
 @inlined
@@ -73,25 +70,28 @@ def resolve_ballistic_impacts(
     mass: PairInverseMass[float],
 ) -> tuple[ImpactImpulses, int]:  # fmt: skip
     """Bounce a pair whose paths begin now and whose points are filled; return the impulses, and their law."""
-    a, b, at1, at2 = manifold.a, manifold.b, frame_of(manifold, one), frame_of(manifold, two)
-    moving, e, mu = path_velocity(paths, angular, a, b), manifold.restitution, manifold.friction
-    state1, state2 = point_state(at1, moving), point_state(at2, moving)
+    a, b, e, mu = manifold.a, manifold.b, manifold.restitution, manifold.friction
+    at1, at2 = frame_of(manifold, one), frame_of(manifold, two)
+    state1, low = _state(paths, angular, a, b, at1)
     manifold.impact_count += 1
-    if manifold.count == 2 and min(state1.v, state2.v) < 0.0:
+    if manifold.count == 2:
+        state2, _ = _state(paths, angular, a, b, at2)
+        if state1.v >= 0.0 and state2.v >= 0.0:
+            return ImpactImpulses(0.0, 0.0, 0.0, 0.0), NEWTON
         found, used = solve_impact_of_two(pair_response(state1, state2, mass), e, mu)
         _push_pair(paths, angular, a, b, mass, two, at2, state2.v, found.normal2, found.tangent2)
         _push_pair(paths, angular, a, b, mass, one, at1, state1.v, found.normal1, found.tangent1)
         return found, LOWERED if used < e else NEWTON
-    if manifold.count == 2 or state1.v >= 0.0:
+    if state1.v >= 0.0:
         return ImpactImpulses(0.0, 0.0, 0.0, 0.0), NEWTON
-    response, (v, v_low), left = point_response(state1, mass), _approach(paths, angular, a, b, at1), 0.0
+    response, left = point_response(state1, mass), 0.0
     normal, tangent, law = solve_impact(response, e, mu)
     _push_pair(paths, angular, a, b, mass, one, at1, state1.v, normal, tangent)
     if law == NEWTON:
         # The rounding of the impulse is the same at every impact of a pair and would add up: it is corrected.
-        after, after_low = _approach(paths, angular, a, b, at1)
-        target, target_low = multiply(e, v)
-        missed, missed_low = add_pair(after, after_low, target, target_low + e * v_low)
+        after, after_low = _state(paths, angular, a, b, at1)
+        target, target_low = multiply(e, state1.v)
+        missed, missed_low = add_pair(after.v, after_low, target, target_low + e * low)
         left = -(missed + missed_low) / response.kn
         push(paths, a, -mass.a, left * at1.nx, left * at1.ny)
         push(paths, b, mass.b, left * at1.nx, left * at1.ny)

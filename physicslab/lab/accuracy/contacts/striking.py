@@ -13,7 +13,7 @@ from physicslab.lab.worlds import GRAVITY, empty_world, floor
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
-__all__ = ["STRIKING", "corner_blow"]
+__all__ = ["STRIKING", "corner_impact"]
 
 _DROP = 0.5
 _SIZES = {"cube": (1.0, 1.0), "rod": (2.0, 0.1)}
@@ -21,7 +21,7 @@ _ROLL_E, _ROLL_MU, _ROLL_R = 0.5, 0.3, 0.25
 _SLOW, _GAP = 0.04, 0.01
 
 
-def corner_blow(
+def corner_impact(
     arm: tuple[float, float], inertia: float, fall: float, e: float, mu: float
 ) -> tuple[float, float, float]:
     """Return vx, vy [m/s] and spin [rad/s] of 1 kg after its corner struck a floor.
@@ -73,7 +73,7 @@ def _leaves(shape: str, tilt: float, e: float, mu: float, t: float) -> dict[str,
     s, c = math.sin(tilt), math.cos(tilt)
     arm = 0.5 * (height * s - width * c), -0.5 * (width * s + height * c)
     fall = math.sqrt(2.0 * GRAVITY * _DROP)
-    vx, vy, spin = corner_blow(arm, (width**2 + height**2) / 12.0, fall, e, mu)
+    vx, vy, spin = corner_impact(arm, (width**2 + height**2) / 12.0, fall, e, mu)
     t -= fall / GRAVITY
     return {"box": (vx * t, -arm[1] + vy * t - 0.5 * GRAVITY * t * t, tilt + spin * t)}
 
